@@ -1,0 +1,38 @@
+"""Finite-element reference histories of impact, with error bars; comparison with every lumped law.
+
+>>> import fe_contact, lumped
+>>> scene = lumped.Scene.load("polymer-sphere")
+>>> reference = fe_contact.run(scene, tolerance=1e-3)      # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from lumped import Result, Scene
+
+__all__ = ["run"]
+__version__ = "0.1.0"
+
+
+def run(
+    scene: Scene, tolerance: float | None = None, method: str = "fe", numerics: Mapping[str, Any] | None = None
+) -> Result:
+    """One impact.
+
+    Parameters
+    ----------
+    scene : a :class:`lumped.Scene`.
+    tolerance : asked of every ruled quantity; None leaves it to ``numerics`` or the default 1e-3.
+    method : ``fe``, ``cheapest`` or the name of a lumped law.
+    numerics : settings to keep, as in the ``[numerics]`` table of a scene file.
+
+    Raises
+    ------
+    BadInput for what cannot be used, NotReached where no march came to an end.
+    """
+    from fe_contact.methods import simulate
+
+    return simulate(scene, method, numerics or {}, tolerance)

@@ -1,0 +1,7 @@
+"""``python -m fe_contact``."""
+
+import sys
+
+from fe_contact.cli import main
+
+sys.exit(main())

@@ -1,0 +1,119 @@
+"""Memory of a viscoelastic surface, kept on fixed radii: exact where the body's surface knows only E*(t).
+
+Constant Poisson's ratio, or any isotropic homogeneous half-space: the surface displacement u obeys
+
+    elastic displacement of the pressure for unit modulus = E_inf u + sum_k E_k z_k + eta du/dt ,
+    dz_k/dt = du/dt - z_k/tau_k ,
+
+at every point of the surface, so that the past is a few numbers a point and the bulk need not be stored.
+The same recursion run on the pressure itself gives the pressure each branch carries, hence the energies.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import ModuleType
+
+import numpy as np
+
+from fe_contact.forms import Array
+from lumped.materials import Relaxation
+
+
+@dataclass(frozen=True)
+class StepLaw:
+    """Stress of one step: ``now`` x new strain + ``past`` . (old strain, old branches); see :func:`step_law`.
+
+    ``decay``, ``gain`` (k,) move the branches on: z' = decay z + gain (u' - u).
+    """
+
+    now: float
+    past_strain: float
+    past_branches: Array
+    decay: Array
+    gain: Array
+
+
+def step_law(relaxation: Relaxation, scheme: ModuleType, step: float) -> StepLaw:
+    """Numbers of one time step, s, of a scheme (see :mod:`fe_contact.schemes`); moduli in Pa."""
+    ratios = step / np.asarray(relaxation.times)
+    moduli = np.asarray(relaxation.moduli)
+    per_increment, of_past = scheme.weights(moduli, ratios)
+    now = scheme.equilibrium_share() * relaxation.equilibrium + per_increment.sum() + relaxation.viscosity / step
+    return StepLaw(
+        now=float(now),
+        past_strain=float(relaxation.equilibrium - now),
+        past_branches=of_past,
+        decay=np.exp(-ratios),
+        gain=-np.expm1(-ratios) / ratios,
+    )
+
+
+@dataclass(frozen=True)
+class SurfaceMemory:
+    """Displacement and its elastic pressure on fixed radii.
+
+    ``radii`` (r,) m; ``strain`` (2, r): displacement u, m, and the pressure that holds it elastically with
+    unit modulus, 1; ``branches`` (k, 2, r): the same of every branch.
+    """
+
+    radii: Array
+    strain: Array
+    branches: Array
+
+    @classmethod
+    def at_rest(cls, radii: Array, relaxation: Relaxation) -> SurfaceMemory:
+        """A relaxed, undeformed surface."""
+        shape = (2, radii.size)
+        return cls(radii, np.zeros(shape), np.zeros((len(relaxation.moduli), *shape)))
+
+    def carried(self, law: StepLaw) -> Array:
+        """Part of the step's stress that the past fixes: modulus x displacement and pressure, (2, r)."""
+        return law.past_strain * self.strain + np.tensordot(law.past_branches, self.branches, axes=1)
+
+    def advanced(self, law: StepLaw, stress: Array) -> SurfaceMemory:
+        """State after a step whose stress, modulus x displacement and pressure (2, r), is known."""
+        strain = (stress - self.carried(law)) / law.now
+        branches = law.decay[:, None, None] * self.branches + law.gain[:, None, None] * (strain - self.strain)
+        return SurfaceMemory(self.radii, strain, branches)
+
+    def stored(self, relaxation: Relaxation) -> float:
+        """Elastic energy in equilibrium spring and branches, J."""
+        energies = [product(self.radii, b, b) for b in self.branches]
+        equilibrium = relaxation.equilibrium * product(self.radii, self.strain, self.strain)
+        return 0.5 * float(equilibrium + np.dot(relaxation.moduli, energies))
+
+    def dissipated(self, later: SurfaceMemory, relaxation: Relaxation, step: float) -> float:
+        """Heat of the dashpots over a step in which the displacement changes linearly, J."""
+        change = later.strain - self.strain
+        heat = relaxation.viscosity * product(self.radii, change, change) / step
+        for modulus, tau, branch in zip(relaxation.moduli, relaxation.times, self.branches, strict=True):
+            steady = change * (tau / step)  # the branch tends to this; the rest fades away
+            fading = branch - steady
+            x = step / tau
+            heat += (modulus / tau) * (
+                product(self.radii, fading, fading) * tau * -np.expm1(-2 * x) / 2
+                + 2 * product(self.radii, fading, steady) * tau * -np.expm1(-x)
+                + product(self.radii, steady, steady) * step
+            )
+        return float(heat)
+
+
+def interpolate(field: Array, spacing: float, radii: Array) -> Array:
+    """Cubic interpolation of a field known at 0, spacing, 2 spacing, ...; outside it ends with its last value.
+
+    A straight line between the points would roughen a pressure, which is nearly the field's second
+    derivative, by more than the contact problem's own error.
+    """
+    position = np.minimum(radii / spacing, field.size - 1.0)
+    first = np.clip(position.astype(int) - 1, 0, field.size - 4)
+    x = position - first
+    y0, y1, y2, y3 = field[first], field[first + 1], field[first + 2], field[first + 3]
+    slope, bend, twist = y1 - y0, y2 - 2 * y1 + y0, y3 - 3 * y2 + 3 * y1 - y0
+    return y0 + x * (slope + (x - 1) * (bend / 2 + (x - 2) * twist / 6))
+
+
+def product(radii: Array, first: Array, second: Array) -> float:
+    """Work of one field's pressure on the other's displacement over the surface (symmetric), m^3 x Pa/Pa."""
+    density = 0.5 * (first[0] * second[1] + first[1] * second[0])
+    return float(np.trapezoid(2 * np.pi * radii * density, radii))

@@ -1,0 +1,111 @@
+"""What commands share: common options, overrides, where results go, progress and the result's print-out."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from lumped.errors import BadInput, Fault
+from lumped.result import Result
+from lumped.scene import Scene
+from lumped.scene_file import load
+
+DONE, NOT_REACHED = 0, 3
+
+
+def scene_arguments(parser: argparse.ArgumentParser) -> None:
+    """SCENE, --tolerance and --set."""
+    parser.add_argument("scene", help="scene file (TOML) or the name of a packaged scene")
+    parser.add_argument("--tolerance", help="relative error asked of every ruled quantity")
+    parser.add_argument(
+        "--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE", help="override a scene key"
+    )
+
+
+def output_arguments(parser: argparse.ArgumentParser) -> None:
+    """--out, --json and --quiet."""
+    parser.add_argument("--out", type=Path, help="folder for the results")
+    parser.add_argument("--json", action="store_true", help="machine-readable result on stdout")
+    parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
+
+
+def read_scene(args: argparse.Namespace) -> tuple[Scene, dict[str, Any]]:
+    """Scene and raw settings of a command line; raises BadInput with every fault."""
+    scene, table = load(args.scene, dict(_override(text) for text in args.overrides))
+    tolerance = getattr(args, "tolerance", None)
+    fixed = any(text.split("=")[0].strip() == "numerics.tolerance" for text in args.overrides)
+    if tolerance is not None and not fixed:
+        table = {**table, "tolerance": number(tolerance, "--tolerance")}
+    return scene, table
+
+
+def number(text: str, option: str) -> float:
+    """A number given on the command line; raises BadInput."""
+    try:
+        return float(text)
+    except ValueError:
+        raise BadInput(Fault(option, "", f"{text!r}: accepted a number")) from None
+
+
+def folder(args: argparse.Namespace, command: str, scene: Scene) -> Path:
+    """Where the results of a command go."""
+    chosen: Path | None = args.out
+    return chosen or Path("fe-contact-out") / f"{command}-{scene.name}"
+
+
+def progress_of(args: argparse.Namespace) -> Callable[[str], None]:
+    """Progress for a person who watches: silent with --quiet or when stderr is piped."""
+    if args.quiet or not sys.stderr.isatty():
+        return lambda message: None
+    return lambda message: print(f"fe-contact: {message} ...", file=sys.stderr)
+
+
+def report(args: argparse.Namespace, result: Result, where: Path) -> int:
+    """Print a result, warn of what the model lacks; the exit code."""
+    if args.json:
+        print(json.dumps(result.to_json(), allow_nan=False))
+    else:
+        print(summary(result, where))
+    warn(result)
+    return DONE if result.converged else NOT_REACHED
+
+
+def warn(result: Result) -> None:
+    """One line each on stderr: a tolerance not reached, a model that is too small."""
+    if not result.converged:
+        print(f"fe-contact: {result.message}", file=sys.stderr)
+    if not result.model_sufficient:
+        known = [entry for entry in result.model_ledger if entry.estimate is not None]
+        worst = max(known, key=lambda entry: entry.estimate or 0.0)
+        print(
+            f"fe-contact: model too small for the tolerance: {worst.effect}, {worst.treated}, "
+            f"about {worst.estimate:.2g} of the peak force; {worst.note}",
+            file=sys.stderr,
+        )
+
+
+def summary(result: Result, where: Path) -> str:
+    """Quantities with their error bars, one a line."""
+    lines = [f"{result.scene.name}: {result.method}, tolerance {result.tolerance:g}"]
+    for name, quantity in result.quantities.items():
+        if quantity.value is None:
+            lines.append(f"  {name:13s} undefined: no separation")
+        else:
+            lines.append(f"  {name:13s} {quantity.value:.6g} +- {quantity.error or 0.0:.1e} {quantity.unit}")
+    return "\n".join([*lines, f"  written to {where}"])
+
+
+def _override(text: str) -> tuple[str, object]:
+    """``a.b=value`` with the value as in TOML; a bare word is a string."""
+    key, sign, value = text.partition("=")
+    if not sign or not key.strip():
+        raise BadInput(Fault("--set", text, "accepted KEY=VALUE, for instance striker.velocity=0.5"))
+    try:
+        return key.strip(), tomllib.loads(f"value = {value}")["value"]
+    except tomllib.TOMLDecodeError:
+        return key.strip(), value.strip()

@@ -1,0 +1,44 @@
+"""``fe-contact run SCENE``: one impact, its history and its error bars."""
+
+from __future__ import annotations
+
+import argparse
+
+from fe_contact.commands import base
+
+SUMMARY = "one impact: history.csv and result.json, with error bars"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """SCENE [--method M] [--tolerance T] [--out DIR] [--set a.b=value ...] [--fields] [--plot]."""
+    base.scene_arguments(parser)
+    base.output_arguments(parser)
+    parser.add_argument("--method", default="fe", help="fe (default), cheapest, or a lumped law")
+    parser.add_argument("--fields", action="store_true", help="VTU of the fields at peak force")
+    parser.add_argument("--plot", action="store_true", help="force history and contact pressure as SVG and PNG")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Run, write, report; 0 or 3."""
+    from fe_contact.methods import settings, simulate
+
+    scene, table = base.read_scene(args)
+    where = base.folder(args, "run", scene)
+    if args.method != "fe":
+        result = simulate(scene, args.method, table, progress=base.progress_of(args))
+        result.write(where)
+        return base.report(args, result, where)
+    from fe_contact.reference import result_of, solve
+
+    solved = solve(scene, settings(table, None, scene.source), base.progress_of(args))
+    result = result_of(scene, solved)
+    result.write(where)
+    if args.fields:
+        from fe_contact.fields import write_fields
+
+        write_fields(scene, solved, where)
+    if args.plot:
+        from fe_contact.report.history import plot_history
+
+        plot_history(result, solved, where)
+    return base.report(args, result, where)

@@ -1,0 +1,34 @@
+"""Named failures of the finite-element floor, each with its cure."""
+
+from __future__ import annotations
+
+from lumped.errors import NotReached
+
+
+class ContactNotSettled(NotReached):
+    """A contact problem did not converge, or its edge left the mesh at every scale."""
+
+    def __init__(self, time: float) -> None:
+        super().__init__(f"contact not found at t = {time:.6g} s; cure: raise numerics.steps or lower numerics.penalty")
+
+
+class ContactLost(NotReached):
+    """The step would end after separation: the march retries with a shorter one."""
+
+    def __init__(self, time: float) -> None:
+        super().__init__(f"no contact after t = {time:.6g} s; cure: raise numerics.steps")
+
+
+class MemoryTooSmall(NotReached):
+    """The contact grew beyond the radii on which the surface remembers."""
+
+    def __init__(self, radius: float) -> None:
+        self.radius = radius
+        super().__init__(f"contact radius {radius:.6g} m exceeds the planned one; cure: raise numerics.contact_radius")
+
+
+class TooManySteps(NotReached):
+    """The march used up its steps before the contact ended."""
+
+    def __init__(self, steps: int, time: float) -> None:
+        super().__init__(f"{steps} steps reached only t = {time:.6g} s; cure: lower motion.end_time or raise steps")

@@ -1,0 +1,1 @@
+"""What stands for the infinite body outside the mesh. One condition a file."""

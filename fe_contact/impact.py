@@ -1,0 +1,347 @@
+"""One impact of a rigid striker, from physics and settings to a march; knows nothing of plans and bars.
+
+Each step solves one contact problem on the mesh scaled to the contact radius expected in that step; where
+the edge turns out to lie outside the mesh's finest elements, the mesh is scaled again and the step redone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from types import ModuleType
+
+import numpy as np
+
+from fe_contact.bodies.memory import StepLaw, SurfaceMemory, interpolate, step_law
+from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.contact import ContactSolution
+from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall, TooManySteps
+from fe_contact.forms import Array
+from fe_contact.numerics import ENFORCEMENTS, SCHEMES, Numerics
+from fe_contact.time_grid import step_length
+from lumped.materials import Relaxation
+from lumped.members import get
+
+EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
+RESCALINGS = 60
+PATIENCE = 8  # rescalings after which the window widens by half each time: the edge may jitter in the last tail
+MEMORY_POINTS = 1200
+MEMORY_REACH = 1.5  # memory extends to this multiple of the expected contact radius
+APPROACH_TO_END = 0.4  # share of the time left that a step may take near separation
+END_REACHED = 1e-3  # time left over contact time at which separation is read off the trend
+BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
+FAINT = 1e-3  # share of the peak force below which contact may end
+STEPS_ALLOWED = 20  # multiple of the settings' steps after which the march gives up
+
+
+@dataclass(frozen=True)
+class Strike:
+    """Physics of an impact: profile height(r), m; mass, kg; velocity, m/s; gravity along the motion, m/s2;
+    contact modulus E*(t); time at which to stop, s."""
+
+    height: Callable[[Array], Array]
+    mass: float
+    velocity: float
+    gravity: float
+    relaxation: Relaxation
+    end_time: float
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Surface in one step: time, s; contact radius, m; radii and pressure at the quadrature points, m, Pa;
+    the elastic pressure, for unit modulus, of the displacement at the same points."""
+
+    time: float
+    contact_radius: float
+    radii: Array
+    pressure: Array
+    elastic_pressure: Array
+
+
+@dataclass(frozen=True)
+class Work:
+    """Counted work: time steps, contact problems, Newton iterations."""
+
+    steps: int = 0
+    contact_problems: int = 0
+    iterations: int = 0
+
+
+@dataclass(frozen=True)
+class March:
+    """History of one impact with one set of settings.
+
+    ``time``, ``depth``, ``impulse`` (n,) at the ends of the steps, the first row at touch, the last at
+    separation or ``end_time``; ``radius_time``, ``radius`` (n,) of the contact; ``snapshots`` one a step;
+    ``energy`` J, each term computed on its own.
+    """
+
+    time: Array
+    depth: Array
+    impulse: Array
+    radius_time: Array
+    radius: Array
+    separated: bool
+    snapshots: tuple[Snapshot, ...]
+    energy: dict[str, float]
+    work: Work
+
+
+@dataclass(frozen=True)
+class _State:
+    time: float
+    depth: float
+    velocity: float
+    impulse: float
+    memory: SurfaceMemory
+
+
+@dataclass(frozen=True)
+class _Step:
+    """A step taken: its length, the state after it, force and contact radius in it, the axis' response."""
+
+    length: float
+    state: _State
+    force: float
+    radius: float
+    axis_response: float
+    solution: ContactSolution
+    scale: float
+    stress: Array
+    heat: float
+    work: Work
+
+
+def march(strike: Strike, surface: ScaledSurface, numerics: Numerics) -> March:
+    """Integrate from first touch to separation, or to ``strike.end_time``.
+
+    Raises the named failures of :mod:`fe_contact.errors` where a step does not converge.
+    """
+    return _Marcher(strike, surface, numerics).run()
+
+
+class _Marcher:
+    """The loop: what stays the same through an impact is held here, what changes is passed and returned."""
+
+    def __init__(self, strike: Strike, surface: ScaledSurface, numerics: Numerics) -> None:
+        self.strike, self.surface, self.numerics = strike, surface, numerics
+        self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
+        self.enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
+
+    def run(self) -> March:
+        radii = np.linspace(0.0, MEMORY_REACH * self.numerics.contact_radius, MEMORY_POINTS)
+        memory = SurfaceMemory.at_rest(radii, self.strike.relaxation)
+        states = [_State(0.0, 0.0, self.strike.velocity, 0.0, memory)]
+        steps: list[_Step] = []
+        separated = False
+        shortest = END_REACHED * self.numerics.contact_time
+        while states[-1].time < self.strike.end_time * (1 - 1e-12):
+            if len(steps) > STEPS_ALLOWED * self.numerics.steps:
+                raise TooManySteps(len(steps), states[-1].time)
+            left = _time_left(steps, self.scheme.SAMPLE)
+            if left is not None and left <= shortest and steps[-1].force > FAINT * max(s.force for s in steps):
+                left = None  # a kink in the trend, not the end
+            step = None if left is not None and left <= shortest else self._advance(states[-1], steps, left, shortest)
+            if step is None:
+                separated = True
+                if left:
+                    states.append(self._flight(states[-1], min(left, shortest)))
+                break
+            steps.append(step)
+            states.append(step.state)
+        return self._march(states, steps, separated)
+
+    def _advance(
+        self, state: _State, steps: list[_Step], left: float | None, shortest: float
+    ) -> _Step | None:
+        """The next step: on the grid, shorter towards separation, and again where contact was lost in it.
+
+        None if contact does not last even for the ``shortest`` step.
+        """
+        length = self._grid_length(len(steps))
+        if left is not None:
+            length = min(length, APPROACH_TO_END * left)
+        length = min(length, self.strike.end_time - state.time)
+        while True:
+            try:
+                return self._step(state, steps, length)
+            except ContactLost:
+                if not steps:
+                    raise
+                length /= 2
+                if length < shortest:
+                    return None
+
+    def _grid_length(self, done: int) -> float:
+        """Length of the next regular step."""
+        numerics = self.numerics
+        return numerics.contact_time * step_length(done, numerics.steps, numerics.peak_share)
+
+    def _step(self, state: _State, steps: list[_Step], length: float) -> _Step:
+        strike, scheme = self.strike, self.scheme
+        law = step_law(strike.relaxation, scheme, length)
+        carried = state.memory.carried(law)
+        lever = scheme.LEVER * length**2
+        free_depth = state.depth + length * state.velocity + lever * strike.gravity
+        scale, solution, work = self._settle(state, steps, law, carried[0], free_depth, lever / strike.mass, length)
+        pressure = solution.pressure
+        force = scale * float(self.surface.operator.weights @ pressure)
+        stress = self._stress(state.memory.radii, scale, pressure)
+        memory = state.memory.advanced(law, stress[:2])
+        moved = _State(
+            time=state.time + length,
+            depth=free_depth - lever * force / strike.mass,
+            velocity=state.velocity + length * (strike.gravity - force / strike.mass),
+            impulse=state.impulse + length * force,
+            memory=memory,
+        )
+        return _Step(
+            length=length,
+            state=moved,
+            force=force,
+            radius=scale * solution.edge(self.surface.operator.points),
+            axis_response=float(stress[0, 0]),
+            solution=solution,
+            scale=scale,
+            stress=stress,
+            heat=state.memory.dissipated(memory, strike.relaxation, length),
+            work=work,
+        )
+
+    def _settle(
+        self,
+        state: _State,
+        steps: list[_Step],
+        law: StepLaw,
+        carried: Array,
+        free_depth: float,
+        yielding: float,
+        length: float,
+    ) -> tuple[float, ContactSolution, Work]:
+        """Scale the mesh until the contact edge lies in its finest elements."""
+        operator = self.surface.operator
+        scale = self._expected_radius(state, steps, free_depth, length)
+        work = Work(steps=1)
+        for attempt in range(RESCALINGS):
+            radii = scale * operator.points
+            if radii[-1] > state.memory.radii[-1]:
+                raise MemoryTooSmall(radii[-1])
+            height = np.minimum(self.strike.height(radii), BEYOND * radii[-1])  # a profile may end
+            overlap = law.now * (free_depth - height)
+            overlap += interpolate(carried, state.memory.radii[1], radii)
+            problem = self.surface.problem(overlap, self.numerics.penalty, law.now * yielding * scale)
+            solution = self.enforcement.enforce(problem, operator.points < 1.0)
+            work = replace(
+                work,
+                contact_problems=work.contact_problems + self.enforcement.SOLVES,
+                iterations=work.iterations + solution.iterations,
+            )
+            if not solution.converged:
+                raise ContactNotSettled(state.time)
+            edge = solution.edge(operator.points)
+            if abs(edge - 1) <= EDGE_WINDOW * 1.5 ** max(attempt - PATIENCE, 0) and np.isfinite(edge):
+                return scale, solution, work
+            scale *= min(max(edge, 0.3), operator.points[-1])
+            if scale < 1e-4 * self.numerics.contact_radius:
+                raise ContactLost(state.time)
+        raise ContactNotSettled(state.time)
+
+    def _expected_radius(self, state: _State, steps: list[_Step], depth: float, length: float) -> float:
+        """Contact radius in the coming step: its square is nearly linear in time."""
+        if not steps:
+            return _overlap_radius(self.strike.height, depth, state.memory.radii)
+        last = steps[-1]
+        before = steps[-2].radius if len(steps) > 1 else 0.0
+        apart = 0.5 * (last.length + (steps[-2].length if len(steps) > 1 else 0.0))
+        slope = (last.radius**2 - before**2) / apart
+        square = last.radius**2 + slope * 0.5 * (last.length + length)
+        return float(np.sqrt(max(square, 0.05 * last.radius**2)))
+
+    def _stress(self, radii: Array, scale: float, pressure: Array) -> Array:
+        """Displacement times modulus, and pressure, on the memory's radii; shape (2, r)."""
+        displacement = self.surface.sample(self.surface.response(pressure), radii / scale)
+        spread = np.interp(radii / scale, self.surface.operator.points, pressure / scale, right=0.0)
+        return np.stack([displacement, spread])
+
+    def _flight(self, state: _State, left: float) -> _State:
+        """The little time to separation, over which the force is below any rounding that matters."""
+        pull = self.strike.gravity * left
+        depth = state.depth + left * (state.velocity + 0.5 * pull)
+        return replace(state, time=state.time + left, depth=depth, velocity=state.velocity + pull)
+
+    def _march(self, states: list[_State], steps: list[_Step], separated: bool) -> March:
+        ends = np.array([s.state.time for s in steps])
+        lengths = np.array([s.length for s in steps])
+        approaching = np.array([s.state.velocity > 0 for s in steps])
+        # growing contact is found at the end of the step, receding contact where the force is sampled
+        radius_time = np.where(approaching, ends, ends - (1 - self.scheme.SAMPLE) * lengths)
+        return March(
+            time=np.array([s.time for s in states]),
+            depth=np.array([s.depth for s in states]),
+            impulse=np.array([s.impulse for s in states]),
+            radius_time=radius_time,
+            radius=np.array([s.radius for s in steps]),
+            separated=separated,
+            snapshots=tuple(self._snapshot(s) for s in steps),
+            energy=self._energy(states, steps),
+            work=Work(
+                len(steps), sum(s.work.contact_problems for s in steps), sum(s.work.iterations for s in steps)
+            ),
+        )
+
+    def _snapshot(self, step: _Step) -> Snapshot:
+        radii = step.scale * self.surface.operator.points
+        memory = step.state.memory
+        return Snapshot(
+            time=step.state.time - (1 - self.scheme.SAMPLE) * step.length,
+            contact_radius=step.radius,
+            radii=radii,
+            pressure=step.solution.pressure / step.scale,
+            elastic_pressure=np.interp(radii, memory.radii, memory.strain[1]),
+        )
+
+    def _energy(self, states: list[_State], steps: list[_Step]) -> dict[str, float]:
+        strike, last = self.strike, states[-1]
+        incoming = 0.5 * strike.mass * strike.velocity**2
+        outgoing = 0.5 * strike.mass * last.velocity**2 - strike.mass * strike.gravity * last.depth
+        stored = last.memory.stored(strike.relaxation)
+        heat = sum(step.heat for step in steps)
+        weights = self.surface.operator.weights
+        final = steps[-1]
+        modulus = step_law(strike.relaxation, self.scheme, final.length).now
+        springs = 0.5 * final.scale * float(weights @ final.solution.pressure**2) / (self.numerics.penalty * modulus)
+        contact = 0.0 if states[-1] is not final.state else springs
+        terms = {"in": incoming, "out": outgoing, "stored": stored, "viscous": heat}
+        terms |= {"radiated": 0.0, "contact": contact, "numerical": 0.0}
+        terms["residual"] = incoming - sum(value for key, value in terms.items() if key != "in")
+        return terms
+
+
+def _time_left(steps: list[_Step], sample: float) -> float | None:
+    """Time to separation by the trend of the axis' elastic response, which reaches zero linearly; None early."""
+    if len(steps) < 4 or steps[-1].state.velocity >= 0 or steps[-1].axis_response >= steps[-2].axis_response:
+        return None
+    recent = steps[-3:]
+    now = recent[-1].state.time
+    times = np.array([s.state.time - (1 - sample) * s.length for s in recent]) - now
+    response = np.array([s.axis_response for s in recent])
+    span = -times[0]
+    roots = np.roots(np.polyfit(times / span, response, 2)) * span
+    ahead = [float(r.real) for r in roots if abs(r.imag) < 1e-9 * span and r.real > times[-1]]
+    straight = float(times[-1] - response[-1] * (times[-1] - times[-2]) / (response[-1] - response[-2]))
+    return max(min([*ahead, 2 * straight]) if ahead else straight, 0.0)
+
+
+def _overlap_radius(height: Callable[[Array], Array], depth: float, radii: Array) -> float:
+    """Radius at which the undeformed profile lies ``depth`` above its tip, by bisection."""
+    low, high = 0.0, float(radii[-1])
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        if height(np.array([middle]))[0] < depth:
+            low = middle
+        else:
+            high = middle
+        if high - low < 1e-3 * high:
+            break
+    return high

@@ -1,0 +1,50 @@
+"""Any method by its name: finite elements, a lumped law, or the cheapest of them that is exact enough."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from fe_contact.numerics import checked
+from lumped import laws
+from lumped import simulate as simulate_law
+from lumped.errors import BadInput, Fault, nearest
+from lumped.result import Result
+from lumped.scene import Scene
+
+EXACT = "mdr"  # exact for a rigid striker on a homogeneous half-space, in milliseconds
+OWN = ("fe", "cheapest")
+
+
+def _silent(message: str) -> None:
+    """No progress wanted."""
+
+
+def settings(table: Mapping[str, Any], tolerance: float | None, source: str) -> dict[str, Any]:
+    """Checked settings, the tolerance taking precedence over the table's; raises BadInput."""
+    given = dict(table) if tolerance is None else {**table, "tolerance": tolerance}
+    return checked(given, source)
+
+
+def simulate(
+    scene: Scene,
+    method: str,
+    table: Mapping[str, Any],
+    tolerance: float | None = None,
+    progress: Callable[[str], None] = _silent,
+) -> Result:
+    """One impact of ``scene`` by a method; see :func:`fe_contact.run` for the parameters and errors."""
+    given = settings(table, tolerance, scene.source)
+    if method == "fe":
+        from fe_contact.reference import fe
+
+        return fe(scene, given, progress)
+    name = EXACT if method == "cheapest" else method
+    if name not in laws.available():
+        names = (*OWN, *laws.available())
+        raise BadInput(
+            Fault("--method", "", f"{method!r}: accepted {', '.join(names)}{nearest(method, names)}")
+        )
+    from fe_contact.plan import DEFAULT_TOLERANCE
+
+    return simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))

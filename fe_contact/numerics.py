@@ -1,0 +1,89 @@
+"""Numerics: every choice that is not physics, validated; Scene says what happens, Numerics how it is solved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields, replace
+from typing import Any
+
+from lumped.errors import BadInput, Fault, nearest
+from lumped.members import available
+
+ENFORCEMENTS = "fe_contact.enforcement"
+SCHEMES = "fe_contact.schemes"
+
+RANGES: dict[str, tuple[float, float]] = {
+    "tolerance": (1e-6, 0.1),
+    "elements_per_contact": (0.25, 32),
+    "order": (1, 4),
+    "penalty": (1.0, 1e7),
+    "steps": (8, 8192),
+    "far_radius": (2.0, 1e4),
+    "contact_radius": (1e-150, 1e150),
+    "contact_time": (1e-150, 1e150),
+    "peak_share": (1e-6, 1.0),
+}
+INTEGERS = ("order", "steps")
+MEMBERS = {"enforcement": ENFORCEMENTS, "scheme": SCHEMES}
+
+
+@dataclass(frozen=True)
+class Numerics:
+    """Settings of one finite-element impact.
+
+    ``tolerance`` asked of the result; ``elements_per_contact`` along the contact radius; ``order`` of the
+    elements; ``penalty`` stiffness in units of contact modulus over contact radius; ``enforcement`` and
+    ``scheme`` by name; ``steps`` per contact time; ``far_radius`` of the mesh in contact radii.
+    ``contact_radius`` (m, the largest expected), ``contact_time`` (s) and ``peak_share`` (time of the peak
+    force over contact time) are scales that place mesh, memory and time steps; they enter no value.
+    """
+
+    tolerance: float
+    elements_per_contact: float
+    order: int
+    penalty: float
+    enforcement: str
+    scheme: str
+    steps: int
+    far_radius: float
+    contact_radius: float
+    contact_time: float
+    peak_share: float
+
+    def varied(self, **changes: Any) -> Numerics:
+        """A copy with some settings changed."""
+        return replace(self, **changes)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain data for ``result.json``."""
+        return asdict(self)
+
+
+KEYS = tuple(field.name for field in fields(Numerics))
+
+
+def checked(table: Mapping[str, Any], source: str) -> dict[str, Any]:
+    """Settings a user gave, type and range checked; raises BadInput naming every fault at once."""
+    faults = [fault for key, value in table.items() for fault in _faults(key, value, source)]
+    if faults:
+        raise BadInput(faults)
+    return {key: int(value) if key in INTEGERS else value for key, value in table.items()}
+
+
+def _faults(key: str, value: Any, source: str) -> list[Fault]:
+    where = f"numerics.{key}"
+    if key in MEMBERS:
+        names = available(MEMBERS[key])
+        if value in names:
+            return []
+        hint = nearest(value, names) if isinstance(value, str) else ""
+        return [Fault(source, where, f"{value!r}: accepted {', '.join(names)}{hint}")]
+    if key not in RANGES:
+        return [Fault(source, where, f"unknown key; accepted: {', '.join(KEYS)}{nearest(key, KEYS)}")]
+    low, high = RANGES[key]
+    kind = "a whole number" if key in INTEGERS else "a number"
+    number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    if number and low <= value <= high and (key not in INTEGERS or float(value).is_integer()):
+        return []
+    return [Fault(source, where, f"{value!r}: accepted {kind} from {low:g} to {high:g}")]

@@ -1,0 +1,88 @@
+"""Scene and tolerance -> settings and model ledger, without running anything.
+
+The exact row of springs tells how large the contact becomes and how long it lasts; that places the mesh,
+the memory and the time steps. Nothing of it enters a value or an error bar.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from fe_contact.numerics import RANGES, Numerics
+from lumped.laws import mdr
+from lumped.model_ledger import model_ledger
+from lumped.result import LedgerEntry
+from lumped.scene import Scene
+
+DEFAULT_TOLERANCE = 1e-3
+ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-3 and 1e-4: see `fe-contact tradeoff`
+STEPS_AT_DEFAULT = 40
+STEPS_ORDER = 0.25  # steps grow with tolerance to this power: the extrapolated time error is of order three to four
+EARLY_PEAK = 0.2  # a force that peaks before this share of the contact needs more steps in proportion
+DEFAULTS: Mapping[str, Any] = {
+    "order": 4,
+    "penalty": 1000.0,
+    "enforcement": "corrected",
+    "scheme": "galerkin",
+    "far_radius": 20.0,
+}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Settings chosen for a scene, those of them the user fixed, and what the model leaves out."""
+
+    numerics: Numerics
+    pinned: frozenset[str]
+    ledger: tuple[LedgerEntry, ...]
+
+
+def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
+    """Choose what ``given`` (checked settings, see :func:`fe_contact.numerics.checked`) leaves open.
+
+    Raises NotReached where even the coarse row of springs does not come to an end.
+    """
+    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    scales = mdr.estimate(scene)
+    contact_time = scales.duration or scene.end_time
+    peak_share = min(max(scales.peak_time / contact_time, RANGES["peak_share"][0]), 1.0)
+    chosen = {
+        **DEFAULTS,
+        "tolerance": tolerance,
+        "elements_per_contact": ELEMENTS * max(1.0, (1e-4 / tolerance) ** 0.25),
+        "steps": _steps(tolerance, peak_share),
+        "contact_radius": scales.contact_radius,
+        "contact_time": contact_time,
+        "peak_share": peak_share,
+    }
+    return Plan(Numerics(**{**chosen, **given}), frozenset(given) - {"tolerance"}, model_ledger(scene, scales))
+
+
+def _steps(tolerance: float, peak_share: float) -> int:
+    """Time steps per contact, a multiple of four so that the budget can halve them twice."""
+    early = max(1.0, EARLY_PEAK / peak_share)
+    wanted = early * STEPS_AT_DEFAULT * (DEFAULT_TOLERANCE / tolerance) ** STEPS_ORDER
+    lowest, highest = RANGES["steps"]
+    return int(min(max(4 * math.ceil(wanted / 4), 2 * lowest), highest))
+
+
+def refined(numerics: Numerics, cause: str) -> Numerics:
+    """Settings with less of one cause of error."""
+    if cause == "time_step":
+        return numerics.varied(steps=2 * numerics.steps)
+    if cause == "mesh":
+        return numerics.varied(elements_per_contact=1.5 * numerics.elements_per_contact)
+    if cause == "penalty":
+        return numerics.varied(penalty=4 * numerics.penalty)
+    return numerics.varied(far_radius=2 * numerics.far_radius)
+
+
+SETTING = {
+    "mesh": "elements_per_contact",
+    "penalty": "penalty",
+    "time_step": "steps",
+    "far_field": "far_radius",
+}

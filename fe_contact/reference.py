@@ -1,0 +1,177 @@
+"""The finite-element reference: plan, certify, refine what dominates until the bars meet the tolerance."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from fe_contact.certify import CAUSES, Certified, certify
+from fe_contact.errors import MemoryTooSmall
+from fe_contact.impact import Strike
+from fe_contact.numerics import RANGES, Numerics
+from fe_contact.plan import SETTING, Plan, plan, refined
+from lumped.history import History, densified
+from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity, Result, meets, provenance
+from lumped.scene import Scene
+
+ROUNDS = 4  # refinements before giving up
+DOMINANT = 0.5  # causes above this share of the largest one are refined together
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A certified impact with the plan it began from and the settings it ended with; CPU and wall time, s."""
+
+    plan: Plan
+    numerics: Numerics
+    certified: Certified
+    cpu: float
+    wall: float
+
+
+def _silent(message: str) -> None:
+    """No progress wanted."""
+
+
+def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = _silent) -> Result:
+    """Force history of a scene by finite elements, with error bars; see :func:`solve`."""
+    return result_of(scene, solve(scene, given, progress))
+
+
+def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = _silent) -> Solved:
+    """Plan, certify, refine until the bars meet the tolerance or nothing is left to refine.
+
+    Parameters
+    ----------
+    scene : physics.
+    given : checked settings that the plan must keep.
+    progress : told, in a line, what happens.
+
+    Raises NotReached where no march came to an end.
+    """
+    cpu, wall = time.process_time(), time.perf_counter()
+    chosen = plan(scene, given)
+    strike = strike_of(scene)
+    numerics, certified = chosen.numerics, None
+    for attempt in range(ROUNDS + 1):
+        progress(f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements along the contact radius")
+        try:
+            certified = certify(strike, scene.material.nu, numerics)
+        except MemoryTooSmall:
+            numerics = numerics.varied(contact_radius=1.5 * numerics.contact_radius)
+            continue
+        finer = _refined(certified, numerics, chosen)
+        if finer is None or attempt == ROUNDS:
+            break
+        numerics = finer
+    if certified is None:
+        raise MemoryTooSmall(numerics.contact_radius)
+    return Solved(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall)
+
+
+def strike_of(scene: Scene) -> Strike:
+    """What the march needs of a scene."""
+    return Strike(
+        height=scene.profile.height,
+        mass=scene.mass,
+        velocity=scene.velocity,
+        gravity=scene.model.gravity,
+        relaxation=scene.contact_modulus,
+        end_time=scene.end_time,
+    )
+
+
+def _refined(certified: Certified, numerics: Numerics, chosen: Plan) -> Numerics | None:
+    """Settings with less of the causes that stand in the way, or None where nothing helps or is needed."""
+    excess = {cause: _excess(certified, numerics.tolerance, cause) for cause in CAUSES}
+    if sum(excess.values()) <= 1:
+        return None
+    free = {cause: value for cause, value in excess.items() if SETTING[cause] not in chosen.pinned}
+    worst = max(free.values(), default=0.0)
+    finer = numerics
+    for cause, value in free.items():
+        candidate = refined(finer, cause)
+        if value >= DOMINANT * worst and getattr(candidate, SETTING[cause]) <= RANGES[SETTING[cause]][1]:
+            finer = candidate
+    return None if finer == numerics else finer
+
+
+def _excess(certified: Certified, tolerance: float, cause: str) -> float:
+    """Largest error of a cause over what the tolerance allows."""
+    values = certified.curve.quantities
+    relative = [
+        certified.error(name, cause) / abs(values[name] or np.inf)
+        for name in RULED_RELATIVE
+        if values[name] is not None
+    ]
+    absolute = [certified.error(name, cause) for name in RULED_ABSOLUTE if values.get(name, 0.0) is not None]
+    return max(relative + absolute) / tolerance
+
+
+def result_of(scene: Scene, solved: Solved) -> Result:
+    """The record of a certified impact."""
+    certified, numerics = solved.certified, solved.numerics
+    curve, tolerance = certified.curve, numerics.tolerance
+    values = {**curve.quantities, "history_l2": 0.0}
+    quantities = {
+        name: Quantity(values[name], None if values[name] is None else certified.total(name), unit)
+        for name, unit in UNITS.items()
+    }
+    by_quantity = {name: {cause: certified.error(name, cause) for cause in CAUSES} for name in UNITS}
+    peak = values["peak_force"] or np.inf
+    converged = meets(quantities, tolerance)
+    return Result(
+        method="fe",
+        converged=converged,
+        separated=curve.separated,
+        scene=scene,
+        model=scene.model,
+        tolerance=tolerance,
+        history=history(certified, tolerance),
+        quantities=quantities,
+        numerics=numerics.as_dict(),
+        error_budget={cause: value / peak for cause, value in by_quantity["peak_force"].items()},
+        error_budget_by_quantity=by_quantity,
+        model_ledger=solved.plan.ledger,
+        energy=certified.march.energy,
+        provenance=provenance(),
+        timing={"cpu_s": solved.cpu, "wall_s": solved.wall},
+        work=asdict(certified.work),
+        message="" if converged else _shortfall(quantities, tolerance),
+    )
+
+
+def history(certified: Certified, tolerance: float) -> History:
+    """Rows dense enough for linear interpolation, with the force's error band."""
+    curve = certified.curve
+    rows = densified(curve.dense_time[::3], curve.force, tolerance)
+    return History(
+        time=rows,
+        depth=curve.depth_at(rows),
+        velocity=curve.velocity_at(rows),
+        force=curve.force(rows),
+        contact_radius=curve.radius_at(rows),
+        force_error=certified.force_error(rows),
+    )
+
+
+def _shortfall(quantities: Mapping[str, Quantity], tolerance: float) -> str:
+    """One line: the quantity whose bar is widest, and what to do."""
+
+    def width(name: str) -> float:
+        quantity = quantities[name]
+        if quantity.error is None:
+            return 0.0
+        return quantity.error / abs(quantity.value or 1.0) if name in RULED_RELATIVE else quantity.error
+
+    name = max((*RULED_RELATIVE, *RULED_ABSOLUTE), key=width)
+    return (
+        f"tolerance {tolerance:g} not reached: {name} is known to {width(name):.2g}; "
+        "cure: a larger tolerance, or leave numerics to the plan"
+    )

@@ -1,0 +1,20 @@
+"""The homogeneous half-space: graded quarter disc, point-force far field, one operator for every scale."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import meshes
+from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.numerics import Numerics
+from fe_contact.operators import surface_operator
+
+
+def surface(poisson: float, numerics: Numerics) -> ScaledSurface:
+    """Contact surface for these settings; made once a process, then shared by every impact that agrees."""
+    return _surface(poisson, numerics.elements_per_contact, numerics.order, numerics.far_radius)
+
+
+@lru_cache(maxsize=32)
+def _surface(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
+    return ScaledSurface(surface_operator(meshes.half_space(elements, far_radius), order, poisson))

@@ -1,0 +1,38 @@
+"""Where the time steps lie: fine at first touch and at separation, where the force is a power 3/2 of time."""
+
+from __future__ import annotations
+
+import math
+
+GROWTH_AFTER = 1.25  # ratio of successive steps once the expected contact time is over
+
+
+def step_length(done: int, steps: int, peak_share: float) -> float:
+    """Length of the next step in units of the expected contact time.
+
+    Both ends of the contact are graded quadratically, so that half-integer powers of the time from touch
+    and of the time to separation are resolved; half the steps lie before the peak of the force.
+
+    Parameters
+    ----------
+    done : steps already taken.
+    steps : steps in the expected contact time.
+    peak_share : expected time of the peak force over contact time.
+    """
+    if done < steps:
+        return elapsed((done + 1) / steps, peak_share) - elapsed(done / steps, peak_share)
+    last = 1 - elapsed((steps - 1) / steps, peak_share)
+    return last * GROWTH_AFTER ** (done - steps + 1)
+
+
+def elapsed(share: float, peak_share: float) -> float:
+    """Time over contact time after a share of the steps; 0 at 0, 1 at 1, ``peak_share`` at 1/2 at most."""
+    middle = _inverse_smoothstep(min(peak_share, 0.5))
+    growth = 2 * math.log(1 / middle - 1)
+    grown = share if growth < 1e-9 else math.expm1(growth * share) / math.expm1(growth)
+    return grown * grown * (3 - 2 * grown)
+
+
+def _inverse_smoothstep(value: float) -> float:
+    """w with 3 w^2 - 2 w^3 = value, 0 < value <= 1/2."""
+    return 0.5 - math.sin(math.asin(1 - 2 * value) / 3)

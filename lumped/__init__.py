@@ -1,0 +1,19 @@
+"""Physics of impact without a mesh: materials, shapes, scenes, histories, force laws."""
+
+from lumped import laws as laws
+from lumped.errors import BadInput as BadInput
+from lumped.errors import Fault as Fault
+from lumped.errors import FeContactError as FeContactError
+from lumped.errors import NotReached as NotReached
+from lumped.history import History as History
+from lumped.laws.base import simulate as simulate
+from lumped.materials import Creep as Creep
+from lumped.materials import Material as Material
+from lumped.materials import Relaxation as Relaxation
+from lumped.result import LedgerEntry as LedgerEntry
+from lumped.result import Quantity as Quantity
+from lumped.result import Result as Result
+from lumped.scene import Model as Model
+from lumped.scene import Motion as Motion
+from lumped.scene import Scene as Scene
+from lumped.shapes import Sphere as Sphere

@@ -1,0 +1,136 @@
+"""The history of one impact: what every model, lumped or finite element, returns."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.errors import BadInput, Fault
+
+Array = NDArray[np.float64]
+
+COLUMNS = {
+    "time": "time_s",
+    "depth": "depth_m",
+    "velocity": "velocity_m_per_s",
+    "force": "force_N",
+    "contact_radius": "contact_radius_m",
+    "force_error": "force_error_N",
+}
+LEAST_ROWS = 201
+MOST_ROWS = 100_001
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """Columns of one length >= 2, SI units, time never decreasing. `force_error`: half-width of the force's bar.
+
+    Depth is positive into the target, velocity positive while approaching. Raises BadInput.
+    """
+
+    time: Array
+    depth: Array
+    velocity: Array
+    force: Array
+    contact_radius: Array
+    force_error: Array
+
+    def __post_init__(self) -> None:
+        for name in COLUMNS:
+            column = np.array(getattr(self, name), dtype=float)
+            column.flags.writeable = False
+            object.__setattr__(self, name, column)
+            if column.ndim != 1 or column.size < 2 or column.shape != self.time.shape:
+                raise BadInput(Fault("history", name, "columns are one-dimensional, of one length, at least 2"))
+            if not np.all(np.isfinite(column)):
+                raise BadInput(Fault("history", name, "every value is finite"))
+        if np.any(np.diff(self.time) < 0.0):
+            raise BadInput(Fault("history", "time", "time never decreases"))
+
+    def __len__(self) -> int:
+        return int(self.time.size)
+
+    def force_at(self, time: ArrayLike) -> Array:
+        """Force at other times, N: linear between the rows, zero outside them."""
+        return np.asarray(np.interp(np.asarray(time, dtype=float), self.time, self.force, left=0.0, right=0.0))
+
+    def resampled(self, time: ArrayLike) -> History:
+        """The history at other times, s, linear between the rows and held at its ends."""
+        t = np.asarray(time, dtype=float)
+        columns = {name: np.interp(t, self.time, getattr(self, name)) for name in COLUMNS if name != "time"}
+        return History(time=t, **columns)
+
+    def write_csv(self, path: Path) -> None:
+        """Write the columns, every value with all its digits."""
+        table = np.column_stack([getattr(self, name) for name in COLUMNS])
+        np.savetxt(path, table, fmt="%.17g", delimiter=",", header=",".join(COLUMNS.values()), comments="")
+
+    @classmethod
+    def read_csv(cls, path: Path) -> History:
+        """Read what `write_csv` wrote; more columns may follow. Raises BadInput."""
+        table = read_columns(path, tuple(COLUMNS.values()))
+        return cls(**{name: table[column] for name, column in COLUMNS.items()})
+
+
+def read_columns(path: Path, wanted: tuple[str, ...]) -> dict[str, Array]:
+    """The `wanted` columns of a CSV file with a header, each of shape (rows,). Raises BadInput."""
+    source = str(path)
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
+    except OSError as error:
+        raise BadInput(Fault(source, "", f"cannot be read: {error.strerror or error}")) from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise BadInput(Fault(source, "", "cannot be read: no CSV text")) from error
+    header = [cell.strip() for cell in rows[0]] if rows else []
+    missing = [name for name in wanted if name not in header]
+    if missing:
+        raise BadInput(Fault(source, name, f"missing column; accepted header: {','.join(wanted)}") for name in missing)
+    return {name: _column(source, name, rows, header.index(name)) for name in wanted}
+
+
+def _column(source: str, name: str, rows: list[list[str]], index: int) -> Array:
+    try:
+        column = np.array([float(row[index]) for row in rows[1:]])
+    except (ValueError, IndexError) as error:
+        raise BadInput(Fault(source, name, "a row holds no number in this column")) from error
+    if column.size < 2 or not np.all(np.isfinite(column)):
+        raise BadInput(Fault(source, name, "accepted: at least two rows, every value finite"))
+    return column
+
+
+def densified(times: ArrayLike, force: Callable[[Array], Array], tolerance: float) -> Array:
+    """Times between which linear interpolation of `force` errs by less than `tolerance` times its peak.
+
+    `times` is where to start, shape (n,), n >= 2; `force` maps times, s, to forces, N. At least 201 rows come back;
+    an interval stops being halved when it is 2^-40 of the whole (a step in the force) or at 100001 rows.
+    """
+    t = np.unique(np.asarray(times, dtype=float))
+    while t.size < LEAST_ROWS:
+        t = np.sort(np.concatenate([t, 0.5 * (t[:-1] + t[1:])]))
+    f = force(t)
+    shortest = (t[-1] - t[0]) * 2.0**-40
+    rough = np.ones(t.size - 1, dtype=bool)
+    while rough.any() and t.size < MOST_ROWS:
+        middle = 0.5 * (t[:-1] + t[1:])[rough]
+        at_middle = force(middle)
+        off = np.abs(at_middle - 0.5 * (f[:-1] + f[1:])[rough])
+        # A smooth arc deviates most at its middle; half of the allowance covers one that does not.
+        again = (off > 0.5 * tolerance * np.abs(f).max()) & (np.diff(t)[rough] > shortest)
+        t, f, rough = _refined(t, f, middle[again], at_middle[again])
+    return t
+
+
+def _refined(
+    t: Array, f: Array, middle: Array, at_middle: Array
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """The rows with the middles of the marked intervals put in, and which intervals are new."""
+    order = np.argsort(np.concatenate([t, middle]), kind="stable")
+    new = np.concatenate([np.zeros(t.size, dtype=bool), np.ones(middle.size, dtype=bool)])[order]
+    rough = new[:-1] | new[1:]
+    return np.concatenate([t, middle])[order], np.concatenate([f, at_middle])[order], rough

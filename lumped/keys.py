@@ -1,0 +1,180 @@
+"""What a key of a scene accepts. One kind of value a class; a table is checked against a mapping of keys.
+
+Ranges are generous but finite: inside them no product of a scene's scales leaves double precision.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+from lumped.errors import BadInput, Fault, nearest
+
+
+class Key(Protocol):
+    """A kind of value: says what it accepts, and turns a raw value into a checked one."""
+
+    @property
+    def required(self) -> bool: ...
+
+    @property
+    def accepted(self) -> str:
+        """What is accepted, in words, with the range and the unit."""
+
+    def read(self, value: object) -> Any:
+        """The checked value; raises ValueError when it is not accepted, with a message where `accepted` is not enough."""
+
+
+@dataclass(frozen=True)
+class Number:
+    """A real number in `[low, high]`, or in the open interval when `excluded`. Truth values are no numbers."""
+
+    low: float
+    high: float
+    unit: str = ""
+    required: bool = True
+    excluded: bool = False
+
+    @property
+    def accepted(self) -> str:
+        ends = ", ends excluded" if self.excluded else ""
+        return f"a number from {self.low:g} to {self.high:g} {self.unit}".rstrip() + ends
+
+    def read(self, value: object) -> float:
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise ValueError
+        # Compared before conversion: an integer beyond 1e308 has no float.
+        inside = self.low < value < self.high if self.excluded else self.low <= value <= self.high
+        if not inside:
+            raise ValueError
+        return float(value)
+
+
+@dataclass(frozen=True)
+class Count:
+    """A whole number in `[low, high]`."""
+
+    low: int
+    high: int
+    required: bool = True
+
+    @property
+    def accepted(self) -> str:
+        return f"a whole number from {self.low} to {self.high}"
+
+    def read(self, value: object) -> int:
+        if isinstance(value, bool) or not isinstance(value, int) or not self.low <= value <= self.high:
+            raise ValueError
+        return value
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """A list of 1 to `most` numbers, each accepted by `each`."""
+
+    each: Number
+    most: int = 100
+    required: bool = True
+
+    @property
+    def accepted(self) -> str:
+        return f"a list of 1 to {self.most} values, each {self.each.accepted}"
+
+    def read(self, value: object) -> tuple[float, ...]:
+        if not isinstance(value, (list, tuple)) or not 1 <= len(value) <= self.most:
+            raise ValueError
+        return tuple(self.each.read(item) for item in value)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of a few words."""
+
+    options: tuple[str, ...]
+    required: bool = True
+
+    @property
+    def accepted(self) -> str:
+        return "one of " + ", ".join(self.options)
+
+    def read(self, value: object) -> str:
+        if not isinstance(value, str) or value not in self.options:
+            raise ValueError
+        return value
+
+
+@dataclass(frozen=True)
+class Flag:
+    """true or false."""
+
+    required: bool = True
+    accepted: str = "true or false"
+
+    def read(self, value: object) -> bool:
+        if not isinstance(value, bool):
+            raise ValueError
+        return value
+
+
+@dataclass(frozen=True)
+class Text:
+    """A text of one to 200 characters."""
+
+    required: bool = True
+    accepted: str = "a text of 1 to 200 characters"
+
+    def read(self, value: object) -> str:
+        if not isinstance(value, str) or not 1 <= len(value.strip()) <= 200:
+            raise ValueError
+        return value
+
+
+def read_table(
+    source: str, path: str, table: Mapping[str, object], keys: Mapping[str, Key]
+) -> tuple[dict[str, Any], list[Fault]]:
+    """Check a table against its keys: the accepted values, and every fault (unknown, missing, refused)."""
+    values: dict[str, Any] = {}
+    faults = [Fault(source, _join(path, name), unknown_key(name, keys)) for name in table if name not in keys]
+    for name, key in keys.items():
+        if name not in table:
+            if key.required:
+                faults.append(Fault(source, _join(path, name), f"missing; accepted: {key.accepted}"))
+            continue
+        try:
+            values[name] = key.read(table[name])
+        except ValueError as error:
+            faults.append(Fault(source, _join(path, name), str(error) or _refused(key, table[name])))
+    return values, faults
+
+
+def optional(keys: Mapping[str, Any]) -> dict[str, Any]:
+    """The same keys, none of them required."""
+    return {name: replace(key, required=False) for name, key in keys.items()}
+
+
+def check_fields(owner: str, record: object, keys: Mapping[str, Key]) -> None:
+    """Check the attributes of a record built in Python; raises BadInput naming every one that is refused."""
+    present = {name: getattr(record, name) for name in keys if getattr(record, name) is not None}
+    _, faults = read_table(owner, "", present, keys)
+    if faults:
+        raise BadInput(faults)
+
+
+def unknown_key(name: str, names: Iterable[str]) -> str:
+    """What to say of a key which is none of `names`."""
+    names = sorted(names)
+    return f"unknown key; accepted: {', '.join(names)}{nearest(name, names)}"
+
+
+def _join(path: str, name: str) -> str:
+    return f"{path}.{name}" if path else name
+
+
+def _refused(key: Key, value: object) -> str:
+    return f"{_shown(value)} is not accepted; accepted: {key.accepted}"
+
+
+def _shown(value: object) -> str:
+    text = str(value).lower() if isinstance(value, bool) else repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,20 @@
+"""Force laws, one a file, found by their names."""
+
+from typing import Any
+
+from lumped import members as _members
+from lumped.laws.base import Law as Law
+
+
+def available() -> tuple[str, ...]:
+    """Names of the laws."""
+    return _members.available(__name__)
+
+
+def get(name: str) -> Any:
+    """The law's module, which has `of(scene)`; raises BadInput with the nearest name."""
+    return _members.get(__name__, name, source="law")
+
+
+for _name in available():
+    _members.get(__name__, _name)

@@ -1,0 +1,26 @@
+"""The contract of a law: what time does to a load curve.
+
+A law is one module of this folder with `of(scene) -> Law`; a Law is a frozen dataclass which knows its `name`
+and simulates one impact of a scene to a tolerance.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar, Protocol
+
+from lumped.result import Result
+from lumped.scene import Scene
+
+
+class Law(Protocol):
+    """A force law with everything it took from its scene."""
+
+    name: ClassVar[str]
+
+    def simulate(self, scene: Scene, tolerance: float) -> Result:
+        """One impact; every claimed error is the integration error of this law. Raises NotReached."""
+
+
+def simulate(model: Law, scene: Scene, tolerance: float = 1e-6) -> Result:
+    """One impact of `scene` under the law `model`, every ruled quantity to `tolerance` (relative). Raises NotReached."""
+    return model.simulate(scene, tolerance)

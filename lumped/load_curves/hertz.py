@@ -1,0 +1,58 @@
+"""Hertz 1882: the parabola r^2/(2R)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lumped.load_curves.base import LoadCurve
+
+
+@dataclass(frozen=True)
+class Hertz(LoadCurve):
+    """F = (4/3) E* sqrt(R) depth^(3/2), a = sqrt(R depth)."""
+
+    radius: float
+
+    def force(self, depth: ArrayLike) -> Any:
+        """F/E*, m^2."""
+        return 4.0 / 3.0 * self.radius**0.5 * np.maximum(depth, 0.0) ** 1.5
+
+    def contact_radius(self, depth: ArrayLike) -> Any:
+        """a, m."""
+        if isinstance(depth, float):
+            return (self.radius * max(depth, 0.0)) ** 0.5
+        return np.sqrt(self.radius * np.maximum(depth, 0.0))
+
+    def depth(self, contact_radius: ArrayLike) -> Any:
+        """a^2/R, m."""
+        return np.asarray(contact_radius) ** 2 / self.radius
+
+    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+        """2a/R."""
+        return 2.0 * np.asarray(contact_radius) / self.radius
+
+
+@dataclass(frozen=True)
+class HertzImpact:
+    """Scales of the elastic impact of a parabola: s, m, N, m."""
+
+    duration: float
+    depth: float
+    force: float
+    contact_radius: float
+
+
+def hertz_impact(radius: float, modulus: float, mass: float, velocity: float) -> HertzImpact:
+    """Hertz impact on an elastic half-space of contact modulus E* (Pa): duration 2.868266 (m^2/(R E*^2 v))^(1/5).
+
+    The products are ordered so that no accepted scene leaves double precision.
+    """
+    inertia = mass / modulus
+    depth = (15.0 / 16.0 * inertia * velocity**2 / radius**0.5) ** 0.4
+    duration = 2.868265642 * (inertia**2 / (radius * velocity)) ** 0.2
+    force = 4.0 / 3.0 * modulus * (radius * depth) ** 0.5 * depth
+    return HertzImpact(duration, depth, force, (radius * depth) ** 0.5)

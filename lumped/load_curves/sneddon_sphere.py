@@ -1,0 +1,63 @@
+"""Sneddon 1965: the true sphere, doi 10.1016/0020-7225(65)90019-4."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.load_curves.base import LoadCurve
+
+# u - tanh u = u^3/3 - 2u^5/15 + ...: where the difference itself would lose digits.
+SERIES = (1 / 3, -2 / 15, 17 / 315, -62 / 2835, 1382 / 155925, -21844 / 6081075, 929569 / 638512875)
+SERIES_BELOW = 0.15
+
+
+@dataclass(frozen=True)
+class SneddonSphere(LoadCurve):
+    """F = E* [(R^2 + a^2) u - a R], depth = a u, with u = artanh(a/R): a stays below R at every depth."""
+
+    radius: float
+
+    def force(self, depth: ArrayLike) -> Any:
+        """F/E*, m^2."""
+        u = np.asarray(_angle(np.maximum(depth, 0.0) / self.radius, np.tanh))
+        t = np.tanh(u)
+        return self.radius**2 * (_minus_tanh(u, t) + t * t * u)
+
+    def contact_radius(self, depth: ArrayLike) -> Any:
+        """a = R tanh u with u tanh u = depth/R, m."""
+        if isinstance(depth, float):
+            return self.radius * math.tanh(_angle(max(depth, 0.0) / self.radius, math.tanh))
+        return self.radius * np.tanh(_angle(np.maximum(depth, 0.0) / self.radius, np.tanh))
+
+    def depth(self, contact_radius: ArrayLike) -> Any:
+        """a artanh(a/R), m; infinite at a = R, nan beyond."""
+        a = np.asarray(contact_radius)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return a * np.arctanh(a / self.radius)
+
+    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+        """artanh(a/R) + a R/(R^2 - a^2)."""
+        ratio = np.asarray(contact_radius) / self.radius
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.arctanh(ratio) + ratio / ((1.0 - ratio) * (1.0 + ratio))
+
+
+def _angle(ratio: Any, tanh: Callable[[Any], Any]) -> Any:
+    """u >= 0 with u tanh u = ratio, by Newton; `tanh` is the scalar's or the array's."""
+    u = (ratio + ratio * ratio / 3.0) ** 0.5 + 1e-300
+    for _ in range(6):
+        t = tanh(u)
+        u = u - (u * t - ratio) / (t + u * (1.0 - t * t))
+    return u
+
+
+def _minus_tanh(u: NDArray[np.float64], t: NDArray[np.float64]) -> NDArray[np.float64]:
+    """u - tanh u to full relative precision."""
+    series = u**3 * np.polyval(SERIES[::-1], u * u)
+    return np.where(u < SERIES_BELOW, series, u - t)

@@ -1,0 +1,97 @@
+"""A material: its network, how it deforms sideways, and what only the model ledger needs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from lumped.errors import BadInput, Fault
+from lumped.keys import Choice, Key, Number, check_fields
+from lumped.materials.relaxation import Relaxation
+
+KEYS: Mapping[str, Key] = {
+    "nu": Number(-1.0, 0.5, excluded=True),
+    "density": Number(1e-3, 1e6, "kg/m3", required=False),
+    "constant": Choice(("poisson", "bulk"), required=False),
+    "bulk_modulus": Number(1e-3, 1e16, "Pa", required=False),
+    "yield_strength": Number(1e-3, 1e16, "Pa", required=False),
+    "work_of_adhesion": Number(1e-9, 1e6, "J/m2", required=False),
+}
+
+
+@dataclass(frozen=True)
+class Material:
+    """An isotropic linear viscoelastic material.
+
+    `young` is the relaxation modulus of the network (Pa, s). `constant = "poisson"`: nu is constant and
+    the network is Young's modulus. `"bulk"`: G(t) = young(t)/(2(1+nu)), and the bulk modulus is the constant
+    K = E_inf/(3(1-2 nu)); a fluid (E_inf = 0) gives `bulk_modulus`. Raises BadInput.
+    """
+
+    young: Relaxation
+    nu: float
+    density: float | None = None
+    constant: str = "poisson"
+    bulk_modulus: float | None = None
+    yield_strength: float | None = None
+    work_of_adhesion: float | None = None
+
+    def __post_init__(self) -> None:
+        check_fields("material", self, KEYS)
+        message = bulk_fault(self.constant, self.bulk_modulus, self.young.relaxed)
+        if message:
+            raise BadInput(Fault("material", "bulk_modulus", message))
+
+    @property
+    def bulk(self) -> float:
+        """The constant bulk modulus K, Pa (for `constant = "bulk"`)."""
+        if self.bulk_modulus is not None:
+            return self.bulk_modulus
+        return self.young.relaxed / (3.0 * (1.0 - 2.0 * self.nu))
+
+    @property
+    def shear(self) -> Relaxation:
+        """The relaxation modulus of shear G(t), Pa."""
+        return self.young.scaled(1.0 / (2.0 * (1.0 + self.nu)))
+
+    def contact_modulus(self) -> Relaxation:
+        """E*(t) of the half-space, E/(1-nu^2) for constant nu, in Pa."""
+        if self.constant == "bulk":
+            return _bulk_contact_modulus(self.shear, self.bulk)
+        return self.young.scaled(1.0 / (1.0 - self.nu**2))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The table of a scene file that gives this material back."""
+        young = self.young
+        table: dict[str, Any] = {"law": "prony", "E_inf": young.equilibrium}
+        if young.moduli:
+            table |= {"E": list(young.moduli), "tau": list(young.times)}
+        if young.viscosity:
+            table["eta"] = young.viscosity
+        known = {name: getattr(self, name) for name in KEYS}
+        return table | {name: value for name, value in known.items() if value is not None}
+
+
+def bulk_fault(constant: str, bulk_modulus: float | None, relaxed: float) -> str:
+    """Why this bulk modulus cannot stand with this network; empty when it can."""
+    if bulk_modulus is None:
+        return "missing: a fluid with constant = 'bulk' needs it" if constant == "bulk" and relaxed == 0.0 else ""
+    if constant != "bulk":
+        return "only with constant = 'bulk'; for constant = 'poisson' it follows from the network and nu"
+    if relaxed > 0.0:
+        return "only for a fluid: a solid has K = E_inf/(3(1-2 nu))"
+    return ""
+
+
+def _bulk_contact_modulus(shear: Relaxation, bulk: float) -> Relaxation:
+    """E*(s) = 4G(3K+G)/(3K+4G) = G + 9K/4 - (27 K^2/4)/(3K+4G), exactly, as a Prony series.
+
+    1/(3K+4G) is the creep compliance of the series 3K + 4G(t): the weights (27 K^2/4) J_k are positive.
+    """
+    confined = shear.scaled(4.0)
+    creep = Relaxation(confined.equilibrium + 3.0 * bulk, confined.moduli, confined.times, confined.viscosity).creep()
+    g = shear.relaxed
+    equilibrium = 4.0 * g * (3.0 * bulk + g) / (3.0 * bulk + 4.0 * g)
+    moduli = shear.moduli + tuple(6.75 * bulk**2 * compliance for compliance in creep.compliances)
+    return Relaxation(equilibrium, moduli, shear.times + creep.times, shear.viscosity)

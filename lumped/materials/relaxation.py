@@ -1,0 +1,85 @@
+"""The relaxation modulus: a Prony series plus at most one parallel viscosity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.errors import BadInput, Fault
+
+if TYPE_CHECKING:
+    from lumped.materials.creep import Creep
+
+
+@dataclass(frozen=True)
+class Relaxation:
+    """E(t) = equilibrium + sum_k moduli_k exp(-t/times_k) + viscosity * dirac(t).
+
+    Moduli in Pa, times in s, viscosity in Pa s. Raises BadInput for a negative or non-finite value, a
+    time that is not positive, lists of different length, or a modulus that is nothing at all.
+    """
+
+    equilibrium: float
+    moduli: tuple[float, ...] = ()
+    times: tuple[float, ...] = ()
+    viscosity: float = 0.0
+
+    def __post_init__(self) -> None:
+        numbers = np.array([self.equilibrium, self.viscosity, *self.moduli, *self.times], dtype=float)
+        if len(self.moduli) != len(self.times):
+            raise BadInput(Fault("material", "relaxation", "moduli and times differ in length"))
+        if not np.all(np.isfinite(numbers)) or np.any(numbers < 0.0) or 0.0 in self.times:
+            raise BadInput(Fault("material", "relaxation", "moduli and viscosity are >= 0, times > 0, all finite"))
+        if self.equilibrium + sum(self.moduli) + self.viscosity <= 0.0:
+            raise BadInput(Fault("material", "relaxation", "every modulus and the viscosity are zero"))
+
+    @property
+    def glassy(self) -> float:
+        """Sum of all springs, E(0+) without the viscosity, Pa."""
+        return self.equilibrium + sum(self.moduli)
+
+    @property
+    def instantaneous(self) -> float:
+        """Modulus against a sudden strain, Pa; infinite with a viscosity."""
+        return float("inf") if self.viscosity > 0.0 else self.glassy
+
+    @property
+    def relaxed(self) -> float:
+        """Modulus left after a long time, Pa; zero for a fluid."""
+        return self.equilibrium
+
+    @property
+    def is_elastic(self) -> bool:
+        """No memory at all: neither a Prony term nor a viscosity."""
+        return not self.moduli and self.viscosity == 0.0
+
+    def __call__(self, time: ArrayLike) -> NDArray[np.float64]:
+        """E(t) for t > 0 (without the pulse of the viscosity at t = 0), same shape as `time`, Pa."""
+        t = np.asarray(time, dtype=float)
+        value = np.full(t.shape, self.equilibrium)
+        for modulus, tau in zip(self.moduli, self.times, strict=True):
+            value = value + modulus * np.exp(-t / tau)
+        return value
+
+    def operational(self, s: ArrayLike) -> NDArray[np.float64]:
+        """s times the Laplace transform of E, for s > 0 in 1/s, Pa: Q(s)/P(s) of "(13)" to "(16)"."""
+        frequency = np.asarray(s, dtype=float)
+        value = self.equilibrium + self.viscosity * frequency
+        for modulus, tau in zip(self.moduli, self.times, strict=True):
+            value = value + modulus * (frequency * tau) / (1.0 + frequency * tau)
+        return value
+
+    def scaled(self, factor: float) -> Relaxation:
+        """The same times, every modulus and the viscosity multiplied by `factor` > 0."""
+        moduli = tuple(factor * modulus for modulus in self.moduli)
+        return Relaxation(factor * self.equilibrium, moduli, self.times, factor * self.viscosity)
+
+    def creep(self) -> Creep:
+        """The creep compliance J(t) of the same material: E(s) J(s) = 1/s^2."""
+        from lumped.materials.creep import Creep
+        from lumped.materials.reciprocal import reciprocal
+
+        return Creep(*reciprocal(self.equilibrium, self.moduli, self.times, self.viscosity))

@@ -1,0 +1,171 @@
+"""A result: history, quantities with error bars, and the two ledgers."""
+
+from __future__ import annotations
+
+import json
+import math
+import platform
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lumped.history import History
+from lumped.interpolation import peak
+from lumped.scene import Model, Scene
+
+SCHEMA = "fe-contact/result/1"
+UNITS = {
+    "peak_force": "N",
+    "peak_time": "s",
+    "peak_depth": "m",
+    "duration": "s",
+    "restitution": "1",
+    "impulse": "N s",
+    "history_l2": "1",
+}
+# `tolerance` rules these relatively; restitution and history_l2 absolutely; peak_time not at all.
+RULED_RELATIVE = ("peak_force", "peak_depth", "duration", "impulse")
+RULED_ABSOLUTE = ("restitution", "history_l2")
+ENERGY_TERMS = ("in", "out", "stored", "viscous", "radiated", "contact", "numerical", "residual")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number with an absolute half-width: |value - exact| <= error. None where undefined."""
+
+    value: float | None
+    error: float | None
+    unit: str
+
+
+@dataclass(frozen=True)
+class LedgerEntry:
+    """One thing the model leaves out: its estimated effect relative to the peak force, None where unknown."""
+
+    effect: str
+    treated: str
+    estimate: float | None
+    note: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What one method says of one scene.
+
+    `error_budget`: relative to peak force, by cause; `error_budget_by_quantity`: the same for every quantity.
+    `model` is the model as resolved, to which every claimed error refers. Energies in J.
+    """
+
+    method: str
+    converged: bool
+    separated: bool
+    scene: Scene
+    model: Model
+    tolerance: float
+    history: History
+    quantities: Mapping[str, Quantity]
+    numerics: Mapping[str, Any] = field(default_factory=dict)
+    error_budget: Mapping[str, float] = field(default_factory=dict)
+    error_budget_by_quantity: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    model_ledger: tuple[LedgerEntry, ...] = ()
+    energy: Mapping[str, float | None] = field(default_factory=dict)
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+    timing: Mapping[str, Any] = field(default_factory=dict)
+    work: Mapping[str, Any] = field(default_factory=dict)
+    message: str = ""
+
+    @property
+    def model_sufficient(self) -> bool:
+        """Whether no known estimate of the model ledger exceeds the tolerance."""
+        return all(entry.estimate is None or entry.estimate <= self.tolerance for entry in self.model_ledger)
+
+    def to_json(self) -> dict[str, Any]:
+        """The content of result.json; what is not finite is null."""
+        content = {
+            "schema": SCHEMA,
+            "method": self.method,
+            "converged": self.converged,
+            "separated": self.separated,
+            "model_sufficient": self.model_sufficient,
+            "tolerance": self.tolerance,
+            "message": self.message,
+            "scene": self.scene.to_dict(),
+            "model": vars(self.model),
+            "numerics": self.numerics,
+            "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
+            "error_budget": self.error_budget,
+            "error_budget_by_quantity": self.error_budget_by_quantity,
+            "model_ledger": [asdict(entry) for entry in self.model_ledger],
+            "energy": {name: self.energy.get(name) for name in ENERGY_TERMS},
+            "work": self.work,
+            "provenance": self.provenance,
+            "timing": self.timing,
+        }
+        plain: dict[str, Any] = _plain(content)
+        return plain
+
+    def write(self, directory: Path) -> None:
+        """Write history.csv and result.json into `directory`, made when it is not there."""
+        directory.mkdir(parents=True, exist_ok=True)
+        self.history.write_csv(directory / "history.csv")
+        text = json.dumps(self.to_json(), indent=2, allow_nan=False, ensure_ascii=False)
+        (directory / "result.json").write_text(text + "\n", encoding="utf-8")
+
+
+def quantities_of(history: History, separated: bool) -> dict[str, float | None]:
+    """The values of UNITS read off the rows of a history; duration and restitution None without separation.
+
+    The peaks are sought between the rows, by local polynomials; the impulse is the trapezoid's.
+    """
+    peak_time, peak_force = peak(history.time, history.force)
+    _, peak_depth = peak(history.time, history.depth)
+    return {
+        "peak_force": peak_force,
+        "peak_time": peak_time,
+        "peak_depth": peak_depth,
+        "duration": float(history.time[-1] - history.time[0]) if separated else None,
+        "restitution": float(-history.velocity[-1] / history.velocity[0]) if separated else None,
+        "impulse": float(np.trapezoid(history.force, history.time)),
+        "history_l2": 0.0,
+    }
+
+
+def meets(quantities: Mapping[str, Quantity], tolerance: float) -> bool:
+    """Whether every error bar that the tolerance rules lies within it."""
+    for name in (*RULED_RELATIVE, *RULED_ABSOLUTE):
+        quantity = quantities[name]
+        scale = abs(quantity.value or 0.0) if name in RULED_RELATIVE else 1.0
+        if quantity.error is not None and quantity.error > tolerance * scale:
+            return False
+    return True
+
+
+def provenance() -> dict[str, str]:
+    """Versions of what computed a result."""
+    from importlib.metadata import PackageNotFoundError, version
+
+    found = {"python": platform.python_version(), "platform": platform.platform(terse=True)}
+    for package in ("fe-contact", "numpy", "scipy"):
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "not installed"
+    return found
+
+
+def _plain(value: Any) -> Any:
+    """Python's own types only, None for what is not finite."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

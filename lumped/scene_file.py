@@ -1,0 +1,179 @@
+"""A scene file: TOML -> the Scene and the raw [numerics] table, every fault reported at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from lumped import data
+from lumped.errors import BadInput, Fault
+from lumped.keys import Key, optional, read_table, unknown_key
+from lumped.materials import Material
+from lumped.materials.material import KEYS as MATERIAL_KEYS
+from lumped.materials.material import bulk_fault
+from lumped.members import Member, available, get
+from lumped.scene import MODEL_KEYS, MOTION_KEYS, NAME_KEYS, STRIKER_KEYS, Model, Motion, Scene, inertia_faults
+from lumped.targets import Target
+from lumped.toml_file import overridden, parsed
+
+TABLES = ("striker", "target", "model", "motion", "law", "numerics")
+NETWORKS, SHAPES, TARGETS = "lumped.materials.networks", "lumped.shapes", "lumped.targets"
+# The interface plans these keys: saying so helps more than calling them unknown.
+NOT_YET = {
+    "striker.material": "a deformable striker is not available in this version; leave it out: rigid",
+    "target.mass": "a free second body is not available in this version; leave it out: held",
+    "law": "a law with parameters of its own is not available in this version; choose a law by its name instead",
+}
+
+Table = dict[str, Any]
+
+
+def load(source: str | Path, overrides: Mapping[str, object] | None = None) -> tuple[Scene, Table]:
+    """The scene of a file or of a packaged name, and its raw `[numerics]` table.
+
+    `overrides` maps dotted keys ("striker.velocity") to values that replace the file's. Raises BadInput
+    with every fault found, at most 20.
+    """
+    path = Path(source)
+    if not path.exists() and path.suffix != ".toml" and path.name == str(source):
+        path = data.scene_path(str(source))
+    return read(parsed(path), path.name, overrides)
+
+
+def read(
+    table: Mapping[str, object], source: str = "scene", overrides: Mapping[str, object] | None = None
+) -> tuple[Scene, Table]:
+    """The scene of a table as in a scene file, and its raw `[numerics]` table. Raises BadInput."""
+    return _Reader(source, overridden(table, overrides or {}, source)).scene()
+
+
+class _Reader:
+    """Walks the tables once and keeps every fault on the way."""
+
+    def __init__(self, source: str, raw: Table) -> None:
+        self.source = source
+        self.raw = raw
+        self.faults: list[Fault] = []
+
+    def scene(self) -> tuple[Scene, Table]:
+        """The scene and the raw numerics; raises BadInput when anything is wrong."""
+        name = self.name()
+        striker, shape = self.body("striker", SHAPES, STRIKER_KEYS)
+        _, target = self.body("target", TARGETS, {})
+        material = self.material()
+        model = self.checked("model", self.table("model", required=False), MODEL_KEYS)
+        motion = self.motion()
+        numerics = self.table("numerics", required=False)
+        self.inertia(model, target)
+        if self.faults or shape is None or target is None or material is None or motion is None:
+            raise BadInput(self.faults)
+        built = Scene(shape, **striker, material=material, target=target, model=Model(**model), motion=motion,
+                      name=name, source=self.source)  # fmt: skip
+        return built, numerics
+
+    def name(self) -> str:
+        """The scene's name, by default the file's; checks the keys of the top level too."""
+        top = {key: value for key, value in self.raw.items() if key not in TABLES}
+        values, faults = read_table(self.source, "", top, NAME_KEYS)
+        names = [*NAME_KEYS, *TABLES]
+        for fault in faults:
+            unknown = fault.key not in NAME_KEYS
+            self.faults.append(replace(fault, message=unknown_key(fault.key, names)) if unknown else fault)
+        self.faults += [Fault(self.source, "law", NOT_YET["law"])] if "law" in self.raw else []
+        return str(values.get("name", Path(self.source).stem))
+
+    def body(self, part: str, package: str, common: Mapping[str, Key]) -> tuple[Table, Any]:
+        """A body's table: its checked common values, and what the member of `package` makes of its own keys."""
+        table = self.table(part)
+        planned = {key for key in table if f"{part}.{key}" in NOT_YET}
+        self.faults += [Fault(self.source, f"{part}.{key}", NOT_YET[f"{part}.{key}"]) for key in sorted(planned)]
+        rest = {key: value for key, value in table.items() if key not in planned | {"material"}}
+        if part not in self.raw:
+            return {}, None
+        (own,) = alternatives(package, table.get("shape"))
+        values = self.checked(part, rest, {"shape": Member(package), **common, **own})
+        kind: ModuleType | None = values.pop("shape", None)
+        shared = {key: values.pop(key) for key in common if key in values}
+        complete = kind is not None and values.keys() == own.keys()
+        return shared, kind.of(**values) if kind is not None and complete else None
+
+    def material(self) -> Material | None:
+        """The target's material, None with a fault noted."""
+        target = self.table("target", required=False, quiet=True)
+        if not target:
+            return None
+        path, table = "target.material", self.table("material", inside="target")
+        if not table:
+            return None
+        own = max(alternatives(NETWORKS, table.get("law")), key=lambda keys: len(keys.keys() & table.keys()))
+        known = len(self.faults)
+        values = self.checked(path, table, {"law": Member(NETWORKS), **own, **MATERIAL_KEYS})
+        if len(self.faults) > known:
+            return None
+        common = {key: values.pop(key) for key in MATERIAL_KEYS if key in values}
+        return self.network(values.pop("law"), values, common)
+
+    def network(self, law: ModuleType, values: Table, common: Table) -> Material | None:
+        """The material of a network's checked values."""
+        path = "target.material"
+        try:
+            young = law.of(**values)
+        except ValueError as error:
+            self.faults.append(Fault(self.source, path, str(error)))
+            return None
+        message = bulk_fault(common.get("constant", "poisson"), common.get("bulk_modulus"), young.relaxed)
+        if message:
+            self.faults.append(Fault(self.source, f"{path}.bulk_modulus", message))
+            return None
+        return Material(young, **common)
+
+    def motion(self) -> Motion | None:
+        """The motion, None with a fault noted."""
+        values = self.checked("motion", self.table("motion", required=False), MOTION_KEYS)
+        try:
+            return Motion(**values)
+        except BadInput as error:
+            self.faults += [replace(f, source=self.source, key=f"motion.{f.key}") for f in error.faults]
+            return None
+
+    def inertia(self, model: Table, target: Target | None) -> None:
+        """Whether the target can have the inertia asked for, and a density for it."""
+        material = self.table("target", required=False, quiet=True).get("material")
+        density = material.get("density") if isinstance(material, Mapping) else None
+        if target is not None:
+            self.faults += inertia_faults(self.source, model.get("inertia", False), density, target)
+
+    def table(self, key: str, inside: str = "", required: bool = True, quiet: bool = False) -> Table:
+        """The table `key`; empty, with a fault unless `quiet`, when it is missing though required or no table."""
+        place = self.raw[inside] if inside else self.raw
+        value = place.get(key, None if required else {})
+        if isinstance(value, Mapping):
+            return dict(value)
+        if not quiet:
+            message = "not a table" if key in place else "missing; a scene needs this table"
+            self.faults.append(Fault(self.source, f"{inside}.{key}".lstrip("."), message))
+        return {}
+
+    def checked(self, path: str, table: Table, keys: Mapping[str, Key]) -> Table:
+        """The accepted values of a table; what is refused becomes a fault."""
+        values, faults = read_table(self.source, path, table, keys)
+        self.faults += faults
+        return values
+
+
+def alternatives(package: str, name: object) -> tuple[Mapping[str, Key], ...]:
+    """The sets of keys of the member called `name`; of an unknown member the keys of all, none required."""
+    if isinstance(name, str) and name in available(package):
+        return _sets(get(package, name))
+    every: dict[str, Key] = {}
+    for member in available(package):
+        for keys in _sets(get(package, member)):
+            every |= optional(keys)
+    return (every,)
+
+
+def _sets(module: ModuleType) -> tuple[Mapping[str, Key], ...]:
+    return module.KEYS if isinstance(module.KEYS, tuple) else (module.KEYS,)

@@ -1,0 +1,53 @@
+"""The contract of a striker's profile."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.keys import Key
+from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.hertz import HertzImpact
+
+
+class Shape(ABC):
+    """An axisymmetric convex profile: height above its lowest point over the distance r from the axis.
+
+    `name` and `keys` are those of the scene file. Lengths in m; radii are scalars or arrays.
+    """
+
+    name: ClassVar[str]
+    keys: ClassVar[Mapping[str, Key]]
+
+    @abstractmethod
+    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+        """Height h(r), infinite where the profile has ended."""
+
+    @abstractmethod
+    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+        """h'(r)."""
+
+    @abstractmethod
+    def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
+        """The equivalent one-dimensional profile g(x) = x int_0^x h'(r)/sqrt(x^2-r^2) dr, x >= 0."""
+
+    @property
+    @abstractmethod
+    def load_curve(self) -> LoadCurve:
+        """The closed form of elastic indentation by this profile."""
+
+    @abstractmethod
+    def resolved(self, profile: str) -> Shape:
+        """The shape that `model.profile` ("exact" or "parabola") asks for."""
+
+    @abstractmethod
+    def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
+        """Scales of the elastic impact by the profile's tip, contact modulus in Pa."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """The shape's part of the striker's table."""
+        return {"shape": self.name} | {key: getattr(self, key) for key in self.keys}

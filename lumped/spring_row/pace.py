@@ -1,0 +1,95 @@
+"""How long the steps are: by the error they make, or as they were before, each cut into equal parts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from lumped.spring_row.row import Instant
+
+GROWTH = 3.0
+SHRINKAGE = 0.2
+# Below this share of the velocity at touch, errors of the velocity count absolutely.
+REST = 1e-5
+# Once the contact has shrunk to this share of its reach, its edge may run to the axis in any step.
+NEARLY_CLOSED = 0.1
+OVERREACH = 1.5
+
+
+class Pace(Protocol):
+    """Says how long the next step is to be, and whether a tried one may be taken."""
+
+    def propose(self, now: Instant) -> float:
+        """Length of the next step, s."""
+
+    def accepts(self, now: Instant, then: Instant) -> bool:
+        """Whether a step from `now` to `then` may be taken; if not, `propose` answers with a shorter one."""
+
+
+@dataclass
+class Adaptive:
+    """Steps whose error in velocity stays below `tolerance` of it, and over which the edge moves by `1/elements`.
+
+    The error of a step is h^3 a''/12, a'' from the accelerations at three instants. `reach`, m: the contact radius
+    which `elements` steps are to cover at least.
+    """
+
+    first: float
+    elements: int
+    reach: float
+    velocity: float
+    tolerance: float = field(init=False)
+    before: Instant | None = None
+    h: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        # A half sine of acceleration errs by this per step at 2/3 `elements` steps per contact.
+        self.tolerance = 8.0 / self.elements**3
+        self.h = self.first
+
+    def propose(self, now: Instant) -> float:
+        return self.h
+
+    def accepts(self, now: Instant, then: Instant) -> bool:
+        h = then.time - now.time
+        share = max(self._error(now, then, h), self._travel(now, then))
+        factor = GROWTH if share <= 0.0 else min(GROWTH, max(SHRINKAGE, 0.9 * share ** (-1.0 / 3.0)))
+        self.h = h * factor
+        if share > 2.0:
+            return False
+        self.before = now
+        return True
+
+    def _error(self, now: Instant, then: Instant, h: float) -> float:
+        """Estimated error of the step over the tolerance."""
+        if self.before is None:
+            return 0.0
+        back = now.time - self.before.time
+        bend = (then.acceleration - now.acceleration) / h - (now.acceleration - self.before.acceleration) / back
+        scale = max(abs(now.velocity), abs(then.velocity), REST * self.velocity)
+        return abs(h**3 * bend / (6.0 * (h + back))) / (self.tolerance * scale)
+
+    def _travel(self, now: Instant, then: Instant) -> float:
+        """Cube of the edge's travel over its allowance, so that both shares answer to h alike."""
+        if then.edge < now.edge and then.edge < NEARLY_CLOSED * self.reach:
+            return 0.0
+        allowed = max(now.edge, then.edge, self.reach) / self.elements
+        return (abs(then.edge - now.edge) / allowed) ** 3
+
+
+@dataclass
+class Prescribed:
+    """Steps that end at given instants, s; the last one reaches beyond its own, for the event that cuts it."""
+
+    instants: Sequence[float]
+    taken: int = 0
+
+    def propose(self, now: Instant) -> float:
+        if self.taken < len(self.instants) - 1:
+            return self.instants[self.taken] - now.time
+        return OVERREACH * (self.instants[-1] - (self.instants[-2] if len(self.instants) > 1 else 0.0))
+
+    def accepts(self, now: Instant, then: Instant) -> bool:
+        self.taken += 1
+        return True

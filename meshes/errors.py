@@ -1,0 +1,19 @@
+"""Named failures of the geometry floor."""
+
+APT_LINE = (
+    "apt-get update && apt-get install -y --no-install-recommends "
+    "libglu1-mesa libgl1 libxcursor1 libxft2 libxinerama1 libgomp1"
+)
+
+
+class MeshError(Exception):
+    """A mesh that cannot be made: the message names the number and its accepted range."""
+
+    exit_code = 2
+
+
+class GmshMissing(MeshError):
+    """gmsh is installed but a system library it needs is not (bare Debian lacks libGLU and friends)."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(f"gmsh cannot be loaded ({reason}); cure: {APT_LINE}")

@@ -1,0 +1,86 @@
+"""Quarter disc under a contact circle of radius one: the mesh of an axisymmetric half-space.
+
+The half-space has no length of its own, so its mesh is made once in units of the contact radius and
+scaled to whatever radius the contact has at an instant.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from skfem import MeshTri
+
+from meshes.errors import MeshError
+from meshes.session import session
+
+EDGE_REFINEMENT = 24.0  # element size inside the contact over element size at its edge
+GROWTH = 2.0  # growth of the element size per unit distance, for one element per contact radius
+LARGEST_GROWTH = 1.5  # steeper gradings leave gmsh too little room for well-shaped triangles
+
+
+def half_space(elements_per_contact: float, far_radius: float) -> MeshTri:
+    """Triangles of the half-space ``z <= 0`` around a contact circle ``r = 1``.
+
+    The size function is ``1/elements_per_contact`` inside the contact, 24 times finer at its edge
+    (where the pressure ends like a square root) and grows linearly away from both; doubling
+    ``elements_per_contact`` halves every size, so that refinement is uniform.
+
+    Parameters
+    ----------
+    elements_per_contact : number of elements along the contact radius, 0.25 to 64.
+    far_radius : radius of the meshed quarter disc in contact radii, 2 to 1e6.
+
+    Returns
+    -------
+    MeshTri with coordinates (r, z) and boundaries ``surface`` (z = 0), ``axis`` (r = 0), ``far``; the
+    contact edge (1, 0) is a node.
+
+    Raises
+    ------
+    MeshError for numbers outside these ranges.
+    """
+    if not 0.25 <= elements_per_contact <= 64:
+        raise MeshError(f"elements_per_contact = {elements_per_contact:g}: accepted 0.25 to 64")
+    if not 2 <= far_radius <= 1e6:
+        raise MeshError(f"far_radius = {far_radius:g}: accepted 2 to 1e6 contact radii")
+    size = 1 / elements_per_contact
+    points, triangles = _triangulate(size, min(GROWTH * size, LARGEST_GROWTH), far_radius)
+    points[np.abs(points) < 1e-12 * far_radius] = 0.0  # onto the axis and the surface exactly
+    mesh = MeshTri(np.ascontiguousarray(points), np.ascontiguousarray(triangles))
+    return mesh.with_boundaries(
+        {
+            "surface": lambda x: x[1] == 0.0,
+            "axis": lambda x: x[0] == 0.0,
+            "far": lambda x: (x[0] > 0.0) & (x[1] < 0.0),
+        }
+    )
+
+
+def _triangulate(size: float, growth: float, far_radius: float) -> tuple[np.ndarray, np.ndarray]:
+    """Node coordinates (2, n) and triangles (3, m), unused nodes dropped."""
+    to_edge, to_axis = "Sqrt((x-1)^2+y^2)", "Sqrt(x^2+y^2)"
+    near_edge = f"({size / EDGE_REFINEMENT!r}+{growth!r}*{to_edge})"
+    elsewhere = f"({size!r}+{growth / 2!r}*(({to_axis}-1)+Fabs({to_axis}-1)))"
+    with session("half_space") as gmsh:
+        geometry, meshing = gmsh.model.geo, gmsh.model.mesh
+        centre, edge = geometry.addPoint(0, 0, 0), geometry.addPoint(1, 0, 0)
+        right, bottom = geometry.addPoint(far_radius, 0, 0), geometry.addPoint(0, -far_radius, 0)
+        outline = [
+            geometry.addLine(centre, edge),
+            geometry.addLine(edge, right),
+            geometry.addCircleArc(right, centre, bottom),
+            geometry.addLine(bottom, centre),
+        ]
+        geometry.addPlaneSurface([geometry.addCurveLoop(outline)])
+        geometry.synchronize()
+        field = meshing.field.add("MathEval")  # the smaller of the two sizes
+        meshing.field.setString(field, "F", f"({near_edge}+{elsewhere}-Fabs({near_edge}-{elsewhere}))/2")
+        meshing.field.setAsBackgroundMesh(field)
+        meshing.generate(2)
+        tags, coordinates, _ = meshing.getNodes()
+        kinds, _, connectivity = meshing.getElements(2)
+        corners = connectivity[list(kinds).index(2)].astype(int)
+    used, triangles = np.unique(corners, return_inverse=True)
+    row_of_tag = np.zeros(int(tags.max()) + 1, dtype=int)
+    row_of_tag[tags.astype(int)] = np.arange(len(tags))
+    points = coordinates.reshape(-1, 3)[row_of_tag[used], :2].T
+    return points, triangles.reshape(-1, 3).T

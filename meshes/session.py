@@ -1,0 +1,41 @@
+"""The only place that opens and closes gmsh."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from meshes.errors import GmshMissing
+
+_ONE_AT_A_TIME = threading.Lock()  # gmsh keeps one global model a process
+
+
+@contextmanager
+def session(name: str) -> Iterator[Any]:
+    """Yield the gmsh module with an empty model called ``name``; close it whatever happens.
+
+    Sizes come from the background field alone, so that a mesh depends on its numbers only. Raises
+    :class:`GmshMissing` where a system library is missing.
+    ``interruptible=False`` lets it run in threads and workers, where signals cannot be installed.
+    """
+    gmsh = _load()
+    with _ONE_AT_A_TIME:
+        gmsh.initialize(interruptible=False)
+        try:
+            gmsh.option.setNumber("General.Terminal", 0)
+            for source in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
+                gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
+            gmsh.model.add(name)
+            yield gmsh
+        finally:
+            gmsh.finalize()
+
+
+def _load() -> Any:
+    try:
+        import gmsh
+    except (ImportError, OSError) as failure:
+        raise GmshMissing(str(failure).splitlines()[0]) from failure
+    return gmsh

@@ -1,0 +1,169 @@
+"""The floors of the house: which package may import what, and what stands nowhere."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from fnmatch import filter as matching
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGES = ("lumped", "meshes", "fe_contact")
+FILES = {"pyproject.toml", "README.md", "LICENSE", "CITATION.cff", "CHANGELOG.md"}
+TOP_LEVEL = FILES | {"data", "tests"} | {*PACKAGES}
+
+STANDARD = sys.stdlib_module_names
+LUMPED = STANDARD | {"lumped", "numpy", "scipy"}
+MESHES = STANDARD | {"meshes", "numpy", "scipy", "skfem", "meshio", "gmsh"}
+ALLOWED = {"lumped": LUMPED, "meshes": MESHES, "fe_contact": LUMPED | MESHES | {"fe_contact", "matplotlib"}}
+HEAVY = {"skfem", "gmsh", "matplotlib", "meshio", "scipy.integrate"}
+NOT_LOADED = {
+    "lumped": HEAVY | {"meshes", "fe_contact"},
+    "meshes": {"lumped", "fe_contact", "gmsh", "matplotlib"},
+    "fe_contact": {"gmsh", "matplotlib", "scipy.integrate"},
+}
+SERIALIZERS = {"pickle", "_pickle", "cloudpickle", "dill", "joblib", "marshal", "shelve"}
+
+
+@cache
+def tree(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"), str(path))
+
+
+def sources(*folders: str) -> list[Path]:
+    return sorted(path for folder in folders for path in (ROOT / folder).rglob("*.py"))
+
+
+def modules_imported(path: Path) -> Iterator[str]:
+    """Full names of all modules that a file imports, at any depth, written as a statement or as a call."""
+    for node in ast.walk(tree(path)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            yield node.module
+        elif isinstance(node, ast.Call) and called(node) in ("import_module", "__import__") and node.args:
+            first = node.args[0]
+            if isinstance(first, ast.Constant) and isinstance(first.value, str):
+                yield first.value
+
+
+def roots_imported(path: Path) -> set[str]:
+    return {module.split(".")[0] for module in modules_imported(path)}
+
+
+def called(node: ast.Call) -> str:
+    """The last name of what is called: `import_module` for `importlib.import_module(...)`."""
+    return ast.unparse(node.func).rpartition(".")[2]
+
+
+def importers(root: str) -> set[str]:
+    """Files of the suite that import the package `root` or anything in it."""
+    return {name(path) for path in sources(*PACKAGES) if root in roots_imported(path)}
+
+
+def name(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_a_floor_imports_only_what_it_may(package: str) -> None:
+    assert sources(package), f"{package} has no source"
+    strangers = {
+        f"{name(path)}: {module}"
+        for path in sources(package)
+        for module in modules_imported(path)
+        if module.split(".")[0] not in ALLOWED[package]
+    }
+    assert not strangers
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_importing_a_package_loads_nothing_heavy(package: str) -> None:
+    probe = f"import sys, {package}; print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", probe], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    assert not NOT_LOADED[package] & set(run.stdout.split())
+
+
+def test_only_the_report_imports_matplotlib() -> None:
+    assert {p for p in importers("matplotlib") if not p.startswith("fe_contact/report/")} == set()
+
+
+def test_only_the_session_imports_gmsh() -> None:
+    assert importers("gmsh") == {"meshes/session.py"}
+
+
+def test_no_relative_import_leaves_its_package() -> None:
+    """`from ...x import y` may climb, but not out of the package."""
+    leaving = {
+        name(path)
+        for path in sources(*PACKAGES)
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.ImportFrom) and node.level >= len(path.relative_to(ROOT).parts)
+    }
+    assert not leaving
+
+
+def test_one_place_catches_everything() -> None:
+    """A failure has a name; only the command line turns the rest into one line and exit code 1."""
+    places = [name(path) for path in sources(*PACKAGES) for node in ast.walk(tree(path)) if catches_all(node)]
+    assert places == ["fe_contact/cli.py"]
+
+
+def catches_all(node: ast.AST) -> bool:
+    if isinstance(node, ast.ExceptHandler):
+        caught = ast.walk(node.type) if node.type else None
+        return caught is None or any(is_broad(kind) for kind in caught)
+    suppressed = node.args if isinstance(node, ast.Call) and called(node) == "suppress" else []
+    return any(is_broad(kind) for kind in suppressed)
+
+
+def is_broad(node: ast.AST) -> bool:
+    return isinstance(node, ast.Name) and node.id in ("Exception", "BaseException")
+
+
+def test_nothing_is_pickled() -> None:
+    """Results are text that a diff can show; a pickle runs code when it is read."""
+    everywhere = sources(*PACKAGES, "tests")
+    importing = {name(path) for path in everywhere if SERIALIZERS & roots_imported(path)}
+    loading = {
+        name(path)
+        for path in everywhere
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.keyword) and node.arg == "allow_pickle"
+    }
+    assert not importing | loading
+
+
+def test_the_top_level_is_the_agreed_one() -> None:
+    """Apart from dot files and from what git ignores."""
+    patterns = (ROOT / ".gitignore").read_text(encoding="utf-8").split()
+    ignored = [".*", *(pattern.strip("/") for pattern in patterns)]
+    entries = {path.name for path in ROOT.iterdir()}
+    assert entries - {entry for pattern in ignored for entry in matching(entries, pattern)} == TOP_LEVEL
+
+
+MESH_HELPERS = {"errors", "session"}
+
+
+def members(folder: str) -> set[str]:
+    return {path.stem for path in (ROOT / folder).glob("[!_]*.py")} - {"base"}
+
+
+def test_a_target_stands_on_every_floor() -> None:
+    targets, meshed = members("lumped/targets"), members("meshes") - MESH_HELPERS
+    assert targets
+    assert members("fe_contact/targets") == targets
+    assert targets <= meshed
+    assert meshed <= targets | members("lumped/shapes"), "a mesh of neither a target nor a deformable striker"
+
+
+def test_every_folder_of_source_is_a_package() -> None:
+    """A folder without __init__.py imports all the same, but neither mypy nor a walk over members sees it."""
+    bare = {name(path.parent) for path in sources(*PACKAGES) if not (path.parent / "__init__.py").exists()}
+    assert not bare
