@@ -7,7 +7,10 @@ they change does not depend on the step. A change between settings in the ratio 
     SAFETY / (2^order - 1) x change ,
 
 with the lowest order that theory or the scheme promises, not the higher one that is usually seen (Roache's
-grid convergence index, doi:10.1115/1.2910291).
+grid convergence index, doi:10.1115/1.2910291). Extrapolation leaves the order after the scheme's own, if the
+three step lengths show that order; where they do not, order one is all that is trusted. What steps do not
+cure, the jitter that rounding and mesh leave in the force of a viscous contact, shows when every other step
+is left out of one march.
 """
 
 from __future__ import annotations
@@ -22,15 +25,19 @@ from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.curve import Curve, extrapolated
 from fe_contact.forms import Array
 from fe_contact.impact import March, Strike, march
-from fe_contact.numerics import RANGES, SCHEMES, Numerics
+from fe_contact.numerics import SCHEMES, Numerics
 from fe_contact.targets import half_space
 from lumped.errors import NotReached
 from lumped.members import get
 
 SAFETY = 1.25
 LEAST_ORDER = {"mesh": 2, "penalty": 1, "far_field": 2}
+LEAST_HALVED = 32  # steps below which halving them twice would leave too few to tell anything
+LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 20.0, "far_radius": 5.0}
+AS_EXPECTED = (0.7, 1.5)  # share of the expected ratio of changes that counts as showing the order
 CAUSES = ("mesh", "penalty", "time_step", "far_field")
 PEAK_SHARE = 0.98  # the force's own error is the largest one while the force exceeds this share of its peak
+LATE_SHARE = 0.9  # the path's displacement counts as one of its end over the last tenth of the contact
 SMOOTHING = 0.04  # share of the contact over which a pointwise change counts as the error of its neighbours
 
 
@@ -55,6 +62,7 @@ class Change:
         around = {
             "peak_force": float(self._force_change[self._near_peak].max()),
             "peak_depth": float(self._depth_change[self._near_depth].max()),
+            "duration": self._late_shift,
             "impulse": self._velocity_change * strike.mass,
             "restitution": self._velocity_change / strike.velocity,
         }
@@ -86,6 +94,14 @@ class Change:
     def _near_depth(self) -> Array:
         depth = self.first.depth_at(self.first.dense_time)
         return depth > PEAK_SHARE * depth.max()
+
+    @cached_property
+    def _late_shift(self) -> float:
+        """Time by which the striker's path near separation is displaced, s: change of depth over speed."""
+        time = self.first.dense_time
+        late = time > LATE_SHARE * self.first.duration
+        leaving = np.abs(self.first.velocity_at(time[-1:])[0])
+        return float(self._depth_change[late].max() / leaving) if self.first.separated else 0.0
 
     @cached_property
     def _velocity_change(self) -> float:
@@ -126,15 +142,13 @@ class Certified:
     curve: Curve
     march: March
     surface: ScaledSurface
-    changes: Mapping[str, Change | None]
+    changes: Mapping[str, tuple[Change | None, ...]]
     work: TotalWork
 
     def error(self, name: str, cause: str) -> float:
         """Error of a quantity by one cause, in its unit; infinite where a variation failed."""
-        change = self.changes[cause]
-        if change is None:
-            return np.inf
-        return change.history() if name == "history_l2" else change.of(name)
+        reading = self.curve.end_spread if (name, cause) == ("duration", "time_step") else 0.0
+        return reading + sum(_error(change, name) for change in self.changes[cause])
 
     def total(self, name: str) -> float:
         """Error bar of a quantity, in its unit."""
@@ -142,33 +156,59 @@ class Certified:
 
     def force_error(self, time: Array) -> Array:
         """Half-width of the force's error band, N."""
-        known = [change.force(time) for change in self.changes.values() if change is not None]
+        known = [c.force(time) for changes in self.changes.values() for c in changes if c is not None]
         return np.sum(known, axis=0) if known else np.zeros_like(time)
 
 
 def certify(strike: Strike, poisson: float, numerics: Numerics) -> Certified:
     """March with ``numerics`` and with each setting varied; raises where the march itself fails."""
-    scheme = get(SCHEMES, numerics.scheme)
     runs = _Runs(strike, poisson)
     finest = runs.march(numerics)
-    fine = Curve.of(finest, strike)
-    half = runs.curve(numerics.varied(steps=numerics.steps // 2))
-    cheap = numerics.varied(steps=numerics.steps // 4)
-    quarter = runs.curve(cheap)
-    other_mesh = _other(cheap, "elements_per_contact")
-    on_other_mesh = runs.curve(other_mesh)
-    value = fine if half is None else extrapolated(fine, half, scheme.ORDER)
-    before = None if half is None or quarter is None else extrapolated(half, quarter, scheme.ORDER)
+    steps = _time_steps(runs, Curve.of(finest, strike), numerics)
+    cheap = numerics.varied(steps=steps.cheap)
+    base = runs.curve(cheap)
+    mesh, finer_mesh = _other(cheap, "elements_per_contact")
+    far, farther = _other(mesh, "far_radius")
+    penalty, stiffer = _other(cheap, "penalty")
+    on_mesh = runs.curve(mesh)
     changes = {
-        "mesh": _change(quarter, on_other_mesh, LEAST_ORDER["mesh"]),
-        "penalty": _change(quarter, runs.curve(_other(cheap, "penalty")), LEAST_ORDER["penalty"]),
-        "time_step": _change(value, before, scheme.ORDER),
-        "far_field": _change(
-            on_other_mesh, runs.curve(_other(other_mesh, "far_radius")), LEAST_ORDER["far_field"]
-        ),
+        "mesh": (_change(base, on_mesh, LEAST_ORDER["mesh"], finer_mesh), *steps.jitter),
+        "penalty": (_change(base, runs.curve(penalty), LEAST_ORDER["penalty"], stiffer),),
+        "time_step": (steps.change,),
+        "far_field": (_change(on_mesh, runs.curve(far), LEAST_ORDER["far_field"], farther),),
     }
     surface = half_space.surface(poisson, numerics)
-    return Certified(value, finest, surface, changes, runs.work(surface))
+    return Certified(steps.value, finest, surface, changes, runs.work(surface))
+
+
+@dataclass(frozen=True)
+class _TimeSteps:
+    """What the variation of the step length yields: value, its change, jitter, and steps for other variations."""
+
+    value: Curve
+    change: Change | None
+    jitter: tuple[Change, ...]
+    cheap: int
+
+
+def _time_steps(runs: _Runs, fine: Curve, numerics: Numerics) -> _TimeSteps:
+    """Halve the number of steps twice and extrapolate; double it twice where it is too small for that."""
+    order = get(SCHEMES, numerics.scheme).ORDER
+    if numerics.steps < LEAST_HALVED:
+        double = runs.curve(numerics.varied(steps=2 * numerics.steps))
+        fourfold = runs.curve(numerics.varied(steps=4 * numerics.steps))
+        if double is None or fourfold is None:
+            return _TimeSteps(fine, None, (), 4 * numerics.steps)
+        best = extrapolated(fourfold, double, order)
+        return _TimeSteps(fine, Change(fine, best, SAFETY), (), 4 * numerics.steps)
+    half = runs.curve(numerics.varied(steps=numerics.steps // 2))
+    quarter = runs.curve(numerics.varied(steps=numerics.steps // 4))
+    if half is None or quarter is None:
+        return _TimeSteps(fine, None, (), numerics.steps)
+    value, before = extrapolated(fine, half, order), extrapolated(half, quarter, order)
+    trusted = _trusted_order(fine, half, quarter, order)
+    jitter = Change(fine, fine.thinned(), 1.0)
+    return _TimeSteps(value, _change(value, before, trusted), (jitter,), numerics.steps // 4)
 
 
 class _Runs:
@@ -207,14 +247,28 @@ class _Runs:
         )
 
 
-def _change(first: Curve | None, second: Curve | None, order: int) -> Change | None:
+def _error(change: Change | None, name: str) -> float:
+    """Error of a quantity by one change; infinite where the variation failed."""
+    if change is None:
+        return np.inf
+    return change.history() if name == "history_l2" else change.of(name)
+
+
+def _trusted_order(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
+    """Order left after extrapolation: one more than the scheme's if three step lengths show the scheme's own."""
+    seen = Change(half, quarter, 1.0).history() / max(Change(fine, half, 1.0).history(), np.finfo(float).tiny)
+    return order + 1 if AS_EXPECTED[0] <= seen / 2**order <= AS_EXPECTED[1] else 1
+
+
+def _change(first: Curve | None, second: Curve | None, order: int, finer: bool = False) -> Change | None:
+    """Change between settings in the ratio 1 : 2; ``finer`` if it is the second that is the better one."""
     if first is None or second is None:
         return None
-    return Change(first, second, SAFETY / (2**order - 1))
+    return Change(first, second, SAFETY * (2**order if finer else 1) / (2**order - 1))
 
 
-def _other(numerics: Numerics, key: str) -> Numerics:
-    """One setting halved, or doubled where half of it is out of range."""
+def _other(numerics: Numerics, key: str) -> tuple[Numerics, bool]:
+    """One setting halved; doubled, and True, where it is too coarse for half of it to tell anything."""
     value = getattr(numerics, key)
-    lowest, _ = RANGES[key]
-    return numerics.varied(**{key: value / 2 if value / 2 >= lowest else value * 2})
+    finer = value < LEAST_HALVED_SETTING[key]
+    return numerics.varied(**{key: value * 2 if finer else value / 2}), finer

@@ -8,7 +8,7 @@ comes from the impulse, the one quantity that a step of any scheme knows exactly
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -22,7 +22,8 @@ DENSE = 601  # points on which peaks are sought and norms taken
 
 @dataclass(frozen=True)
 class Curve:
-    """Mean force since touch (n,), N, depth (n,), m, at ``x`` (n,); squared radius at ``radius_x``; duration, s."""
+    """Mean force since touch (n,), N, depth (n,), m, at ``x`` (n,); squared radius at ``radius_x``; duration and how
+    sharply its end can be read, s."""
 
     strike: Strike
     duration: float
@@ -32,6 +33,7 @@ class Curve:
     depth: Array
     radius_x: Array
     radius_squared: Array
+    end_spread: float
 
     @classmethod
     def of(cls, march: March, strike: Strike) -> Curve:
@@ -49,7 +51,13 @@ class Curve:
             depth=march.depth,
             radius_x=np.sqrt(np.concatenate([[0.0], radius_time[keep] / duration, [end[0][0]]])),
             radius_squared=np.concatenate([[0.0], radius[keep] ** 2, [end[0][1] ** 2]]),
+            end_spread=march.end_spread,
         )
+
+    def thinned(self) -> Curve:
+        """The curve through every other step, both ends kept."""
+        keep = np.unique(np.append(np.arange(0, len(self.x), 2), len(self.x) - 1))
+        return replace(self, x=self.x[keep], mean_force=self.mean_force[keep], depth=self.depth[keep])
 
     def force(self, time: Array) -> Array:
         """Contact force, N; zero outside the contact."""
@@ -122,6 +130,7 @@ def extrapolated(fine: Curve, coarse: Curve, order: int) -> Curve:
         depth=mend(fine.depth, coarse.x, coarse.depth),
         radius_x=fine.radius_x,
         radius_squared=fine.radius_squared,
+        end_spread=fine.end_spread + weight * (fine.end_spread + coarse.end_spread),
     )
 
 

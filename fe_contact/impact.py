@@ -30,7 +30,9 @@ MEMORY_REACH = 1.5  # memory extends to this multiple of the expected contact ra
 APPROACH_TO_END = 0.4  # share of the time left that a step may take near separation
 END_REACHED = 1e-3  # time left over contact time at which separation is read off the trend
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
+PREDICTIONS = 3  # of the separation, whose spread tells how well its time can be read
 FAINT = 1e-3  # share of the peak force below which contact may end
+VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
 STEPS_ALLOWED = 20  # multiple of the settings' steps after which the march gives up
 
 
@@ -74,7 +76,8 @@ class March:
 
     ``time``, ``depth``, ``impulse`` (n,) at the ends of the steps, the first row at touch, the last at
     separation or ``end_time``; ``radius_time``, ``radius`` (n,) of the contact; ``snapshots`` one a step;
-    ``energy`` J, each term computed on its own.
+    ``energy`` J, each term computed on its own; ``end_spread`` s, how far the last predictions of the
+    separation lie apart.
     """
 
     time: Array
@@ -85,6 +88,7 @@ class March:
     separated: bool
     snapshots: tuple[Snapshot, ...]
     energy: dict[str, float]
+    end_spread: float
     work: Work
 
 
@@ -135,6 +139,7 @@ class _Marcher:
         states = [_State(0.0, 0.0, self.strike.velocity, 0.0, memory)]
         steps: list[_Step] = []
         separated = False
+        ends: list[float] = []
         shortest = END_REACHED * self.numerics.contact_time
         while states[-1].time < self.strike.end_time * (1 - 1e-12):
             if len(steps) > STEPS_ALLOWED * self.numerics.steps:
@@ -142,6 +147,7 @@ class _Marcher:
             left = _time_left(steps, self.scheme.SAMPLE)
             if left is not None and left <= shortest and steps[-1].force > FAINT * max(s.force for s in steps):
                 left = None  # a kink in the trend, not the end
+            ends.append(states[-1].time + (left or 0.0))
             step = None if left is not None and left <= shortest else self._advance(states[-1], steps, left, shortest)
             if step is None:
                 separated = True
@@ -150,7 +156,7 @@ class _Marcher:
                 break
             steps.append(step)
             states.append(step.state)
-        return self._march(states, steps, separated)
+        return self._march(states, steps, ends[-PREDICTIONS:] if separated else [0.0])
 
     def _advance(
         self, state: _State, steps: list[_Step], left: float | None, shortest: float
@@ -243,7 +249,7 @@ class _Marcher:
             if abs(edge - 1) <= EDGE_WINDOW * 1.5 ** max(attempt - PATIENCE, 0) and np.isfinite(edge):
                 return scale, solution, work
             scale *= min(max(edge, 0.3), operator.points[-1])
-            if scale < 1e-4 * self.numerics.contact_radius:
+            if scale < VANISHING * (steps[-1].radius if steps else VANISHING * self.numerics.contact_radius):
                 raise ContactLost(state.time)
         raise ContactNotSettled(state.time)
 
@@ -270,7 +276,7 @@ class _Marcher:
         depth = state.depth + left * (state.velocity + 0.5 * pull)
         return replace(state, time=state.time + left, depth=depth, velocity=state.velocity + pull)
 
-    def _march(self, states: list[_State], steps: list[_Step], separated: bool) -> March:
+    def _march(self, states: list[_State], steps: list[_Step], ends: list[float]) -> March:
         ends = np.array([s.state.time for s in steps])
         lengths = np.array([s.length for s in steps])
         approaching = np.array([s.state.velocity > 0 for s in steps])
@@ -282,9 +288,10 @@ class _Marcher:
             impulse=np.array([s.impulse for s in states]),
             radius_time=radius_time,
             radius=np.array([s.radius for s in steps]),
-            separated=separated,
+            separated=ends != [0.0],
             snapshots=tuple(self._snapshot(s) for s in steps),
             energy=self._energy(states, steps),
+            end_spread=max(ends) - min(ends),
             work=Work(
                 len(steps), sum(s.work.contact_problems for s in steps), sum(s.work.iterations for s in steps)
             ),

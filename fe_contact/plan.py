@@ -19,6 +19,7 @@ from lumped.scene import Scene
 
 DEFAULT_TOLERANCE = 1e-3
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-3 and 1e-4: see `fe-contact tradeoff`
+VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
 STEPS_AT_DEFAULT = 40
 STEPS_ORDER = 0.25  # steps grow with tolerance to this power: the extrapolated time error is of order three to four
 EARLY_PEAK = 0.2  # a force that peaks before this share of the contact needs more steps in proportion
@@ -52,13 +53,19 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     chosen = {
         **DEFAULTS,
         "tolerance": tolerance,
-        "elements_per_contact": ELEMENTS * max(1.0, (1e-4 / tolerance) ** 0.25),
+        "elements_per_contact": _elements(scene, tolerance),
         "steps": _steps(tolerance, peak_share),
         "contact_radius": scales.contact_radius,
         "contact_time": contact_time,
         "peak_share": peak_share,
     }
     return Plan(Numerics(**{**chosen, **given}), frozenset(given) - {"tolerance"}, model_ledger(scene, scales))
+
+
+def _elements(scene: Scene, tolerance: float) -> float:
+    """Elements along the contact radius; a dashpot asks for more, since it differentiates the mesh's error."""
+    order = VISCOUS_ORDER if scene.contact_modulus.viscosity > 0 else 0.0
+    return ELEMENTS * max(1.0, (1e-4 / tolerance) ** 0.25, (DEFAULT_TOLERANCE / tolerance) ** order)
 
 
 def _steps(tolerance: float, peak_share: float) -> int:

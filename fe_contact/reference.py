@@ -93,7 +93,7 @@ def _refined(certified: Certified, numerics: Numerics, chosen: Plan) -> Numerics
     if sum(excess.values()) <= 1:
         return None
     free = {cause: value for cause, value in excess.items() if SETTING[cause] not in chosen.pinned}
-    worst = max(free.values(), default=0.0)
+    worst = max(excess.values())
     finer = numerics
     for cause, value in free.items():
         candidate = refined(finer, cause)

@@ -1,0 +1,174 @@
+"""Displacement, stress, pressure and contact status of the half-space at peak force, as a VTU file.
+
+A viscoelastic body of constant Poisson's ratio has, at every instant, the displacement that an elastic body
+of unit modulus has under the surface's *elastic* pressure, and the stress that any elastic body has under its
+*true* pressure. So two back-substitutions on the mesh of the impact give the whole interior. With a body of
+constant bulk modulus the interior does not follow from the surface, and nothing is written.
+
+Cells and points of ``fields.vtu``: every finite element is cut along its own nodes into linear triangles, so
+that the points are the nodes of the element, at (x, y, z) = (r, z, 0) m with the body at z <= 0. Point data:
+
+    displacement   (u_r, u_z, 0), m
+    stress_rr, stress_zz, stress_hoop, stress_rz    Pa, tension positive, averaged over the elements at a node
+    pressure       Pa, on the contact surface; zero elsewhere
+    contact        1 where the bodies touch, 0 elsewhere
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from skfem import Basis
+
+from fe_contact.forms import Array, isotropic
+from fe_contact.impact import March, Snapshot
+from fe_contact.numerics import SCHEMES
+from fe_contact.operators import SurfaceOperator
+from fe_contact.reference import Solved
+from lumped.errors import BadInput, Fault
+from lumped.members import get
+from lumped.scene import Scene
+
+STRESSES = ("stress_rr", "stress_zz", "stress_hoop", "stress_rz")
+
+
+@dataclass(frozen=True, eq=False)
+class Fields:
+    """The body at one instant, s; ``depth``, m, and ``contact_radius``, m, of the striker.
+
+    ``points`` (n, 2), m, radius and axial coordinate; ``triangles`` (t, 3); ``displacement`` (n, 2), m;
+    ``stress`` (n, 4), Pa, see ``STRESSES``; ``pressure`` (n,), Pa; ``contact`` (n,), 1 or 0.
+    """
+
+    time: float
+    depth: float
+    contact_radius: float
+    points: Array
+    triangles: np.ndarray[Any, np.dtype[np.int64]]
+    displacement: Array
+    stress: Array
+    pressure: Array
+    contact: np.ndarray[Any, np.dtype[np.int64]]
+
+
+def check_fields(scene: Scene) -> None:
+    """Raises BadInput where the interior does not follow from the surface: a relaxing body of constant bulk modulus."""
+    material = scene.material
+    if material.constant == "bulk" and not material.young.is_elastic:
+        reason = "'bulk': the interior does not follow from the surface; accepted with --fields: \"poisson\""
+        raise BadInput(Fault(scene.source, "target.material.constant", reason))
+
+
+def write_fields(scene: Scene, solved: Solved, where: Path) -> Path:
+    """Write ``fields.vtu`` into the folder ``where``, made when it is not there; its path. Raises BadInput."""
+    import meshio
+
+    fields = fields_at_peak(scene, solved)
+    data = {"displacement": _lifted(fields.displacement)}
+    data |= dict(zip(STRESSES, fields.stress.T, strict=True))
+    data |= {"pressure": fields.pressure, "contact": fields.contact}
+    where.mkdir(parents=True, exist_ok=True)
+    path = where / "fields.vtu"
+    meshio.Mesh(_lifted(fields.points), [("triangle", fields.triangles)], point_data=data).write(path)
+    return path
+
+
+def fields_at_peak(scene: Scene, solved: Solved) -> Fields:
+    """The fields in the step in which the force peaks. Raises BadInput, see :func:`check_fields`."""
+    check_fields(scene)
+    operator, march = solved.certified.surface.operator, solved.certified.march
+    step = peak_step(operator, march)
+    snapshot = march.snapshots[step]
+    share = float(get(SCHEMES, solved.numerics.scheme).SAMPLE)
+    scale = snapshot.radii[0] / operator.points[0]
+    strained = _displacement(operator, _elastic_pressure(march, step, share))
+    pressed = _displacement(operator, snapshot.pressure)
+    pressure, contact = _on_surface(operator, snapshot, scale)
+    return Fields(
+        time=snapshot.time,
+        depth=float((1 - share) * march.depth[step] + share * march.depth[step + 1]),
+        contact_radius=snapshot.contact_radius,
+        points=scale * operator.basis.doflocs.T,
+        triangles=subdivided(operator.basis),
+        displacement=scale * strained.reshape(-1, 2),
+        stress=nodal_stress(operator.basis, pressed, isotropic(1 - operator.poisson**2, operator.poisson)),
+        pressure=pressure,
+        contact=contact,
+    )
+
+
+def peak_step(operator: SurfaceOperator, march: March) -> int:
+    """Index of the snapshot of largest force."""
+    forces = [s.radii[0] ** 2 * float(operator.weights @ s.pressure) for s in march.snapshots]
+    return int(np.argmax(forces))
+
+
+def _elastic_pressure(march: March, step: int, share: float) -> Array:
+    """Elastic pressure at the instant to which the step's true pressure belongs.
+
+    A snapshot holds it for the end of the step; between the ends it is linear in time.
+    """
+    now = march.snapshots[step]
+    if step == 0:
+        return share * now.elastic_pressure
+    before = march.snapshots[step - 1]
+    earlier = np.interp(now.radii, before.radii, before.elastic_pressure, right=0.0)
+    return np.asarray((1 - share) * earlier + share * now.elastic_pressure)
+
+
+def _displacement(operator: SurfaceOperator, pressure: Array) -> Array:
+    """Displacement (2 N,) of the unit mesh with E* = 1 under a pressure (q,)."""
+    return np.asarray(operator.solve(operator.trace.T @ (operator.weights * pressure)))
+
+
+def _on_surface(
+    operator: SurfaceOperator, snapshot: Snapshot, scale: float
+) -> tuple[Array, np.ndarray[Any, np.dtype[np.int64]]]:
+    """Pressure and contact status of all nodes, zero away from the contact."""
+    r, z = scale * operator.basis.doflocs
+    touching = (z == 0.0) & (r <= snapshot.contact_radius)
+    pressure = np.where(touching, np.interp(r, snapshot.radii, snapshot.pressure), 0.0)
+    return pressure, touching.astype(np.int64)
+
+
+def nodal_stress(basis: Any, displacement: Array, law: Array) -> Array:
+    """Stress (N, 4) at the nodes of a scalar basis, the mean over the elements that meet there.
+
+    Parameters
+    ----------
+    basis : scalar scikit-fem basis with N degrees of freedom, coordinates (r, z).
+    displacement : (2 N,), degree 2 k + c for node k and component c.
+    law : stress over strain, (4, 4), see :func:`fe_contact.forms.isotropic`.
+    """
+    at_nodes = Basis(basis.mesh, basis.elem, quadrature=(basis.elem.doflocs.T, np.ones(len(basis.elem.doflocs))))
+    nodal = displacement.reshape(-1, 2)[basis.element_dofs]  # (local node, element, component)
+    gradient = sum(
+        np.einsum("ec,dep->ecdp", value, shape[0].grad) for value, shape in zip(nodal, at_nodes.basis, strict=True)
+    )  # (element, component, direction, local node)
+    radius = basis.doflocs[0, basis.element_dofs].T
+    radial = nodal[:, :, 0].T
+    # on the axis u_r / r is 0/0 and its limit du_r/dr
+    hoop = np.where(radius > 0.0, radial / np.where(radius > 0.0, radius, 1.0), gradient[:, 0, 0])
+    strain = np.stack([gradient[:, 0, 0], gradient[:, 1, 1], hoop, gradient[:, 0, 1] + gradient[:, 1, 0]])
+    dofs = basis.element_dofs.T.ravel()
+    shared = np.bincount(dofs, minlength=basis.N)
+    sums = [np.bincount(dofs, component.ravel(), basis.N) for component in strain]
+    return np.asarray((law @ (np.stack(sums) / shared)).T)
+
+
+def subdivided(basis: Any) -> np.ndarray[Any, np.dtype[np.int64]]:
+    """Linear triangles (t, 3) on the nodes of the elements of a scalar basis: order squared an element."""
+    order = int(basis.elem.maxdeg)
+    lattice = {tuple(place): k for k, place in enumerate(np.rint(order * basis.elem.doflocs).astype(int).tolist())}
+    upright = [((i, j), (i + 1, j), (i, j + 1)) for i in range(order) for j in range(order - i)]
+    turned = [((i, j), (i - 1, j), (i, j - 1)) for i in range(1, order) for j in range(1, order - i + 1)]
+    local = np.array([[lattice[corner] for corner in triangle] for triangle in upright + turned])
+    return np.asarray(basis.element_dofs[local].transpose(2, 0, 1).reshape(-1, 3), dtype=np.int64)
+
+
+def _lifted(plane: Array) -> Array:
+    """Vectors (n, 2) of the half-plane as vectors (n, 3) of space."""
+    return np.column_stack([plane, np.zeros(len(plane))])
