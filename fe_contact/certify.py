@@ -37,7 +37,6 @@ LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 20.0, "far_radiu
 AS_EXPECTED = (0.7, 1.5)  # share of the expected ratio of changes that counts as showing the order
 CAUSES = ("mesh", "penalty", "time_step", "far_field")
 PEAK_SHARE = 0.98  # the force's own error is the largest one while the force exceeds this share of its peak
-LATE_SHARE = 0.9  # the path's displacement counts as one of its end over the last tenth of the contact
 SMOOTHING = 0.04  # share of the contact over which a pointwise change counts as the error of its neighbours
 
 
@@ -62,9 +61,8 @@ class Change:
         around = {
             "peak_force": float(self._force_change[self._near_peak].max()),
             "peak_depth": float(self._depth_change[self._near_depth].max()),
-            "duration": self._late_shift,
-            "impulse": self._velocity_change * strike.mass,
-            "restitution": self._velocity_change / strike.velocity,
+            "impulse": self.velocity * strike.mass,
+            "restitution": self.velocity / strike.velocity,
         }
         return self.factor * max(abs(first - second), around.get(name, 0.0))
 
@@ -96,16 +94,8 @@ class Change:
         return depth > PEAK_SHARE * depth.max()
 
     @cached_property
-    def _late_shift(self) -> float:
-        """Time by which the striker's path near separation is displaced, s: change of depth over speed."""
-        time = self.first.dense_time
-        late = time > LATE_SHARE * self.first.duration
-        leaving = np.abs(self.first.velocity_at(time[-1:])[0])
-        return float(self._depth_change[late].max() / leaving) if self.first.separated else 0.0
-
-    @cached_property
-    def _velocity_change(self) -> float:
-        """Largest change of the velocity over the second half of the contact, m/s."""
+    def velocity(self) -> float:
+        """Largest change of the velocity, compared at equal shares of the contact, over its second half, m/s."""
         time = self.first.dense_time
         late = time > 0.5 * self.first.duration
         shared = time * (self.second.duration / self.first.duration)
@@ -255,8 +245,11 @@ def _error(change: Change | None, name: str) -> float:
 
 
 def _trusted_order(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
-    """Order left after extrapolation: one more than the scheme's if three step lengths show the scheme's own."""
-    seen = Change(half, quarter, 1.0).history() / max(Change(fine, half, 1.0).history(), np.finfo(float).tiny)
+    """Order left after extrapolation: one more than the scheme's if three step lengths show the scheme's own.
+
+    The velocity is asked, since the force of a viscous contact may jitter by more than the steps change it.
+    """
+    seen = Change(half, quarter, 1.0).velocity / max(Change(fine, half, 1.0).velocity, np.finfo(float).tiny)
     return order + 1 if AS_EXPECTED[0] <= seen / 2**order <= AS_EXPECTED[1] else 1
 
 

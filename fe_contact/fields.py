@@ -1,9 +1,9 @@
 """Displacement, stress, pressure and contact status of the half-space at peak force, as a VTU file.
 
-A viscoelastic body of constant Poisson's ratio has, at every instant, the displacement that an elastic body
-of unit modulus has under the surface's *elastic* pressure, and the stress that any elastic body has under its
-*true* pressure. So two back-substitutions on the mesh of the impact give the whole interior. With a body of
-constant bulk modulus the interior does not follow from the surface, and nothing is written.
+A viscoelastic body of constant Poisson's ratio has, at every instant, the displacement of the elastic body with
+the same surface displacement, and the stress of the elastic body under the same pressure. So two
+back-substitutions on the mesh of the impact give the whole interior. With a body of constant bulk modulus the
+interior does not follow from the surface, and nothing is written.
 
 Cells and points of ``fields.vtu``: every finite element is cut along its own nodes into linear triangles, so
 that the points are the nodes of the element, at (x, y, z) = (r, z, 0) m with the body at z <= 0. Point data:
@@ -24,10 +24,10 @@ import numpy as np
 from skfem import Basis
 
 from fe_contact.forms import Array, isotropic
-from fe_contact.impact import March, Snapshot
-from fe_contact.numerics import SCHEMES
-from fe_contact.operators import SurfaceOperator
+from fe_contact.impact import BEYOND
+from fe_contact.numerics import ENFORCEMENTS, SCHEMES
 from fe_contact.reference import Solved
+from fe_contact.surface_pressure import felt, peak_step, scale
 from lumped.errors import BadInput, Fault
 from lumped.members import get
 from lumped.scene import Scene
@@ -79,59 +79,40 @@ def write_fields(scene: Scene, solved: Solved, where: Path) -> Path:
 def fields_at_peak(scene: Scene, solved: Solved) -> Fields:
     """The fields in the step in which the force peaks. Raises BadInput, see :func:`check_fields`."""
     check_fields(scene)
-    operator, march = solved.certified.surface.operator, solved.certified.march
-    step = peak_step(operator, march)
-    snapshot = march.snapshots[step]
+    certified, march = solved.certified, solved.certified.march
+    operator, step = certified.surface.operator, peak_step(certified)
     share = float(get(SCHEMES, solved.numerics.scheme).SAMPLE)
-    scale = snapshot.radii[0] / operator.points[0]
-    strained = _displacement(operator, _elastic_pressure(march, step, share))
-    pressed = _displacement(operator, snapshot.pressure)
-    pressure, contact = _on_surface(operator, snapshot, scale)
+    depth = float((1 - share) * march.depth[step] + share * march.depth[step + 1])
+    pressure = felt(certified, step)
+    length = scale(operator, march.snapshots[step])
+    points = length * operator.basis.doflocs.T
+    touching = (points[:, 1] == 0.0) & (points[:, 0] <= pressure.contact_radius)
+    pressed = operator.solve(operator.trace.T @ (operator.weights * march.snapshots[step].pressure))
     return Fields(
-        time=snapshot.time,
-        depth=float((1 - share) * march.depth[step] + share * march.depth[step + 1]),
-        contact_radius=snapshot.contact_radius,
-        points=scale * operator.basis.doflocs.T,
+        time=pressure.time,
+        depth=depth,
+        contact_radius=pressure.contact_radius,
+        points=points,
         triangles=subdivided(operator.basis),
-        displacement=scale * strained.reshape(-1, 2),
+        displacement=_indented(scene, solved, depth, length).reshape(-1, 2),
         stress=nodal_stress(operator.basis, pressed, isotropic(1 - operator.poisson**2, operator.poisson)),
-        pressure=pressure,
-        contact=contact,
+        pressure=np.where(touching, pressure.at(points[:, 0]), 0.0),
+        contact=touching.astype(np.int64),
     )
 
 
-def peak_step(operator: SurfaceOperator, march: March) -> int:
-    """Index of the snapshot of largest force."""
-    forces = [s.radii[0] ** 2 * float(operator.weights @ s.pressure) for s in march.snapshots]
-    return int(np.argmax(forces))
+def _indented(scene: Scene, solved: Solved, depth: float, length: float) -> Array:
+    """Displacement (2 N,), m, of the body of unit modulus indented to a depth, on the unit mesh scaled to ``length``.
 
-
-def _elastic_pressure(march: March, step: int, share: float) -> Array:
-    """Elastic pressure at the instant to which the step's true pressure belongs.
-
-    A snapshot holds it for the end of the step; between the ends it is linear in time.
+    Until the contact begins to shrink, which is never before the force peaks, the surface has the shape of an
+    elastic one at the same depth (Lee and Radok 1960, doi:10.1115/1.3644020).
     """
-    now = march.snapshots[step]
-    if step == 0:
-        return share * now.elastic_pressure
-    before = march.snapshots[step - 1]
-    earlier = np.interp(now.radii, before.radii, before.elastic_pressure, right=0.0)
-    return np.asarray((1 - share) * earlier + share * now.elastic_pressure)
-
-
-def _displacement(operator: SurfaceOperator, pressure: Array) -> Array:
-    """Displacement (2 N,) of the unit mesh with E* = 1 under a pressure (q,)."""
-    return np.asarray(operator.solve(operator.trace.T @ (operator.weights * pressure)))
-
-
-def _on_surface(
-    operator: SurfaceOperator, snapshot: Snapshot, scale: float
-) -> tuple[Array, np.ndarray[Any, np.dtype[np.int64]]]:
-    """Pressure and contact status of all nodes, zero away from the contact."""
-    r, z = scale * operator.basis.doflocs
-    touching = (z == 0.0) & (r <= snapshot.contact_radius)
-    pressure = np.where(touching, np.interp(r, snapshot.radii, snapshot.pressure), 0.0)
-    return pressure, touching.astype(np.int64)
+    surface, numerics = solved.certified.surface, solved.numerics
+    operator = surface.operator
+    height = np.minimum(scene.profile.height(length * operator.points), BEYOND * length)
+    enforcement = get(ENFORCEMENTS, numerics.enforcement)
+    solution = enforcement.enforce(surface.problem(depth - height, numerics.penalty, 0.0), operator.points < 1.0)
+    return np.asarray(operator.solve(operator.trace.T @ (operator.weights * solution.pressure)))
 
 
 def nodal_stress(basis: Any, displacement: Array, law: Array) -> Array:

@@ -30,7 +30,7 @@ MEMORY_REACH = 1.5  # memory extends to this multiple of the expected contact ra
 APPROACH_TO_END = 0.4  # share of the time left that a step may take near separation
 END_REACHED = 1e-3  # time left over contact time at which separation is read off the trend
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
-PREDICTIONS = 3  # of the separation, whose spread tells how well its time can be read
+PREDICTIONS = 2  # of the separation: how far they lie apart tells how well its time can be read
 FAINT = 1e-3  # share of the peak force below which contact may end
 VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
 STEPS_ALLOWED = 20  # multiple of the settings' steps after which the march gives up
@@ -139,7 +139,7 @@ class _Marcher:
         states = [_State(0.0, 0.0, self.strike.velocity, 0.0, memory)]
         steps: list[_Step] = []
         separated = False
-        ends: list[float] = []
+        predicted: list[float] = []
         shortest = END_REACHED * self.numerics.contact_time
         while states[-1].time < self.strike.end_time * (1 - 1e-12):
             if len(steps) > STEPS_ALLOWED * self.numerics.steps:
@@ -147,7 +147,7 @@ class _Marcher:
             left = _time_left(steps, self.scheme.SAMPLE)
             if left is not None and left <= shortest and steps[-1].force > FAINT * max(s.force for s in steps):
                 left = None  # a kink in the trend, not the end
-            ends.append(states[-1].time + (left or 0.0))
+            predicted.append(states[-1].time + (left or 0.0))
             step = None if left is not None and left <= shortest else self._advance(states[-1], steps, left, shortest)
             if step is None:
                 separated = True
@@ -156,7 +156,7 @@ class _Marcher:
                 break
             steps.append(step)
             states.append(step.state)
-        return self._march(states, steps, ends[-PREDICTIONS:] if separated else [0.0])
+        return self._march(states, steps, separated, predicted[-PREDICTIONS:])
 
     def _advance(
         self, state: _State, steps: list[_Step], left: float | None, shortest: float
@@ -276,7 +276,9 @@ class _Marcher:
         depth = state.depth + left * (state.velocity + 0.5 * pull)
         return replace(state, time=state.time + left, depth=depth, velocity=state.velocity + pull)
 
-    def _march(self, states: list[_State], steps: list[_Step], ends: list[float]) -> March:
+    def _march(
+        self, states: list[_State], steps: list[_Step], separated: bool, predicted: list[float]
+    ) -> March:
         ends = np.array([s.state.time for s in steps])
         lengths = np.array([s.length for s in steps])
         approaching = np.array([s.state.velocity > 0 for s in steps])
@@ -288,10 +290,10 @@ class _Marcher:
             impulse=np.array([s.impulse for s in states]),
             radius_time=radius_time,
             radius=np.array([s.radius for s in steps]),
-            separated=ends != [0.0],
+            separated=separated,
             snapshots=tuple(self._snapshot(s) for s in steps),
             energy=self._energy(states, steps),
-            end_spread=max(ends) - min(ends),
+            end_spread=max(predicted) - min(predicted) if separated else 0.0,
             work=Work(
                 len(steps), sum(s.work.contact_problems for s in steps), sum(s.work.iterations for s in steps)
             ),

@@ -13,7 +13,7 @@ from typing import Any
 
 from fe_contact.numerics import RANGES, Numerics
 from lumped.laws import mdr
-from lumped.model_ledger import model_ledger
+from lumped.model_ledger import Peak, model_ledger
 from lumped.result import LedgerEntry
 from lumped.scene import Scene
 
@@ -21,7 +21,7 @@ DEFAULT_TOLERANCE = 1e-3
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-3 and 1e-4: see `fe-contact tradeoff`
 VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
 STEPS_AT_DEFAULT = 40
-STEPS_ORDER = 0.25  # steps grow with tolerance to this power: the extrapolated time error is of order three to four
+STEPS_ORDER = 0.15  # steps grow with tolerance to this power: 60 at 1e-4
 EARLY_PEAK = 0.2  # a force that peaks before this share of the contact needs more steps in proportion
 DEFAULTS: Mapping[str, Any] = {
     "order": 4,
@@ -59,7 +59,8 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
         "contact_time": contact_time,
         "peak_share": peak_share,
     }
-    return Plan(Numerics(**{**chosen, **given}), frozenset(given) - {"tolerance"}, model_ledger(scene, scales))
+    peak = Peak(scales.peak_force, scales.peak_depth, scales.contact_radius, contact_time)
+    return Plan(Numerics(**{**chosen, **given}), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
 
 
 def _elements(scene: Scene, tolerance: float) -> float:

@@ -89,9 +89,9 @@ def strike_of(scene: Scene) -> Strike:
 
 def _refined(certified: Certified, numerics: Numerics, chosen: Plan) -> Numerics | None:
     """Settings with less of the causes that stand in the way, or None where nothing helps or is needed."""
-    excess = {cause: _excess(certified, numerics.tolerance, cause) for cause in CAUSES}
-    if sum(excess.values()) <= 1:
+    if meets(_quantities(certified), numerics.tolerance):
         return None
+    excess = {cause: _excess(certified, numerics.tolerance, cause) for cause in CAUSES}
     free = {cause: value for cause, value in excess.items() if SETTING[cause] not in chosen.pinned}
     worst = max(excess.values())
     finer = numerics
@@ -118,13 +118,9 @@ def result_of(scene: Scene, solved: Solved) -> Result:
     """The record of a certified impact."""
     certified, numerics = solved.certified, solved.numerics
     curve, tolerance = certified.curve, numerics.tolerance
-    values = {**curve.quantities, "history_l2": 0.0}
-    quantities = {
-        name: Quantity(values[name], None if values[name] is None else certified.total(name), unit)
-        for name, unit in UNITS.items()
-    }
+    quantities = _quantities(certified)
     by_quantity = {name: {cause: certified.error(name, cause) for cause in CAUSES} for name in UNITS}
-    peak = values["peak_force"] or np.inf
+    peak = quantities["peak_force"].value or np.inf
     converged = meets(quantities, tolerance)
     return Result(
         method="fe",
@@ -145,6 +141,15 @@ def result_of(scene: Scene, solved: Solved) -> Result:
         work=asdict(certified.work),
         message="" if converged else _shortfall(quantities, tolerance),
     )
+
+
+def _quantities(certified: Certified) -> dict[str, Quantity]:
+    """Values with their bars; the history's own value is no distance from itself."""
+    values = {**certified.curve.quantities, "history_l2": 0.0}
+    return {
+        name: Quantity(values[name], None if values[name] is None else certified.total(name), unit)
+        for name, unit in UNITS.items()
+    }
 
 
 def history(certified: Certified, tolerance: float) -> History:

@@ -1,0 +1,112 @@
+"""One look for every chart: paper column widths, colours that colour-blind readers tell apart, files without a date."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+COLUMN, PAGE = 3.5, 7.2  # widths of a paper's column and page, in
+
+# Okabe and Ito's palette, https://jfly.uni-koeln.de/color/
+BLACK, GREY = "#1a1a1a", "#8c8c8c"
+BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
+PURPLE, SKY = "#CC79A7", "#56B4E9"
+CYCLE = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
+
+RC: dict[str, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 7.5,
+    "axes.titlesize": 8.0,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 7.5,
+    "axes.labelcolor": BLACK,
+    "axes.edgecolor": "#4d4d4d",
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "xtick.color": "#4d4d4d",
+    "ytick.color": "#4d4d4d",
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.minor.width": 0.4,
+    "ytick.minor.width": 0.4,
+    "lines.linewidth": 1.2,
+    "legend.frameon": False,
+    "legend.fontsize": 7.0,
+    "legend.handlelength": 1.8,
+    "figure.dpi": 100,
+    "savefig.dpi": 300,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "fe-contact",
+    "path.simplify": False,
+}
+PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+
+
+@contextmanager
+def look() -> Iterator[None]:
+    """The look, for as long as a figure is made and saved."""
+    with matplotlib.rc_context(RC):
+        yield
+
+
+def save(figure: Figure, where: Path, name: str) -> tuple[Path, Path]:
+    """Write ``name.svg`` and ``name.png`` into a folder, made when it is not there; the same bytes every time."""
+    where.mkdir(parents=True, exist_ok=True)
+    paths = where / f"{name}.svg", where / f"{name}.png"
+    figure.savefig(paths[0], metadata={"Date": None})
+    figure.savefig(paths[1], metadata={"Software": None})
+    return paths
+
+
+def prefixed(largest: float, unit: str) -> tuple[float, str]:
+    """Factor and unit with which the largest value of an axis reads as a number from 1 to 1000."""
+    power = 0
+    while largest * 10.0**-power >= 1000.0 and power < 12:
+        power += 3
+    while 0.0 < largest * 10.0**-power < 1.0 and power > -12:
+        power -= 3
+    return 10.0**-power, PREFIXES[power] + unit
+
+
+def readable(value: float, unit: str) -> str:
+    """A value with four digits and its prefixed unit."""
+    factor, name = prefixed(abs(value), unit)
+    return f"{value * factor:.4g} {name}".rstrip()
+
+
+def with_error(value: float, error: float, unit: str = "") -> str:
+    """A value with its error bar in the same unit, both cut at the bar's first digit."""
+    factor, name = prefixed(abs(value), unit) if unit else (1.0, "")
+    digits = max(0, -math.floor(math.log10(error * factor))) if error > 0.0 else 4
+    return f"{value * factor:.{digits}f} ± {error * factor:.{digits}f} {name}".rstrip()
+
+
+def label(axes: Axes, letter: str, text: str) -> None:
+    """The panel's letter and what it shows, above its upper left corner."""
+    axes.set_title(rf"$\bf{{{letter}}}$  {text}", pad=5.0)
+
+
+def heading(figure: Figure, title: str, lines: list[str], width: int) -> None:
+    """A bold title and lines below it, wrapped at ``width`` characters, at the figure's upper left."""
+    height = figure.get_figheight()
+    wrapped = [part for line in lines for part in textwrap.wrap(line, width, subsequent_indent="    ")]
+    left = 0.08 / figure.get_figwidth()
+    figure.text(left, 1 - 0.06 / height, title, fontsize=9.5, fontweight="bold", va="top", color=BLACK)
+    figure.text(left, 1 - 0.27 / height, "\n".join(wrapped), va="top", linespacing=1.45, color="#333333")
+
+
+def heading_height(lines: list[str], width: int) -> float:
+    """Room that :func:`heading` needs, in."""
+    count = sum(len(textwrap.wrap(line, width, subsequent_indent="    ")) for line in lines)
+    return 0.36 + 0.152 * count

@@ -1,0 +1,66 @@
+"""The contact pressure as the body feels it, without what its shape functions cannot see.
+
+The march keeps pressure at quadrature points, where the surface's memory leaves a roughness of some per cent
+that has no moment against any shape function: force and displacement do not feel it. Projected onto the
+surface's own shape functions the pressure is smooth, and its integral unchanged.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.certify import Certified
+from fe_contact.forms import Array
+from fe_contact.impact import Snapshot
+from fe_contact.operators import SurfaceOperator
+
+
+@dataclass(frozen=True, eq=False)
+class Pressure:
+    """Pressure (n,), Pa, at the radii (n,), m, of the surface's nodes in one step; time, s; contact radius, m."""
+
+    time: float
+    contact_radius: float
+    radii: Array
+    values: Array
+
+    def at(self, radii: Array) -> Array:
+        """Pressure at other radii, linear between the nodes, zero beyond the contact."""
+        return np.where(radii <= self.contact_radius, np.interp(radii, self.radii, self.values), 0.0)
+
+
+def felt(certified: Certified, step: int) -> Pressure:
+    """Pressure in a step of the finest march."""
+    operator, snapshot = certified.surface.operator, certified.march.snapshots[step]
+    return Pressure(
+        time=snapshot.time,
+        contact_radius=snapshot.contact_radius,
+        radii=scale(operator, snapshot) * operator.nodes[: operator.trace.shape[1]],
+        values=projected(operator, snapshot.pressure),
+    )
+
+
+def projected(operator: SurfaceOperator, pressure: Array) -> Array:
+    """Nodal values (n,) whose moments against the shape functions are those of the pressure (q,)."""
+    moments = operator.trace.T @ (operator.weights * pressure)
+    mass = operator.trace.T @ (operator.weights[:, None] * operator.trace)
+    return np.asarray(np.linalg.solve(mass, moments))
+
+
+def scale(operator: SurfaceOperator, snapshot: Snapshot) -> float:
+    """Length of the unit mesh in a step, m."""
+    return float(snapshot.radii[0] / operator.points[0])
+
+
+def peak_step(certified: Certified) -> int:
+    """Index of the step of largest force."""
+    weights = certified.surface.operator.weights
+    forces = [s.radii[0] ** 2 * float(weights @ s.pressure) for s in certified.march.snapshots]
+    return int(np.argmax(forces))
+
+
+def nearest_step(certified: Certified, time: float) -> int:
+    """Index of the step whose pressure lies nearest to a time, s."""
+    return int(np.argmin([abs(s.time - time) for s in certified.march.snapshots]))
