@@ -18,7 +18,10 @@ __version__ = "0.1.0"
 
 
 def run(
-    scene: Scene, tolerance: float | None = None, method: str = "fe", numerics: Mapping[str, Any] | None = None
+    scene: Scene,
+    tolerance: float | None = None,
+    method: str = "fe",
+    numerics: Mapping[str, Any] | None = None,
 ) -> Result:
     """One impact.
 

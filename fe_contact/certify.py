@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.curve import Curve, extrapolated
@@ -77,7 +78,7 @@ class Change:
         width = max(1, round(SMOOTHING * len(self._force_change)))
         padded = np.pad(self._force_change, width, mode="edge")
         around = np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1).max(axis=1)
-        return self.factor * np.interp(time, self.first.dense_time, around)
+        return np.asarray(self.factor * np.interp(time, self.first.dense_time, around))
 
     @cached_property
     def _force_change(self) -> Array:
@@ -89,9 +90,9 @@ class Change:
         return np.abs(self.first.depth_at(time) - self.second.depth_at(time))
 
     @cached_property
-    def _near_depth(self) -> Array:
+    def _near_depth(self) -> npt.NDArray[np.bool_]:
         depth = self.first.depth_at(self.first.dense_time)
-        return depth > PEAK_SHARE * depth.max()
+        return np.asarray(depth > PEAK_SHARE * depth.max())
 
     @cached_property
     def velocity(self) -> float:
@@ -103,9 +104,9 @@ class Change:
         return float(np.abs(change[late]).max())
 
     @cached_property
-    def _near_peak(self) -> Array:
+    def _near_peak(self) -> npt.NDArray[np.bool_]:
         force = self.first.dense_force
-        return force > PEAK_SHARE * force.max()
+        return np.asarray(force > PEAK_SHARE * force.max())
 
 
 @dataclass(frozen=True)

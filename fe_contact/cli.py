@@ -41,7 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader of our output has left: nothing more to say, and nobody to say it to
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return base.DONE
-    except Exception as failure:  # the one place: a traceback never reaches a user
+    except Exception as failure:  # noqa: BLE001 - the one place: a traceback never reaches a user
         return _failed(failure, args)
 
 

@@ -118,7 +118,7 @@ def extrapolated(fine: Curve, coarse: Curve, order: int) -> Curve:
 
     def mend(field: Array, x: Array, values: Array) -> Array:
         other, _ = local_polynomial(x, values, fine.x)
-        return field + weight * (field - other)
+        return np.asarray(field + weight * (field - other))
 
     duration = fine.duration + weight * (fine.duration - coarse.duration)
     return Curve(

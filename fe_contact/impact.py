@@ -158,9 +158,7 @@ class _Marcher:
             states.append(step.state)
         return self._march(states, steps, separated, predicted[-PREDICTIONS:])
 
-    def _advance(
-        self, state: _State, steps: list[_Step], left: float | None, shortest: float
-    ) -> _Step | None:
+    def _advance(self, state: _State, steps: list[_Step], left: float | None, shortest: float) -> _Step | None:
         """The next step: on the grid, shorter towards separation, and again where contact was lost in it.
 
         None if contact does not last even for the ``shortest`` step.
@@ -276,9 +274,7 @@ class _Marcher:
         depth = state.depth + left * (state.velocity + 0.5 * pull)
         return replace(state, time=state.time + left, depth=depth, velocity=state.velocity + pull)
 
-    def _march(
-        self, states: list[_State], steps: list[_Step], separated: bool, predicted: list[float]
-    ) -> March:
+    def _march(self, states: list[_State], steps: list[_Step], separated: bool, predicted: list[float]) -> March:
         ends = np.array([s.state.time for s in steps])
         lengths = np.array([s.length for s in steps])
         approaching = np.array([s.state.velocity > 0 for s in steps])
@@ -294,9 +290,7 @@ class _Marcher:
             snapshots=tuple(self._snapshot(s) for s in steps),
             energy=self._energy(states, steps),
             end_spread=max(predicted) - min(predicted) if separated else 0.0,
-            work=Work(
-                len(steps), sum(s.work.contact_problems for s in steps), sum(s.work.iterations for s in steps)
-            ),
+            work=Work(len(steps), sum(s.work.contact_problems for s in steps), sum(s.work.iterations for s in steps)),
         )
 
     def _snapshot(self, step: _Step) -> Snapshot:

@@ -42,9 +42,7 @@ def simulate(
     name = EXACT if method == "cheapest" else method
     if name not in laws.available():
         names = (*OWN, *laws.available())
-        raise BadInput(
-            Fault("--method", "", f"{method!r}: accepted {', '.join(names)}{nearest(method, names)}")
-        )
+        raise BadInput(Fault("--method", "", f"{method!r}: accepted {', '.join(names)}{nearest(method, names)}"))
     from fe_contact.plan import DEFAULT_TOLERANCE
 
     return simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))

@@ -144,4 +144,5 @@ def lagrange(x: Array, order: int) -> Array:
 
 def monomials(order: int) -> Array:
     """Coefficients (power, function) of the equispaced Lagrange polynomials on [0, 1]."""
-    return np.linalg.inv(np.vander(np.arange(order + 1) / order, increasing=True))
+    nodes: Array = np.arange(order + 1) / order
+    return np.asarray(np.linalg.inv(np.vander(nodes, increasing=True)), dtype=np.float64)

@@ -66,7 +66,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
 def _elements(scene: Scene, tolerance: float) -> float:
     """Elements along the contact radius; a dashpot asks for more, since it differentiates the mesh's error."""
     order = VISCOUS_ORDER if scene.contact_modulus.viscosity > 0 else 0.0
-    return ELEMENTS * max(1.0, (1e-4 / tolerance) ** 0.25, (DEFAULT_TOLERANCE / tolerance) ** order)
+    return ELEMENTS * max(1.0, math.pow(1e-4 / tolerance, 0.25), math.pow(DEFAULT_TOLERANCE / tolerance, order))
 
 
 def _steps(tolerance: float, peak_share: float) -> int:

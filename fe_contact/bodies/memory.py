@@ -110,7 +110,7 @@ def interpolate(field: Array, spacing: float, radii: Array) -> Array:
     x = position - first
     y0, y1, y2, y3 = field[first], field[first + 1], field[first + 2], field[first + 3]
     slope, bend, twist = y1 - y0, y2 - 2 * y1 + y0, y3 - 3 * y2 + 3 * y1 - y0
-    return y0 + x * (slope + (x - 1) * (bend / 2 + (x - 2) * twist / 6))
+    return np.asarray(y0 + x * (slope + (x - 1) * (bend / 2 + (x - 2) * twist / 6)))
 
 
 def product(radii: Array, first: Array, second: Array) -> float:

@@ -68,7 +68,7 @@ class ScaledSurface:
         coefficients = monomials(order) @ values
         facet = np.minimum(np.searchsorted(corners, radii, side="right") - 1, len(corners) - 2)
         x = (radii - corners[facet]) / (corners[facet + 1] - corners[facet])
-        field = coefficients[order][facet]
+        field: Array = coefficients[order][facet]
         for power in range(order - 1, -1, -1):
             field = field * x + coefficients[power][facet]
         beyond = radii > corners[-1]

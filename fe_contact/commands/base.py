@@ -23,7 +23,12 @@ def scene_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", help="scene file (TOML) or the name of a packaged scene")
     parser.add_argument("--tolerance", help="relative error asked of every ruled quantity")
     parser.add_argument(
-        "--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE", help="override a scene key"
+        "--set",
+        dest="overrides",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="override a scene key",
     )
 
 

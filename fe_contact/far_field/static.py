@@ -61,9 +61,7 @@ def boussinesq(position: Array, normal: Array, poisson: float) -> tuple[Array, A
     stress_rr = (1 - 2 * poisson) / (distance * (distance + depth)) - 3 * depth * r**2 / distance**5
     stress_rz = 3 * r * depth**2 / distance**5  # z points out of the body, depth into it
     stress_zz = -3 * depth**3 / distance**5
-    traction = np.stack(
-        [stress_rr * normal[0] + stress_rz * normal[1], stress_rz * normal[0] + stress_zz * normal[1]]
-    )
+    traction = np.stack([stress_rr * normal[0] + stress_rz * normal[1], stress_rz * normal[0] + stress_zz * normal[1]])
     return displacement, traction / (2 * np.pi)
 
 

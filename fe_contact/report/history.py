@@ -19,7 +19,7 @@ from lumped.scene import Scene
 
 HEIGHT = 4.35  # in
 BAND_VISIBLE = 0.01  # share of the peak below which the band is a hair line and is drawn magnified
-CAPTION_WIDTH = 84  # characters
+CAPTION_WIDTH = 78  # characters
 
 
 def plot_history(result: Result, solved: Solved, where: Path) -> tuple[Path, Path]:
@@ -27,7 +27,7 @@ def plot_history(result: Result, solved: Solved, where: Path) -> tuple[Path, Pat
     with style.look():
         figure = Figure(figsize=(style.COLUMN, HEIGHT))
         grid = figure.add_gridspec(2, 2, height_ratios=(1.6, 1.0), hspace=0.5, wspace=0.42)
-        grid.update(left=0.13, right=0.965, top=0.845, bottom=0.175)
+        grid.update(left=0.15, right=0.965, top=0.845, bottom=0.175)
         _force(figure.add_subplot(grid[0, :]), result)
         _motion(figure.add_subplot(grid[1, 0]), result.history)
         _pressure(figure.add_subplot(grid[1, 1]), felt(solved.certified, peak_step(solved.certified)))
@@ -44,10 +44,10 @@ def caption(scene: Scene) -> str:
     pairs = zip(young.moduli, young.times, strict=True)
     terms += [f"{readable(modulus, 'Pa')} exp(−t/{readable(tau, 's')})" for modulus, tau in pairs]
     terms += [f"{readable(young.viscosity, 'Pa s')} δ(t)"] if young.viscosity else []
+    bulk = ", bulk modulus constant" if material.constant == "bulk" else ""
     lines = (
         f"{shape.name}, {lengths}, {readable(1e3 * scene.mass, 'g')}, {readable(scene.velocity, 'm/s')}",
-        f"on {scene.target.name.replace('_', '-')}: E(t) = {' + '.join(terms)}, constant {material.constant}, "
-        f"ν = {material.nu:g}",
+        f"on {scene.target.name.replace('_', '-')}: E(t) = {' + '.join(terms)}, ν = {material.nu:g}{bulk}",
     )
     return "\n".join(part for line in lines for part in textwrap.wrap(line, CAPTION_WIDTH))
 
@@ -103,12 +103,12 @@ def _motion(axes: Axes, history: History) -> None:
     columns = (("depth", history.depth, style.VERMILION, "-"), ("radius", history.contact_radius, style.GREEN, "--"))
     for row, (name, values, colour, line) in enumerate(columns):
         axes.plot(second * history.time, values / values.max(), color=colour, linestyle=line)
-        text = f"{name} / {readable(values.max(), 'm')}"
-        axes.text(0.5, 0.3 - 0.16 * row, text, color=colour, ha="center", va="center", transform=axes.transAxes)
+        text = f"{name} / {readable(values.max(), 'm', 3)}"
+        axes.text(0.5, 0.21 - 0.13 * row, text, color=colour, fontsize=6.2, ha="center", transform=axes.transAxes)
     axes.set(xlabel=f"time, {time_unit}", ylabel="share of the largest", xlim=(0, second * history.time[-1]))
     axes.set_ylim(min(0.0, float(history.depth.min() / history.depth.max())), 1.08)
     axes.set_yticks((0.0, 0.5, 1.0))
-    style.label(axes, "b", "depth, contact radius")
+    style.label(axes, "b", "depth and radius")
 
 
 def _pressure(axes: Axes, pressure: Pressure) -> None:
@@ -122,4 +122,4 @@ def _pressure(axes: Axes, pressure: Pressure) -> None:
     axes.plot(metre * radii, values, color=style.BLUE)
     axes.set(xlabel=f"radius, {length_unit}", ylabel=f"pressure, {unit}", xlim=(0, 1.12 * metre * edge))
     axes.set_ylim(0, 1.12 * values.max())
-    style.label(axes, "c", "pressure at the peak")
+    style.label(axes, "c", "pressure at peak")

@@ -79,10 +79,10 @@ def prefixed(largest: float, unit: str) -> tuple[float, str]:
     return 10.0**-power, PREFIXES[power] + unit
 
 
-def readable(value: float, unit: str) -> str:
-    """A value with four digits and its prefixed unit."""
+def readable(value: float, unit: str, digits: int = 4) -> str:
+    """A value with some digits and its prefixed unit."""
     factor, name = prefixed(abs(value), unit)
-    return f"{value * factor:.4g} {name}".rstrip()
+    return f"{value * factor:.{digits}g} {name}".rstrip()
 
 
 def with_error(value: float, error: float, unit: str = "") -> str:
