@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from fe_contact.forms import Array
-from fe_contact.impact import March, Strike
+from fe_contact.march import March, Strike
 
 STENCIL = 6  # nodes of the local polynomials
 DENSE = 601  # points on which peaks are sought and norms taken
@@ -23,7 +23,8 @@ DENSE = 601  # points on which peaks are sought and norms taken
 @dataclass(frozen=True)
 class Curve:
     """Mean force since touch (n,), N, depth (n,), m, at ``x`` (n,); squared radius at ``radius_x``; duration and how
-    sharply its end can be read, s."""
+    sharply its end can be read, s.
+    """
 
     strike: Strike
     duration: float

@@ -17,9 +17,10 @@ from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.contact import ContactSolution
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall, TooManySteps
 from fe_contact.forms import Array
+from fe_contact.march import March, Snapshot, Strike, Work
 from fe_contact.numerics import ENFORCEMENTS, SCHEMES, Numerics
+from fe_contact.separation import time_left
 from fe_contact.time_grid import step_length
-from lumped.materials import Relaxation
 from lumped.members import get
 
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
@@ -34,62 +35,6 @@ PREDICTIONS = 2  # of the separation: how far they lie apart tells how well its 
 FAINT = 1e-3  # share of the peak force below which contact may end
 VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
 STEPS_ALLOWED = 20  # multiple of the settings' steps after which the march gives up
-
-
-@dataclass(frozen=True)
-class Strike:
-    """Physics of an impact: profile height(r), m; mass, kg; velocity, m/s; gravity along the motion, m/s2;
-    contact modulus E*(t); time at which to stop, s."""
-
-    height: Callable[[Array], Array]
-    mass: float
-    velocity: float
-    gravity: float
-    relaxation: Relaxation
-    end_time: float
-
-
-@dataclass(frozen=True)
-class Snapshot:
-    """Surface in one step: time, s; contact radius, m; radii and pressure at the quadrature points, m, Pa;
-    the elastic pressure, for unit modulus, of the displacement at the same points."""
-
-    time: float
-    contact_radius: float
-    radii: Array
-    pressure: Array
-    elastic_pressure: Array
-
-
-@dataclass(frozen=True)
-class Work:
-    """Counted work: time steps, contact problems, Newton iterations."""
-
-    steps: int = 0
-    contact_problems: int = 0
-    iterations: int = 0
-
-
-@dataclass(frozen=True)
-class March:
-    """History of one impact with one set of settings.
-
-    ``time``, ``depth``, ``impulse`` (n,) at the ends of the steps, the first row at touch, the last at
-    separation or ``end_time``; ``radius_time``, ``radius`` (n,) of the contact; ``snapshots`` one a step;
-    ``energy`` J, each term computed on its own; ``end_spread`` s, how far the last predictions of the
-    separation lie apart.
-    """
-
-    time: Array
-    depth: Array
-    impulse: Array
-    radius_time: Array
-    radius: Array
-    separated: bool
-    snapshots: tuple[Snapshot, ...]
-    energy: dict[str, float]
-    end_spread: float
-    work: Work
 
 
 @dataclass(frozen=True)
@@ -112,7 +57,6 @@ class _Step:
     axis_response: float
     solution: ContactSolution
     scale: float
-    stress: Array
     heat: float
     work: Work
 
@@ -132,6 +76,7 @@ class _Marcher:
         self.strike, self.surface, self.numerics = strike, surface, numerics
         self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
         self.enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
+        self.shortest = END_REACHED * numerics.contact_time
 
     def run(self) -> March:
         radii = np.linspace(0.0, MEMORY_REACH * self.numerics.contact_radius, MEMORY_POINTS)
@@ -140,28 +85,36 @@ class _Marcher:
         steps: list[_Step] = []
         separated = False
         predicted: list[float] = []
-        shortest = END_REACHED * self.numerics.contact_time
         while states[-1].time < self.strike.end_time * (1 - 1e-12):
             if len(steps) > STEPS_ALLOWED * self.numerics.steps:
                 raise TooManySteps(len(steps), states[-1].time)
-            left = _time_left(steps, self.scheme.SAMPLE)
-            if left is not None and left <= shortest and steps[-1].force > FAINT * max(s.force for s in steps):
-                left = None  # a kink in the trend, not the end
+            left = self._time_left(steps)
             predicted.append(states[-1].time + (left or 0.0))
-            step = None if left is not None and left <= shortest else self._advance(states[-1], steps, left, shortest)
+            step = None if left is not None and left <= self.shortest else self._advance(states[-1], steps, left)
             if step is None:
                 separated = True
                 if left:
-                    states.append(self._flight(states[-1], min(left, shortest)))
+                    states.append(self._flight(states[-1], min(left, self.shortest)))
                 break
             steps.append(step)
             states.append(step.state)
         return self._march(states, steps, separated, predicted[-PREDICTIONS:])
 
-    def _advance(self, state: _State, steps: list[_Step], left: float | None, shortest: float) -> _Step | None:
+    def _time_left(self, steps: list[_Step]) -> float | None:
+        """Time to separation while the striker leaves, else None."""
+        if len(steps) < 4 or steps[-1].state.velocity >= 0:
+            return None
+        recent = steps[-3:]
+        times = [s.state.time - (1 - self.scheme.SAMPLE) * s.length for s in recent]
+        left = time_left(times, [s.axis_response for s in recent], recent[-1].state.time)
+        faint = FAINT * max(s.force for s in steps)
+        # a kink in the trend is not the end: contact ends faintly
+        return None if left is None or (left <= self.shortest and recent[-1].force > faint) else left
+
+    def _advance(self, state: _State, steps: list[_Step], left: float | None) -> _Step | None:
         """The next step: on the grid, shorter towards separation, and again where contact was lost in it.
 
-        None if contact does not last even for the ``shortest`` step.
+        None if contact does not last even for the shortest step.
         """
         length = self._grid_length(len(steps))
         if left is not None:
@@ -174,7 +127,7 @@ class _Marcher:
                 if not steps:
                     raise
                 length /= 2
-                if length < shortest:
+                if length < self.shortest:
                     return None
 
     def _grid_length(self, done: int) -> float:
@@ -192,7 +145,7 @@ class _Marcher:
         pressure = solution.pressure
         force = scale * float(self.surface.operator.weights @ pressure)
         stress = self._stress(state.memory.radii, scale, pressure)
-        memory = state.memory.advanced(law, stress[:2])
+        memory = state.memory.advanced(law, stress)
         moved = _State(
             time=state.time + length,
             depth=free_depth - lever * force / strike.mass,
@@ -208,7 +161,6 @@ class _Marcher:
             axis_response=float(stress[0, 0]),
             solution=solution,
             scale=scale,
-            stress=stress,
             heat=state.memory.dissipated(memory, strike.relaxation, length),
             work=work,
         )
@@ -319,21 +271,6 @@ class _Marcher:
         terms |= {"radiated": 0.0, "contact": contact, "numerical": 0.0}
         terms["residual"] = incoming - sum(value for key, value in terms.items() if key != "in")
         return terms
-
-
-def _time_left(steps: list[_Step], sample: float) -> float | None:
-    """Time to separation by the trend of the axis' elastic response, which reaches zero linearly; None early."""
-    if len(steps) < 4 or steps[-1].state.velocity >= 0 or steps[-1].axis_response >= steps[-2].axis_response:
-        return None
-    recent = steps[-3:]
-    now = recent[-1].state.time
-    times = np.array([s.state.time - (1 - sample) * s.length for s in recent]) - now
-    response = np.array([s.axis_response for s in recent])
-    span = -times[0]
-    roots = np.roots(np.polyfit(times / span, response, 2)) * span
-    ahead = [float(r.real) for r in roots if abs(r.imag) < 1e-9 * span and r.real > times[-1]]
-    straight = float(times[-1] - response[-1] * (times[-1] - times[-2]) / (response[-1] - response[-2]))
-    return max(min([*ahead, 2 * straight]) if ahead else straight, 0.0)
 
 
 def _overlap_radius(height: Callable[[Array], Array], depth: float, radii: Array) -> float:

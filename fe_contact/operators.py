@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -142,6 +143,7 @@ def lagrange(x: Array, order: int) -> Array:
     return np.vander(x, order + 1, increasing=True) @ monomials(order)
 
 
+@cache
 def monomials(order: int) -> Array:
     """Coefficients (power, function) of the equispaced Lagrange polynomials on [0, 1]."""
     nodes: Array = np.arange(order + 1) / order

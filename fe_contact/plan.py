@@ -20,8 +20,8 @@ from lumped.scene import Scene
 DEFAULT_TOLERANCE = 1e-3
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-3 and 1e-4: see `fe-contact tradeoff`
 VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
-STEPS_AT_DEFAULT = 40
-STEPS_ORDER = 0.15  # steps grow with tolerance to this power: 60 at 1e-4
+STEPS_AT_DEFAULT = 48
+STEPS_ORDER = 0.1  # steps grow with tolerance to this power: 60 at 1e-4
 EARLY_PEAK = 0.2  # a force that peaks before this share of the contact needs more steps in proportion
 DEFAULTS: Mapping[str, Any] = {
     "order": 4,

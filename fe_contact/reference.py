@@ -11,7 +11,7 @@ import numpy as np
 
 from fe_contact.certify import CAUSES, Certified, certify
 from fe_contact.errors import MemoryTooSmall
-from fe_contact.impact import Strike
+from fe_contact.march import Strike
 from fe_contact.numerics import RANGES, Numerics
 from fe_contact.plan import SETTING, Plan, plan, refined
 from lumped.history import History, densified

@@ -13,7 +13,7 @@ import numpy as np
 
 from fe_contact.certify import Certified
 from fe_contact.forms import Array
-from fe_contact.impact import Snapshot
+from fe_contact.march import Snapshot
 from fe_contact.operators import SurfaceOperator
 
 

@@ -79,22 +79,24 @@ class SurfaceMemory:
 
     def stored(self, relaxation: Relaxation) -> float:
         """Elastic energy in equilibrium spring and branches, J."""
-        energies = [product(self.radii, b, b) for b in self.branches]
-        equilibrium = relaxation.equilibrium * product(self.radii, self.strain, self.strain)
+        area = area_weights(self.radii)
+        energies = [product(area, b, b) for b in self.branches]
+        equilibrium = relaxation.equilibrium * product(area, self.strain, self.strain)
         return 0.5 * float(equilibrium + np.dot(relaxation.moduli, energies))
 
     def dissipated(self, later: SurfaceMemory, relaxation: Relaxation, step: float) -> float:
         """Heat of the dashpots over a step in which the displacement changes linearly, J."""
+        area = area_weights(self.radii)
         change = later.strain - self.strain
-        heat = relaxation.viscosity * product(self.radii, change, change) / step
+        heat = relaxation.viscosity * product(area, change, change) / step
         for modulus, tau, branch in zip(relaxation.moduli, relaxation.times, self.branches, strict=True):
             steady = change * (tau / step)  # the branch tends to this; the rest fades away
             fading = branch - steady
             x = step / tau
             heat += (modulus / tau) * (
-                product(self.radii, fading, fading) * tau * -np.expm1(-2 * x) / 2
-                + 2 * product(self.radii, fading, steady) * tau * -np.expm1(-x)
-                + product(self.radii, steady, steady) * step
+                product(area, fading, fading) * tau * -np.expm1(-2 * x) / 2
+                + 2 * product(area, fading, steady) * tau * -np.expm1(-x)
+                + product(area, steady, steady) * step
             )
         return float(heat)
 
@@ -113,7 +115,14 @@ def interpolate(field: Array, spacing: float, radii: Array) -> Array:
     return np.asarray(y0 + x * (slope + (x - 1) * (bend / 2 + (x - 2) * twist / 6)))
 
 
-def product(radii: Array, first: Array, second: Array) -> float:
+def area_weights(radii: Array) -> Array:
+    """Trapezoidal weights of an axisymmetric surface integral on equidistant radii, m^2."""
+    spacing = radii[1] - radii[0]
+    weights: Array = 2 * np.pi * spacing * radii
+    weights[-1] /= 2
+    return weights
+
+
+def product(weights: Array, first: Array, second: Array) -> float:
     """Work of one field's pressure on the other's displacement over the surface (symmetric), m^3 x Pa/Pa."""
-    density = 0.5 * (first[0] * second[1] + first[1] * second[0])
-    return float(np.trapezoid(2 * np.pi * radii * density, radii))
+    return 0.5 * float(weights @ (first[0] * second[1] + first[1] * second[0]))

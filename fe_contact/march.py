@@ -1,0 +1,67 @@
+"""What goes into an impact and what comes out of it: frozen records without behaviour."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from fe_contact.forms import Array
+from lumped.materials import Relaxation
+
+
+@dataclass(frozen=True)
+class Strike:
+    """Physics of an impact: profile height(r), m; mass, kg; velocity, m/s; gravity along the motion, m/s2;
+    contact modulus E*(t); time at which to stop, s.
+    """
+
+    height: Callable[[Array], Array]
+    mass: float
+    velocity: float
+    gravity: float
+    relaxation: Relaxation
+    end_time: float
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Surface in one step: time, s; contact radius, m; radii and pressure at the quadrature points, m, Pa;
+    the elastic pressure, for unit modulus, of the displacement at the same points.
+    """
+
+    time: float
+    contact_radius: float
+    radii: Array
+    pressure: Array
+    elastic_pressure: Array
+
+
+@dataclass(frozen=True)
+class Work:
+    """Counted work: time steps, contact problems, Newton iterations."""
+
+    steps: int = 0
+    contact_problems: int = 0
+    iterations: int = 0
+
+
+@dataclass(frozen=True)
+class March:
+    """History of one impact with one set of settings.
+
+    ``time``, ``depth``, ``impulse`` (n,) at the ends of the steps, the first row at touch, the last at
+    separation or ``end_time``; ``radius_time``, ``radius`` (n,) of the contact; ``snapshots`` one a step;
+    ``energy`` J, each term computed on its own; ``end_spread`` s, how far the last predictions of the
+    separation lie apart.
+    """
+
+    time: Array
+    depth: Array
+    impulse: Array
+    radius_time: Array
+    radius: Array
+    separated: bool
+    snapshots: tuple[Snapshot, ...]
+    energy: dict[str, float]
+    end_spread: float
+    work: Work
