@@ -65,10 +65,15 @@ KEYS = tuple(field.name for field in fields(Numerics))
 
 def checked(table: Mapping[str, Any], source: str) -> dict[str, Any]:
     """Settings a user gave, type and range checked; raises BadInput naming every fault at once."""
-    faults = [fault for key, value in table.items() for fault in _faults(key, value, source)]
-    if faults:
-        raise BadInput(faults)
+    found = faults(table, source)
+    if found:
+        raise BadInput(found)
     return {key: _rounded(key, value) for key, value in table.items()}
+
+
+def faults(table: Mapping[str, Any], source: str) -> list[Fault]:
+    """Everything wrong with a table of settings."""
+    return [fault for key, value in table.items() for fault in _faults(key, value, source)]
 
 
 def _rounded(key: str, value: Any) -> Any:

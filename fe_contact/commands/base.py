@@ -5,15 +5,16 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from fe_contact.numerics import faults
 from lumped.errors import BadInput, Fault
 from lumped.result import Result
 from lumped.scene import Scene
 from lumped.scene_file import load
+from lumped.toml_file import overridden, parse_assignment, parsed
 
 DONE, NOT_REACHED = 0, 3
 
@@ -40,13 +41,26 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def read_scene(args: argparse.Namespace) -> tuple[Scene, dict[str, Any]]:
-    """Scene and raw settings of a command line; raises BadInput with every fault."""
-    scene, table = load(args.scene, dict(_override(text) for text in args.overrides))
+    """Scene and raw settings of a command line; raises BadInput with every fault of both."""
+    overrides = dict(parse_assignment(text) for text in args.overrides)
+    try:
+        scene, table = load(args.scene, overrides)
+    except BadInput as bad:
+        raise BadInput([*bad.faults, *_settings_faults(Path(args.scene), overrides)]) from None
     tolerance = getattr(args, "tolerance", None)
     fixed = any(text.split("=")[0].strip() == "numerics.tolerance" for text in args.overrides)
     if tolerance is not None and not fixed:
         table = {**table, "tolerance": number(tolerance, "--tolerance")}
     return scene, table
+
+
+def _settings_faults(path: Path, overrides: dict[str, object]) -> list[Fault]:
+    """Faults of the settings in a scene file whose physics is faulty too."""
+    try:
+        table = overridden(parsed(path), overrides, path.name).get("numerics", {})
+    except BadInput:  # no TOML at all, which has been said
+        return []
+    return faults(table, path.name) if isinstance(table, dict) else []
 
 
 def number(text: str, option: str) -> float:
@@ -103,14 +117,3 @@ def summary(result: Result, where: Path) -> str:
         else:
             lines.append(f"  {name:13s} {quantity.value:.6g} +- {quantity.error or 0.0:.1e} {quantity.unit}")
     return "\n".join([*lines, f"  written to {where}"])
-
-
-def _override(text: str) -> tuple[str, object]:
-    """``a.b=value`` with the value as in TOML; a bare word is a string."""
-    key, sign, value = text.partition("=")
-    if not sign or not key.strip():
-        raise BadInput(Fault("--set", text, "accepted KEY=VALUE, for instance striker.velocity=0.5"))
-    try:
-        return key.strip(), tomllib.loads(f"value = {value}")["value"]
-    except tomllib.TOMLDecodeError:
-        return key.strip(), value.strip()

@@ -1,0 +1,36 @@
+"""``fe-contact tradeoff SCENE``: what accuracy costs, by finite elements and by the lumped laws."""
+
+from __future__ import annotations
+
+import argparse
+import json
+
+from fe_contact.commands import base
+
+SUMMARY = "error over processor time and counted work, by every method; where the defaults lie"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """SCENE [--quick] [--tolerance T] [--set a.b=value ...] [--out DIR] [--json] [--quiet]."""
+    base.scene_arguments(parser)
+    base.output_arguments(parser)
+    parser.add_argument("--quick", action="store_true", help="a quarter of the settings")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Measure, write, say where the defaults lie; 0."""
+    from fe_contact.methods import settings
+    from fe_contact.report.tradeoff import plot_tradeoff
+    from fe_contact.validation.tables import write_tradeoff
+    from fe_contact.validation.tradeoff import tradeoff
+
+    scene, table = base.read_scene(args)
+    points = tradeoff(scene, settings(table, None, scene.source), args.quick, base.progress_of(args))
+    where = base.folder(args, "tradeoff", scene)
+    content = write_tradeoff(scene, points, where)
+    plot_tradeoff(scene, points, where)
+    if args.json:
+        print(json.dumps(content, allow_nan=False))
+    else:
+        print("\n  ".join([f"{scene.name}: {len(points)} points", *content["verdict"], f"written to {where}"]))
+    return base.DONE

@@ -1,0 +1,105 @@
+"""Lumped laws and a measured curve against the finite-element reference: scores, errors and error bars."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.reference import Solved
+from fe_contact.validation.deviations import force_bars, force_errors, pressure_error, radius_error
+from lumped import simulate
+from lumped.errors import FeContactError
+from lumped.laws import get
+from lumped.result import RULED_RELATIVE, Result
+from lumped.score import Curve as Measured
+from lumped.score import score
+
+DEFAULT_LAWS = ("hertz", "correspondence", "ting", "mdr")
+LAW_TOLERANCE = 1e-6  # of a law's own integration: far below any reference's bar
+QUANTITIES = (*RULED_RELATIVE, "peak_time", "restitution")
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """One candidate against the reference.
+
+    ``score_percent`` by (20)-(21). ``errors`` are candidate minus reference over reference, restitution
+    absolute, None where undefined: peak_force, peak_depth, duration, impulse, peak_time, restitution; and,
+    never negative, contact_radius_rebound (relative to the largest radius), pressure_rebound (norm over norm),
+    held_until_max_depth (force, relative to the peak), history (force, norm over norm). ``bars``: how much of
+    an error the error bars of reference and candidate together leave open.
+    """
+
+    name: str
+    score_percent: float
+    errors: Mapping[str, float | None]
+    bars: Mapping[str, float]
+
+    def exceeds(self, name: str) -> bool:
+        """Whether an error is known, and larger than its bar."""
+        error = self.errors[name]
+        return error is not None and abs(error) > self.bars[name]
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """Reference, candidates and judgements; ``refused`` maps laws without an answer to the reason."""
+
+    solved: Solved
+    reference: Result
+    laws: Mapping[str, Result]
+    measured: Measured | None
+    judgements: tuple[Judgement, ...]
+    refused: Mapping[str, str]
+
+
+def compare(
+    solved: Solved, reference: Result, names: tuple[str, ...], measured: Measured | None = None
+) -> Comparison:
+    """Judge laws by their names, and a measured curve where there is one. Raises BadInput for an unknown law."""
+    members = {name: get(name) for name in names}
+    laws: dict[str, Result] = {}
+    refused: dict[str, str] = {}
+    for name, member in members.items():
+        try:
+            laws[name] = simulate(member.of(reference.scene), reference.scene, LAW_TOLERANCE)
+        except FeContactError as failure:  # what has no answer is told, and the others go on
+            refused[name] = str(failure)
+    judged = [_law(solved, reference, law) for law in laws.values()]
+    judged += [] if measured is None else [_curve(solved, reference, measured)]
+    return Comparison(solved, reference, laws, measured, tuple(judged), refused)
+
+
+def _law(solved: Solved, reference: Result, law: Result) -> Judgement:
+    errors = {name: _error(reference, law, name) for name in QUANTITIES}
+    errors |= {"contact_radius_rebound": radius_error(solved, law), "pressure_rebound": pressure_error(solved, law)}
+    errors |= force_errors(solved, law.history)
+    own = float(law.history.force_error.max()) / (reference.quantities["peak_force"].value or np.inf)
+    bars = {name: _bar(reference, name) + _bar(law, name) for name in QUANTITIES} | force_bars(solved, own)
+    return Judgement(law.method, 100 * score(reference.history, law.history).normalized_error, errors, bars)
+
+
+def _curve(solved: Solved, reference: Result, measured: Measured) -> Judgement:
+    scored = score(reference.history, measured)
+    errors: dict[str, float | None] = {name: getattr(scored, name) for name in QUANTITIES}
+    errors |= {"contact_radius_rebound": None, "pressure_rebound": None} | force_errors(solved, measured)
+    bars = {name: _bar(reference, name) for name in QUANTITIES} | force_bars(solved, 0.0)
+    return Judgement("measured", 100 * scored.normalized_error, errors, bars)
+
+
+def _error(reference: Result, law: Result, name: str) -> float | None:
+    """Relative error of a quantity, restitution absolute; None where either is undefined."""
+    truth, value = reference.quantities[name].value, law.quantities[name].value
+    if truth is None or value is None:
+        return None
+    return value - truth if name == "restitution" else value / truth - 1.0
+
+
+def _bar(result: Result, name: str) -> float:
+    """Error bar in the unit of :func:`_error`."""
+    quantity = result.quantities[name]
+    if not quantity.value or quantity.error is None:
+        return 0.0
+    return quantity.error if name == "restitution" else quantity.error / abs(quantity.value)

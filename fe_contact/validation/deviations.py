@@ -1,0 +1,86 @@
+"""How far a candidate's force, contact radius and pressure are from the finite-element reference over time."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.forms import Array
+from fe_contact.reference import Solved
+from fe_contact.surface_pressure import felt, nearest_step
+from fe_contact.validation.law_pressure import LawPressure
+from lumped.history import History
+from lumped.result import Result
+from lumped.score import Curve as Measured
+
+REBOUND_SHARES = (0.75, 0.5, 0.25)  # of the peak force: the instants of the rebound at which pressures are compared
+RADIUS_UNTIL = 0.95  # of the shorter contact: later the radius falls like a root and shows the duration again
+PRESSURE_POINTS = 240
+
+
+def force_errors(solved: Solved, candidate: History | Measured) -> dict[str, float | None]:
+    """``held_until_max_depth`` relative to the reference's peak; ``history``, norm over norm."""
+    curve = solved.certified.curve
+    times = np.union1d(curve.dense_time, candidate.time)
+    force = curve.force(times)
+    difference = np.abs(candidate.force_at(times) - force)
+    norms = np.trapezoid(difference**2, times) / np.trapezoid(force**2, times)
+    held = difference[times <= deepest(solved)].max() / force.max()
+    return {"held_until_max_depth": float(held), "history": float(np.sqrt(norms))}
+
+
+def force_bars(solved: Solved, own: float) -> dict[str, float]:
+    """What error bars leave open of :func:`force_errors`; ``own`` is the candidate's, relative to the peak."""
+    certified = solved.certified
+    time = certified.curve.dense_time
+    early = certified.force_error(time[time <= deepest(solved)]).max() / certified.curve.dense_force.max()
+    return {"held_until_max_depth": float(early) + own, "history": certified.total("history_l2") + own}
+
+
+def deepest(solved: Solved) -> float:
+    """Time of the reference's maximum depth, s."""
+    curve = solved.certified.curve
+    return float(curve.dense_time[np.argmax(curve.depth_at(curve.dense_time))])
+
+
+def radius_error(solved: Solved, law: Result) -> float | None:
+    """Largest deviation of the contact radius in the rebound, relative to the largest; None without a rebound."""
+    curve, history = solved.certified.curve, law.history
+    time = curve.dense_time
+    end = RADIUS_UNTIL * min(curve.duration, float(history.time[-1]))
+    rebound = time[(time >= deepest(solved)) & (time <= end)]
+    if rebound.size == 0:
+        return None
+    deviation = np.interp(rebound, history.time, history.contact_radius) - curve.radius_at(rebound)
+    return float(np.abs(deviation).max() / curve.radius_at(time).max())
+
+
+def pressure_error(solved: Solved, law: Result) -> float | None:
+    """Largest deviation of the pressure, norm over norm on the surface, at instants of the rebound; None without."""
+    pressure = LawPressure.of(law)
+    if pressure is None:
+        return None
+    return max((_pressure_deviation(solved, pressure, step) for step in rebound_steps(solved)), default=None)
+
+
+def _pressure_deviation(solved: Solved, law: LawPressure, step: int) -> float:
+    reference = felt(solved.certified, step)
+    radii = surface_radii(solved)
+    truth = reference.at(radii)
+    deviation = law.at(reference.time, radii) - truth
+    return float(np.sqrt((radii @ deviation**2) / (radii @ truth**2)))
+
+
+def surface_radii(solved: Solved) -> Array:
+    """Equally spaced radii over the surface that contact ever reaches, the middles of rings, m."""
+    largest = max(snapshot.contact_radius for snapshot in solved.certified.march.snapshots)
+    return largest * (np.arange(PRESSURE_POINTS) + 0.5) / PRESSURE_POINTS
+
+
+def rebound_steps(solved: Solved) -> tuple[int, ...]:
+    """Steps of the finest march where the force has fallen to the ``REBOUND_SHARES`` of its peak."""
+    curve = solved.certified.curve
+    top = int(np.argmax(curve.dense_force))
+    falling = -np.maximum.accumulate(curve.dense_force[top:][::-1])[::-1] / curve.dense_force[top]
+    reached = [-share for share in REBOUND_SHARES if -share < falling[-1]]
+    times = np.interp(reached, falling, curve.dense_time[top:])
+    return tuple(nearest_step(solved.certified, float(time)) for time in times)

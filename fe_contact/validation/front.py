@@ -1,0 +1,58 @@
+"""The Pareto front of a trade-off, and how near to it the planned defaults lie, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from fe_contact.validation.tradeoff import Point
+
+NEAR = 2.0  # a default that costs at most this multiple of the cheapest setting that does as well is near the front
+
+Measure = Callable[[Point], float]
+
+
+def finite_elements(points: Iterable[Point]) -> tuple[Point, ...]:
+    """The finite-element points that have an answer."""
+    return tuple(point for point in points if point.method == "fe" and not point.failure)
+
+
+def front(points: Iterable[Point], cost: Measure, merit: Measure) -> tuple[Point, ...]:
+    """Points than which none is at once cheaper and better, the cheapest first."""
+    best, found = np.inf, []
+    for point in sorted(points, key=lambda p: (cost(p), merit(p))):
+        if merit(point) < best:
+            best = merit(point)
+            found.append(point)
+    return tuple(found)
+
+
+def excess(point: Point, points: Iterable[Point], merit: Measure, wanted: float) -> float:
+    """Processor time of a point over the least of those whose merit is at most ``wanted``; nan if there is none."""
+    equals = [other.cpu for other in points if merit(other) <= wanted]
+    return point.cpu / min(equals) if equals else np.nan
+
+
+def verdict(points: Iterable[Point]) -> tuple[str, ...]:
+    """One sentence a default: what it claims, and what it costs beside the cheapest setting that does as well."""
+    tried = finite_elements(points)
+    return tuple(_sentence(point, tried) for point in tried if point.default_for is not None)
+
+
+def _sentence(point: Point, tried: tuple[Point, ...]) -> str:
+    assert point.default_for is not None
+    start = f"default for {point.default_for:g}: bar {point.bar:.1g}, error {point.error:.1g}"
+    if (point.bar or 0.0) > point.default_for:
+        return f"{start}; misses the tolerance, so that a run refines it"
+    claimed = excess(point, tried, lambda p: p.bar or np.inf, point.default_for)
+    true = excess(point, tried, lambda p: p.error, point.error)
+    place = "on" if max(claimed, true) == 1.0 else f"within {NEAR:g} of" if max(claimed, true) <= NEAR else "off"
+    return (
+        f"{start}; costs {_times(claimed)} of {len(tried)} settings whose bar meets the tolerance, "
+        f"{_times(true)} with as small an error: {place} the front"
+    )
+
+
+def _times(factor: float) -> str:
+    return "the least" if factor == 1.0 else f"{factor:.2f} of the least"
