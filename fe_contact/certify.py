@@ -37,6 +37,7 @@ LEAST_ORDER = {"mesh": 2, "penalty": 1, "far_field": 2}
 LEAST_HALVED = 32  # steps below which halving them twice would leave too few to tell anything
 LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 20.0, "far_radius": 5.0}
 AS_EXPECTED = (0.6, 2.5)  # shares of the expected ratio of changes that show the order; faster does no harm
+LATE = 0.75  # share of the contact after which path and speed count for those at separation
 CAUSES = ("mesh", "penalty", "time_step", "far_field")
 PEAK_SHARE = 0.98  # the force's own error is the largest one while the force exceeds this share of its peak
 SMOOTHING = 0.04  # share of the contact over which a pointwise change counts as the error of its neighbours
@@ -59,14 +60,15 @@ class Change:
         first, second = self.first.quantities[name], self.second.quantities[name]
         if first is None or second is None:
             return np.inf if first is not second else 0.0
-        strike = self.first.strike
         around = {
-            "peak_force": float(self._force_change[self._near_peak].max()),
-            "peak_depth": float(self._depth_change[self._near_depth].max()),
-            "impulse": self.velocity * strike.mass,
-            "restitution": self.velocity / strike.velocity,
+            "peak_force": self.factor * self._peak_force,
+            "peak_time": self._peak_time,
+            "peak_depth": self.factor * self._depth_change[self._near_depth].max(),
+            "duration": self.factor * self._depth_change[self._late].max() / abs(self.first.leaving_speed),
+            "impulse": self.factor * self.velocity * self.first.strike.mass,
+            "restitution": self.factor * self.velocity / self.first.strike.velocity,
         }
-        return self.factor * max(abs(first - second), around.get(name, 0.0))
+        return max(self.factor * abs(first - second), float(around[name]))
 
     def history(self) -> float:
         """Norm of the force's change over the norm of the force."""
@@ -97,12 +99,28 @@ class Change:
 
     @cached_property
     def velocity(self) -> float:
-        """Largest change of the velocity, compared at equal shares of the contact, over its second half, m/s."""
+        """Largest change of the velocity late in the contact, compared at equal shares of it, m/s."""
         time = self.first.dense_time
-        late = time > 0.5 * self.first.duration
         shared = time * (self.second.duration / self.first.duration)
         change = self.first.velocity_at(time) - self.second.velocity_at(shared)
-        return float(np.abs(change[late]).max())
+        return float(np.abs(change[self._late]).max())
+
+    @cached_property
+    def _late(self) -> npt.NDArray[np.bool_]:
+        return np.asarray(self.first.dense_time >= LATE * self.first.duration)
+
+    @cached_property
+    def _peak_force(self) -> float:
+        return float(self._force_change[self._near_peak].max())
+
+    @cached_property
+    def _peak_time(self) -> float:
+        """Half-width of the times at which a force wrong by its error could peak, s."""
+        force, time = self.first.dense_force, self.first.dense_time
+        could = time[force >= force.max() - 2 * self.factor * self._peak_force]
+        peak_time = self.first.quantities["peak_time"] or 0.0
+        spacing = float(np.diff(time).max())
+        return float(max(could[-1] - peak_time, peak_time - could[0])) + spacing
 
     @cached_property
     def _near_peak(self) -> npt.NDArray[np.bool_]:

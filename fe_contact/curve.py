@@ -97,18 +97,22 @@ class Curve:
         return self.force(self.dense_time)
 
     @cached_property
+    def leaving_speed(self) -> float:
+        """Speed away from the target at the end, m/s."""
+        return -float(self.velocity_at(np.array([self.duration]))[0])
+
+    @cached_property
     def quantities(self) -> dict[str, float | None]:
         """The numbers of ``result.json`` but the history's own error."""
         peak_time, peak_force = peak(self.dense_time, self.dense_force)
         _, peak_depth = peak(self.dense_time, self.depth_at(self.dense_time))
-        strike, impulse = self.strike, float(self.mean_force[-1]) * self.duration
-        leaving = strike.velocity + strike.gravity * self.duration - impulse / strike.mass
+        impulse = float(self.mean_force[-1]) * self.duration
         return {
             "peak_force": peak_force,
             "peak_time": peak_time,
             "peak_depth": peak_depth,
             "duration": self.duration if self.separated else None,
-            "restitution": -leaving / strike.velocity if self.separated else None,
+            "restitution": self.leaving_speed / self.strike.velocity if self.separated else None,
             "impulse": impulse,
         }
 

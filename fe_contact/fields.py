@@ -67,7 +67,7 @@ def write_fields(scene: Scene, solved: Solved, where: Path) -> Path:
     import meshio
 
     fields = fields_at_peak(scene, solved)
-    data = {"displacement": _lifted(fields.displacement)}
+    data: dict[str, np.ndarray[Any, Any]] = {"displacement": _lifted(fields.displacement)}
     data |= dict(zip(STRESSES, fields.stress.T, strict=True))
     data |= {"pressure": fields.pressure, "contact": fields.contact}
     where.mkdir(parents=True, exist_ok=True)

@@ -32,7 +32,7 @@ def axisymmetric_strain(basis: Any) -> Array:
     so ``u_r/r`` is finite.
     """
     radius = np.asarray(basis.global_coordinates())[0]
-    value = np.stack([np.broadcast_to(shape[0].value, radius.shape) for shape in basis.basis], axis=-1)
+    value = np.stack([np.broadcast_to(np.asarray(shape[0]), radius.shape) for shape in basis.basis], axis=-1)
     gradient = np.stack([shape[0].grad for shape in basis.basis], axis=-1)
     strain = np.zeros((*radius.shape, 4, 2 * value.shape[-1]))
     strain[:, :, 0, 0::2] = gradient[0]

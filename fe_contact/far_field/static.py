@@ -32,7 +32,7 @@ def robin(facets: Any, poisson: float) -> sparse.coo_matrix:
     coupling = -np.einsum("c...,c...", traction, across) / length
     tensor = direct * (_outer(along, along) + _outer(across, across))
     tensor += coupling * (_outer(along, across) + _outer(across, along))
-    value = np.stack([np.broadcast_to(shape[0].value, length.shape) for shape in facets.basis])
+    value = np.stack([np.broadcast_to(np.asarray(shape[0]), length.shape) for shape in facets.basis])
     weight = 2 * np.pi * position[0] * facets.dx
     local = np.einsum("ifq,jfq,abfq,fq->fiajb", value, value, tensor, weight, optimize=True)
     functions = 2 * len(facets.basis)

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 
 from fe_contact.report import style
 from fe_contact.report.history import caption
@@ -17,8 +18,8 @@ from fe_contact.validation.front import Measure, finite_elements, front, verdict
 from fe_contact.validation.tradeoff import Point
 from lumped.scene import Scene
 
-PANELS = 3.5  # height of the panels, in
-TITLE_WIDTH = 140  # characters
+PANELS = 3.9  # height of the panels, in
+TITLE_WIDTH = 130  # characters
 LEAST = 1e-9  # the lower end of the error axis
 ORDERS = {1: style.GREY, 2: style.ORANGE, 3: style.GREEN, 4: style.BLUE}
 LAWS: dict[str, dict[str, Any]] = {
@@ -34,7 +35,7 @@ def plot_tradeoff(scene: Scene, points: Sequence[Point], where: Path) -> tuple[P
     """Write ``tradeoff.svg`` and ``tradeoff.png`` into the folder ``where``; their paths."""
     lines = list(verdict(points))
     with style.look():
-        above, below = style.heading_height(lines, TITLE_WIDTH) + 0.28, 1.35
+        above, below = style.heading_height(lines, TITLE_WIDTH) + 0.3, 1.35
         height = above + PANELS + below
         figure = Figure(figsize=(style.PAGE, height))
         grid = figure.add_gridspec(1, 2, wspace=0.24, width_ratios=(1.3, 1.0))
@@ -76,8 +77,9 @@ def _finite_elements(axes: Axes, points: Sequence[Point], cost: Measure) -> None
         if point.default_for is not None:
             axes.plot([cost(point)], [point.error], "*", markersize=10.0, color="#F0E442", zorder=4,
                       markeredgecolor=style.BLACK, markeredgewidth=0.7)  # fmt: skip
-            axes.annotate(_power(point.default_for), (cost(point), point.error), (7.0, -9.0),
-                          textcoords="offset points", fontsize=7.0, zorder=5)  # fmt: skip
+            halo = [withStroke(linewidth=2.0, foreground="white")]
+            axes.annotate(_power(point.default_for), (cost(point), point.error), (-6.0, -2.5), ha="right",
+                          textcoords="offset points", path_effects=halo, zorder=5)  # fmt: skip
     axes.set(xscale="log", yscale="log")
     axes.grid(which="major", color="#e6e6e6", linewidth=0.5)
     axes.set_axisbelow(True)

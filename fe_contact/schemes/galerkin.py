@@ -7,6 +7,8 @@ the stress at the end of the step loses.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from fe_contact.forms import Array
@@ -14,13 +16,14 @@ from fe_contact.forms import Array
 ORDER = 2
 SAMPLE = 0.5
 LEVER = 0.5
+SERIES = [(-1) ** k / math.factorial(k + 2) for k in range(9, -1, -1)]  # of (x - 1 + exp(-x)) / x^2
 
 
 def weights(moduli: Array, ratios: Array) -> tuple[Array, Array]:
     """Average over the step of each branch's stress: per increment, and of its past."""
     fade = -np.expm1(-ratios) / ratios
-    small = ratios < 1e-4  # (1 - fade)/x by its series, where the difference would cancel
-    ramp = np.where(small, 0.5 - ratios / 6, (1 - fade) / np.where(small, 1.0, ratios))
+    small = ratios < 0.1  # (1 - fade)/x by its series, where the difference would cancel
+    ramp = np.where(small, np.polyval(SERIES, ratios), (1 - fade) / np.where(small, 1.0, ratios))
     return moduli * ramp, moduli * fade
 
 

@@ -35,24 +35,25 @@ def excess(point: Point, points: Iterable[Point], merit: Measure, wanted: float)
 
 
 def verdict(points: Iterable[Point]) -> tuple[str, ...]:
-    """One sentence a default: what it claims, and what it costs beside the cheapest setting that does as well."""
+    """A sentence a default: what it costs beside the cheapest setting that does as well; then whether bars cover."""
     tried = finite_elements(points)
-    return tuple(_sentence(point, tried) for point in tried if point.default_for is not None)
+    covered = sum(point.error <= (point.bar or 0.0) for point in tried)
+    sentences = [_sentence(point, tried) for point in tried if point.default_for is not None]
+    return (*sentences, f"the claimed bar covers the error in {covered} of {len(tried)} settings")
 
 
 def _sentence(point: Point, tried: tuple[Point, ...]) -> str:
     assert point.default_for is not None
-    start = f"default for {point.default_for:g}: bar {point.bar:.1g}, error {point.error:.1g}"
+    start = f"default for {point.default_for:g}: error {point.error:.1g}, bar {point.bar:.1g}"
     if (point.bar or 0.0) > point.default_for:
         return f"{start}; misses the tolerance, so that a run refines it"
     claimed = excess(point, tried, lambda p: p.bar or np.inf, point.default_for)
     true = excess(point, tried, lambda p: p.error, point.error)
-    place = "on" if max(claimed, true) == 1.0 else f"within {NEAR:g} of" if max(claimed, true) <= NEAR else "off"
-    return (
-        f"{start}; costs {_times(claimed)} of {len(tried)} settings whose bar meets the tolerance, "
-        f"{_times(true)} with as small an error: {place} the front"
-    )
+    worst = max(claimed, true)
+    place = "on" if worst == 1.0 else f"within a factor {NEAR:g} of" if worst <= NEAR else "off"
+    return f"{start}; {_times(claimed)} whose bar meets the tolerance, {_times(true)} as accurate: {place} the front"
 
 
 def _times(factor: float) -> str:
-    return "the least" if factor == 1.0 else f"{factor:.2f} of the least"
+    """Cost beside the least."""
+    return "the cheapest" if factor == 1.0 else f"{factor:.2f} times the cheapest"

@@ -2,7 +2,7 @@
 
 Every law of the half-space is a rule for which elastic pressures p_el(r; a), per unit modulus, are added:
 
-    p(r, t) = int_0^t1 E*(t - s) d p_el(r; a(s)) ,
+    p(r, t) = int_0^t1 E*(t - s) d p_el(r; a(s)) ,    d p_el = d depth / (pi sqrt(a^2 - r^2)) inside a ,
 
 and its integral over the surface is the law's force. Hertz's and the correspondence law follow the contact
 radius of the present depth to t1 = t. Then, in the rebound, the increments are negative while the moduli of
@@ -28,7 +28,7 @@ PATH_POINTS = 400
 
 @dataclass(frozen=True, eq=False)
 class LawPressure:
-    """Pressure of a law: modulus E*(t), Pa; load curve; path of the contact radius, m, over time, s, (n,).
+    """Pressure of a law: modulus E*(t), Pa; load curve; contact radius, m, and velocity, m/s, over time, s, (n,).
 
     ``returns``: in the rebound the law forgets what lies after t1.
     """
@@ -37,6 +37,7 @@ class LawPressure:
     curve: LoadCurve
     times: Array
     contact_radii: Array
+    velocities: Array
     returns: bool
 
     @classmethod
@@ -52,6 +53,7 @@ class LawPressure:
             curve=result.scene.shape.resolved(result.model.profile).load_curve,
             times=history.time[rows],
             contact_radii=history.contact_radius[rows],
+            velocities=history.velocity[rows],
             returns=result.method in EXACT,
         )
 
@@ -65,9 +67,16 @@ class LawPressure:
         elastic = np.stack([self.curve.pressure(radii, float(a)) for a in path])
         middles = 0.5 * (times[1:] + times[:-1])
         pressure = self.modulus(time - middles) @ np.diff(elastic, axis=0)
-        if until == time and len(times) > 1:  # the viscosity's pulse acts at s = t only
-            pressure = pressure + self.modulus.viscosity * (elastic[-1] - elastic[-2]) / (times[-1] - times[-2])
+        if until == time:  # the viscosity's pulse acts at s = t only
+            pressure = pressure + self.modulus.viscosity * self._growth(time, radii)
         return np.asarray(pressure)
+
+    def _growth(self, time: float, radii: Array) -> Array:
+        """Rate of the elastic pressure, 1/s: a flat punch as large as the contact, moved at the striker's velocity."""
+        edge = np.interp(time, self.times, self.contact_radii)
+        reach = np.sqrt(np.maximum(edge**2 - radii**2, 0.0))
+        velocity = np.interp(time, self.times, self.velocities)
+        return np.divide(velocity / np.pi, reach, out=np.zeros_like(radii), where=reach > 0.0)
 
     def _until(self, time: float) -> float:
         """t1: the present while the contact grows or the law does not return, an earlier time of equal radius else."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
@@ -63,7 +64,7 @@ class Point:
 
 def tradeoff(scene: Scene, given: Mapping[str, Any], quick: bool, progress: Progress) -> tuple[Point, ...]:
     """Measure every point of the study. Raises NotReached where the exact impact itself has no answer."""
-    exact = simulate(laws.get("mdr").of(scene), scene, EXACT_TOLERANCE)
+    exact = _simulate(scene, "mdr", EXACT_TOLERANCE)
     planned = defaults(scene, given)
     base = next(iter(planned.values()))
     marked = {n.varied(tolerance=base.tolerance): tolerance for tolerance, n in planned.items()}
@@ -91,7 +92,7 @@ def operations(work: TotalWork, surface: ScaledSurface) -> float:
 def _fe(scene: Scene, numerics: Numerics, exact: Result, default_for: float | None) -> Point:
     settings = numerics.as_dict() | {"tolerance": default_for}
     try:
-        certified, cpu = _timed(lambda: _certify(scene, numerics))
+        certified, cpu = _timed(partial(_certify, scene, numerics))
     except NotReached as failure:
         return Point("fe", settings, default_for=default_for, failure=str(failure))
     curve = certified.curve
@@ -112,7 +113,7 @@ def _rows(scene: Scene, exact: Result) -> Iterator[Point]:
     """The row of springs at fixed numbers of elements: one march, no bar, no history."""
     row = laws.get("mdr")
     for elements in ROW_ELEMENTS:
-        scales, cpu = _timed(lambda elements=elements: row.estimate(scene, elements=elements))
+        scales, cpu = _timed(partial(row.estimate, scene, elements=elements))
         errors = _errors(exact, vars(scales))
         yield Point("mdr row", {"elements": elements}, cpu, errors, work={"elements": elements})
 
@@ -121,17 +122,22 @@ def _laws(scene: Scene, exact: Result, quick: bool) -> Iterator[Point]:
     """Exact laws at several tolerances with their bars; the models, which err however finely they are integrated."""
     tolerances = LAW_TOLERANCES[::2] if quick else LAW_TOLERANCES
     chosen = [(name, tolerance) for name in ("mdr", "ting") for tolerance in tolerances]
-    other = simulate(laws.get("ting").of(scene), scene, EXACT_TOLERANCE)
+    other = _simulate(scene, "ting", EXACT_TOLERANCE)
     for name, tolerance in [*chosen, *((name, LAW_TOLERANCES[-2]) for name in MODELS)]:
         settings = {"tolerance": tolerance}
         try:
-            result, cpu = _timed(lambda n=name, t=tolerance: simulate(laws.get(n).of(scene), scene, t))
+            result, cpu = _timed(partial(_simulate, scene, name, tolerance))
         except FeContactError as failure:
             yield Point(name, settings, failure=str(failure))
             continue
         values = {key: quantity.value for key, quantity in result.quantities.items()}
         errors = _errors(other if name == "mdr" else exact, values, result.history.time, result.history.force)
         yield Point(name, settings, cpu, errors, _bar(result), dict(result.work))
+
+
+def _simulate(scene: Scene, name: str, tolerance: float) -> Result:
+    """A lumped law's answer."""
+    return simulate(laws.get(name).of(scene), scene, tolerance)
 
 
 def _bar(result: Result) -> float:
