@@ -26,6 +26,7 @@ from lumped.score import Curve as Measured
 PANELS = 4.6  # height of the four panels with what is around them, in
 TITLE_WIDTH = 134  # characters
 LEAST_SHOWN = 1e-6  # of the peak: the lower end of the logarithmic panel
+MOST_TENSION = 0.6  # of the largest pressure: a viscous law's tension at the edge is singular, and cut there
 # One colour and one dash a candidate: the reference is a broad grey line below all of them.
 STYLES: dict[str, dict[str, Any]] = {
     "hertz": {"color": style.ORANGE, "linestyle": (0, (1, 1.2))},
@@ -82,7 +83,7 @@ def _legend(figure: Figure, comparison: Comparison, height: float) -> None:
 
 def _force(axes: Axes, comparison: Comparison) -> None:
     history = comparison.reference.history
-    second, unit, _ = _time_axis(axes, comparison)
+    second, unit, span = _time_axis(axes, comparison)
     newton, force_unit = prefixed(history.force.max(), "N")
     axes.plot(second * history.time, newton * history.force, **REFERENCE)
     for curve, line in _candidates(comparison):
@@ -96,8 +97,10 @@ def _force(axes: Axes, comparison: Comparison) -> None:
         linewidth=0.0,
     )
     _mark_depth(axes, comparison, second)
-    axes.annotate("maximum depth", (second * deepest(comparison.solved), 0.0), (3.0, 3.0), fontsize=6.0,
-                  textcoords="offset points", color="#666666")  # fmt: skip
+    turn = deepest(comparison.solved)
+    side, shift = ("left", 3.0) if turn < 0.6 * span else ("right", -3.0)
+    axes.annotate("maximum depth", (second * turn, 0.0), (shift, 3.0), textcoords="offset points", ha=side,
+                  fontsize=6.0, color="#666666")  # fmt: skip
     axes.set(xlabel=f"time, {unit}", ylabel=f"force, {force_unit}")
     axes.set_ylim(bottom=0.0)
     style.label(axes, "a", "contact force")
@@ -150,16 +153,19 @@ def _pressure(axes: Axes, comparison: Comparison) -> None:
     pascal, unit = prefixed(truth.values.max(), "Pa")
     axes.axhline(0.0, color="#4d4d4d", linewidth=0.5)
     axes.plot(metre * radii, pascal * truth.at(radii), **REFERENCE)
-    low, pulled = 0.0, 0.0
+    lowest, most = 0.0, pascal * truth.values.max()
     for name, law in comparison.laws.items():
         pressure = LawPressure.of(law)
         if pressure is not None:
             values = pascal * pressure.at(truth.time, radii)
             axes.plot(metre * radii, values, **line_of(name))
-            low, pulled = min((low, pulled), (float(values.min()), float(radii[np.argmin(values)])))
+            if values.min() < min(lowest, -0.02 * most):
+                lowest = max(float(values.min()), -MOST_TENSION * most)
+                start = metre * radii[np.argmax(values <= 0.8 * lowest)]
+                axes.set_ylim(bottom=1.15 * lowest)
+    if lowest < 0.0:
+        axes.text(start, lowest, "tension  ", ha="right", style="italic", color=style.BLACK)
     axes.set(xlabel=f"radius, {length_unit}", ylabel=f"pressure, {unit}", xlim=(0.0, metre * radii[-1]))
-    if low < -0.02 * pascal * truth.values.max():
-        axes.text(metre * pulled, low, "tension ", ha="right", style="italic", color=style.BLACK)
     style.label(axes, "d", f"pressure in the rebound, at {readable(truth.time, 's', 3)}")
 
 

@@ -10,7 +10,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patheffects import withStroke
 
 from fe_contact.report import style
 from fe_contact.report.history import caption
@@ -77,9 +76,9 @@ def _finite_elements(axes: Axes, points: Sequence[Point], cost: Measure) -> None
         if point.default_for is not None:
             axes.plot([cost(point)], [point.error], "*", markersize=10.0, color="#F0E442", zorder=4,
                       markeredgecolor=style.BLACK, markeredgewidth=0.7)  # fmt: skip
-            halo = [withStroke(linewidth=2.0, foreground="white")]
-            axes.annotate(_power(point.default_for), (cost(point), point.error), (-6.0, -2.5), ha="right",
-                          textcoords="offset points", path_effects=halo, zorder=5)  # fmt: skip
+            leader = {"arrowstyle": "-", "linewidth": 0.6, "color": style.BLACK, "shrinkA": 0.0, "shrinkB": 4.0}
+            axes.annotate(_power(point.default_for), (cost(point), point.error), (-46.0, -16.0), ha="right",
+                          textcoords="offset points", arrowprops=leader, zorder=5)  # fmt: skip
     axes.set(xscale="log", yscale="log")
     axes.grid(which="major", color="#e6e6e6", linewidth=0.5)
     axes.set_axisbelow(True)

@@ -27,8 +27,8 @@ class Judgement:
 
     ``score_percent`` by (20)-(21). ``errors`` are candidate minus reference over reference, restitution
     absolute, None where undefined: peak_force, peak_depth, duration, impulse, peak_time, restitution; and,
-    never negative, contact_radius_rebound (relative to the largest radius), pressure_rebound (norm over norm),
-    held_until_max_depth (force, relative to the peak), history (force, norm over norm). ``bars``: how much of
+    never negative, contact_radius_rebound (relative to the largest radius), pressure_rebound (misplaced force over
+    force), held_until_max_depth (force, relative to the peak), history (force, norm over norm). ``bars``: how much of
     an error the error bars of reference and candidate together leave open.
     """
 

@@ -12,7 +12,7 @@ from lumped.history import History
 from lumped.result import Result
 from lumped.score import Curve as Measured
 
-REBOUND_SHARES = (0.75, 0.5, 0.25)  # of the peak force: the instants of the rebound at which pressures are compared
+REBOUND_SHARES = (0.75, 0.5, 0.25)  # of the force at maximum depth: instants at which pressures are compared
 RADIUS_UNTIL = 0.95  # of the shorter contact: later the radius falls like a root and shows the duration again
 PRESSURE_POINTS = 240
 
@@ -55,7 +55,11 @@ def radius_error(solved: Solved, law: Result) -> float | None:
 
 
 def pressure_error(solved: Solved, law: Result) -> float | None:
-    """Largest deviation of the pressure, norm over norm on the surface, at instants of the rebound; None without."""
+    """Largest share of the force that a law presses, or pulls, in the wrong place in the rebound; None without any.
+
+    The integral of the deviation's magnitude over the force: the square of a viscous law's pressure, singular at
+    the edge, would have no integral.
+    """
     pressure = LawPressure.of(law)
     if pressure is None:
         return None
@@ -67,7 +71,7 @@ def _pressure_deviation(solved: Solved, law: LawPressure, step: int) -> float:
     radii = surface_radii(solved)
     truth = reference.at(radii)
     deviation = law.at(reference.time, radii) - truth
-    return float(np.sqrt((radii @ deviation**2) / (radii @ truth**2)))
+    return float((radii @ np.abs(deviation)) / (radii @ truth))
 
 
 def surface_radii(solved: Solved) -> Array:
@@ -77,10 +81,11 @@ def surface_radii(solved: Solved) -> Array:
 
 
 def rebound_steps(solved: Solved) -> tuple[int, ...]:
-    """Steps of the finest march where the force has fallen to the ``REBOUND_SHARES`` of its peak."""
+    """Steps of the finest march where the force has fallen to the ``REBOUND_SHARES`` of that at maximum depth."""
     curve = solved.certified.curve
-    top = int(np.argmax(curve.dense_force))
-    falling = -np.maximum.accumulate(curve.dense_force[top:][::-1])[::-1] / curve.dense_force[top]
-    reached = [-share for share in REBOUND_SHARES if -share < falling[-1]]
-    times = np.interp(reached, falling, curve.dense_time[top:])
+    rebound = curve.dense_time >= deepest(solved)
+    force = curve.dense_force[rebound]
+    fallen = 1 - np.maximum.accumulate(force[::-1])[::-1] / force[0]
+    reached = [1 - share for share in REBOUND_SHARES if 1 - share < fallen[-1]]
+    times = np.interp(reached, fallen, curve.dense_time[rebound])
     return tuple(nearest_step(solved.certified, float(time)) for time in times)
