@@ -16,4 +16,6 @@ from lumped.result import Result as Result
 from lumped.scene import Model as Model
 from lumped.scene import Motion as Motion
 from lumped.scene import Scene as Scene
+from lumped.score import Score as Score
+from lumped.score import score as score
 from lumped.shapes import Sphere as Sphere

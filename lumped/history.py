@@ -24,11 +24,13 @@ COLUMNS = {
 }
 LEAST_ROWS = 201
 MOST_ROWS = 100_001
+SHORTEST = 2.0**-50
 
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """Columns of one length >= 2, SI units, time never decreasing. `force_error`: half-width of the force's bar.
+    """Columns of one length >= 2, SI units, time never decreasing. `force_error`: half-width of the force's
+    bar.
 
     Depth is positive into the target, velocity positive while approaching. Raises BadInput.
     """
@@ -107,14 +109,15 @@ def _column(source: str, name: str, rows: list[list[str]], index: int) -> Array:
 def densified(times: ArrayLike, force: Callable[[Array], Array], tolerance: float) -> Array:
     """Times between which linear interpolation of `force` errs by less than `tolerance` times its peak.
 
-    `times` is where to start, shape (n,), n >= 2; `force` maps times, s, to forces, N. At least 201 rows come back;
-    an interval stops being halved when it is 2^-40 of the whole (a step in the force) or at 100001 rows.
+    `times` is where to start, shape (n,), n >= 2; `force` maps times, s, to forces, N. At least 201 rows come
+    back; an interval stops being halved when it is 2^-50 of the whole (a step in the force) or at 100001
+    rows.
     """
     t = np.unique(np.asarray(times, dtype=float))
     while t.size < LEAST_ROWS:
         t = np.sort(np.concatenate([t, 0.5 * (t[:-1] + t[1:])]))
     f = force(t)
-    shortest = (t[-1] - t[0]) * 2.0**-40
+    shortest = (t[-1] - t[0]) * SHORTEST
     rough = np.ones(t.size - 1, dtype=bool)
     while rough.any() and t.size < MOST_ROWS:
         middle = 0.5 * (t[:-1] + t[1:])[rough]
@@ -126,9 +129,7 @@ def densified(times: ArrayLike, force: Callable[[Array], Array], tolerance: floa
     return t
 
 
-def _refined(
-    t: Array, f: Array, middle: Array, at_middle: Array
-) -> tuple[Array, Array, NDArray[np.bool_]]:
+def _refined(t: Array, f: Array, middle: Array, at_middle: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
     """The rows with the middles of the marked intervals put in, and which intervals are new."""
     order = np.argsort(np.concatenate([t, middle]), kind="stable")
     new = np.concatenate([np.zeros(t.size, dtype=bool), np.ones(middle.size, dtype=bool)])[order]

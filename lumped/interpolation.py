@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 POINTS = 4
-FINE = 65
+FITTED, DEGREE = 13, 4
 
 
 def local(x: Array, y: Array, at: Array, points: int = POINTS) -> Array:
-    """The polynomial through the `points` nodes around each place of `at`; x ascends strictly, shapes (n,), (n,), (m,).
+    """The polynomials through the `points` nodes around each place of `at`, shape (m,): shape (..., m).
 
-    With fewer nodes than `points` the polynomial runs through all of them.
+    `x`, shape (n,), ascends strictly; `y` has the shape (..., n). With fewer nodes than `points` all of them
+    count.
     """
     points = min(points, x.size)
     first = np.searchsorted(x, at) - (points + 1) // 2
@@ -24,28 +27,28 @@ def local(x: Array, y: Array, at: Array, points: int = POINTS) -> Array:
         for i in range(points):
             if i != j:
                 weights[:, j] *= (at - nodes[:, i]) / (nodes[:, j] - nodes[:, i])
-    return np.asarray((weights * y[stencil]).sum(axis=1))
+    return np.asarray((weights * y[..., stencil]).sum(axis=-1))
 
 
-def peak(x: Array, y: Array, points: int = POINTS) -> tuple[float, float]:
-    """Place and height of the highest point of a smooth curve, between its rows."""
-    i = int(np.argmax(y))
-    low, high = max(i - 1, 0), min(i + 1, x.size - 1)
-    fine = np.linspace(x[low], x[high], FINE)
-    values = local(x, y, fine, points)
-    k = int(np.argmax(values))
-    if k in (0, FINE - 1):
-        return float(fine[k]), float(values[k])
-    return vertex(fine[k - 1 : k + 2], values[k - 1 : k + 2])
+def peak(x: Array, y: Array) -> tuple[float, float]:
+    """Place and height of the highest point of a smooth curve given by its rows, x ascending strictly."""
+    return highest(lambda at: local(x, y, at), x)
 
 
-def vertex(x: Array, y: Array) -> tuple[float, float]:
-    """Place and height of the top of the parabola through three points, the middle one the highest."""
-    left, right = x[0] - x[1], x[2] - x[1]
-    low, high = (y[0] - y[1]) / left, (y[2] - y[1]) / right
-    bend = (high - low) / (right - left)
-    if bend >= 0.0:
-        return float(x[1]), float(y[1])
-    slope = low - bend * left
-    shift = min(max(-0.5 * slope / bend, left), right)
-    return float(x[1] + shift), float(y[1] + slope * shift + bend * shift**2)
+def highest(curve: Callable[[Array], Array], places: Array) -> tuple[float, float]:
+    """Place and height of the highest point of a curve that can be evaluated anywhere, shape (n,) -> (n,).
+
+    The polynomial of fourth degree fitted around the highest of `places` (ascending, at least two) has it:
+    what noise the curve has there averages out.
+    """
+    values = curve(places)
+    i = int(np.argmax(values))
+    low, high = places[max(i - 1, 0)], places[min(i + 1, places.size - 1)]
+    around = np.linspace(-1.0, 1.0, FITTED)
+    fit = np.polynomial.Polynomial.fit(around, curve(0.5 * (low + high) + 0.5 * (high - low) * around), DEGREE)
+    flat = fit.deriv().roots()
+    inside = np.real(flat[(np.abs(np.imag(flat)) < 1e-12) & (np.abs(np.real(flat)) < 1.0)])
+    candidates = np.concatenate([inside, [-1.0, 1.0]])
+    heights = fit(candidates)
+    best = int(np.argmax(heights))
+    return float(0.5 * (low + high) + 0.5 * (high - low) * candidates[best]), float(heights[best])

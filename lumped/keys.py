@@ -23,12 +23,12 @@ class Key(Protocol):
         """What is accepted, in words, with the range and the unit."""
 
     def read(self, value: object) -> Any:
-        """The checked value; raises ValueError when it is not accepted, with a message where `accepted` is not enough."""
+        """The checked value; raises ValueError when it is refused, its text what to say instead of `accepted`."""
 
 
 @dataclass(frozen=True)
 class Number:
-    """A real number in `[low, high]`, or in the open interval when `excluded`. Truth values are no numbers."""
+    """A real number in `[low, high]`, or between them when `excluded`. Truth values are no numbers."""
 
     low: float
     high: float

@@ -15,7 +15,7 @@ NOT_MEMBERS = ("base",)
 
 @cache
 def available(package: str) -> tuple[str, ...]:
-    """Names of the member modules of `package`, sorted; `base` and names starting with `_` are not members."""
+    """Names of the members of `package`, sorted: not `base`, nor modules that start with `_`."""
     found = iter_modules(import_module(package).__path__)
     return tuple(sorted(m.name for m in found if m.name not in NOT_MEMBERS and not m.name.startswith("_")))
 

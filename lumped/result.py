@@ -7,6 +7,7 @@ import math
 import platform
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -135,15 +136,23 @@ def quantities_of(history: History, separated: bool) -> dict[str, float | None]:
 
 def meets(quantities: Mapping[str, Quantity], tolerance: float) -> bool:
     """Whether every error bar that the tolerance rules lies within it."""
+    return not unmet(quantities, tolerance)
+
+
+def unmet(quantities: Mapping[str, Quantity], tolerance: float) -> str:
+    """Which error bars exceed the tolerance, in words; empty when none does."""
+    found = []
     for name in (*RULED_RELATIVE, *RULED_ABSOLUTE):
         quantity = quantities[name]
         scale = abs(quantity.value or 0.0) if name in RULED_RELATIVE else 1.0
         if quantity.error is not None and quantity.error > tolerance * scale:
-            return False
-    return True
+            reached = f"{quantity.error / scale:.2g}" if scale else f"{quantity.error:.2g} {quantity.unit}"
+            found.append(f"{name} to {reached}")
+    return f"tolerance {tolerance:g} not reached: {', '.join(found)}" if found else ""
 
 
-def provenance() -> dict[str, str]:
+@cache
+def provenance() -> Mapping[str, str]:
     """Versions of what computed a result."""
     from importlib.metadata import PackageNotFoundError, version
 

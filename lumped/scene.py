@@ -10,6 +10,7 @@ from typing import Any
 from lumped.errors import BadInput, Fault
 from lumped.keys import Choice, Count, Flag, Key, Number, Text, check_fields
 from lumped.materials import Material, Relaxation
+from lumped.scales import stiffest_impact
 from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
 
@@ -33,7 +34,7 @@ NAME_KEYS: Mapping[str, Key] = {"name": Text(required=False)}
 
 @dataclass(frozen=True)
 class Model:
-    """The `[model]` table: inertia of the deformable bodies, the profile taken, gravity along the motion, m/s2."""
+    """The `[model]` table: inertia of deformable bodies, profile, gravity along the motion (m/s2)."""
 
     inertia: bool = False
     profile: str = "exact"
@@ -110,12 +111,11 @@ class Scene:
     def elastic_contact_time(self) -> float:
         """Hertz contact time with the relaxed modulus, or the glassy one of a fluid, s."""
         modulus = self.contact_modulus
-        elastic = modulus.relaxed or modulus.glassy
-        if elastic > 0.0:
-            return self.shape.hertz_impact(elastic, self.mass, self.velocity).duration
-        # A dashpot alone: the spring E = eta/T whose contact time T is its own; T grows as E^(-2/5).
-        unit = self.shape.hertz_impact(modulus.viscosity, self.mass, self.velocity).duration
-        return float(unit ** (5.0 / 3.0))
+        if modulus.relaxed:
+            return self.shape.hertz_impact(modulus.relaxed, self.mass, self.velocity).duration
+        if modulus.glassy:
+            return self.shape.hertz_impact(modulus.glassy, self.mass, self.velocity).duration
+        return stiffest_impact(self.shape, modulus, self.mass, self.velocity).duration
 
     @property
     def end_time(self) -> float:
@@ -137,10 +137,7 @@ class Scene:
 
     def _absurd_depth(self) -> str:
         """Even the stiffest answer of the material lets the striker sink in deeper than it is round."""
-        modulus = self.contact_modulus
-        if modulus.viscosity > 0.0:
-            return ""
-        impact = self.shape.hertz_impact(modulus.glassy, self.mass, self.velocity)
+        impact = stiffest_impact(self.shape, self.contact_modulus, self.mass, self.velocity)
         if impact.contact_radius <= impact.depth:
             return (
                 f"the striker sinks in by {impact.depth:.3g} m, deeper than its radius: no small-displacement theory "

@@ -15,7 +15,16 @@ from lumped.materials import Material
 from lumped.materials.material import KEYS as MATERIAL_KEYS
 from lumped.materials.material import bulk_fault
 from lumped.members import Member, available, get
-from lumped.scene import MODEL_KEYS, MOTION_KEYS, NAME_KEYS, STRIKER_KEYS, Model, Motion, Scene, inertia_faults
+from lumped.scene import (
+    MODEL_KEYS,
+    MOTION_KEYS,
+    NAME_KEYS,
+    STRIKER_KEYS,
+    Model,
+    Motion,
+    Scene,
+    inertia_faults,
+)
 from lumped.targets import Target
 from lumped.toml_file import overridden, parsed
 
@@ -86,7 +95,7 @@ class _Reader:
         return str(values.get("name", Path(self.source).stem))
 
     def body(self, part: str, package: str, common: Mapping[str, Key]) -> tuple[Table, Any]:
-        """A body's table: its checked common values, and what the member of `package` makes of its own keys."""
+        """A body's checked common values, and what the member of `package` makes of its own keys."""
         table = self.table(part)
         planned = {key for key in table if f"{part}.{key}" in NOT_YET}
         self.faults += [Fault(self.source, f"{part}.{key}", NOT_YET[f"{part}.{key}"]) for key in sorted(planned)]
@@ -147,7 +156,7 @@ class _Reader:
             self.faults += inertia_faults(self.source, model.get("inertia", False), density, target)
 
     def table(self, key: str, inside: str = "", required: bool = True, quiet: bool = False) -> Table:
-        """The table `key`; empty, with a fault unless `quiet`, when it is missing though required or no table."""
+        """The table `key`, empty when it is missing or no table: a fault if required, unless `quiet`."""
         place = self.raw[inside] if inside else self.raw
         value = place.get(key, None if required else {})
         if isinstance(value, Mapping):

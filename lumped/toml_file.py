@@ -44,7 +44,7 @@ def parse_assignment(text: str) -> tuple[str, object]:
 
 
 def overridden(table: Mapping[str, Any], overrides: Mapping[str, object], source: str) -> dict[str, Any]:
-    """A copy of the tables with the dotted keys of `overrides` set; raises BadInput where a path meets a value."""
+    """A copy of the tables with the dotted keys of `overrides` set. Raises BadInput."""
     result = dict(table)
     for dotted, value in overrides.items():
         *path, last = dotted.split(".")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 
 from fe_contact.commands import base
+from lumped.errors import BadInput, Fault
+from lumped.scene import Scene
 
 SUMMARY = "one impact: history.csv and result.json, with error bars"
 
@@ -24,6 +26,7 @@ def execute(args: argparse.Namespace) -> int:
 
     scene, table = base.read_scene(args)
     where = base.folder(args, "run", scene)
+    _check(args, scene)
     if args.method != "fe":
         result = simulate(scene, args.method, table, progress=base.progress_of(args))
         result.write(where)
@@ -42,3 +45,15 @@ def execute(args: argparse.Namespace) -> int:
 
         plot_history(result, solved, where)
     return base.report(args, result, where)
+
+
+def _check(args: argparse.Namespace, scene: Scene) -> None:
+    """Refuse, before anything is computed, what this method or scene cannot give; raises BadInput."""
+    if args.method != "fe":
+        asked = [option for option in ("fields", "plot") if getattr(args, option)]
+        if asked:
+            raise BadInput(Fault(f"--{option}", "", "only with --method fe") for option in asked)
+    elif args.fields:
+        from fe_contact.fields import check_fields
+
+        check_fields(scene)

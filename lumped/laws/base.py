@@ -22,5 +22,5 @@ class Law(Protocol):
 
 
 def simulate(model: Law, scene: Scene, tolerance: float = 1e-6) -> Result:
-    """One impact of `scene` under the law `model`, every ruled quantity to `tolerance` (relative). Raises NotReached."""
+    """One impact under the law `model`, every ruled quantity to `tolerance`. Raises NotReached."""
     return model.simulate(scene, tolerance)

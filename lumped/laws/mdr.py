@@ -3,20 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.ending import End
+from lumped.interpolation import local, peak
+from lumped.laws._assembly import Answer, Clock, assemble, bars
+from lumped.result import Result, meets
 from lumped.scene import Scene
-from lumped.spring_row.march import End, Track, march
-from lumped.spring_row.pace import Adaptive
-from lumped.spring_row.row import Instant, Problem
+from lumped.spring_row.coarse import coarse, problem_of
+from lumped.spring_row.nest import Level, Nest, limit, predicted_ends
 
-MOST_STEPS = 200_000
+Array = NDArray[np.float64]
+INTERVALS = 32
+MOST_PARTS = 64
+# The difference of two limits bounds the error of the better one where errors fall at least as 1/n.
+SAFETY = 1.5
 
 
 @dataclass(frozen=True)
 class ImpactScales:
-    """Scales of one impact: m, m, N, s, s, s. `duration` is None without separation before the end time.
+    """Scales of one impact: m, m, N, and s for the times. `end` is the last time followed.
 
-    `end` is the last time followed; `restitution` None without separation.
+    `duration` and `restitution` are None without separation before the scene's end time.
     """
 
     contact_radius: float
@@ -29,65 +40,109 @@ class ImpactScales:
     restitution: float | None
 
 
-def estimate(scene: Scene, elements: int = 100) -> ImpactScales:
-    """Scales of the scene's impact from a coarse row of springs, good to about 1/elements^2, in milliseconds.
+@dataclass(frozen=True)
+class SpringRow:
+    """The row of springs as a law; everything it needs is in the scene."""
 
-    Raises NotReached when the coarse row does not come to an end.
-    """
-    problem = problem_of(scene)
-    track = coarse(problem, scene.end_time, elements)
-    inside = track.approach + track.rebound
-    highest, deepest = max(inside, key=_force), max(inside, key=_depth)
-    last = inside[-1]
-    left = track.end is End.SEPARATED
+    name: ClassVar[str] = "mdr"
+
+    def simulate(self, scene: Scene, tolerance: float) -> Result:
+        """One impact, the steps cut until every bar is within the tolerance. Raises NotReached."""
+        clock = Clock()
+        problem = problem_of(scene)
+        track = coarse(problem, scene.end_time, INTERVALS)
+        nest = Nest.around(problem, scene.end_time, track, INTERVALS)
+        start = nest.level(1, (track.approach[-1].time, (track.rebound or track.approach)[-1].time))
+        levels, limits, answers, parts = [start], [], [], 1
+        while parts < MOST_PARTS:
+            parts *= 2
+            levels.append(nest.level(parts, predicted_ends(levels)))
+            limits.append(limit(levels[-2], levels[-1]))
+            answers.append(_answer(scene, track.end, limits[-1], limits[0]))
+            if len(answers) > 1:
+                quantities, force_error = bars(answers[-1], answers[-2], SAFETY)
+                if meets(quantities, tolerance):
+                    break
+        work = {"steps": sum(level.steps for level in levels), "springs": levels[-1].approach.shape[1]}
+        numerics = {"levels": len(levels), "parts": parts}
+        return assemble(self.name, scene, tolerance, answers[-1], quantities, force_error, clock, numerics, work)
+
+
+def of(scene: Scene) -> SpringRow:
+    """The law for a scene: every half-space has it."""
+    return SpringRow()
+
+
+def estimate(scene: Scene, elements: int = 100) -> ImpactScales:
+    """Scales of the impact from one coarse march, good to about 1/elements^2. Raises NotReached."""
+    track = coarse(problem_of(scene), scene.end_time, elements)
+    fields = np.array(track.approach + track.rebound).T
+    time, depth, velocity, _, force, edge = fields
+    separated = track.end is End.SEPARATED
     return ImpactScales(
-        contact_radius=max(instant.edge for instant in inside),
-        peak_depth=deepest.depth,
-        peak_force=highest.force,
-        peak_time=highest.time,
+        contact_radius=float(edge.max()),
+        peak_depth=float(depth.max()),
+        peak_force=float(force.max()),
+        peak_time=float(time[force.argmax()]),
         turn_time=track.approach[-1].time,
-        end=last.time,
-        duration=last.time if left else None,
-        restitution=-last.velocity / scene.velocity if left else None,
+        end=float(time[-1]),
+        duration=float(time[-1]) if separated else None,
+        restitution=float(-velocity[-1]) / scene.velocity if separated else None,
     )
 
 
-def problem_of(scene: Scene) -> Problem:
-    """What the row of springs needs of a scene."""
-    return Problem(scene.profile, scene.contact_modulus, scene.mass, scene.velocity, scene.model.gravity)
+def _answer(scene: Scene, end: End, level: Level, metered: Level) -> Answer:
+    """The dense answer of one level, its energies those of the metered one."""
+    separated = end is End.SEPARATED
+    whole = np.hstack([level.approach, level.rebound[:, 1:]]) if level.rebound.size else level.approach
+    time, depth, velocity, _, force, _ = whole
+    peak_time, peak_force = peak(time, force)
+    impulse = scene.mass * (scene.velocity - velocity[-1] + scene.model.gravity * time[-1])
+    values = {
+        "peak_force": peak_force,
+        "peak_time": peak_time,
+        "peak_depth": float(depth.max()),
+        "duration": float(time[-1]) if separated else None,
+        "restitution": float(-velocity[-1]) / scene.velocity if separated else None,
+        "impulse": None if end is End.SECOND_APPROACH else float(impulse),
+    }
+    message = "" if separated else end.value
+    return Answer(time, _Dense(level, separated), values, end, _energy(scene, metered), message)
 
 
-def coarse(problem: Problem, end_time: float, elements: int) -> Track:
-    """One march whose steps follow the error that they make."""
-    reach = _least_reach(problem)
-    first = float(problem.shape.load_curve.depth(reach / elements)) / problem.velocity
+@dataclass(frozen=True)
+class _Dense:
+    """Depth, velocity, force, contact radius at times (n,), shape (4, n): local cubics in the root of time."""
 
-    def pace(start: Instant) -> Adaptive:
-        h = first if start.time == 0.0 else start.time / elements
-        return Adaptive(min(h, end_time), elements, max(reach, start.edge), problem.velocity)
+    level: Level
+    separated: bool
 
-    return march(problem, end_time, pace, MOST_STEPS)
-
-
-def _least_reach(problem: Problem) -> float:
-    """A contact radius that the impact surely exceeds half of, m: that of the stiffest of its answers.
-
-    A dashpot alone stops the striker at depth (3 m v/(4 eta sqrt(R)))^(2/3); it counts like a spring whose Hertz
-    contact lasts as long as eta over its stiffness.
-    """
-    modulus = problem.modulus
-    mass, velocity = problem.mass, problem.velocity
-    reaches = [problem.shape.hertz_impact(modulus.glassy, mass, velocity).contact_radius] if modulus.glassy else []
-    if modulus.viscosity:
-        unit = problem.shape.hertz_impact(modulus.viscosity, mass, velocity).duration
-        spring = modulus.viscosity / unit ** (5.0 / 3.0)
-        reaches.append(problem.shape.hertz_impact(spring, mass, velocity).contact_radius)
-    return min(reaches)
+    def __call__(self, times: Array) -> Array:
+        approach, rebound = self.level.approach, self.level.rebound
+        turn, last = self.level.ends
+        columns = np.empty((4, times.size))
+        early = times <= turn
+        columns[:, early] = local(np.sqrt(approach[0]), _seen(approach), np.sqrt(times[early]))
+        late = np.minimum(times[~early], last)
+        if rebound.size and self.separated:
+            columns[:, ~early] = local(-np.sqrt(last - rebound[0]), _seen(rebound), -np.sqrt(last - late))
+        elif rebound.size:
+            columns[:, ~early] = local(rebound[0], _seen(rebound), late)
+        else:  # at rest
+            columns[:, ~early] = np.array([approach[1, -1], 0.0, 0.0, approach[5, -1]])[:, None]
+        columns[2:] = np.maximum(columns[2:], 0.0)
+        return columns
 
 
-def _force(instant: Instant) -> float:
-    return instant.force
+def _seen(fields: Array) -> Array:
+    """Depth, velocity, force and edge of the fields of Instant."""
+    return fields[[1, 2, 4, 5]]
 
 
-def _depth(instant: Instant) -> float:
-    return instant.depth
+def _energy(scene: Scene, level: Level) -> dict[str, float | None]:
+    """Energies at the end, J; `stored`: in springs, pressed or released with what they could not give back."""
+    last = level.rebound[:, -1] if level.rebound.size else level.approach[:, -1]
+    given = 0.5 * scene.mass * scene.velocity**2 + scene.mass * scene.model.gravity * float(last[1])
+    out = 0.5 * scene.mass * float(last[2]) ** 2
+    spent, held = level.energies.tolist()
+    return {"in": given, "out": out, "viscous": spent, "stored": held, "residual": given - out - spent - held}

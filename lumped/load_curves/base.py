@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.quadrature import gauss
+
 GAUSS_POINTS = 48
 
 
@@ -42,22 +44,19 @@ class LoadCurve(ABC):
         """Work of indentation int_0^depth F d depth = depth (F - a depth) + int_0^a depth(x)^2 dx."""
         d = np.maximum(np.asarray(depth, dtype=float), 0.0)
         a = np.asarray(self.contact_radius(d))
-        nodes, weights = _gauss()
+        nodes, weights = gauss(GAUSS_POINTS)
         inner = a * (np.square(self.depth(a[..., None] * nodes)) @ weights)
         return np.asarray(d * (self.force(d) - a * d) + inner)
 
     def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
-        """p(r)/E* = (1/pi) int_r^a depth'(x)/sqrt(x^2-r^2) dx, zero outside; Popov and Hess, ISBN 978-3-642-53876-6."""
+        """Pressure p(r)/E* = (1/pi) int_r^a depth'(x)/sqrt(x^2-r^2) dx, zero outside the contact.
+
+        Popov and Hess 2015, ISBN 978-3-642-53876-6.
+        """
         r = np.abs(np.asarray(radius, dtype=float))
         reach = np.sqrt(np.maximum(contact_radius**2 - r**2, 0.0))
-        nodes, weights = _gauss()
+        nodes, weights = gauss(GAUSS_POINTS)
         s = reach[..., None] * nodes
         x = np.hypot(s, r[..., None])
         slope_over_x = np.divide(self.depth_slope(x), x, out=np.zeros_like(x), where=x > 0.0)
         return np.asarray(reach * (slope_over_x @ weights) / np.pi)
-
-
-def _gauss() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Gauss-Legendre nodes and weights on (0, 1)."""
-    nodes, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
-    return 0.5 * (nodes + 1.0), 0.5 * weights

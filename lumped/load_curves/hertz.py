@@ -47,7 +47,8 @@ class HertzImpact:
 
 
 def hertz_impact(radius: float, modulus: float, mass: float, velocity: float) -> HertzImpact:
-    """Hertz impact on an elastic half-space of contact modulus E* (Pa): duration 2.868266 (m^2/(R E*^2 v))^(1/5).
+    """Hertz impact on an elastic half-space of contact modulus E* (Pa): duration 2.868266 (m^2/(R E*^2
+    v))^(1/5).
 
     The products are ordered so that no accepted scene leaves double precision.
     """

@@ -30,7 +30,8 @@ def reciprocal(
 def _merged(moduli: tuple[float, ...], times: tuple[float, ...]) -> tuple[Array, Array]:
     """Terms of equal time as one, terms without weight left out, in order of time."""
     taus, where = np.unique(np.array(times, dtype=float), return_inverse=True)
-    weights = np.bincount(where, weights=np.array(moduli, dtype=float), minlength=taus.size)
+    weights = np.zeros(taus.size)
+    np.add.at(weights, where, moduli)
     return weights[weights > 0.0], taus[weights > 0.0]
 
 

@@ -29,15 +29,20 @@ class Parabola(Shape):
 
     def height(self, r: ArrayLike) -> NDArray[np.float64]:
         """r^2/(2R)."""
-        return np.asarray(r, dtype=float) ** 2 / (2.0 * self.radius)
+        return np.asarray(np.asarray(r, dtype=float) ** 2 / (2.0 * self.radius))
 
     def slope(self, r: ArrayLike) -> NDArray[np.float64]:
         """r/R."""
-        return np.abs(np.asarray(r, dtype=float)) / self.radius
+        return np.asarray(np.abs(np.asarray(r, dtype=float)) / self.radius)
 
     def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
         """x^2/R."""
-        return np.asarray(x, dtype=float) ** 2 / self.radius
+        return np.asarray(np.asarray(x, dtype=float) ** 2 / self.radius)
+
+    @property
+    def tip_radius(self) -> float:
+        """Its radius, m."""
+        return self.radius
 
     @property
     def load_curve(self) -> Hertz:

@@ -37,6 +37,11 @@ class Shape(ABC):
 
     @property
     @abstractmethod
+    def tip_radius(self) -> float:
+        """Radius of curvature of the lowest point, m."""
+
+    @property
+    @abstractmethod
     def load_curve(self) -> LoadCurve:
         """The closed form of elastic indentation by this profile."""
 

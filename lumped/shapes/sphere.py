@@ -48,6 +48,11 @@ class Sphere(Shape):
             return np.where(ratio <= 1.0, self.radius * ratio * np.arctanh(ratio), np.inf)
 
     @property
+    def tip_radius(self) -> float:
+        """Its radius, m."""
+        return self.radius
+
+    @property
     def load_curve(self) -> SneddonSphere:
         """Sneddon's closed form."""
         return SneddonSphere(self.radius)

@@ -1,6 +1,7 @@
 """Where the contact ends and what the springs inside carry: F/2 = int_0^edge f dx, f = held + lift.
 
-`held` is what each spring carries of itself, falling with x; `lift` is common to all and follows from the motion.
+`held` is what each spring carries of itself, falling with x; `lift` is common to all and follows from the
+motion.
 """
 
 from __future__ import annotations

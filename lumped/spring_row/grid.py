@@ -16,8 +16,8 @@ Array = NDArray[np.float64]
 class Grid:
     """Places of the steps of one phase, from 0 to 1, shape (n+1,), in the root of time from its singular end.
 
-    The contact radius grows like the root of the time from touch, and shrinks to nothing like the root of the time
-    left. In that root the motion is smooth, so the steps are cut into equal parts of it.
+    The contact radius grows like the root of the time from touch, and shrinks to nothing like the root of the
+    time left. In that root the motion is smooth, so the steps are cut into equal parts of it.
     """
 
     places: Array

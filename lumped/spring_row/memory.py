@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from lumped.materials import Relaxation
 
@@ -25,18 +26,28 @@ def moments(x: float) -> tuple[float, float, float, float]:
     return decay, zeroth, first, (1.0 - 2.0 * first) / x
 
 
-def step(
-    modulus: Relaxation, h: float, velocity: float, acceleration: float
-) -> tuple[list[float], list[float], list[float]]:
-    """What a step of length h does to z_k = moduli_k int exp(-(t-s)/times_k) d depth(s).
+class Ageing(NamedTuple):
+    """What a step of length h does to z_k = moduli_k int exp(-(t-s)/times_k) d depth(s), for every term k.
 
-    The velocity starts at `velocity` with slope `acceleration`, and the slope changes linearly by some jerk h.
-    Returns, for every term, the decay, the increment without that change, and the increment per unit of it.
+    z_k falls by the factor `decays`, then rises by `increments` and, per unit by which the acceleration changes
+    over the step, by `changes`.
     """
-    decays, increments, sensitivities = [], [], []
+
+    decays: list[float]
+    increments: list[float]
+    changes: list[float]
+
+    def rises(self, change: float) -> list[float]:
+        """By how much each z_k rises when the acceleration changes by `change`."""
+        return [rise + per * change for rise, per in zip(self.increments, self.changes, strict=True)]
+
+
+def ageing(modulus: Relaxation, h: float, velocity: float, acceleration: float) -> Ageing:
+    """The ageing over a step of length h that starts with `velocity` and `acceleration`, which changes linearly."""
+    found = Ageing([], [], [])
     for stiffness, tau in zip(modulus.moduli, modulus.times, strict=True):
         decay, zeroth, first, second = moments(h / tau)
-        decays.append(decay)
-        increments.append(stiffness * h * (velocity * zeroth + acceleration * h * first))
-        sensitivities.append(0.5 * stiffness * h * h * second)
-    return decays, increments, sensitivities
+        found.decays.append(decay)
+        found.increments.append(stiffness * h * (velocity * zeroth + acceleration * h * first))
+        found.changes.append(0.5 * stiffness * h * h * second)
+    return found

@@ -1,32 +1,43 @@
 """Nested marches, the steps cut into 1, 2, 4, ... parts, and their limit by Richardson's rule.
 
-The row of springs errs by h^2, so the difference of two marches tells the limit, and the difference of two such
-limits is a true bar for the better one.
+The row of springs errs by h^2, so the difference of two marches tells the limit, and the difference of two
+such limits is a true bar for the better one.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.ending import End
+from lumped.errors import NotReached
+from lumped.spring_row.energy import Meter
 from lumped.spring_row.grid import Grid
-from lumped.spring_row.march import End, Track, march
+from lumped.spring_row.march import Track, march
 from lumped.spring_row.pace import Pace, Prescribed
-from lumped.spring_row.row import Instant, Problem
+from lumped.spring_row.row import Instant, Problem, Row
 
 Array = NDArray[np.float64]
 ALIGNING_TRIES = 8
+NEARLY = 0.05
+# The energies need two levels only: they are a check, not a quantity.
+METERED = (1, 2)
 
 
 @dataclass(frozen=True)
 class Level:
-    """One march: its columns (those of Instant, then rows) for approach and rebound, and the number of steps."""
+    """One march, or the limit of two.
+
+    The fields of Instant over the steps of approach and rebound, shape (6, n); steps marched for it; energies, J.
+    """
 
     approach: Array
     rebound: Array
     steps: int
+    energies: Array
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -45,7 +56,7 @@ class Nest:
 
     @classmethod
     def around(cls, problem: Problem, end_time: float, track: Track, intervals: int) -> Nest:
-        """The grids of a coarse march, at least `intervals` for each phase, and more for a phase of many steps."""
+        """The grids of a coarse march, at least `intervals` for each phase, and no fewer than its steps."""
         if track.end is End.REST:
             end_time = track.approach[-1].time
 
@@ -56,29 +67,51 @@ class Nest:
         return cls(problem, end_time, grid(track.approach, False), rebound)
 
     def level(self, parts: int, ends: tuple[float, float]) -> Level:
-        """March with every step cut into `parts`, again with better `ends` until the phases end in their last steps."""
-        for _ in range(ALIGNING_TRIES):
-            track = self._march(parts, ends)
-            level = Level(_columns(track.approach), _columns(track.rebound), len(track.approach) + len(track.rebound))
-            if self._aligned(level, parts):
-                break
-            ends = level.ends
-        return level
+        """March with every step cut into `parts`, again with better `ends` (s) until the phases end as planned.
 
-    def _march(self, parts: int, ends: tuple[float, float]) -> Track:
+        Raises NotReached when they never do.
+        """
+        steps = 0
+        for _ in range(ALIGNING_TRIES):
+            meter = Meter(self.problem)
+            track = self._march(parts, ends, meter.observe if parts in METERED else None)
+            steps += len(track.approach) + len(track.rebound)
+            level = Level(_columns(track.approach), _columns(track.rebound), steps, meter.energies)
+            if self._aligned(level, parts, ends):
+                return level
+            ends = level.ends
+        raise NotReached("finer and coarser steps of the spring row do not follow the same course of events")
+
+    def _march(self, parts: int, ends: tuple[float, float], observe: Callable[[Row, Instant], None] | None) -> Track:
         turn, last = ends
 
         def pace(start: Instant) -> Pace:
             grid = self.approach if start.time == 0.0 or self.rebound is None else self.rebound
             return Prescribed(grid.times(start.time, turn if start.time == 0.0 else last, parts))
 
-        return march(self.problem, self.end_time, pace, 10 * parts * self.approach.places.size)
+        most = 10 * parts * max(self.approach.places.size, self.rebound.places.size if self.rebound else 0)
+        return march(self.problem, self.end_time, pace, most, at_rest=0.0, observe=observe)
 
-    def _aligned(self, level: Level, parts: int) -> bool:
-        grown = level.approach.shape[1] == parts * (self.approach.places.size - 1) + 1
-        if self.rebound is None:
-            return grown and not level.rebound.size
-        return grown and level.rebound.shape[1] == parts * (self.rebound.places.size - 1) + 1
+    def _aligned(self, level: Level, parts: int, ends: tuple[float, float]) -> bool:
+        """Whether each phase has the planned number of steps, and its last one nearly the planned length."""
+        phases = [(level.approach, self.approach, ends[0]), (level.rebound, self.rebound, ends[1])]
+        for fields, grid, end in phases:
+            if fields.size == 0 or grid is None:
+                if fields.size or grid:
+                    return False
+                continue
+            time = fields[0]
+            if time.size != parts * (grid.places.size - 1) + 1 or abs(time[-1] - end) > NEARLY * (time[-1] - time[-2]):
+                return False
+        return True
+
+
+def predicted_ends(levels: Sequence[Level]) -> tuple[float, float]:
+    """When the phases of the next level will end, s: the difference of the last two falls by 4."""
+    last = levels[-1].ends
+    before = levels[-2].ends if len(levels) > 1 else last
+    turn, end = (now + 0.25 * (now - earlier) for now, earlier in zip(last, before, strict=True))
+    return turn, end
 
 
 def limit(coarse: Level, fine: Level) -> Level:
@@ -86,7 +119,8 @@ def limit(coarse: Level, fine: Level) -> Level:
 
     The correction is known on every second row, and is smooth: between them it is the mean of its neighbours.
     """
-    return Level(_limit(coarse.approach, fine.approach), _limit(coarse.rebound, fine.rebound), fine.steps)
+    energies = (4.0 * fine.energies - coarse.energies) / 3.0
+    return Level(_limit(coarse.approach, fine.approach), _limit(coarse.rebound, fine.rebound), fine.steps, energies)
 
 
 def _limit(coarse: Array, fine: Array) -> Array:

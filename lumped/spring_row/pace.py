@@ -9,6 +9,7 @@ from typing import Protocol
 from lumped.spring_row.row import Instant
 
 GROWTH = 3.0
+CAUTION = 0.9
 SHRINKAGE = 0.2
 # Below this share of the velocity at touch, errors of the velocity count absolutely.
 REST = 1e-5
@@ -29,10 +30,11 @@ class Pace(Protocol):
 
 @dataclass
 class Adaptive:
-    """Steps whose error in velocity stays below `tolerance` of it, and over which the edge moves by `1/elements`.
+    """Steps whose error in velocity stays below `tolerance` of it, and over which the edge moves by
+    `1/elements`.
 
-    The error of a step is h^3 a''/12, a'' from the accelerations at three instants. `reach`, m: the contact radius
-    which `elements` steps are to cover at least.
+    The error of a step is h^3 a''/12, a'' from the accelerations at three instants. `reach`, m: the contact
+    radius which `elements` steps are to cover at least.
     """
 
     first: float
@@ -44,8 +46,8 @@ class Adaptive:
     h: float = field(init=False)
 
     def __post_init__(self) -> None:
-        # A half sine of acceleration errs by this per step at 2/3 `elements` steps per contact.
-        self.tolerance = 8.0 / self.elements**3
+        # A half sine of acceleration errs by this per step at 0.6 `elements` steps per contact.
+        self.tolerance = 12.0 / self.elements**3
         self.h = self.first
 
     def propose(self, now: Instant) -> float:
@@ -53,8 +55,9 @@ class Adaptive:
 
     def accepts(self, now: Instant, then: Instant) -> bool:
         h = then.time - now.time
-        share = max(self._error(now, then, h), self._travel(now, then))
-        factor = GROWTH if share <= 0.0 else min(GROWTH, max(SHRINKAGE, 0.9 * share ** (-1.0 / 3.0)))
+        # An error grows as h^3, the travel as h: cubed, both ask for a step in the same way.
+        share = max(self._error(now, then, h), (CAUTION * self._travel(now, then)) ** 3)
+        factor = GROWTH if share <= 0.0 else min(GROWTH, max(SHRINKAGE, CAUTION * share ** (-1.0 / 3.0)))
         self.h = h * factor
         if share > 2.0:
             return False
@@ -71,16 +74,16 @@ class Adaptive:
         return abs(h**3 * bend / (6.0 * (h + back))) / (self.tolerance * scale)
 
     def _travel(self, now: Instant, then: Instant) -> float:
-        """Cube of the edge's travel over its allowance, so that both shares answer to h alike."""
+        """The edge's travel over its allowance."""
         if then.edge < now.edge and then.edge < NEARLY_CLOSED * self.reach:
             return 0.0
         allowed = max(now.edge, then.edge, self.reach) / self.elements
-        return (abs(then.edge - now.edge) / allowed) ** 3
+        return abs(then.edge - now.edge) / allowed
 
 
 @dataclass
 class Prescribed:
-    """Steps that end at given instants, s; the last one reaches beyond its own, for the event that cuts it."""
+    """Steps that end at given instants, s; the last reaches beyond its own, for the event that cuts it."""
 
     instants: Sequence[float]
     taken: int = 0

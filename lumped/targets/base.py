@@ -22,7 +22,7 @@ class Target(ABC):
 
     @abstractmethod
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
-        """Interpenetration of the undeformed surfaces, m, positive inside; broadcasts over r and depth (m)."""
+        """Interpenetration of the undeformed surfaces, m, positive inside; broadcasts over r and depth, m."""
 
     def to_dict(self) -> dict[str, Any]:
         """The geometry's part of the target's table."""

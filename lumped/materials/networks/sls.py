@@ -16,5 +16,9 @@ def of(**values: float) -> Relaxation:
         relaxed, ratio, retardation = values["E0"], values["R1"], values["R2"]
     else:
         spring, series = values["E1"], values["E2"]
-        relaxed, ratio, retardation = spring * series / (spring + series), series / spring, values["C1"] / spring
+        relaxed, ratio, retardation = (
+            spring * series / (spring + series),
+            series / spring,
+            values["C1"] / spring,
+        )
     return Relaxation(relaxed, (relaxed * ratio,), (retardation / (1.0 + ratio),))
