@@ -62,7 +62,7 @@ class Curve:
 
     def force(self, time: Array) -> Array:
         """Contact force, N; zero outside the contact."""
-        inside = (time > 0) & (time < self.duration)
+        inside = (time > 0) & ((time < self.duration) if self.separated else (time <= self.duration))
         x = np.sqrt(np.where(inside, time, self.duration) / self.duration)
         mean, slope = local_polynomial(self.x, self.mean_force, x)
         return np.where(inside, np.maximum(mean + 0.5 * x * slope, 0.0), 0.0)

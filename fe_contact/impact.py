@@ -32,6 +32,9 @@ APPROACH_TO_END = 0.4  # share of the time left that a step may take near separa
 END_REACHED = 1e-3  # time left over contact time at which separation is read off the trend
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 PREDICTIONS = 3  # of the separation: how far they lie apart tells how well its time can be read
+NOISE = 1e-4  # share of the peak force below which a contact problem may drown in the mesh's error
+AT_REST = 1e-3  # share of the velocity at touch below which a fluid has stopped the striker
+REST_ROWS = 12
 FAINT = 1e-3  # share of the peak force below which contact may end
 VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
 STEPS_ALLOWED = 20  # multiple of the settings' steps after which the march gives up
@@ -92,9 +95,10 @@ class _Marcher:
             predicted.append(states[-1].time + (left or 0.0))
             step = None if left is not None and left <= self.shortest else self._advance(states[-1], steps, left)
             if step is None:
-                separated = True
-                if left:
-                    states.append(self._flight(states[-1], min(left, self.shortest)))
+                separated = states[-1].velocity < 0
+                states += (
+                    self._flight(states[-1], min(left or 0.0, self.shortest)) if separated else self._rest(states[-1])
+                )
                 break
             steps.append(step)
             states.append(step.state)
@@ -107,9 +111,8 @@ class _Marcher:
         recent = steps[-3:]
         times = [s.state.time - (1 - self.scheme.SAMPLE) * s.length for s in recent]
         left = time_left(times, [s.axis_response for s in recent], recent[-1].state.time)
-        faint = FAINT * max(s.force for s in steps)
         # a kink in the trend is not the end: contact ends faintly
-        return None if left is None or (left <= self.shortest and recent[-1].force > faint) else left
+        return None if left is None or (left <= self.shortest and not self._faint(steps, FAINT)) else left
 
     def _advance(self, state: _State, steps: list[_Step], left: float | None) -> _Step | None:
         """The next step: on the grid, shorter towards separation, and again where contact was lost in it.
@@ -123,12 +126,17 @@ class _Marcher:
         while True:
             try:
                 return self._step(state, steps, length)
-            except ContactLost:
-                if not steps:
+            except (ContactLost, ContactNotSettled, MemoryTooSmall) as failure:
+                if not steps or not (isinstance(failure, ContactLost) or self._faint(steps, NOISE)):
                     raise
                 length /= 2
                 if length < self.shortest:
                     return None
+
+    @staticmethod
+    def _faint(steps: list[_Step], share: float) -> bool:
+        """Whether the force has fallen below a share of its peak."""
+        return steps[-1].force <= share * max(step.force for step in steps)
 
     def _grid_length(self, done: int) -> float:
         """Length of the next regular step."""
@@ -142,13 +150,18 @@ class _Marcher:
         lever = scheme.LEVER * length**2
         free_depth = state.depth + length * state.velocity + lever * strike.gravity
         scale, solution, work = self._settle(state, steps, law, carried[0], free_depth, lever / strike.mass, length)
-        pressure = solution.pressure
-        force = scale * float(self.surface.operator.weights @ pressure)
-        stress = self._stress(state.memory.radii, scale, pressure)
+        force = scale * float(self.surface.operator.weights @ solution.pressure)
+        depth = free_depth - lever * force / strike.mass
+        radius = scale * solution.edge(self.surface.operator.points)
+        stress = self._stress(state.memory.radii, scale, solution.pressure)
+        touching = state.memory.radii < radius
+        # in contact the surface is the striker's: what penalty is left in the trace must not be remembered
+        held = law.now * (depth - strike.height(state.memory.radii[touching])) + carried[0, touching]
+        stress[0, touching] = held
         memory = state.memory.advanced(law, stress)
         moved = _State(
             time=state.time + length,
-            depth=free_depth - lever * force / strike.mass,
+            depth=depth,
             velocity=state.velocity + length * (strike.gravity - force / strike.mass),
             impulse=state.impulse + length * force,
             memory=memory,
@@ -157,7 +170,7 @@ class _Marcher:
             length=length,
             state=moved,
             force=force,
-            radius=scale * solution.edge(self.surface.operator.points),
+            radius=radius,
             axis_response=float(stress[0, 0]),
             solution=solution,
             scale=scale,
@@ -220,11 +233,21 @@ class _Marcher:
         spread = np.interp(radii / scale, self.surface.operator.points, pressure / scale, right=0.0)
         return np.stack([displacement, spread])
 
-    def _flight(self, state: _State, left: float) -> _State:
+    def _flight(self, state: _State, left: float) -> list[_State]:
         """The little time to separation, over which the force is below any rounding that matters."""
+        if left == 0.0:
+            return []
         pull = self.strike.gravity * left
         depth = state.depth + left * (state.velocity + 0.5 * pull)
-        return replace(state, time=state.time + left, depth=depth, velocity=state.velocity + pull)
+        return [replace(state, time=state.time + left, depth=depth, velocity=state.velocity + pull)]
+
+    def _rest(self, state: _State) -> list[_State]:
+        """A striker that a fluid has stopped, up to the end time; raises where it is no fluid or still moves."""
+        strike = self.strike
+        if strike.relaxation.equilibrium > 0 or strike.gravity != 0 or state.velocity > AT_REST * strike.velocity:
+            raise ContactNotSettled(state.time)
+        roots = np.linspace(np.sqrt(state.time), np.sqrt(strike.end_time), REST_ROWS)[1:]
+        return [replace(state, time=float(root) ** 2) for root in roots]
 
     def _march(self, states: list[_State], steps: list[_Step], separated: bool, predicted: list[float]) -> March:
         ends = np.array([s.state.time for s in steps])

@@ -25,7 +25,7 @@ STEPS_ORDER = 0.1  # steps grow with tolerance to this power: 60 at 1e-4
 EARLY_PEAK = 0.2  # a force that peaks before this share of the contact needs more steps in proportion
 DEFAULTS: Mapping[str, Any] = {
     "order": 4,
-    "penalty": 1000.0,
+    "penalty": 500.0,
     "enforcement": "corrected",
     "scheme": "galerkin",
     "far_radius": 20.0,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.errors import NotReached
 from lumped.spring_row.row import Instant
 
 Array = NDArray[np.float64]
@@ -25,9 +26,14 @@ class Grid:
 
     @classmethod
     def of(cls, instants: list[Instant], intervals: int, from_end: bool) -> Grid:
-        """The grid of a march, resampled to `intervals`; its last step, cut by an event, counts by its length."""
+        """The grid of a march, resampled to `intervals`; its last step, cut by an event, counts by its length.
+
+        Raises NotReached for a phase without length.
+        """
         t = np.array([instant.time for instant in instants])
         span = t[-1] - t[0]
+        if span <= 0.0:
+            raise NotReached("the rebound ends where it starts: gravity and the target are in balance there")
         roots = 1.0 - np.sqrt((t[-1] - t) / span) if from_end else np.sqrt((t - t[0]) / span)
         index = np.arange(t.size, dtype=float)
         if t.size > 2:

@@ -30,8 +30,7 @@ class Pace(Protocol):
 
 @dataclass
 class Adaptive:
-    """Steps whose error in velocity stays below `tolerance` of it, and over which the edge moves by
-    `1/elements`.
+    """Steps that keep the error of the velocity below `tolerance` of it, and the edge's travel below 1/elements.
 
     The error of a step is h^3 a''/12, a'' from the accelerations at three instants. `reach`, m: the contact
     radius which `elements` steps are to cover at least.

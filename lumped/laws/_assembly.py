@@ -1,0 +1,148 @@
+"""From a law's dense answer to a Result: the same rows, bars and keys for every law."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from time import perf_counter, process_time
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.ending import AT_REST, End
+from lumped.history import History, densified
+from lumped.model_ledger import Peak, model_ledger
+from lumped.result import RULED_RELATIVE, UNITS, Quantity, Result, provenance, unmet
+from lumped.scene import Model, Scene
+
+Array = NDArray[np.float64]
+# Rounding of the sums behind a quantity, relative to it.
+ROUNDING = 1e-12
+FINEST_ROWS = 1e-9
+# Two integrations may agree in one quantity by chance: its bar is at least this share of the history's (L2).
+LEAST_SHARE = 0.1
+SHARE_OF_HISTORY = {"peak_time": 3.0}
+
+
+@dataclass(frozen=True)
+class Answer:
+    """One integration of a law.
+
+    `columns` maps times (n,) to depth, velocity, force and contact radius, shape (4, n), SI; `times` are its
+    own rows; `values` are the quantities (None where undefined), without history_l2.
+    """
+
+    times: Array
+    columns: Callable[[Array], Array]
+    values: Mapping[str, float | None]
+    end: End
+    energy: Mapping[str, float | None] = field(default_factory=dict)
+    message: str = ""
+
+    @property
+    def rounding(self) -> float:
+        """What rounding adds to every bar, relatively; and what calling the striker at rest adds."""
+        return ROUNDING + (AT_REST if self.end is End.REST else 0.0)
+
+    def rows(self, end_time: float) -> Array:
+        """Its own times, and those until `end_time` which a striker at rest has still before it."""
+        if self.end is not End.REST:
+            return self.times
+        return np.append(self.times, [self.times[-1] * (1.0 + 1e-9), end_time])
+
+
+class Clock:
+    """Wall and process time since it was made."""
+
+    def __init__(self) -> None:
+        self.wall, self.cpu = perf_counter(), process_time()
+
+    def read(self) -> dict[str, float]:
+        """Seconds."""
+        return {"wall_s": perf_counter() - self.wall, "cpu_s": process_time() - self.cpu}
+
+
+def force_difference(fine: Answer, coarse: Answer) -> tuple[float, float]:
+    """Largest difference of the two forces over time, N, and its L2 norm over that of the force."""
+    t = np.unique(np.concatenate([fine.times, coarse.times]))
+    force = fine.columns(t)[2]
+    difference = force - coarse.columns(t)[2]
+    norm = float(np.trapezoid(force**2, t))
+    return float(np.abs(difference).max()), float(np.sqrt(np.trapezoid(difference**2, t) / norm)) if norm else 0.0
+
+
+def bars(fine: Answer, coarse: Answer, safety: float) -> tuple[dict[str, Quantity], float]:
+    """The quantities of `fine`, each with `safety` times its distance from `coarse` as bar; the bar of F, N."""
+    worst, l2 = force_difference(fine, coarse)
+    quantities = {"history_l2": Quantity(0.0, safety * l2 + fine.rounding, "1")}
+    for name, value in fine.values.items():
+        other, error = coarse.values[name], None
+        if value is not None:
+            scale = 1.0 if name == "restitution" else abs(value)
+            least = SHARE_OF_HISTORY.get(name, LEAST_SHARE) * l2 + fine.rounding
+            error = safety * max(abs(value - (other or 0.0)), least * scale)
+        quantities[name] = Quantity(value, error, UNITS[name])
+    return {name: quantities[name] for name in UNITS}, safety * worst
+
+
+def assemble(
+    method: str,
+    scene: Scene,
+    tolerance: float,
+    answer: Answer,
+    quantities: Mapping[str, Quantity],
+    force_error: float,
+    clock: Clock,
+    numerics: Mapping[str, Any],
+    work: Mapping[str, Any],
+    model: Model | None = None,
+) -> Result:
+    """The Result of one law: history dense enough for the tolerance, ledgers, and what it cost.
+
+    `model` is the model as the law resolves it, where that is not the scene's.
+    """
+    times = densified(answer.rows(scene.end_time), lambda t: answer.columns(t)[2], max(tolerance, FINEST_ROWS))
+    depth, velocity, force, radius = answer.columns(times)
+    # The rows themselves add what linear interpolation errs by, less than the tolerance; the bar is for the
+    # rows.
+    history = History(times, depth, velocity, force, radius, np.full(times.size, force_error))
+    resolved = model or scene.model
+    missed = unmet(quantities, tolerance)
+    peak = quantities["peak_force"].value or 1.0
+    return Result(
+        method=method,
+        converged=answer.end is not End.SECOND_APPROACH and not missed,
+        separated=answer.end is End.SEPARATED,
+        scene=scene,
+        model=resolved,
+        tolerance=tolerance,
+        history=history,
+        quantities=quantities,
+        numerics=numerics,
+        error_budget={"integration": force_error / peak},
+        error_budget_by_quantity={"integration": _relative(quantities)},
+        model_ledger=model_ledger(scene, _peak(quantities, history), resolved),
+        energy=answer.energy,
+        provenance=provenance(),
+        timing=clock.read(),
+        work=work,
+        message="; ".join(part for part in (answer.message, missed) if part),
+    )
+
+
+def _peak(quantities: Mapping[str, Quantity], history: History) -> Peak:
+    """The scales for the ledger: where contact does not end, the pulse lasts twice as long as to its peak."""
+    number = {name: quantity.value or 0.0 for name, quantity in quantities.items()}
+    duration = number["duration"] or 2.0 * number["peak_time"]
+    return Peak(number["peak_force"], number["peak_depth"], float(history.contact_radius.max()), duration)
+
+
+def _relative(quantities: Mapping[str, Quantity]) -> dict[str, float]:
+    """Bars over values where the tolerance rules them so."""
+    found = {}
+    for name, quantity in quantities.items():
+        if quantity.error is not None and quantity.value is not None:
+            relative = name in (*RULED_RELATIVE, "peak_time") and quantity.value != 0.0
+            found[name] = quantity.error / abs(quantity.value) if relative else quantity.error
+    return found

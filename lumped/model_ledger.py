@@ -1,0 +1,128 @@
+"""What a model of impact on a half-space leaves out, each effect estimated relative to peak force."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+from lumped.radiation import pulse_energy
+from lumped.result import LedgerEntry
+from lumped.scene import Model, Scene
+
+GRAVITY = 9.81
+# Hertz: the first yield lies below the surface, where the peak pressure is 1.6 Y (Johnson, ISBN
+# 978-0-521-34796-9).
+FIRST_YIELD = 1.6
+
+
+@dataclass(frozen=True)
+class Peak:
+    """Scales of an impact: N, m, m, s. `duration` may be twice the time of the peak."""
+
+    force: float
+    depth: float
+    contact_radius: float
+    duration: float
+
+
+def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[LedgerEntry, ...]:
+    """The ledger of a scene under `model` (default: the scene's own), with the scales of its impact."""
+    resolved = model or scene.model
+    radius = scene.shape.tip_radius
+    entries = [
+        _inertia(scene, peak),
+        _profile(scene, resolved, peak),
+        _finite_strain(peak, radius),
+        _deformed_gap(scene.material.nu, peak, radius),
+        _sideways(scene),
+        LedgerEntry("striker compliance", "rigid", None, "the scene gives the striker no material"),
+        _gravity(scene, resolved, peak),
+        _plasticity(scene, peak),
+        _adhesion(scene, peak, radius),
+    ]
+    return tuple(entries)
+
+
+def _inertia(scene: Scene, peak: Peak) -> LedgerEntry:
+    """Waves take the share w of the energy, half of it before the peak: F ~ energy^(3/5) loses 0.3 w."""
+    effect, treated, material = "target inertia", "neglected", scene.material
+    if material.density is None:
+        return LedgerEntry(effect, treated, None, "needs target.material.density")
+    shear = material.shear.relaxed or material.shear.glassy
+    if shear == 0.0:
+        return LedgerEntry(effect, treated, None, "a dashpot alone has no wave speed")
+    speed = math.sqrt(shear / material.density)
+    energy = pulse_energy(material.nu, material.density, speed, peak.force, peak.duration)
+    share = energy / (0.5 * scene.mass * scene.velocity**2)
+    return LedgerEntry(effect, treated, 0.3 * share, f"radiates {share:.2g} of the kinetic energy; model.inertia")
+
+
+def _profile(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
+    """The load curves of sphere and parabola at the peak depth."""
+    effect = "parabola against true profile"
+    if model.profile == "exact":
+        return LedgerEntry(effect, "true profile", 0.0)
+    exact = float(scene.shape.resolved("exact").load_curve.force(peak.depth))
+    parabola = float(scene.shape.resolved("parabola").load_curve.force(peak.depth))
+    return LedgerEntry(effect, "parabola", abs(parabola / exact - 1.0), "model.profile = 'exact'")
+
+
+def _finite_strain(peak: Peak, radius: float) -> LedgerEntry:
+    """Stresses err by the order of the strain, Tabor's 0.2 a/R (1951, ISBN 978-0-19-850776-5)."""
+    note = "order of magnitude: Tabor's representative strain 0.2 a/R"
+    return LedgerEntry("finite strain", "small displacements", 0.2 * peak.contact_radius / radius, note)
+
+
+def _deformed_gap(nu: float, peak: Peak, radius: float) -> LedgerEntry:
+    """The surface moves inward while the gap is measured where it was.
+
+    Inside Hertz's contact u_r = -(1-2nu)/(1-nu) (2/3pi) (a^2/R) (a/r) [1-(1-r^2/a^2)^(3/2)] (Johnson, eq.
+    3.41b), near the axis -r times k = (1-2nu)/(1-nu) a/(pi R). The profile is met at r(1+k), as if 1/R were
+    (1+2k)/R, and F ~ sqrt(R) changes by k.
+    """
+    estimate = (1.0 - 2.0 * nu) / (1.0 - nu) * peak.contact_radius / (math.pi * radius)
+    return LedgerEntry("deformed-gap kinematics", "small displacements", estimate, "(1-2nu)/(1-nu) a/(pi R)")
+
+
+def _sideways(scene: Scene) -> LedgerEntry:
+    """At most what the instantaneous modulus changes by, to the power 2/5 of a peak force."""
+    effect, material = "constant nu against constant bulk modulus", scene.material
+    treated = "constant nu" if material.constant == "poisson" else "constant bulk modulus"
+    if material.young.is_elastic:
+        return LedgerEntry(effect, treated, 0.0, "elastic: the same")
+    if material.young.viscosity > 0.0 or material.young.relaxed == 0.0:
+        return LedgerEntry(effect, treated, None, "no bound for a fluid or a dashpot in parallel")
+    poisson = replace(material, constant="poisson").contact_modulus().glassy
+    bulk = replace(material, constant="bulk").contact_modulus().glassy
+    return LedgerEntry(effect, treated, 1.0 - (bulk / poisson) ** 0.4, "bound; target.material.constant")
+
+
+def _gravity(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
+    """The weight of the striker."""
+    if model.gravity != 0.0:
+        return LedgerEntry("gravity", "included", 0.0)
+    return LedgerEntry("gravity", "neglected", GRAVITY * scene.mass / peak.force, "m g; model.gravity")
+
+
+def _plasticity(scene: Scene, peak: Peak) -> LedgerEntry:
+    """Pressure capped at p_y = 1.6 Y: at the same depth F falls by 1 - (3q - q^3)/2, q = p_y/p_0.
+
+    Thornton 1997, doi 10.1115/1.2787319: F = F_y + pi R p_y (depth - depth_y) beyond the yield depth.
+    """
+    effect, strength = "plasticity", scene.material.yield_strength
+    if strength is None:
+        return LedgerEntry(effect, "neglected", None, "needs target.material.yield_strength")
+    if peak.contact_radius == 0.0:
+        return LedgerEntry(effect, "neglected", 0.0)
+    pressure = 1.5 * peak.force / (math.pi * peak.contact_radius**2)
+    share = min(FIRST_YIELD * strength / pressure, 1.0)
+    note = f"p0/(1.6 Y) = {pressure / (FIRST_YIELD * strength):.3g}"
+    return LedgerEntry(effect, "neglected", 1.0 - 0.5 * share * (3.0 - share**2), note)
+
+
+def _adhesion(scene: Scene, peak: Peak, radius: float) -> LedgerEntry:
+    """The pull-off force (3/2) pi w R of Johnson, Kendall and Roberts 1971, doi 10.1098/rspa.1971.0141."""
+    work = scene.material.work_of_adhesion
+    if work is None:
+        return LedgerEntry("adhesion", "neglected", None, "needs target.material.work_of_adhesion")
+    return LedgerEntry("adhesion", "neglected", 1.5 * math.pi * work * radius / peak.force, "JKR pull-off force")

@@ -1,0 +1,64 @@
+"""Energy that a force pulse radiates into an elastic half-space."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from lumped.quadrature import gauss
+
+# T int (dF/dt)^2 dt / F_max^2 of the Hertz pulse: 4.5 (T v/depth) (2/5) B(4/5, 3/2), T v/depth = 2.943275.
+HERTZ_PULSE = 1.8 * 2.943275 * math.gamma(0.8) * math.gamma(1.5) / math.gamma(2.3)
+GAUSS_POINTS = 64
+
+
+def radiation_coefficient(nu: float) -> float:
+    """A(nu): a normal point force F(t) on a half-space radiates W = A/(density c_s^3) int (dF/dt)^2 dt.
+
+    A = I/(2 pi), I the imaginary part of Lamb's integral of x sqrt(x^2-g^2)/[(2x^2-1)^2 - 4x^2 sqrt(x^2-g^2)
+    sqrt(x^2-1)], g = c_s/c_p: pressure and shear waves (x < 1) and the pole of the Rayleigh wave. A(1/4) is
+    Miller and Pursey 1955, doi 10.1098/rspa.1955.0245: 4.836/(2 pi 3^(3/2)).
+    """
+    g = math.sqrt((1.0 - 2.0 * nu) / (2.0 * (1.0 - nu)))
+    return (_both_waves(g) + _shear_waves(g) + _rayleigh_wave(g)) / (2.0 * math.pi)
+
+
+def pulse_energy(nu: float, density: float, shear_speed: float, peak_force: float, duration: float) -> float:
+    """Energy in J which a Hertz pulse of this peak, N, and duration, s, radiates into the half-space."""
+    rate = HERTZ_PULSE * peak_force**2 / duration
+    return radiation_coefficient(nu) / (density * shear_speed**3) * rate
+
+
+def _both_waves(g: float) -> float:
+    """The part x < g, with x = g sin."""
+    angle, weight = (0.5 * math.pi * part for part in gauss(GAUSS_POINTS))
+    x = g * np.sin(angle)
+    p = g * np.cos(angle)
+    s = np.sqrt(1.0 - x**2)
+    return float(weight @ (x * p * p / ((2.0 * x**2 - 1.0) ** 2 + 4.0 * x**2 * p * s)))
+
+
+def _shear_waves(g: float) -> float:
+    """The part g < x < 1, with x^2 = g^2 cos^2 + sin^2."""
+    angle, weight = (0.5 * math.pi * part for part in gauss(GAUSS_POINTS))
+    p = math.sqrt(1.0 - g * g) * np.sin(angle)
+    s = math.sqrt(1.0 - g * g) * np.cos(angle)
+    x2 = g * g + p * p
+    # x dx = p s d(angle)
+    return float(weight @ (4.0 * x2 * p**3 * s**2 / ((2.0 * x2 - 1.0) ** 4 + (4.0 * x2 * p * s) ** 2)))
+
+
+def _rayleigh_wave(g: float) -> float:
+    """Half the residue at the root x > 1 of Rayleigh's function, found by bisection on x^2."""
+    low, high = 1.0, 4.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if _rayleigh(middle, g) > 0.0 else (low, middle)
+    p, s = math.sqrt(low - g * g), math.sqrt(low - 1.0)
+    slope = 4.0 * (2.0 * low - 1.0) - 4.0 * p * s - 2.0 * low * (s / p + p / s)
+    return 0.5 * math.pi * p / abs(slope)
+
+
+def _rayleigh(x2: float, g: float) -> float:
+    return (2.0 * x2 - 1.0) ** 2 - 4.0 * x2 * math.sqrt((x2 - g * g) * (x2 - 1.0))

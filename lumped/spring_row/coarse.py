@@ -1,0 +1,28 @@
+"""One march of the row of springs at its own pace: quick, good to about 1/elements^2."""
+
+from __future__ import annotations
+
+from lumped.scales import stiffest_impact
+from lumped.scene import Scene
+from lumped.spring_row.march import Track, march
+from lumped.spring_row.pace import Adaptive
+from lumped.spring_row.row import Instant, Problem
+
+MOST_STEPS = 10_000
+
+
+def problem_of(scene: Scene) -> Problem:
+    """What the row of springs needs of a scene."""
+    return Problem(scene.profile, scene.contact_modulus, scene.mass, scene.velocity, scene.model.gravity)
+
+
+def coarse(problem: Problem, end_time: float, elements: int) -> Track:
+    """One march with steps by their error and by the travel of the edge, 1/elements. Raises NotReached."""
+    reach = stiffest_impact(problem.shape, problem.modulus, problem.mass, problem.velocity).contact_radius
+    first = float(problem.shape.load_curve.depth(reach / elements)) / problem.velocity
+
+    def pace(start: Instant) -> Adaptive:
+        h = first if start.time == 0.0 else start.time / elements
+        return Adaptive(min(h, end_time), elements, max(reach, start.edge), problem.velocity)
+
+    return march(problem, end_time, pace, MOST_STEPS)

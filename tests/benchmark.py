@@ -1,0 +1,111 @@
+"""What an impact costs, as multiples of bare imports measured in the same run. A script, not a test.
+
+    python tests/benchmark.py
+
+Every cold run is a process of its own with a velocity nobody used before, so that nothing can be remembered.
+Process CPU (user and system) of the child; medians of five, the runs of all kinds interleaved.
+"""
+
+from __future__ import annotations
+
+import os
+import random
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+REPEATS = 5
+IMPORTS = "import numpy, scipy.sparse.linalg, scipy.linalg, skfem, gmsh, meshio"
+TOLERANCES = ("1e-3", "1e-4")
+BOUNDS = {"1e-3": 3.0, "1e-4": 4.0}
+MEGABYTE = 1024  # ru_maxrss counts kilobytes
+
+
+def child(arguments: list[str]) -> tuple[float, float]:
+    """CPU seconds and peak memory, MB, of a Python process of its own."""
+    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+    probe = (
+        "import resource, subprocess, sys\n"
+        "code = subprocess.call(sys.argv[1:], stdout=subprocess.DEVNULL)\n"
+        "used = resource.getrusage(resource.RUSAGE_CHILDREN)\n"
+        "print(code, used.ru_utime + used.ru_stime, used.ru_maxrss)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", probe, sys.executable, *arguments],
+        cwd=ROOT, env=environment, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    code, cpu, memory = done.stdout.split()
+    if code != "0":
+        raise SystemExit(f"{' '.join(arguments)} ended with {code}:\n{done.stderr}")
+    return float(cpu), float(memory) / MEGABYTE
+
+
+def say(line: str) -> None:
+    sys.stdout.write(line + "\n")
+    sys.stdout.flush()
+
+
+def run_once(tolerance: str, folder: str) -> tuple[float, float]:
+    velocity = f"striker.velocity={random.SystemRandom().uniform(0.015, 0.025)!r}"
+    command = ["run", "polymer-sphere", "--tolerance", tolerance, "--set", velocity, "--out", folder, "--quiet"]
+    return child(["-m", "fe_contact", *command])
+
+
+def cold() -> None:
+    """Whole processes against bare imports."""
+    found: dict[str, list[tuple[float, float]]] = {"imports": [], **{t: [] for t in TOLERANCES}}
+    with tempfile.TemporaryDirectory() as folder:
+        run_once(TOLERANCES[0], folder)  # fills the disk cache
+        for _ in range(REPEATS):
+            found["imports"].append(child(["-c", IMPORTS]))
+            for tolerance in TOLERANCES:
+                found[tolerance].append(run_once(tolerance, folder))
+    cpu = {kind: statistics.median(run[0] for run in runs) for kind, runs in found.items()}
+    memory = {kind: max(run[1] for run in runs) for kind, runs in found.items()}
+    say(f"bare imports            {cpu['imports']:.3f} s CPU, {memory['imports']:.0f} MB")
+    for tolerance in TOLERANCES:
+        ratio = cpu[tolerance] / cpu["imports"]
+        say(
+            f"fe-contact run, {tolerance}    {cpu[tolerance]:.3f} s CPU = {ratio:.2f} x imports "
+            f"(bound {BOUNDS[tolerance]:g}), {memory[tolerance]:.0f} MB (bound 300)"
+        )
+
+
+def marginal() -> None:
+    """Another impact on meshes that are there already, within this process."""
+    sys.path.insert(0, str(ROOT))
+    import lumped
+    from fe_contact.certify import certify
+    from fe_contact.impact import march
+    from fe_contact.plan import plan
+    from fe_contact.reference import strike_of
+    from fe_contact.targets import half_space
+
+    rng = random.SystemRandom()
+    for tolerance in TOLERANCES:
+        spent: dict[str, list[float]] = {"march": [], "certified": []}
+        for repeat in range(REPEATS + 1):
+            scene = lumped.Scene.load("polymer-sphere", {"striker.velocity": rng.uniform(0.015, 0.025)})
+            numerics, strike = plan(scene, {"tolerance": float(tolerance)}).numerics, strike_of(scene)
+            surface = half_space.surface(scene.material.nu, numerics)
+            start = time.process_time()
+            march(strike, surface, numerics)
+            middle = time.process_time()
+            certify(strike, scene.material.nu, numerics)
+            if repeat:  # the first one makes the meshes
+                spent["march"].append(middle - start)
+                spent["certified"].append(time.process_time() - middle)
+        one, all_of_it = (1e3 * statistics.median(times) for times in spent.values())
+        say(f"another impact, {tolerance}    {one:.0f} ms one march, {all_of_it:.0f} ms certified (bound 50 ms)")
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / MEGABYTE
+    say(f"this process            {peak:.0f} MB")
+
+
+if __name__ == "__main__":
+    cold()
+    marginal()

@@ -1,0 +1,196 @@
+"""Random impacts through the front door against the exact answer: errors, bars, convergence.
+
+The reference is the row of springs at a tolerance far below the one asked: no finite element and no time
+step of the suite's march enters it. The contact edge falls anywhere in an element, because nothing here
+chooses where it falls.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import chain
+from typing import Any
+
+import numpy as np
+import pytest
+
+import fe_contact
+import lumped
+from lumped.laws import mdr
+from lumped.result import RULED_RELATIVE, Quantity
+
+IMPACTS = 48
+TOLERANCES = (1e-3, 1e-4)
+REFERENCE_TOLERANCE = 1e-7
+RULED = (*RULED_RELATIVE, "restitution", "history_l2")
+LAWS = ("elastic", "prony of one term", "prony of three terms", "kelvin_voigt")
+POISSON_OFTEN = (0.0, 0.3, 0.45, 0.49, 0.499, 0.4999)
+CONTACT_RADIUS = 5e-3
+OVERESTIMATE = 10.0
+ENOUGH_FOR_A_MEDIAN = 20
+
+
+def material(rng: np.random.Generator, law: str, young: float, contact_time: float) -> dict[str, Any]:
+    """Instantaneous over relaxed modulus to 11; relaxation times from 0.01 to 10 contact times."""
+    if law == "elastic":
+        return {"law": "elastic", "E": young}
+    taus = contact_time * 10 ** rng.uniform(-2, 1, 3)
+    if law == "kelvin_voigt":
+        return {"law": law, "E": young, "eta": young * taus[0]}
+    terms = 1 if law == LAWS[1] else 3
+    branches = rng.uniform(0.1, 10.0) * young * rng.dirichlet(np.ones(terms))
+    return {"law": "prony", "E_inf": young, "E": branches.tolist(), "tau": taus[:terms].tolist()}
+
+
+def impact(rng: np.random.Generator, number: int) -> lumped.Scene:
+    """One impact: size, stiffness and mass over decades, contact radius up to 0.3 striker radii."""
+    law = LAWS[number % len(LAWS)]
+    nu = float(rng.choice(POISSON_OFTEN) if rng.random() < 0.5 else rng.uniform(0, 0.4999))
+    radius, young = 10 ** rng.uniform(-3, -1), 10 ** rng.uniform(5, 11)
+    depth = radius * 10 ** (2 * rng.uniform(-2, np.log10(0.3)))
+    mass = rng.uniform(0.5, 2) * rng.uniform(800, 8000) * 4 / 3 * np.pi * radius**3
+    velocity = np.sqrt(16 / 15 * young / (1 - nu**2) * np.sqrt(radius) * depth**2.5 / mass)
+    table = material(rng, law, young, 2.943275 * depth / velocity) | {"nu": nu}
+    if law != "elastic" and number % 12 < len(LAWS):  # a quarter of the impacts
+        table["constant"] = "bulk"
+    striker = {"shape": "sphere", "radius": radius, "mass": mass, "velocity": velocity}
+    target = {"shape": "half_space", "material": table}
+    return lumped.Scene.from_dict({"name": f"impact-{number}", "striker": striker, "target": target})
+
+
+def impacts() -> list[lumped.Scene]:
+    rng = np.random.default_rng(20261121)
+    return [impact(rng, number) for number in range(IMPACTS)]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """True errors and claimed ones, relative (restitution and history_l2 absolute), of one impact."""
+
+    name: str
+    converged: bool
+    error: dict[str, float]
+    bar: dict[str, float]
+    force_misses: float  # how far the force leaves its band, in units of the tolerance x peak force
+    between_rows: float  # largest error of the linearly interpolated force over the peak force
+    radius: float
+
+
+def relative(quantity: str, value: float, exact: float) -> float:
+    return value if quantity == "restitution" else value / abs(exact)
+
+
+def judged(result: lumped.Result, exact: lumped.Result) -> Outcome:
+    error, bar = {}, {}
+    for name, reference in exact.quantities.items():
+        found: Quantity = result.quantities[name]
+        if name == "history_l2":
+            error[name], bar[name] = history_l2(result.history, exact.history), found.error
+            continue
+        assert found.value is not None, f"{name} is undefined"
+        error[name] = relative(name, abs(found.value - reference.value), reference.value)
+        bar[name] = relative(name, found.error, reference.value)
+    history = result.history
+    miss = np.abs(history.force - exact.history.force_at(history.time)) - history.force_error
+    peak = exact.quantities["peak_force"].value
+    apart = result.history.force_at(exact.history.time) - exact.history.force
+    return Outcome(
+        name=result.scene.name,
+        converged=result.converged,
+        error=error,
+        bar=bar,
+        force_misses=float(miss.max()) / (result.tolerance * peak),
+        between_rows=float(np.abs(apart).max()) / peak,
+        radius=radius_error(history, exact.history),
+    )
+
+
+def history_l2(found: lumped.History, exact: lumped.History) -> float:
+    """Error of the rows themselves: what lies between them is the promise of another test."""
+    exact_force = exact.force_at(found.time)
+    change = found.force - exact_force
+    return float(np.sqrt(np.trapezoid(change**2, found.time) / np.trapezoid(exact_force**2, found.time)))
+
+
+def radius_error(found: lumped.History, exact: lumped.History) -> float:
+    """Largest difference over the largest radius, compared at equal shares of the contact: radius ends like a root."""
+    share = np.linspace(0.0, 1.0, 400)
+    ours = np.interp(share * found.time[-1], found.time, found.contact_radius)
+    theirs = np.interp(share * exact.time[-1], exact.time, exact.contact_radius)
+    return float(np.abs(ours - theirs).max() / theirs.max())
+
+
+@pytest.fixture(scope="module")
+def exact_answers(campaign_size: Callable[[int], int]) -> list[lumped.Result]:
+    scenes = impacts()[: campaign_size(IMPACTS)]
+    answers = [lumped.simulate(mdr.of(scene), scene, tolerance=REFERENCE_TOLERANCE) for scene in scenes]
+    assert all(answer.converged and answer.separated for answer in answers), "the reference itself failed"
+    return answers
+
+
+@pytest.fixture(scope="module", params=TOLERANCES)
+def campaign(request: pytest.FixtureRequest, exact_answers: list[lumped.Result]) -> tuple[float, list[Outcome]]:
+    tolerance: float = request.param
+    return tolerance, [judged(fe_contact.run(exact.scene, tolerance), exact) for exact in exact_answers]
+
+
+def test_the_impacts_are_those_of_the_claim() -> None:
+    scenes = impacts()
+    moduli = [scene.contact_modulus for scene in scenes]
+    assert len(scenes) == IMPACTS
+    assert sum(scene.material.constant == "bulk" for scene in scenes) >= 12
+    assert {scene.material.nu for scene in scenes} >= {0.0, 0.4999}
+    assert sum(modulus.is_elastic for modulus in moduli) == IMPACTS / 4
+    assert sum(modulus.viscosity > 0 for modulus in moduli) == IMPACTS / 4
+    steepness = [m.glassy / m.relaxed for m in moduli]
+    assert max(steepness) > 9
+
+
+@pytest.mark.parametrize("quantity", RULED)
+def test_the_worst_error_is_within_the_tolerance(campaign: tuple[float, list[Outcome]], quantity: str) -> None:
+    tolerance, outcomes = campaign
+    too_large = {o.name: o.error[quantity] for o in outcomes if not o.error[quantity] <= tolerance}
+    assert not too_large
+
+
+@pytest.mark.parametrize("quantity", [*RULED, "peak_time"])
+def test_the_bar_covers_the_error_of_every_impact(campaign: tuple[float, list[Outcome]], quantity: str) -> None:
+    _, outcomes = campaign
+    pairs = {o.name: (o.error[quantity], o.bar[quantity]) for o in outcomes}
+    missed = {name: (error, bar) for name, (error, bar) in pairs.items() if not error <= bar}
+    assert not missed
+
+
+def test_the_bars_are_no_more_than_ten_times_the_errors_in_the_median(campaign: tuple[float, list[Outcome]]) -> None:
+    """Of each quantity; of all together where the impacts are too few for a median of their own."""
+    _, outcomes = campaign
+    ratios = {name: [o.bar[name] / o.error[name] for o in outcomes] for name in RULED}
+    if len(outcomes) < ENOUGH_FOR_A_MEDIAN:
+        ratios = {"all": list(chain.from_iterable(ratios.values()))}
+    assert not {name: np.median(found) for name, found in ratios.items() if np.median(found) > OVERESTIMATE}
+
+
+def test_the_force_stays_inside_its_band(campaign: tuple[float, list[Outcome]]) -> None:
+    """At every row, to a hundredth of what the tolerance allows at the peak."""
+    _, outcomes = campaign
+    missed = {o.name: o.force_misses for o in outcomes if o.force_misses > 0.01}
+    assert not missed
+
+
+def test_straight_lines_between_the_rows_are_good_enough(campaign: tuple[float, list[Outcome]]) -> None:
+    tolerance, outcomes = campaign
+    assert max(o.between_rows for o in outcomes) <= 2 * tolerance, "tolerance of the rows, and as much between them"
+
+
+def test_the_contact_radius_is_known_to_half_a_percent(campaign: tuple[float, list[Outcome]]) -> None:
+    _, outcomes = campaign
+    assert max(o.radius for o in outcomes) <= CONTACT_RADIUS
+
+
+def test_nearly_all_impacts_converge(campaign: tuple[float, list[Outcome]]) -> None:
+    tolerance, outcomes = campaign
+    share = np.mean([o.converged for o in outcomes])
+    assert share >= 0.95, [o.name for o in outcomes if not o.converged]
+    honest = all((max(o.bar[name] for name in RULED) <= tolerance * (1 + 1e-12)) == o.converged for o in outcomes)
+    assert honest, "converged must say that every ruled bar is within the tolerance"

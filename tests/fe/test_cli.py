@@ -1,0 +1,394 @@
+"""The command line in-process: exit codes, one line a fault, nothing written on bad input, honest files."""
+
+from __future__ import annotations
+
+import csv
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_contact import impact
+from fe_contact.cli import COMMANDS, main
+from fe_contact.targets import half_space
+from lumped.data import scene_names
+from lumped.members import available
+from meshes import session
+from meshes.errors import APT_LINE, GmshMissing
+
+ROOT = Path(__file__).resolve().parents[2]
+SCENE = """
+name = "mine"
+[striker]
+shape = "sphere"
+radius = 0.01
+mass = 0.02
+velocity = 0.5
+[target]
+shape = "half_space"
+[target.material]
+law = "sls"
+E1 = 2e6
+E2 = 1e6
+C1 = 900.0
+nu = 0.3
+"""
+HEADER = ["time_s", "depth_m", "velocity_m_per_s", "force_N", "contact_radius_m", "force_error_N"]
+QUANTITIES = {"peak_force", "peak_time", "peak_depth", "duration", "restitution", "impulse", "history_l2"}
+ENERGIES = {"in", "out", "stored", "viscous", "radiated", "contact", "numerical", "residual"}
+
+
+@pytest.fixture
+def empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty working folder."""
+    folder = tmp_path / "work"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    return folder
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    path = tmp_path / "mine.toml"
+    path.write_text(SCENE)
+    return path
+
+
+def exit_code(*arguments: str) -> int:
+    try:
+        return main(list(arguments))
+    except SystemExit as stop:  # argparse
+        return int(stop.code or 0)
+
+
+def is_empty(folder: Path) -> bool:
+    return not list(folder.iterdir())
+
+
+def contents(folder: Path) -> dict[str, Any]:
+    def refuse(word: str) -> None:
+        raise AssertionError(f"{word} in result.json")
+
+    found: dict[str, Any] = json.loads((folder / "result.json").read_text(), parse_constant=refuse)
+    return found
+
+
+# bad input
+
+BAD_VALUES = [
+    (f"{key}={value}", key)
+    for key in ("striker.radius", "striker.mass", "striker.velocity", "target.material.E1", "target.material.C1")
+    for value in ("-1.0", "0.0", "nan", "inf", "-inf", '"heavy"', "true", "[1.0]", "1e300")
+]
+BAD_SCENES = [
+    *BAD_VALUES,
+    ("target.material.nu=0.5", "target.material.nu"),
+    ("target.material.nu=-1.0", "target.material.nu"),
+    ("target.material.nu=nan", "target.material.nu"),
+    ("target.material.law=rubber", "target.material.law"),
+    ("target.shape=moon", "target.shape"),
+    ("striker.shape=spere", "sphere"),
+    ("striker.raduis=0.1", "did you mean radius"),
+    ("stricker.radius=0.1", "striker"),
+    ("model.inertia=true", "model.inertia"),
+    ("model.inertia=true", "target.material.density"),
+    ("model.gravity=inf", "model.gravity"),
+    ("model.profile=round", "model.profile"),
+    ("motion.end_time=0.0", "motion.end_time"),
+    ("motion.end_time=-1.0", "motion.end_time"),
+    ("striker.velocity=1e4", "striker.velocity"),
+    ("numerics.steps=0", "numerics.steps"),
+    ("numerics.steps=40.5", "numerics.steps"),
+    ("numerics.order=7", "numerics.order"),
+    ("numerics.penalty=-5.0", "numerics.penalty"),
+    ("numerics.far_radius=nan", "numerics.far_radius"),
+    ("numerics.elements_per_contact=1e9", "numerics.elements_per_contact"),
+    ("numerics.scheme=galrkin", "did you mean galerkin"),
+    ("numerics.stpes=40", "did you mean steps"),
+    ("numerics.tolerance=0.0", "numerics.tolerance"),
+]
+
+
+@pytest.mark.parametrize(("override", "named"), BAD_SCENES)
+def test_bad_input_is_one_line_that_names_the_key(
+    override: str, named: str, empty: Path, scene: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exit_code("run", str(scene), "--set", override) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    lines = err.strip().splitlines()
+    assert 1 <= len(lines) <= 3
+    assert any(named in line for line in lines), err
+    assert "Traceback" not in err
+    assert is_empty(empty)
+
+
+@pytest.mark.parametrize("tolerance", ["0", "-1e-3", "nan", "inf", "tight", "1e-20"])
+@pytest.mark.parametrize("command", ["run", "plan"])
+def test_a_bad_tolerance_is_refused(
+    command: str, tolerance: str, empty: Path, scene: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exit_code(command, str(scene), f"--tolerance={tolerance}") == 2
+    assert len(capsys.readouterr().err.strip().splitlines()) == 1
+    assert is_empty(empty)
+
+
+def test_all_faults_are_told_at_once_physics_and_numerics_alike(
+    empty: Path, scene: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    wrong = ["striker.mass=-1", "target.material.nu=0.7", "striker.colour=1", "numerics.steps=0"]
+    arguments = [part for override in wrong for part in ("--set", override)]
+    assert exit_code("run", str(scene), *arguments) == 2
+    err = capsys.readouterr().err
+    for key in ("striker.mass", "target.material.nu", "striker.colour", "numerics.steps"):
+        assert sum(key in line for line in err.splitlines()) == 1, f"{key} in\n{err}"
+    assert is_empty(empty)
+
+
+def test_no_more_than_twenty_faults_are_told(empty: Path, scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = [part for k in range(30) for part in ("--set", f"striker.unknown{k}=1")]
+    assert exit_code("run", str(scene), *arguments) == 2
+    assert len(capsys.readouterr().err.strip().splitlines()) == 20
+    assert is_empty(empty)
+
+
+UNREADABLE = [b"\xff\xfe\x00broken", b"[striker\nradius = ", b"", b"[striker]\nmass = 1\nmass = 2\n"]
+
+
+@pytest.mark.parametrize("content", UNREADABLE)
+def test_an_unreadable_file_is_bad_input(content: bytes, empty: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = empty.parent / "broken.toml"
+    path.write_bytes(content)
+    assert exit_code("run", str(path)) == 2
+    err = capsys.readouterr().err
+    assert "broken.toml" in err
+    assert "Traceback" not in err
+    assert is_empty(empty)
+
+
+@pytest.mark.parametrize("name", ["nowhere.toml", "polymer-spere", ".", "no/such/folder.toml"])
+def test_a_scene_that_is_not_there_is_bad_input(name: str, empty: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert exit_code("run", name) == 2
+    err = capsys.readouterr().err
+    assert len(err.strip().splitlines()) == 1
+    assert name != "polymer-spere" or "did you mean polymer-sphere" in err
+    assert is_empty(empty)
+
+
+@pytest.mark.parametrize("arguments", [["run"], ["fly", "steel-ball"], [], ["run", "steel-ball", "--frobnicate"]])
+def test_a_wrong_command_line_is_bad_input(arguments: list[str], empty: Path) -> None:
+    assert exit_code(*arguments) == 2
+    assert is_empty(empty)
+
+
+def test_an_unknown_method_names_the_nearest(empty: Path, scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert exit_code("run", str(scene), "--method", "mrd") == 2
+    assert "did you mean mdr" in capsys.readouterr().err
+    assert is_empty(empty)
+
+
+def test_an_output_that_cannot_be_written_is_bad_input(
+    empty: Path, scene: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    occupied = empty.parent / "file"
+    occupied.write_text("here already")
+    assert exit_code("run", str(scene), "--method", "mdr", "--out", str(occupied)) == 2
+    assert len(capsys.readouterr().err.strip().splitlines()) == 1
+    assert occupied.read_text() == "here already"
+
+
+def test_a_missing_system_library_names_the_package_to_install(
+    empty: Path, scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def missing() -> Any:
+        raise GmshMissing("libGLU.so.1: cannot open shared object file: No such file or directory")
+
+    monkeypatch.setattr(session, "_load", missing)
+    half_space._surface.cache_clear()
+    assert exit_code("run", str(scene)) == 2
+    err = capsys.readouterr().err
+    assert len(err.strip().splitlines()) == 1
+    assert APT_LINE in err
+    assert "libGLU" in err
+    assert is_empty(empty)
+
+
+# failures that are not the user's
+
+
+def test_a_tolerance_that_cannot_be_reached_is_exit_three_with_what_was_reached(
+    empty: Path, scene: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pins = ["numerics.steps=16", "numerics.elements_per_contact=1.0", "numerics.order=2", "numerics.penalty=30.0"]
+    arguments = [part for pin in pins for part in ("--set", pin)]
+    assert exit_code("run", str(scene), "--tolerance", "1e-4", *arguments, "--out", "found") == 3
+    result = contents(empty / "found")
+    assert result["converged"] is False
+    assert result["quantities"]["peak_force"]["error"] > 1e-4 * result["quantities"]["peak_force"]["value"]
+    assert (empty / "found" / "history.csv").exists()
+    about = [line for line in capsys.readouterr().err.splitlines() if "not reached" in line]
+    assert len(about) == 1
+
+
+def test_a_solve_that_does_not_converge_is_exit_three_without_a_traceback(
+    empty: Path, scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(impact, "RESCALINGS", 0)
+    assert exit_code("run", str(scene)) == 3
+    err = capsys.readouterr().err
+    assert len(err.strip().splitlines()) == 1
+    assert "cure" in err
+
+
+def test_a_defect_of_ours_is_one_line_and_a_file(
+    empty: Path, scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def broken(*_: Any) -> Any:
+        raise RuntimeError("a wire came loose")
+
+    monkeypatch.setattr("fe_contact.reference.certify", broken)
+    assert exit_code("run", str(scene), "--out", "found") == 1
+    err = capsys.readouterr().err
+    assert len(err.strip().splitlines()) == 1
+    assert "a wire came loose" in err
+    assert "Traceback" in (empty / "found" / "crash.txt").read_text()
+
+
+def test_an_interrupt_is_exit_130(empty: Path, scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: Any) -> Any:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fe_contact.reference.certify", interrupted)
+    assert exit_code("run", str(scene)) == 130
+
+
+# what is written
+
+
+@pytest.mark.parametrize("method", ["fe", "cheapest", "mdr"])
+def test_run_writes_what_the_interface_says(
+    method: str, empty: Path, scene: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exit_code("run", str(scene), "--method", method, "--json", "--quiet") == 0
+    out, err = capsys.readouterr()
+    folder = empty / "fe-contact-out" / "run-mine"
+    result = contents(folder)
+    assert json.loads(out) == result
+    assert "Traceback" not in err
+    assert result["schema"] == "fe-contact/result/1"
+    assert set(result["quantities"]) == QUANTITIES
+    assert set(result["energy"]) == ENERGIES
+    assert result["converged"] is result["separated"] is True
+    if method == "fe":
+        assert set(result["error_budget"]) == {"mesh", "penalty", "time_step", "far_field"}
+        assert all(sum(result["error_budget_by_quantity"][q].values()) > 0 for q in QUANTITIES)
+    with (folder / "history.csv").open() as file:
+        rows = list(csv.reader(file))
+    assert rows[0][:6] == HEADER
+    table = np.array(rows[1:], dtype=float)
+    time, depth, velocity, force, radius, _ = table.T[:6]
+    value = {name: q["value"] for name, q in result["quantities"].items()}
+    assert len(table) >= 201
+    assert np.all(np.diff(time) > 0)
+    assert time[0] == depth[0] == 0
+    assert velocity[0] == pytest.approx(0.5, rel=1e-9)
+    assert time[-1] == pytest.approx(value["duration"], rel=1e-9)
+    assert -velocity[-1] / 0.5 == pytest.approx(value["restitution"], rel=1e-6)
+    assert force[-1] == pytest.approx(0, abs=1e-3 * force.max())
+    assert np.all(radius >= 0)
+    for rows_say, quantity in ((force.max(), "peak_force"), (depth.max(), "peak_depth")):
+        assert rows_say == pytest.approx(value[quantity], rel=1e-3)
+    assert np.trapezoid(force, time) == pytest.approx(value["impulse"], rel=1e-3)
+    assert value["impulse"] == pytest.approx(0.02 * 0.5 * (1 + value["restitution"]), rel=1e-6)
+
+
+def test_the_written_scene_gives_the_same_result_again(empty: Path, scene: Path) -> None:
+    assert exit_code("run", str(scene), "--out", "first", "--quiet") == 0
+    first = contents(empty / "first")
+    from fe_contact import run
+    from lumped import Scene
+
+    again = run(Scene.from_dict(first["scene"]), first["tolerance"])
+    for name, quantity in first["quantities"].items():
+        assert again.quantities[name].value == pytest.approx(quantity["value"], rel=1e-9)
+
+
+def test_settings_take_precedence_as_promised(empty: Path, scene: Path) -> None:
+    """--set over --tolerance over the file's table over the plan."""
+    scene.write_text(SCENE + "[numerics]\ntolerance = 0.05\norder = 3\n")
+
+    def used(*arguments: str) -> dict[str, Any]:
+        assert exit_code("run", str(scene), "--out", "found", "--quiet", *arguments) == 0
+        numerics: dict[str, Any] = contents(empty / "found")["numerics"]
+        return numerics
+
+    assert used()["tolerance"] == 0.05
+    assert used()["order"] == 3
+    assert used("--tolerance", "0.02")["tolerance"] == 0.02
+    assert used("--tolerance", "0.02", "--set", "numerics.tolerance=0.01")["tolerance"] == 0.01
+    assert used("--set", "numerics.order=2")["order"] == 2
+
+
+def test_fields_and_plot_write_files_that_can_be_read(empty: Path, scene: Path) -> None:
+    import meshio
+
+    assert exit_code("run", str(scene), "--fields", "--plot", "--out", "found", "--quiet") == 0
+    fields = list((empty / "found").glob("*.vtu"))
+    assert len(fields) == 1
+    mesh = meshio.read(fields[0])
+    assert len(mesh.points) > 100
+    assert all(np.isfinite(values).all() for values in mesh.point_data.values())
+    charts = {path.suffix for path in (empty / "found").iterdir()}
+    assert {".svg", ".png"} <= charts
+
+
+def test_plan_says_settings_and_ledger_and_solves_nothing(
+    empty: Path, scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def refuse(*_: Any) -> Any:
+        raise AssertionError("plan solved something")
+
+    monkeypatch.setattr(half_space, "surface", refuse)
+    assert exit_code("plan", str(scene), "--json", "--tolerance", "1e-4") == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["numerics"]["tolerance"] == 1e-4
+    assert {"effect", "treated", "estimate", "note"} <= set(told["model_ledger"][0])
+    assert exit_code("plan", str(scene)) == 0
+    assert "elements_per_contact" in capsys.readouterr().out
+    assert is_empty(empty)
+
+
+@pytest.mark.parametrize("name", available(COMMANDS))
+def test_every_command_explains_itself(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert exit_code(name, "--help") == 0
+    assert name in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("name", [c for c in available(COMMANDS) if c not in ("laws", "scenes")])
+def test_every_command_that_takes_a_scene_refuses_a_bad_one(
+    name: str, empty: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exit_code(name, "nowhere.toml") == 2
+    assert "Traceback" not in capsys.readouterr().err
+    assert is_empty(empty)
+
+
+def test_scenes_and_laws_list_one_a_line(capsys: pytest.CaptureFixture[str]) -> None:
+    assert exit_code("scenes") == 0
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(scene_names())
+    assert exit_code("laws") == 0
+    assert {"mdr", "ting"} <= {line.split()[0] for line in capsys.readouterr().out.splitlines()}
+
+
+def test_the_module_runs_as_a_process(empty: Path) -> None:
+    """The one subprocess: exit code and streams as a shell sees them."""
+    command = [sys.executable, "-m", "fe_contact", "run", "steel-ball", "--set", "striker.mass=-1"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert "striker.mass" in done.stderr
+    assert "Traceback" not in done.stderr

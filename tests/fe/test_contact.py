@@ -1,0 +1,164 @@
+"""The contact Newton on random problems: the conditions of contact, any start, and honest failure."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import minimize
+
+from fe_contact import contact
+from fe_contact.contact import ContactProblem, ContactSolution, solve
+from fe_contact.enforcement import corrected, penalty
+from fe_contact.numerics import ENFORCEMENTS
+from lumped.members import available, get
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+def random_problem(seed: int) -> ContactProblem:
+    """Positive definite stiffness of any condition to 1e6, some points open, penalty over six decades."""
+    rng = np.random.default_rng(seed)
+    unknowns, points = int(rng.integers(1, 12)), int(rng.integers(1, 40))
+    basis, _ = np.linalg.qr(rng.normal(size=(unknowns, unknowns)))
+    stiffness = basis * 10 ** rng.uniform(-3, 3, unknowns) @ basis.T
+    return ContactProblem(
+        stiffness=(stiffness + stiffness.T) / 2,
+        trace=rng.normal(size=(points, unknowns)),
+        weights=10 ** rng.uniform(-2, 1, points),
+        overlap=rng.normal(size=points) + rng.uniform(-1, 1),
+        penalty=float(10 ** rng.uniform(-2, 4)),
+    )
+
+
+def starts(seed: int, problem: ContactProblem) -> list[np.ndarray]:
+    """Empty, full and random active sets."""
+    rng = np.random.default_rng(seed)
+    points = len(problem.overlap)
+    return [np.zeros(points, bool), np.ones(points, bool), *(rng.random((4, points)) < 0.5)]
+
+
+@given(SEEDS)
+def test_the_solution_meets_the_conditions_of_contact(seed: int) -> None:
+    """Balance of the body; pressure where it touches, gap where it does not, never both."""
+    problem = random_problem(seed)
+    for start in starts(seed, problem):
+        solution = solve(problem, start)
+        assert solution.converged
+        x, p = solution.displacement, solution.pressure
+        load = problem.trace.T @ (problem.weights * p)
+        size = np.abs(problem.trace.T) @ (problem.weights * p) + np.abs(problem.stiffness) @ np.abs(x)
+        assert np.all(np.abs(problem.stiffness @ x - load) <= 1e-9 * size.max(initial=1e-300))
+        left = problem.overlap - problem.trace @ x
+        scale = np.abs(problem.overlap).max() + (np.abs(problem.trace) @ np.abs(x)).max()
+        assert np.all(p >= 0)
+        np.testing.assert_allclose(p / problem.penalty, np.maximum(left, 0), atol=1e-9 * scale)
+
+
+@given(SEEDS)
+def test_every_cold_start_reaches_the_same_answer(seed: int) -> None:
+    problem = random_problem(seed)
+    found = [solve(problem, start) for start in starts(seed, problem)]
+    reference = found[0].displacement
+    scale = np.sqrt(reference @ problem.stiffness @ reference) + 1e-12
+    for other in found[1:]:
+        away = other.displacement - reference
+        assert np.sqrt(max(away @ problem.stiffness @ away, 0.0)) <= 1e-7 * scale
+
+
+@given(SEEDS)
+def test_the_solution_is_the_least_energy_that_a_general_minimiser_finds(seed: int) -> None:
+    problem = random_problem(seed)
+    solution = solve(problem, np.zeros(len(problem.overlap), bool))
+    lowest = problem.energy(solution.displacement)
+    rng = np.random.default_rng(seed)
+    guess = minimize(problem.energy, solution.displacement + rng.normal(size=len(solution.displacement)), method="BFGS")
+    assert lowest <= guess.fun * (1 + 1e-9) + 1e-15
+    nearby = solution.displacement + 1e-3 * rng.normal(size=(10, len(solution.displacement)))
+    assert all(problem.energy(x) >= lowest * (1 - 1e-12) for x in nearby)
+
+
+@given(SEEDS)
+def test_pushing_deeper_never_lowers_the_total_response(seed: int) -> None:
+    """More free overlap everywhere: the energy that contact stores cannot fall."""
+    problem = random_problem(seed)
+    deeper = replace(problem, overlap=problem.overlap + 0.3)
+    start = np.ones(len(problem.overlap), bool)
+    assert deeper.energy(solve(deeper, start).displacement) >= problem.energy(solve(problem, start).displacement)
+
+
+def test_an_exhausted_budget_is_flagged(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(contact, "MAX_ITERATIONS", 1)
+    flagged = 0
+    for seed in range(50):
+        problem = random_problem(seed)
+        solution = solve(problem, np.zeros(len(problem.overlap), bool))
+        left = problem.overlap - problem.trace @ solution.displacement
+        settled = not np.any(left > 0)  # the empty set was the answer
+        assert solution.converged == settled
+        flagged += not solution.converged
+    assert flagged > 25
+
+
+@pytest.mark.parametrize("name", available(ENFORCEMENTS))
+def test_every_enforcement_passes_the_flag_on(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = random_problem(3)
+    touching = np.zeros(len(problem.overlap), bool)
+    assert get(ENFORCEMENTS, name).enforce(problem, touching).converged
+    monkeypatch.setattr(contact, "MAX_ITERATIONS", 1)
+    assert not get(ENFORCEMENTS, name).enforce(problem, touching).converged
+
+
+@pytest.mark.parametrize("name", available(ENFORCEMENTS))
+def test_every_enforcement_counts_its_contact_problems(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    module, calls = get(ENFORCEMENTS, name), []
+
+    def counted(problem: ContactProblem, touching: np.ndarray) -> ContactSolution:
+        calls.append(solve(problem, touching))
+        return calls[-1]
+
+    monkeypatch.setattr(module, "solve", counted)
+    problem = random_problem(3)
+    solution = module.enforce(problem, np.zeros(len(problem.overlap), bool))
+    assert len(calls) == module.SOLVES
+    assert solution.iterations == sum(call.iterations for call in calls)
+
+
+@given(SEEDS)
+def test_one_augmented_update_is_closer_to_rigid_contact_than_the_raw_penalty(seed: int) -> None:
+    """Rigid contact is the limit of the penalty: here ten thousand times stiffer.
+
+    Only where there are no more points than unknowns: else rigid contact at every point is over-determined.
+    """
+    rng = np.random.default_rng(seed)
+    unknowns = int(rng.integers(2, 10))
+    points = int(rng.integers(1, unknowns + 1))
+    basis, _ = np.linalg.qr(rng.normal(size=(unknowns, unknowns)))
+    problem = ContactProblem(
+        basis * rng.uniform(1, 3, unknowns) @ basis.T,
+        np.eye(unknowns)[:points],
+        rng.uniform(0.5, 2, points),
+        rng.uniform(0.1, 1, points),
+        float(10 ** rng.uniform(2, 3)),
+    )
+    everywhere = np.ones(points, bool)
+    rigid = solve(replace(problem, penalty=1e4 * problem.penalty), everywhere).pressure
+    raw = np.abs(penalty.enforce(problem, everywhere).pressure - rigid).max()
+    mended = np.abs(corrected.enforce(problem, everywhere).pressure - rigid).max()
+    assert mended < 0.2 * raw
+
+
+def test_the_edge_lies_where_the_pressure_returns_to_zero() -> None:
+    points = np.array([0.1, 0.5, 0.9, 1.3])
+
+    def edge(*pressure: float) -> float:
+        return ContactSolution(np.zeros(1), np.array(pressure), 1, True).edge(points)
+
+    assert edge(3, 2, 1, -1) == pytest.approx(1.1)
+    assert edge(3, 2, 3, -1) == pytest.approx(1.2)
+    assert edge(-1, -2, -3, -4) == 0
+    assert edge(1, 1, 1, 1) == np.inf
+    assert edge(-1, 2, -2, -3) == pytest.approx(0.7), "a hole at the axis does not hide the edge"

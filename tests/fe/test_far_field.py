@@ -1,0 +1,133 @@
+"""What stands for the infinite body: Boussinesq's field is elastic, in balance, and closes the mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from skfem import Basis, ElementTriP4, FacetBasis
+
+import meshes
+from fe_contact.enforcement import corrected
+from fe_contact.far_field.static import boussinesq, robin
+from fe_contact.forms import isotropic
+from fe_contact.march import Strike
+from fe_contact.numerics import Numerics
+from fe_contact.targets import half_space
+from lumped.load_curves import Hertz
+from lumped.shapes import Parabola
+
+RNG = np.random.default_rng(5)
+POISSON = (0.0, 0.3, 0.4999, float(RNG.uniform(0, 0.5)))
+
+
+@pytest.mark.parametrize("nu", POISSON)
+def test_tractions_on_any_surface_around_the_load_carry_it(nu: float) -> None:
+    """The unit force pushes along -z, so the traction on the body's outer side sums to +1 in z."""
+    angle, weight = np.polynomial.legendre.leggauss(60)
+    angle, weight = np.pi / 4 * (angle + 1), np.pi / 4 * weight
+    for _ in range(5):
+        bumps = RNG.uniform(-0.15, 0.15, 3)
+        harmonics = 2 * np.arange(1, 4)[:, None] * angle
+        size = 10 ** RNG.uniform(-2, 2)
+        rho = size * (1 + bumps @ np.cos(harmonics))
+        slope = -size * (bumps * 2 * np.arange(1, 4)) @ np.sin(harmonics)
+        along = np.stack([np.sin(angle), -np.cos(angle)])
+        turned = np.stack([np.cos(angle), np.sin(angle)])
+        tangent = slope * along + rho * turned
+        normal = np.stack([tangent[1], -tangent[0]])  # times the line element
+        _, traction = boussinesq(rho * along, normal, nu)
+        total = (2 * np.pi * rho * along[0] * weight) @ traction[1]
+        assert total == pytest.approx(1.0, rel=1e-10)
+
+
+@pytest.mark.parametrize("nu", POISSON)
+def test_stress_follows_from_displacement_and_is_in_balance(nu: float) -> None:
+    """Hooke's law and both equations of equilibrium by differences in space, at random points inside."""
+    law = isotropic(1 - nu**2, nu)
+    step = 2e-3
+
+    def slope(values: Callable[[float], np.ndarray]) -> np.ndarray:
+        """Derivative at 0 of order four."""
+        return (8 * (values(step) - values(-step)) - values(2 * step) + values(-2 * step)) / (12 * step)
+
+    def displacement(r: float, z: float) -> np.ndarray:
+        return boussinesq(np.array([r, z]), np.array([1.0, 0.0]), nu)[0]
+
+    def stress(r: float, z: float) -> np.ndarray:
+        """rr, zz, hoop, rz; the hoop stress by Hooke's law, which the tractions do not show."""
+        radial = boussinesq(np.array([r, z]), np.array([1.0, 0.0]), nu)[1]
+        axial = boussinesq(np.array([r, z]), np.array([0.0, 1.0]), nu)[1]
+        assert radial[1] == pytest.approx(axial[0], rel=1e-12), "the stress is symmetric"
+        return np.array([radial[0], axial[1], (law @ strain(r, z))[2], radial[1]])
+
+    def strain(r: float, z: float) -> np.ndarray:
+        by_r, by_z = slope(lambda s: displacement(r + s, z)), slope(lambda s: displacement(r, z + s))
+        return np.array([by_r[0], by_z[1], displacement(r, z)[0] / r, by_z[0] + by_r[1]])
+
+    for _ in range(20):
+        r, z = RNG.uniform(0.3, 2), -RNG.uniform(0.3, 2)
+        here = stress(r, z)
+        size = np.abs(here).max()
+        np.testing.assert_allclose((law @ strain(r, z))[[0, 1, 3]], here[[0, 1, 3]], atol=1e-5 * size)
+        by_r = slope(lambda s: stress(r + s, z))  # noqa: B023 - called at once
+        by_z = slope(lambda s: stress(r, z + s))  # noqa: B023
+        assert abs(by_r[0] + by_z[3] + (here[0] - here[2]) / r) < 1e-4 * size
+        assert abs(by_r[3] + by_z[1] + here[3] / r) < 1e-6 * size
+
+
+@pytest.mark.parametrize("nu", POISSON)
+def test_the_surface_is_free_and_sinks_as_one_over_distance(nu: float) -> None:
+    r = 10 ** RNG.uniform(-2, 2, 20)
+    surface = np.stack([r, np.zeros_like(r)])
+    displacement, traction = boussinesq(surface, np.stack([0 * r, 1 + 0 * r]), nu)
+    assert not traction.any()
+    np.testing.assert_allclose(displacement[1], -1 / (np.pi * r), rtol=1e-12)
+
+
+@pytest.mark.parametrize("nu", POISSON)
+def test_the_boundary_holds_the_point_force_exactly(nu: float) -> None:
+    """The tensor answers Boussinesq's displacement with Boussinesq's traction: forces agree with its integral."""
+    radius = float(10 ** RNG.uniform(0.7, 2))
+    mesh = meshes.half_space(4.0, radius)
+    element = ElementTriP4()
+    basis = Basis(mesh, element)
+    facets = FacetBasis(mesh, element, facets=mesh.boundaries["far"], intorder=12)
+    matrix = robin(facets, nu).tocsr()
+    assert np.abs(matrix - matrix.T).max() < 1e-14 * np.abs(matrix).max()
+    nodes = np.unique(facets.get_dofs("far").flatten())
+    motion = np.zeros(2 * basis.N)
+    exact = boussinesq(basis.doflocs[:, nodes], np.stack([np.ones(len(nodes)), np.zeros(len(nodes))]), nu)[0]
+    motion[2 * nodes], motion[2 * nodes + 1] = exact
+    position = np.asarray(facets.global_coordinates())
+    _, traction = boussinesq(position, np.asarray(facets.normals), nu)
+    weight = 2 * np.pi * position[0] * facets.dx
+    reaction = (matrix @ motion)[1::2].sum()
+    assert reaction == pytest.approx(-(weight * traction[1]).sum(), rel=1e-4)
+    displacement, _ = boussinesq(position, np.asarray(facets.normals), nu)
+    work = -(weight * (displacement * traction).sum(axis=0)).sum()
+    assert motion @ (matrix @ motion) == pytest.approx(work, rel=1e-4)
+    assert work > 0
+
+
+@pytest.mark.parametrize("nu", POISSON)
+def test_the_force_error_falls_at_least_with_the_square_of_the_far_radius(
+    nu: float, settings_of: Callable[..., Numerics], hertz_strike: Callable[..., Strike]
+) -> None:
+    """Hertz indentation, the contact edge anywhere in its window, against the force on a far larger mesh."""
+    contact, profile = 0.2, Parabola(1.0)
+    phase = float(RNG.uniform(0.98, 1.02))
+    depth = float(Hertz(1.0).depth(contact))
+    forces = []
+    for far_radius in (2.5, 5.0, 10.0, 80.0):
+        operator = half_space.surface(nu, settings_of(hertz_strike(), far_radius=far_radius))
+        points = operator.operator.points
+        problem = operator.problem(depth - profile.height(contact / phase * points), 1e3, 0.0)
+        solution = corrected.enforce(problem, points < phase)
+        assert solution.converged
+        forces.append(contact / phase * float(operator.operator.weights @ solution.pressure))
+    errors = np.abs(np.divide(forces[:-1], forces[-1]) - 1)
+    rates = np.log2(errors[:-1] / errors[1:])
+    assert rates.min() > 2, errors
+    assert errors[-1] < 5e-5

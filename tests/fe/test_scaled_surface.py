@@ -1,0 +1,175 @@
+"""Static indentation on the breathing mesh against Hertz and Sneddon: force, pressure, rates, penalty bias."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+import meshes
+from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.contact import ContactSolution
+from fe_contact.enforcement import corrected, penalty
+from fe_contact.far_field.static import boussinesq
+from fe_contact.impact import EDGE_WINDOW
+from fe_contact.operators import surface_operator
+from lumped.shapes import Parabola, Shape, Sphere
+
+RNG = np.random.default_rng(2)
+POISSON = (0.0, 0.3, 0.49, 0.4999)
+PROFILES: list[tuple[Shape, float]] = [(Parabola(1.0), 0.2), (Sphere(1.0), 0.05), (Sphere(1.0), 0.3)]
+IN_WINDOW = RNG.uniform(1 - EDGE_WINDOW, 1 + EDGE_WINDOW, 16)
+BIAS = -3 / (2 * np.pi)  # of the force, relative, times the penalty in units of modulus over contact radius
+
+
+@dataclass(frozen=True)
+class Indentation:
+    """One static contact for E* = 1: relative force error, solution, and the radii of its points."""
+
+    error: float
+    solution: ContactSolution
+    radii: np.ndarray
+    pressure: np.ndarray
+
+
+def surface(nu: float, elements: float = 4.0, order: int = 4, far_radius: float = 20.0) -> ScaledSurface:
+    return ScaledSurface(surface_operator(meshes.half_space(elements, far_radius), order, nu))
+
+
+def indent(
+    body: ScaledSurface,
+    profile: Shape,
+    contact: float,
+    phase: float,
+    stiffness: float = 1000.0,
+    enforcement: ModuleType = corrected,
+) -> Indentation:
+    """Indent so that the exact edge lies at ``phase`` of the unit mesh."""
+    scale, points, curve = contact / phase, body.operator.points, profile.load_curve
+    height = np.minimum(profile.height(scale * points), 1e3)
+    problem = body.problem(float(curve.depth(contact)) - height, stiffness, 0.0)
+    solution = enforcement.enforce(problem, points < phase)
+    assert solution.converged
+    force = scale * float(body.operator.weights @ solution.pressure)
+    error = force / float(curve.force(curve.depth(contact))) - 1
+    return Indentation(error, solution, scale * points, solution.pressure / scale)
+
+
+def worst(body: ScaledSurface, profile: Shape, contact: float, stiffness: float = 1000.0) -> float:
+    return max(abs(indent(body, profile, contact, phase, stiffness).error) for phase in IN_WINDOW)
+
+
+@pytest.fixture(scope="module", params=POISSON)
+def body(request: pytest.FixtureRequest) -> ScaledSurface:
+    return surface(request.param)
+
+
+@pytest.mark.parametrize(("profile", "contact"), PROFILES)
+def test_the_force_is_exact_wherever_the_edge_lies_in_its_window(
+    body: ScaledSurface, profile: Shape, contact: float
+) -> None:
+    assert worst(body, profile, contact) < (1e-5 if body.operator.poisson <= 0.49 else 3e-5)
+
+
+def test_a_finer_mesh_gives_nearly_incompressible_bodies_the_same_digits() -> None:
+    assert worst(surface(0.4999, elements=8.0), Parabola(1.0), 0.2) < 1e-5
+
+
+@pytest.mark.parametrize(("profile", "contact"), PROFILES)
+def test_edge_and_pressure_are_exact(body: ScaledSurface, profile: Shape, contact: float) -> None:
+    for phase in IN_WINDOW[:4]:
+        found = indent(body, profile, contact, phase)
+        assert found.solution.edge(body.operator.points) == pytest.approx(phase, abs=3e-3)
+        exact = profile.load_curve.pressure(found.radii, contact)
+        inside = found.radii < 0.7 * contact
+        ripple = np.abs(found.pressure - exact)[inside].max() / exact.max()
+        assert ripple < 1e-3, "a tenth of the promised one per cent"
+
+
+def test_an_edge_far_from_the_finest_elements_still_gives_three_digits(body: ScaledSurface) -> None:
+    phases = np.random.default_rng(4).uniform(0.3, 0.8, 30)
+    errors = [abs(indent(body, Sphere(1.0), 0.2, phase).error) for phase in phases]
+    assert np.median(errors) < 1e-3
+    assert max(errors) < 3e-3
+
+
+@pytest.mark.parametrize("order", [2, 3])
+def test_the_force_converges_with_the_mesh(order: int) -> None:
+    sizes = (2.0, 4.0, 8.0)
+    errors = [worst(surface(0.3, n, order, 40.0), Sphere(1.0), 0.3, 1e4) for n in sizes]
+    rates = np.log2(np.divide(errors[:-1], errors[1:]))
+    assert rates.min() > 2, errors
+
+
+def test_a_higher_order_is_better_on_the_same_mesh() -> None:
+    errors = [worst(surface(0.3, 4.0, order, 40.0), Sphere(1.0), 0.3, 1e4) for order in (1, 2, 3, 4)]
+    assert np.all(np.divide(errors[1:], errors[:-1]) < 0.3), errors
+
+
+@pytest.mark.parametrize(("profile", "contact"), [*PROFILES[:2]])
+def test_the_bias_of_the_raw_penalty_is_the_predicted_one(profile: Shape, contact: float) -> None:
+    """Elastic layer of compliance 1/penalty under Hertz pressure, to first order; a sphere this small is one."""
+    fine = surface(0.3, 8.0, 4, 40.0)
+    for phase in IN_WINDOW[:4]:
+        for stiffness in (100.0, 400.0):
+            error = indent(fine, profile, contact, phase, stiffness, penalty).error
+            assert error * stiffness * phase == pytest.approx(BIAS, rel=0.02)
+
+
+def test_the_raw_penalty_is_of_order_one_and_the_corrected_of_more() -> None:
+    fine = surface(0.3, 8.0, 4, 40.0)
+    stiffnesses = (50.0, 100.0, 200.0, 400.0, 800.0)
+    for phase in IN_WINDOW[:3]:
+        raw, mended = (
+            np.array([indent(fine, Parabola(1.0), 0.2, phase, k, by).error for k in stiffnesses])
+            for by in (penalty, corrected)
+        )
+        np.testing.assert_allclose(np.log2(raw[:-1] / raw[1:]), 1, atol=0.05)
+        observed = np.log2(mended[0] / mended[-1]) / np.log2(stiffnesses[-1] / stiffnesses[0])
+        assert observed > 1.2, mended
+        assert np.all(np.abs(mended) < 0.1 * np.abs(raw))
+
+
+@pytest.mark.parametrize("yielding", [0.01, 0.3, 3.0])
+def test_a_yielding_striker_is_a_striker_pushed_in_less(body: ScaledSurface, yielding: float) -> None:
+    """Two routes: the striker as one more unknown, and held where its own force has put it."""
+    points = body.operator.points
+    free = 0.04 - Parabola(1.0).height(0.15 * points)
+    together = penalty.enforce(body.problem(free, 1000.0, yielding), points < 1)
+    force = float(body.operator.weights @ together.pressure)
+    held = penalty.enforce(body.problem(free - yielding * force, 1000.0, 0.0), points < 1)
+    assert force > 0
+    np.testing.assert_allclose(together.pressure, held.pressure, atol=1e-8 * held.pressure.max())
+
+
+def test_the_surface_far_away_moves_as_under_a_point_force(body: ScaledSurface) -> None:
+    points = body.operator.points
+    pressure = np.sqrt(np.maximum(1 - points**2, 0.0))
+    nodal = body.response(pressure)
+    force = float(body.operator.weights @ pressure)
+    radii = np.array([10.0, 15.0, 19.9, 20.1, 40.0, 300.0])
+    found = body.sample(nodal, radii)
+    surface_points = np.stack([radii, 0 * radii])
+    exact = -boussinesq(surface_points, surface_points, body.operator.poisson)[0][1] * force
+    np.testing.assert_allclose(found, exact, rtol=5e-3)
+    np.testing.assert_allclose(body.sample(nodal, body.operator.nodes), nodal, atol=1e-12 * nodal.max())
+
+
+def test_hertz_pressure_gives_the_paraboloid_of_hertz(body: ScaledSurface) -> None:
+    """u = (pi/4) p0 (2 - r^2) inside and the arcsine outside, for a = 1 and E* = 1 (Johnson, 3.41-3.42)."""
+    points = body.operator.points
+    nodal = body.response(np.sqrt(np.maximum(1 - points**2, 0.0)))
+    inside, outside = np.linspace(0, 0.99, 30), np.linspace(1.01, 6, 30)
+    np.testing.assert_allclose(body.sample(nodal, inside), np.pi / 4 * (2 - inside**2), rtol=5e-4)
+    arcs = (2 - outside**2) * np.arcsin(1 / outside) + np.sqrt(outside**2 - 1)
+    np.testing.assert_allclose(body.sample(nodal, outside), 0.5 * arcs, rtol=1e-3)
+
+
+def test_scaling_the_mesh_scales_force_and_pressure_as_the_half_space_does(body: ScaledSurface) -> None:
+    """The same contact a thousand times larger: force per squared length, pressure, and edge are the same."""
+    small = indent(body, Sphere(1.0), 0.2, 1.01)
+    large = indent(body, Sphere(1000.0), 200.0, 1.01)
+    assert large.error == pytest.approx(small.error, abs=1e-12)
+    np.testing.assert_allclose(large.pressure, small.pressure, atol=1e-9 * small.pressure.max())

@@ -1,0 +1,101 @@
+"""Profiles and load curves: force against energy, stiffness against edge, and the one-dimensional profile between."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from lumped.load_curves import Hertz, LoadCurve, SneddonSphere
+from lumped.shapes import Parabola, Shape, Sphere
+from lumped.targets import HalfSpace
+
+RADIUS = 0.006
+SHAPES = [Sphere(RADIUS), Parabola(RADIUS)]
+CURVES = [Hertz(RADIUS), SneddonSphere(RADIUS)]
+DEPTHS = RADIUS * np.array([1e-12, 1e-6, 1e-3, 0.01, 0.1, 0.4, 1.0])
+
+
+def gauss(n: int = 200) -> tuple[np.ndarray, np.ndarray]:
+    nodes, weights = np.polynomial.legendre.leggauss(n)
+    return 0.5 * (nodes + 1.0), 0.5 * weights
+
+
+@pytest.mark.parametrize("curve", CURVES, ids=lambda c: type(c).__name__)
+def test_contact_radius_and_depth_are_inverse(curve: LoadCurve) -> None:
+    np.testing.assert_allclose(curve.depth(curve.contact_radius(DEPTHS)), DEPTHS, rtol=1e-13)
+    scalars = [curve.contact_radius(float(depth)) for depth in DEPTHS]
+    np.testing.assert_allclose(scalars, curve.contact_radius(DEPTHS), rtol=1e-14)
+
+
+@pytest.mark.parametrize("curve", CURVES, ids=lambda c: type(c).__name__)
+def test_stiffness_is_twice_the_contact_radius(curve: LoadCurve) -> None:
+    step = 1e-5 * DEPTHS
+    slope = (curve.force(DEPTHS + step) - curve.force(DEPTHS - step)) / (2.0 * step)
+    np.testing.assert_allclose(slope, curve.dforce_ddepth(DEPTHS), rtol=1e-9)
+    np.testing.assert_allclose(slope, 2.0 * curve.contact_radius(DEPTHS), rtol=1e-9)
+
+
+@pytest.mark.parametrize("curve", CURVES, ids=lambda c: type(c).__name__)
+def test_force_is_the_slope_of_energy(curve: LoadCurve) -> None:
+    step = 1e-4 * DEPTHS
+    slope = (curve.energy(DEPTHS + step) - curve.energy(DEPTHS - step)) / (2.0 * step)
+    np.testing.assert_allclose(slope, curve.force(DEPTHS), rtol=1e-7)
+
+
+@pytest.mark.parametrize("curve", CURVES, ids=lambda c: type(c).__name__)
+def test_pressure_integrates_to_the_force(curve: LoadCurve) -> None:
+    depth = 0.1 * RADIUS
+    a = float(curve.contact_radius(depth))
+    nodes, weights = gauss()
+    # r = a sqrt(1 - t^2) takes the root out of the pressure at the edge
+    r = a * np.sqrt(1.0 - nodes**2)
+    force = weights @ (2.0 * np.pi * curve.pressure(r, a) * a**2 * nodes)
+    assert force == pytest.approx(curve.force(depth), rel=1e-8)
+    assert curve.pressure(np.array([a, 2 * a]), a) == pytest.approx([0.0, 0.0])
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda s: s.name)
+def test_one_dimensional_profile_carries_the_force(shape: Shape) -> None:
+    nodes, weights = gauss()
+    for depth in (1e-3 * RADIUS, 0.1 * RADIUS):
+        a = float(shape.load_curve.contact_radius(depth))
+        assert shape.mdr_profile(a) == pytest.approx(depth, rel=1e-12)
+        row = 2.0 * a * (weights @ (depth - shape.mdr_profile(a * nodes)))
+        assert row == pytest.approx(float(shape.load_curve.force(depth)), rel=1e-12)
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda s: s.name)
+def test_one_dimensional_profile_is_abels_transform_of_the_slope(shape: Shape) -> None:
+    nodes, weights = gauss()
+    for x in (1e-3 * RADIUS, 0.5 * RADIUS):
+        angle = 0.5 * np.pi * nodes
+        transform = x * 0.5 * np.pi * (weights @ shape.slope(x * np.sin(angle)))
+        assert shape.mdr_profile(x) == pytest.approx(transform, rel=1e-10)
+
+
+@pytest.mark.parametrize("shape", SHAPES, ids=lambda s: s.name)
+def test_slope_is_that_of_the_height(shape: Shape) -> None:
+    r = RADIUS * np.array([1e-3, 0.1, 0.5, 0.9])
+    slope = (shape.height(r * (1 + 1e-6)) - shape.height(r * (1 - 1e-6))) / (2e-6 * r)
+    np.testing.assert_allclose(slope, shape.slope(r), rtol=1e-8)
+
+
+def test_height_of_a_sphere_cancels_no_digit_and_ends() -> None:
+    sphere = Sphere(RADIUS)
+    assert float(sphere.height(1e-9 * RADIUS)) == pytest.approx(0.5e-18 * RADIUS, rel=1e-15)
+    assert float(sphere.height(RADIUS)) == pytest.approx(RADIUS, rel=1e-15)
+    assert float(sphere.height(1.01 * RADIUS)) == np.inf
+
+
+def test_sphere_becomes_hertz_when_small() -> None:
+    depth = 1e-9 * RADIUS
+    assert SneddonSphere(RADIUS).force(depth) == pytest.approx(float(Hertz(RADIUS).force(depth)), rel=1e-9)
+    # facts on finite elements: the parabola errs by 0.1 % in force at a/R = 0.1 and by 1.7 % at 0.4
+    for ratio, error in [(0.1, 0.001), (0.4, 0.017)]:
+        depth = float(Hertz(RADIUS).depth(ratio * RADIUS))
+        assert Hertz(RADIUS).force(depth) / SneddonSphere(RADIUS).force(depth) - 1.0 == pytest.approx(error, rel=0.1)
+
+
+def test_overlap_with_a_half_space_is_depth_less_height() -> None:
+    overlap = HalfSpace().overlap(Sphere(RADIUS), np.array([0.0, RADIUS / 2]), 1e-4)
+    np.testing.assert_allclose(overlap, 1e-4 - Sphere(RADIUS).height(np.array([0.0, RADIUS / 2])))

@@ -1,0 +1,100 @@
+"""Adding a thing is adding a file: every member of every folder keeps its contract; and imports stay light."""
+
+from __future__ import annotations
+
+import dataclasses
+import subprocess
+import sys
+from collections.abc import Callable
+
+import pytest
+
+from lumped import BadInput, Relaxation, Scene, laws, members, simulate
+from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS
+from lumped.shapes import Shape
+from lumped.targets import Target
+
+SAMPLES = {
+    "elastic": [{"E": 1e6}],
+    "kelvin_voigt": [{"E": 1e6, "eta": 1e3}],
+    "maxwell": [{"E": 1e6, "eta": 1e3}],
+    "sls": [{"E1": 1e6, "E2": 1e6, "C1": 1e3}, {"E0": 1e6, "R1": 0.5, "R2": 0.01}],
+    "prony": [{"E_inf": 1e6, "E": (1e6,), "tau": (1e-3,)}],
+    "operators": [{"p": (1.0, 1e-3), "q": (1e6, 2e3)}],
+}
+SHAPES = {"sphere": {"radius": 0.01}}
+TARGETS: dict[str, dict[str, float]] = {"half_space": {}}
+
+
+def test_samples_cover_every_member() -> None:
+    assert set(SAMPLES) == set(members.available("lumped.materials.networks"))
+    assert set(SHAPES) == set(members.available("lumped.shapes"))
+    assert set(TARGETS) == set(members.available("lumped.targets"))
+    assert {"hertz", "correspondence", "ting", "mdr"} <= set(laws.available())
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_network_makes_a_relaxation_of_each_set_of_keys(name: str) -> None:
+    module = members.get("lumped.materials.networks", name)
+    for keys, values in zip(module.KEYS, SAMPLES[name], strict=True):
+        assert {key for key in keys if keys[key].required} <= set(values) <= set(keys)
+        assert isinstance(module.of(**values), Relaxation)
+        assert all(
+            keys[key].read(list(value) if isinstance(value, tuple) else value) == value for key, value in values.items()
+        )
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_shape_is_frozen_and_named_like_its_file(name: str) -> None:
+    shape = members.get("lumped.shapes", name).of(**SHAPES[name])
+    assert isinstance(shape, Shape)
+    assert shape.name == name
+    assert shape.to_dict() == {"shape": name, **SHAPES[name]}
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        shape.radius = 1.0
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_target_is_named_like_its_file(name: str) -> None:
+    target = members.get("lumped.targets", name).of(**TARGETS[name])
+    assert isinstance(target, Target)
+    assert target.to_dict() == {"shape": name, **TARGETS[name]}
+
+
+@pytest.mark.parametrize("name", laws.available())
+def test_law_simulates_what_it_claims(name: str, impact: Callable[..., Scene]) -> None:
+    scene = impact(0.5, (0.5,), (1.0,))
+    law = laws.get(name).of(scene)
+    assert law.name == name
+    assert dataclasses.is_dataclass(law)
+    result = simulate(law, scene, tolerance=1e-4)
+    assert result.converged
+    assert result.separated
+    assert result.method == name
+    assert set(result.quantities) == set(UNITS)
+    for key in (*RULED_RELATIVE, *RULED_ABSOLUTE):
+        quantity = result.quantities[key]
+        assert quantity.value is not None
+        assert quantity.error is not None
+        assert quantity.error <= 1e-4 * (abs(quantity.value) if key in RULED_RELATIVE else 1.0)
+    assert result.energy["residual"] == pytest.approx(0.0, abs=1e-5 * result.energy["in"])
+    assert result.history.force.min() >= 0.0
+    assert result.work
+
+
+def test_unknown_law_names_the_nearest() -> None:
+    with pytest.raises(BadInput, match="did you mean correspondence"):
+        laws.get("corespondence")
+
+
+def run(code: str) -> str:
+    return subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.strip()
+
+
+def test_scenes_and_the_spring_row_need_numpy_alone() -> None:
+    code = (
+        "import sys, lumped; scene = lumped.Scene.load('steel-ball-sls'); lumped.laws.mdr.estimate(scene);"
+        "lumped.simulate(lumped.laws.mdr.of(scene), scene, 1e-4);"
+        "print([m for m in ('scipy', 'skfem', 'gmsh', 'meshio', 'matplotlib') if m in sys.modules])"
+    )
+    assert run(code) == "[]"

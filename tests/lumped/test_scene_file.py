@@ -1,0 +1,216 @@
+"""Scene files: the packaged ones, every fault at once, and nothing but BadInput for bad values."""
+
+from __future__ import annotations
+
+import copy
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lumped import BadInput, Scene
+from lumped.data import scene_names
+from lumped.scene_file import load, read
+from lumped.toml_file import parse_assignment
+
+SOLID: dict[str, Any] = {
+    "name": "try",
+    "striker": {"shape": "sphere", "radius": 0.006, "mass": 0.05, "velocity": 0.02},
+    "target": {
+        "shape": "half_space",
+        "material": {"law": "sls", "E0": 6e5, "R1": 0.5, "R2": 0.01, "nu": 0.45, "density": 1000.0},
+    },
+    "model": {"inertia": False, "profile": "exact", "gravity": 0.0},
+    "motion": {"impacts": 1, "end_time": 0.5},
+}
+NUMBERS = [
+    "striker.radius",
+    "striker.mass",
+    "striker.velocity",
+    "target.material.E0",
+    "target.material.R1",
+    "target.material.R2",
+    "target.material.nu",
+    "target.material.density",
+    "model.gravity",
+    "motion.impacts",
+    "motion.end_time",
+]
+WORDS = ["name", "striker.shape", "target.shape", "target.material.law", "model.profile"]
+TABLES = ["striker", "target", "target.material", "model", "motion", "numerics"]
+no_numbers = st.sampled_from(
+    [math.nan, math.inf, -math.inf, True, "1", "", None, [], [1.0], {}, 1e300, -1e300, 10**400]
+)
+
+
+def changed(key: str, value: object) -> dict[str, Any]:
+    table = copy.deepcopy(SOLID)
+    *path, last = key.split(".")
+    place = table
+    for part in path:
+        place = place[part]
+    place[last] = value
+    return table
+
+
+def faults(table: dict[str, Any]) -> list[str]:
+    with pytest.raises(BadInput) as caught:
+        read(table, "scene.toml")
+    assert caught.value.exit_code == 2
+    return [str(fault) for fault in caught.value.faults]
+
+
+def test_good_table_makes_the_scene() -> None:
+    scene, numerics = read({**SOLID, "numerics": {"tolerance": 1e-4}}, "scene.toml")
+    assert (scene.name, scene.mass, scene.velocity, scene.material.nu) == ("try", 0.05, 0.02, 0.45)
+    assert numerics == {"tolerance": 1e-4}
+    assert Scene.from_dict(scene.to_dict()).to_dict() == scene.to_dict()
+
+
+def test_packaged_scenes_hold_the_published_numbers() -> None:
+    assert {"steel-ball", "steel-ball-sls", "polymer-sphere"} <= set(scene_names())
+    ball, solid, polymer = (Scene.load(name) for name in ("steel-ball", "steel-ball-sls", "polymer-sphere"))
+    assert ball.contact_modulus.relaxed == pytest.approx(1.05e11, rel=1e-6)
+    assert (ball.mass, ball.velocity) == (2.569387e-4, 0.998347)
+    assert solid.contact_modulus.glassy == pytest.approx(1.46 * 1.05e11, rel=1e-6)
+    assert polymer.material.young.relaxed == pytest.approx(6e5, rel=1e-14)
+    assert polymer.end_time == pytest.approx(50.0 * polymer.elastic_contact_time)
+    assert {scene.profile.name for scene in (ball, solid, polymer)} == {"sphere"}
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_packaged_scene_round_trips_through_its_tables(name: str) -> None:
+    scene = Scene.load(name)
+    again = Scene.from_dict(scene.to_dict())
+    assert again.contact_modulus == scene.contact_modulus
+    assert again.to_dict() == scene.to_dict()
+
+
+@given(st.sampled_from(NUMBERS), no_numbers)
+def test_no_bad_number_passes(key: str, value: object) -> None:
+    if key.endswith("velocity") and value == 1e300:
+        value = -1.0
+    assert any(f"scene.toml: {key}: " in fault for fault in faults(changed(key, value)))
+
+
+@given(st.sampled_from([key for key in NUMBERS if key not in ("model.gravity", "target.material.nu")]))
+def test_zero_and_negative_are_refused(key: str) -> None:
+    for value in (0.0, -1.0, 0, -3):
+        assert any(f"scene.toml: {key}: " in fault for fault in faults(changed(key, value)))
+
+
+@given(st.floats(min_value=0.5) | st.floats(max_value=-1.0))
+def test_impossible_poisson_ratios_are_refused(nu: float) -> None:
+    (fault,) = faults(changed("target.material.nu", nu))
+    assert "target.material.nu" in fault
+    assert "-1 to 0.5" in fault
+
+
+@given(st.sampled_from(WORDS), st.one_of(no_numbers, st.sampled_from(["spere", "x" * 300])))
+def test_no_bad_word_passes(key: str, value: object) -> None:
+    if key == "name" and isinstance(value, str) and 0 < len(value) <= 200:
+        return
+    assert any(f"scene.toml: {key}: " in fault for fault in faults(changed(key, value)))
+
+
+@given(st.sampled_from(TABLES), st.sampled_from([3, "text", [1], True]))
+def test_no_value_passes_for_a_table(key: str, value: object) -> None:
+    assert any(f"scene.toml: {key}: not a table" in fault for fault in faults(changed(key, value)))
+
+
+@given(st.sampled_from(list(NUMBERS[:7]) + WORDS[1:4] + TABLES[:3]))
+def test_missing_key_is_named(key: str) -> None:
+    table = copy.deepcopy(SOLID)
+    *path, last = key.split(".")
+    place = table
+    for part in path:
+        place = place[part]
+    del place[last]
+    assert any(f"scene.toml: {key}: missing" in fault for fault in faults(table))
+
+
+def test_unknown_key_names_the_accepted_and_the_nearest() -> None:
+    table = changed("striker.radus", 0.01)
+    assert faults(table) == [
+        "scene.toml: striker.radus: unknown key; accepted: mass, radius, shape, velocity; did you mean radius?"
+    ]
+
+
+def test_all_faults_come_at_once_but_at_most_twenty() -> None:
+    table = changed("striker.mass", -1.0)
+    table["striker"]["radius"] = math.nan
+    table["target"]["material"] |= {"nu": 0.5, "E0": "soft", "R3": 1.0}
+    table |= {"modle": {}, "motion": {"impacts": 2}}
+    keys = {fault.split(": ")[1] for fault in faults(table)}
+    expected = {"striker.mass", "striker.radius", "target.material.nu", "target.material.E0", "target.material.R3"}
+    assert keys == expected | {"modle", "motion.impacts"}
+    table["striker"] |= {f"key{i}": i for i in range(40)}
+    assert len(faults(table)) == 20
+
+
+def test_what_is_not_built_yet_says_what_is() -> None:
+    (fault,) = [f for f in faults(changed("striker.shape", "cone")) if "striker.shape" in f]
+    assert "not available in this version; available: sphere" in fault
+    assert any("target.shape" in f and "half_space" in f for f in faults(changed("target.shape", "layer")))
+    for key in ("striker.material", "target.mass", "law"):
+        assert any(f"{key}: " in f and "not available" in f for f in faults(changed(key, {"k": 1.0})))
+
+
+def test_inertia_names_the_missing_density_too() -> None:
+    table = changed("model.inertia", True)
+    del table["target"]["material"]["density"]
+    keys = [fault.split(": ")[1] for fault in faults(table)]
+    assert keys == ["model.inertia", "target.material.density"]
+
+
+def test_materials_that_cannot_be_are_refused_with_their_key() -> None:
+    table = changed("target.material", {"law": "operators", "p": [1.0], "q": [1.0, 1.0, 1.0], "nu": 0.3})
+    assert any("deg q" in fault for fault in faults(table))
+    fluid = {"law": "maxwell", "E": 1e6, "eta": 1e4, "nu": 0.3, "constant": "bulk"}
+    assert any("bulk_modulus" in fault for fault in faults(changed("target.material", fluid)))
+    mixed = {"law": "sls", "E1": 1.0, "E2": 1.0, "R2": 1.0, "nu": 0.3}
+    assert {"target.material.C1", "target.material.R2"} == {
+        f.split(": ")[1] for f in faults(changed("target.material", mixed))
+    }
+
+
+def test_striker_deeper_than_its_radius_is_absurd() -> None:
+    assert any("deeper than its radius" in fault for fault in faults(changed("striker.velocity", 1e4)))
+
+
+def test_overrides_replace_and_are_checked() -> None:
+    scene, _ = load("polymer-sphere", {"striker.velocity": 0.03, "model.profile": "parabola"})
+    assert scene.velocity == 0.03
+    assert scene.profile.name == "parabola"
+    with pytest.raises(BadInput, match=r"striker\.mass"):
+        load("polymer-sphere", {"striker.mass": 0.0})
+    with pytest.raises(BadInput, match="not a table"):
+        load("polymer-sphere", {"name.first": 1.0})
+
+
+def test_assignments_are_toml_or_text() -> None:
+    assert parse_assignment("striker.radius = 0.01") == ("striker.radius", 0.01)
+    assert parse_assignment("model.profile=parabola") == ("model.profile", "parabola")
+    assert parse_assignment("target.material.E=[1.0, 2.0]") == ("target.material.E", [1.0, 2.0])
+    for text in ("radius", "=1", "a..b=1"):
+        with pytest.raises(BadInput):
+            parse_assignment(text)
+
+
+def test_unreadable_files_are_one_line_each(tmp_path: Path) -> None:
+    binary, broken, deep = tmp_path / "binary.toml", tmp_path / "broken.toml", tmp_path / "deep.toml"
+    binary.write_bytes(b"\xff\xfe\x00")
+    broken.write_text("striker = [")
+    deep.write_text("x = " + "[" * 100_000)
+    for path in (binary, broken, deep, tmp_path, tmp_path / "nowhere.toml"):
+        with pytest.raises(BadInput) as caught:
+            load(path)
+        assert str(caught.value).count("\n") == 0
+
+
+def test_unknown_packaged_name_suggests_the_nearest() -> None:
+    with pytest.raises(BadInput, match="did you mean polymer-sphere"):
+        load("polymer-spher")

@@ -1,0 +1,194 @@
+"""The comparison: pressures that belong to their forces, verdicts that follow from the error bars, files."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_contact.cli import main
+from fe_contact.commands.compare import law_names
+from fe_contact.reference import Solved, result_of, solve
+from fe_contact.report.compare import plot_comparison
+from fe_contact.validation.compare import DEFAULT_LAWS, Comparison, Judgement, compare
+from fe_contact.validation.deviations import deepest, rebound_steps
+from fe_contact.validation.law_pressure import LawPressure
+from fe_contact.validation.verdict import WITHIN, verdicts
+from lumped import laws, simulate
+from lumped.errors import BadInput
+from lumped.result import Result
+from lumped.scene import Scene
+from lumped.score import Curve as Measured
+
+MATERIALS: dict[str, dict[str, Any]] = {
+    "sls": {},
+    "kelvin-voigt": {"target.material": {"law": "kelvin_voigt", "E": 1e6, "eta": 2e3, "nu": 0.4}},
+}
+
+
+@pytest.fixture(scope="module")
+def polymer() -> tuple[Solved, Result]:
+    scene = Scene.load("polymer-sphere")
+    solved = solve(scene, {})
+    return solved, result_of(scene, solved)
+
+
+@pytest.fixture(scope="module")
+def compared(polymer: tuple[Solved, Result]) -> Comparison:
+    return compare(*polymer, DEFAULT_LAWS)
+
+
+def judgement(comparison: Comparison, name: str) -> Judgement:
+    return next(j for j in comparison.judgements if j.name == name)
+
+
+@pytest.mark.parametrize("material", MATERIALS)
+@pytest.mark.parametrize("name", DEFAULT_LAWS)
+def test_the_pressure_of_a_law_adds_up_to_its_force(name: str, material: str) -> None:
+    scene = Scene.load("polymer-sphere", MATERIALS[material])
+    result = simulate(laws.get(name).of(scene), scene)
+    pressure, history = LawPressure.of(result), result.history
+    assert pressure is not None
+    for share in (0.1, 0.3, 0.6, 0.9):
+        time = float(share * history.time[-1])
+        edge = float(np.interp(time, history.time, history.contact_radius))
+        force = integral(pressure, time, 0.0, edge) + integral(pressure, time, edge, history.contact_radius.max())
+        assert force == pytest.approx(float(history.force_at(time)), abs=2e-3 * history.force.max())
+
+
+def integral(pressure: LawPressure, time: float, inner: float, outer: float) -> float:
+    """Over a ring of the surface, N; in s = sqrt(outer^2 - r^2) a singularity at its outer edge is none."""
+    longest = np.sqrt(outer**2 - inner**2)
+    s = longest * (np.arange(400) + 0.5) / 400
+    return float(2 * np.pi * s @ pressure.at(time, np.sqrt(outer**2 - s**2)) * longest / 400)
+
+
+@pytest.mark.parametrize("material", MATERIALS)
+def test_the_clipped_law_pulls_in_the_rebound_and_the_exact_ones_never(material: str) -> None:
+    scene = Scene.load("polymer-sphere", MATERIALS[material])
+    lowest = {}
+    for name in ("correspondence", "ting", "mdr"):
+        result = simulate(laws.get(name).of(scene), scene)
+        pressure = LawPressure.of(result)
+        assert pressure is not None
+        radii = np.linspace(0.0, result.history.contact_radius.max(), 200)
+        values = pressure.at(0.85 * float(result.history.time[-1]), radii)
+        lowest[name] = values.min() / values.max()
+    assert lowest["correspondence"] < -0.1
+    assert min(lowest["ting"], lowest["mdr"]) > -1e-3
+
+
+def test_a_law_without_a_pressure_has_none(compared: Comparison) -> None:
+    assert LawPressure.of(replace(compared.laws["hertz"], method="jankowski")) is None
+
+
+def test_the_exact_laws_lie_within_the_reference_and_agree_in_radius_and_pressure(compared: Comparison) -> None:
+    assert f"ting, mdr: {WITHIN}" in verdicts(compared)
+    for name in ("ting", "mdr"):
+        errors = judgement(compared, name).errors
+        assert (errors["contact_radius_rebound"] or 0.0) < 5e-3
+        assert (errors["pressure_rebound"] or 0.0) < 0.02
+
+
+def test_correspondence_holds_until_maximum_depth_and_then_ends_too_early(compared: Comparison) -> None:
+    """Lee and Radok's solution holds while the contact grows; later its negative pressure takes force away."""
+    found = judgement(compared, "correspondence")
+    assert not found.exceeds("held_until_max_depth")
+    assert not found.exceeds("peak_force")
+    assert (found.errors["duration"] or 0.0) < -0.01
+    assert (found.errors["restitution"] or 0.0) < -0.001
+    (line,) = (text for text in verdicts(compared) if text.startswith("correspondence"))
+    assert "holds until maximum depth" in line
+    assert "too early" in line
+    assert "too low" in line
+
+
+def test_an_elastic_paraboloid_leaves_no_law_outside_the_bar() -> None:
+    scene = Scene.load("steel-ball", {"model.profile": "parabola"})
+    solved = solve(scene, {})
+    comparison = compare(solved, result_of(scene, solved), DEFAULT_LAWS)
+    assert verdicts(comparison) == (f"{', '.join(DEFAULT_LAWS)}: {WITHIN}",)
+
+
+def test_the_reference_measured_is_within_its_own_bar(polymer: tuple[Solved, Result]) -> None:
+    history = polymer[1].history
+    comparison = compare(*polymer, (), Measured(history.time, history.force))
+    assert comparison.judgements[0].score_percent == pytest.approx(0.0, abs=1e-9)
+    assert comparison.judgements[0].errors["restitution"] is None
+
+
+@pytest.mark.parametrize(("factor", "phrase"), [(1.05, "peak force 5 % too high"), (0.95, "peak force 5 % too low")])
+def test_a_scaled_measurement_is_called_so(polymer: tuple[Solved, Result], factor: float, phrase: str) -> None:
+    history = polymer[1].history
+    comparison = compare(*polymer, (), Measured(history.time, factor * history.force))
+    assert comparison.judgements[0].score_percent == pytest.approx(5.0, rel=1e-6)
+    assert phrase in verdicts(comparison)[0]
+
+
+def test_the_instants_of_the_rebound_lie_after_maximum_depth(polymer: tuple[Solved, Result]) -> None:
+    solved, result = polymer
+    times = [solved.certified.march.snapshots[step].time for step in rebound_steps(solved)]
+    turn = deepest(solved)
+    velocity = np.interp(turn, result.history.time, result.history.velocity)
+    assert velocity == pytest.approx(0.0, abs=0.02 * result.scene.velocity)
+    assert len(times) == 3
+    assert np.all(np.diff([turn, *times]) > 0)
+    assert result.history.force_at(times) / result.history.force_at(turn) == pytest.approx([0.75, 0.5, 0.25], abs=0.1)
+
+
+def test_a_law_without_an_answer_is_told_and_the_others_go_on(tmp_path: Path) -> None:
+    """A fluid has no relaxed modulus for Hertz."""
+    maxwell = {"law": "maxwell", "E": 6e5, "eta": 6e3, "nu": 0.45}
+    scene = Scene.load("polymer-sphere", {"target.material": maxwell})
+    solved = solve(scene, {"tolerance": 0.01})
+    comparison = compare(solved, result_of(scene, solved), DEFAULT_LAWS)
+    assert set(comparison.refused) == {"hertz"}
+    assert set(comparison.laws) == set(DEFAULT_LAWS) - {"hertz"}
+    assert any(line.startswith("hertz: no answer") for line in verdicts(comparison))
+
+
+def test_the_chart_is_reproducible(tmp_path: Path, compared: Comparison) -> None:
+    first, again = (plot_comparison(compared, tmp_path / name) for name in ("first", "again"))
+    assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
+
+
+def test_the_command_writes_what_it_prints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    chosen = ["--laws", "ting,correspondence,ting", "--json", "--quiet", "--out", str(tmp_path)]
+    assert main(["compare", "polymer-sphere", *chosen]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed == json.loads((tmp_path / "compare.json").read_text(encoding="utf-8"))
+    with (tmp_path / "scores.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["law"] for row in rows] == ["ting", "correspondence"] == list(printed["candidates"])
+    for row in rows:
+        candidate = printed["candidates"][row["law"]]
+        assert float(row["score_percent"]) == candidate["score_percent"]
+        assert float(row["duration_error"]) == candidate["errors"]["duration"]
+    written = {path.name for path in tmp_path.iterdir()}
+    assert {"history.csv", "result.json", "ting-history.csv", "compare.svg", "compare.png"} <= written
+
+
+def test_every_unknown_law_is_named_with_the_nearest(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    where = tmp_path / "none"
+    assert main(["compare", "polymer-sphere", "--laws", "tong,hertz,corespondence", "--out", str(where)]) == 2
+    faults = capsys.readouterr().err.splitlines()
+    assert [fault.rpartition("did you mean ")[2] for fault in faults] == ["ting?", "correspondence?"]
+    assert not where.exists()
+
+
+def test_no_law_named_is_a_fault() -> None:
+    with pytest.raises(BadInput):
+        law_names("")
+
+
+def test_an_unreadable_measurement_writes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    where, curve = tmp_path / "none", tmp_path / "curve.csv"
+    curve.write_text("time_s,force_mN\n0,1\n1,2\n", encoding="utf-8")
+    assert main(["compare", "polymer-sphere", "--measured", str(curve), "--out", str(where)]) == 2
+    assert "force_N" in capsys.readouterr().err
+    assert not where.exists()
