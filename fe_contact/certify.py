@@ -34,7 +34,7 @@ from lumped.members import get
 
 SAFETY = 1.25
 LEAST_ORDER = {"mesh": 2, "penalty": 1, "far_field": 2}
-LEAST_HALVED = 32  # steps below which halving them twice would leave too few to tell anything
+LEAST_HALVED = 48  # steps below which halving them twice would leave too few to tell anything
 LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 20.0, "far_radius": 5.0}
 AS_EXPECTED = (0.6, 2.5)  # shares of the expected ratio of changes that show the order; faster does no harm
 LATE = 0.75  # share of the contact after which path and speed count for those at separation
@@ -62,7 +62,7 @@ class Change:
             return np.inf if first is not second else 0.0
         around = {
             "peak_force": self.factor * self._peak_force,
-            "peak_time": self._peak_time,
+            "peak_time": self.factor * self._peak_time,
             "peak_depth": self.factor * self._depth_change[self._near_depth].max(),
             "duration": self.factor * self._depth_change[self._late].max() / abs(self.first.leaving_speed),
             "impulse": self.factor * self.velocity * self.first.strike.mass,
@@ -115,12 +115,12 @@ class Change:
 
     @cached_property
     def _peak_time(self) -> float:
-        """Half-width of the times at which a force wrong by its error could peak, s."""
-        force, time = self.first.dense_force, self.first.dense_time
-        could = time[force >= force.max() - 2 * self.factor * self._peak_force]
-        peak_time = self.first.quantities["peak_time"] or 0.0
-        spacing = float(np.diff(time).max())
-        return float(max(could[-1] - peak_time, peak_time - could[0])) + spacing
+        """How far a change of the force's slope moves its peak: slope over curvature, s."""
+        time, force, near = self.first.dense_time, self.first.dense_force, self._near_peak
+        change = self.second.force(time) - force
+        slope = np.abs(np.gradient(change, time)[near]).max()
+        curvature = 2 * np.polynomial.Polynomial.fit(time[near], force[near], 2).convert().coef[2]
+        return float(slope / abs(curvature))
 
     @cached_property
     def _near_peak(self) -> npt.NDArray[np.bool_]:
@@ -208,13 +208,13 @@ def _time_steps(runs: _Runs, fine: Curve, numerics: Numerics) -> _TimeSteps:
     if numerics.steps < LEAST_HALVED:
         double = runs.curve(numerics.varied(steps=2 * numerics.steps))
         fourfold = runs.curve(numerics.varied(steps=4 * numerics.steps))
-        if double is None or fourfold is None:
+        if double is None or fourfold is None or fourfold.separated != double.separated:
             return _TimeSteps(fine, None, (), 4 * numerics.steps)
         best = extrapolated(fourfold, double, order)
         return _TimeSteps(fine, Change(fine, best, SAFETY), (), 4 * numerics.steps)
     half = runs.curve(numerics.varied(steps=numerics.steps // 2))
     quarter = runs.curve(numerics.varied(steps=numerics.steps // 4))
-    if half is None or quarter is None:
+    if half is None or quarter is None or not fine.separated == half.separated == quarter.separated:
         return _TimeSteps(fine, None, (), numerics.steps)
     value, before = extrapolated(fine, half, order), extrapolated(half, quarter, order)
     trusted = _trusted_order(fine, half, quarter, order)

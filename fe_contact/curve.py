@@ -40,9 +40,7 @@ class Curve:
     def of(cls, march: March, strike: Strike) -> Curve:
         """The curve through the steps of a march."""
         duration = float(march.time[-1])
-        radius_time, radius = march.radius_time, march.radius
-        keep = radius_time < duration * (1 - 1e-9)
-        end = [(1.0, 0.0)] if march.separated else [(1.0, float(radius[-1]))]
+        shares, squares = _radius_through(march)
         return cls(
             strike=strike,
             duration=duration,
@@ -50,8 +48,8 @@ class Curve:
             x=np.sqrt(march.time / duration),
             mean_force=np.concatenate([[0.0], march.impulse[1:] / march.time[1:]]),
             depth=march.depth,
-            radius_x=np.sqrt(np.concatenate([[0.0], radius_time[keep] / duration, [end[0][0]]])),
-            radius_squared=np.concatenate([[0.0], radius[keep] ** 2, [end[0][1] ** 2]]),
+            radius_x=np.sqrt(shares),
+            radius_squared=squares,
             end_spread=march.end_spread,
         )
 
@@ -115,6 +113,25 @@ class Curve:
             "restitution": self.leaving_speed / self.strike.velocity if self.separated else None,
             "impulse": impulse,
         }
+
+
+def _radius_through(march: March) -> tuple[Array, Array]:
+    """Share of the contact and squared radius, from touch to the end, with the turn at the greatest depth.
+
+    The radius grows until then and shrinks after it with another slope: a line drawn from the last sample
+    before to the first one after would cut the corner.
+    """
+    duration = float(march.time[-1])
+    keep = march.radius_time < duration * (1 - 1e-9)
+    time, square = march.radius_time[keep], march.radius[keep] ** 2
+    last = 0.0 if march.separated else float(march.radius[-1] ** 2)
+    turn, _ = peak(march.time, march.depth)
+    growing = int(np.searchsorted(time, turn))
+    if 3 <= growing < len(time):
+        before = slice(growing - 3, growing)
+        at_turn, _ = local_polynomial(time[before], square[before], np.array([turn]))
+        time, square = np.insert(time, growing, turn), np.insert(square, growing, at_turn[0])
+    return np.concatenate([[0.0], time / duration, [1.0]]), np.concatenate([[0.0], square, [last]])
 
 
 def extrapolated(fine: Curve, coarse: Curve, order: int) -> Curve:

@@ -87,6 +87,7 @@ class _Marcher:
         states = [_State(0.0, 0.0, self.strike.velocity, 0.0, memory)]
         steps: list[_Step] = []
         separated = False
+        resting = AT_REST * self.strike.velocity
         predicted: list[float] = []
         while states[-1].time < self.strike.end_time * (1 - 1e-12):
             if len(steps) > STEPS_ALLOWED * self.numerics.steps:
@@ -95,10 +96,9 @@ class _Marcher:
             predicted.append(states[-1].time + (left or 0.0))
             step = None if left is not None and left <= self.shortest else self._advance(states[-1], steps, left)
             if step is None:
-                separated = states[-1].velocity < 0
-                states += (
-                    self._flight(states[-1], min(left or 0.0, self.shortest)) if separated else self._rest(states[-1])
-                )
+                separated = states[-1].velocity < (-resting if self.strike.relaxation.equilibrium == 0 else 0)
+                left = min(left or 0.0, self.shortest)
+                states += self._flight(states[-1], left) if separated else self._rest(states[-1], resting)
                 break
             steps.append(step)
             states.append(step.state)
@@ -241,10 +241,10 @@ class _Marcher:
         depth = state.depth + left * (state.velocity + 0.5 * pull)
         return [replace(state, time=state.time + left, depth=depth, velocity=state.velocity + pull)]
 
-    def _rest(self, state: _State) -> list[_State]:
+    def _rest(self, state: _State, resting: float) -> list[_State]:
         """A striker that a fluid has stopped, up to the end time; raises where it is no fluid or still moves."""
         strike = self.strike
-        if strike.relaxation.equilibrium > 0 or strike.gravity != 0 or state.velocity > AT_REST * strike.velocity:
+        if strike.relaxation.equilibrium > 0 or strike.gravity != 0 or state.velocity > resting:
             raise ContactNotSettled(state.time)
         roots = np.linspace(np.sqrt(state.time), np.sqrt(strike.end_time), REST_ROWS)[1:]
         return [replace(state, time=float(root) ** 2) for root in roots]

@@ -19,6 +19,7 @@ from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity, Resul
 from lumped.scene import Scene
 
 ROUNDS = 4  # refinements before giving up
+ROWS_SHARE = 0.1  # of the tolerance that a line between two rows may err
 DOMINANT = 0.5  # causes above this share of the largest one are refined together
 
 Progress = Callable[[str], None]
@@ -155,7 +156,7 @@ def _quantities(certified: Certified) -> dict[str, Quantity]:
 def history(certified: Certified, tolerance: float) -> History:
     """Rows dense enough for linear interpolation, with the force's error band."""
     curve = certified.curve
-    rows = densified(curve.dense_time[::3], curve.force, tolerance)
+    rows = densified(curve.dense_time[::3], curve.force, ROWS_SHARE * tolerance)
     return History(
         time=rows,
         depth=curve.depth_at(rows),

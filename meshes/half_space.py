@@ -21,8 +21,9 @@ def half_space(elements_per_contact: float, far_radius: float) -> MeshTri:
     """Triangles of the half-space ``z <= 0`` around a contact circle ``r = 1``.
 
     The size function is ``1/elements_per_contact`` inside the contact, 24 times finer at its edge
-    (where the pressure ends like a square root) and grows linearly away from both; doubling
-    ``elements_per_contact`` halves every size, so that refinement is uniform.
+    (where the pressure ends like a square root) and grows linearly away from both. Doubling
+    ``elements_per_contact`` halves that function everywhere; below about eight it is so steep that
+    triangles can follow it only in part, and their number grows by less than four.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Displacement linear, pressure constant over a step: the Petrov-Galerkin method of order two.
 
-Stress and force are averages over the step. Work equals force times change of depth exactly, whatever
-the step; stiff branches (dt >> tau) and pure viscosity keep the second order, which a rule that takes
+Stress and force are averages over the step. The work done on the striker is force times change of depth
+exactly, whatever the step; stiff branches (dt >> tau) and pure viscosity keep the second order, which a rule that takes
 the stress at the end of the step loses.
 """
 
