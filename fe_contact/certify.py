@@ -33,7 +33,8 @@ from lumped.errors import NotReached
 from lumped.members import get
 
 SAFETY = 1.25
-LEAST_ORDER = {"mesh": 2, "penalty": 1, "far_field": 2}
+LEAST_ORDER = {"penalty": 1, "far_field": 2}
+MESH_ORDER = {1: 0.5, 2: 1, 3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
 LEAST_HALVED = 48  # steps below which halving them twice would leave too few to tell anything
 LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 20.0, "far_radius": 5.0}
 AS_EXPECTED = (0.6, 2.5)  # shares of the expected ratio of changes that show the order; faster does no harm
@@ -183,7 +184,7 @@ def certify(strike: Strike, poisson: float, numerics: Numerics) -> Certified:
     penalty, stiffer = _other(cheap, "penalty")
     on_mesh = runs.curve(mesh)
     changes = {
-        "mesh": (_change(base, on_mesh, LEAST_ORDER["mesh"], finer_mesh), *steps.jitter),
+        "mesh": (_change(base, on_mesh, MESH_ORDER[numerics.order], finer_mesh), *steps.jitter),
         "penalty": (_change(base, runs.curve(penalty), LEAST_ORDER["penalty"], stiffer),),
         "time_step": (steps.change,),
         "far_field": (_change(on_mesh, runs.curve(far), LEAST_ORDER["far_field"], farther),),
@@ -274,7 +275,7 @@ def _trusted_order(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
     return order + 1 if AS_EXPECTED[0] <= seen / 2**order <= AS_EXPECTED[1] else 1
 
 
-def _change(first: Curve | None, second: Curve | None, order: int, finer: bool = False) -> Change | None:
+def _change(first: Curve | None, second: Curve | None, order: float, finer: bool = False) -> Change | None:
     """Change between settings in the ratio 1 : 2; ``finer`` if it is the second that is the better one."""
     if first is None or second is None:
         return None
