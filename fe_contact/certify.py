@@ -66,7 +66,7 @@ class Change:
             "peak_time": self.factor * self._peak_time,
             "peak_depth": self.factor * self._depth_change[self._near_depth].max(),
             "duration": self.factor * self._depth_change[self._late].max() / abs(self.first.leaving_speed),
-            "impulse": self.factor * self.velocity * self.first.strike.mass,
+            "impulse": self.factor * self._impulse_change,
             "restitution": self.factor * self.velocity / self.first.strike.velocity,
         }
         return max(self.factor * abs(first - second), float(around[name]))
@@ -107,6 +107,14 @@ class Change:
         return float(np.abs(change[self._late]).max())
 
     @cached_property
+    def _impulse_change(self) -> float:
+        """Largest change of the impulse late in the contact, compared at equal shares of it, N s."""
+        time = self.first.dense_time
+        shared = time * (self.second.duration / self.first.duration)
+        change = self.first.impulse_at(time) - self.second.impulse_at(shared)
+        return float(np.abs(change[self._late]).max())
+
+    @cached_property
     def _late(self) -> npt.NDArray[np.bool_]:
         return np.asarray(self.first.dense_time >= LATE * self.first.duration)
 
@@ -118,10 +126,14 @@ class Change:
     def _peak_time(self) -> float:
         """How far a change of the force's slope moves its peak: slope over curvature, s."""
         time, force, near = self.first.dense_time, self.first.dense_force, self._near_peak
-        change = self.second.force(time) - force
-        slope = np.abs(np.gradient(change, time)[near]).max()
-        curvature = 2 * np.polynomial.Polynomial.fit(time[near], force[near], 2).convert().coef[2]
-        return float(slope / abs(curvature))
+        top = min(max(int(force.argmax()), 1), len(force) - 2)
+        left = min(int(np.flatnonzero(near)[0]), top - 1)
+        right = max(int(np.flatnonzero(near)[-1]), top + 1)
+        slope = np.abs(np.gradient(self.second.force(time) - force, time)[left : right + 1]).max()
+        falling = (force[top] - force[right]) / (time[right] - time[top])
+        rising = (force[top] - force[left]) / (time[top] - time[left])
+        curvature = 2 * (falling + rising) / (time[right] - time[left])
+        return float(min(slope / abs(curvature), self.first.duration)) if curvature else self.first.duration
 
     @cached_property
     def _near_peak(self) -> npt.NDArray[np.bool_]:

@@ -70,15 +70,22 @@ class Curve:
         value, _ = local_polynomial(self.x, self.depth, self._share(time))
         return value
 
+    def impulse_at(self, time: Array) -> Array:
+        """Impulse since touch, N s."""
+        mean, _ = local_polynomial(self.x, self.mean_force, self._share(time))
+        return mean * time
+
     def velocity_at(self, time: Array) -> Array:
         """Velocity by the balance of momentum, m/s."""
-        mean, _ = local_polynomial(self.x, self.mean_force, self._share(time))
-        return self.strike.velocity + (self.strike.gravity - mean / self.strike.mass) * time
+        return self.strike.velocity + self.strike.gravity * time - self.impulse_at(time) / self.strike.mass
 
     def radius_at(self, time: Array) -> Array:
         """Contact radius, m."""
-        square = np.interp(self._share(time) ** 2, self.radius_x**2, self.radius_squared)
-        return np.sqrt(np.maximum(square, 0.0))
+        return np.sqrt(np.maximum(self.radius_squared_at(self._share(time)), 0.0))
+
+    def radius_squared_at(self, x: Array) -> Array:
+        """Squared contact radius, m^2, linear in time between the steps."""
+        return np.asarray(np.interp(x**2, self.radius_x**2, self.radius_squared))
 
     def _share(self, time: Array) -> Array:
         return np.sqrt(np.clip(time / self.duration, 0.0, 1.0))
@@ -151,7 +158,7 @@ def extrapolated(fine: Curve, coarse: Curve, order: int) -> Curve:
         mean_force=mend(fine.mean_force, coarse.x, coarse.mean_force),
         depth=mend(fine.depth, coarse.x, coarse.depth),
         radius_x=fine.radius_x,
-        radius_squared=fine.radius_squared,
+        radius_squared=fine.radius_squared + weight * (fine.radius_squared - coarse.radius_squared_at(fine.radius_x)),
         end_spread=fine.end_spread + weight * (fine.end_spread + coarse.end_spread),
     )
 
@@ -162,9 +169,10 @@ def peak(time: Array, values: Array) -> tuple[float, float]:
     around = slice(top - 2, top + 3)
     span = time[top + 2] - time[top - 2]
     quartic = np.polynomial.Polynomial.fit((time[around] - time[top]) / span, values[around], 4, domain=[-1, 1])
-    fine = np.linspace(-0.3, 0.3, 121)
+    first, last = (time[top - 2] - time[top]) / span, (time[top + 2] - time[top]) / span
+    fine = np.linspace(first, last, 201)
     best = fine[int(np.argmax(quartic(fine)))]
-    fine = best + np.linspace(-0.005, 0.005, 101)
+    fine = np.clip(best + np.linspace(-0.005, 0.005, 101), first, last)
     best = fine[int(np.argmax(quartic(fine)))]
     return float(time[top] + best * span), float(quartic(best))
 

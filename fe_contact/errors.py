@@ -24,7 +24,7 @@ class MemoryTooSmall(NotReached):
 
     def __init__(self, radius: float) -> None:
         self.radius = radius
-        super().__init__(f"contact radius {radius:.6g} m exceeds the planned one; cure: raise numerics.contact_radius")
+        super().__init__(f"contact radius {radius:.6g} m exceeds the planned one; cure: raise numerics.steps")
 
 
 class TooManySteps(NotReached):

@@ -33,7 +33,7 @@ END_REACHED = 1e-3  # time left over contact time at which separation is read of
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 PREDICTIONS = 3  # of the separation: how far they lie apart tells how well its time can be read
 NOISE = 1e-4  # share of the peak force below which a contact problem may drown in the mesh's error
-AT_REST = 1e-3  # share of the velocity at touch below which a fluid has stopped the striker
+AT_REST = 1e-4  # share of the velocity at touch below which a fluid has stopped the striker
 REST_ROWS = 12
 FAINT = 1e-3  # share of the peak force below which contact may end
 VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
@@ -87,7 +87,8 @@ class _Marcher:
         states = [_State(0.0, 0.0, self.strike.velocity, 0.0, memory)]
         steps: list[_Step] = []
         separated = False
-        resting = AT_REST * self.strike.velocity
+        free_fluid = self.strike.relaxation.equilibrium == 0 and self.strike.gravity == 0
+        resting = AT_REST * self.strike.velocity if free_fluid else 0.0
         predicted: list[float] = []
         while states[-1].time < self.strike.end_time * (1 - 1e-12):
             if len(steps) > STEPS_ALLOWED * self.numerics.steps:
@@ -96,7 +97,7 @@ class _Marcher:
             predicted.append(states[-1].time + (left or 0.0))
             step = None if left is not None and left <= self.shortest else self._advance(states[-1], steps, left)
             if step is None:
-                separated = states[-1].velocity < (-resting if self.strike.relaxation.equilibrium == 0 else 0)
+                separated = states[-1].velocity < -resting
                 left = min(left or 0.0, self.shortest)
                 states += self._flight(states[-1], left) if separated else self._rest(states[-1], resting)
                 break
@@ -144,7 +145,7 @@ class _Marcher:
         return numerics.contact_time * step_length(done, numerics.steps, numerics.peak_share)
 
     def _step(self, state: _State, steps: list[_Step], length: float) -> _Step:
-        strike, scheme = self.strike, self.scheme
+        strike, scheme, end = self.strike, self.scheme, self.strike.end_time
         law = step_law(strike.relaxation, scheme, length)
         carried = state.memory.carried(law)
         lever = scheme.LEVER * length**2
@@ -160,7 +161,7 @@ class _Marcher:
         stress[0, touching] = held
         memory = state.memory.advanced(law, stress)
         moved = _State(
-            time=state.time + length,
+            time=end if length >= end - state.time else state.time + length,
             depth=depth,
             velocity=state.velocity + length * (strike.gravity - force / strike.mass),
             impulse=state.impulse + length * force,
@@ -244,7 +245,7 @@ class _Marcher:
     def _rest(self, state: _State, resting: float) -> list[_State]:
         """A striker that a fluid has stopped, up to the end time; raises where it is no fluid or still moves."""
         strike = self.strike
-        if strike.relaxation.equilibrium > 0 or strike.gravity != 0 or state.velocity > resting:
+        if resting == 0.0 or state.velocity > resting:
             raise ContactNotSettled(state.time)
         roots = np.linspace(np.sqrt(state.time), np.sqrt(strike.end_time), REST_ROWS)[1:]
         return [replace(state, time=float(root) ** 2) for root in roots]
@@ -281,8 +282,8 @@ class _Marcher:
 
     def _energy(self, states: list[_State], steps: list[_Step]) -> dict[str, float]:
         strike, last = self.strike, states[-1]
-        incoming = 0.5 * strike.mass * strike.velocity**2
-        outgoing = 0.5 * strike.mass * last.velocity**2 - strike.mass * strike.gravity * last.depth
+        incoming = 0.5 * strike.mass * strike.velocity**2 + strike.mass * strike.gravity * last.depth
+        outgoing = 0.5 * strike.mass * last.velocity**2
         stored = last.memory.stored(strike.relaxation)
         heat = sum(step.heat for step in steps)
         weights = self.surface.operator.weights

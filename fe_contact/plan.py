@@ -22,7 +22,8 @@ ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-3 and 1e-4: see `fe-
 VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
 STEPS_AT_DEFAULT = 48
 STEPS_ORDER = 0.1  # steps grow with tolerance to this power: 60 at 1e-4
-EARLY_PEAK = 0.2  # a force that peaks before this share of the contact needs more steps in proportion
+SOONEST_PEAK = 1e-6  # share of the contact below which the time grid would lose its digits
+EARLY_PEAK = 0.28  # a force that peaks before this share of the contact needs more steps in proportion
 DEFAULTS: Mapping[str, Any] = {
     "order": 4,
     "penalty": 500.0,
@@ -49,7 +50,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
     scales = mdr.estimate(scene)
     contact_time = scales.duration or scene.end_time
-    peak_share = min(max(scales.peak_time / contact_time, RANGES["peak_share"][0]), 1.0)
+    peak_share = min(max(scales.peak_time / contact_time, SOONEST_PEAK), 1.0)
     chosen = {
         **DEFAULTS,
         "tolerance": tolerance,
@@ -59,7 +60,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
         "contact_time": contact_time,
         "peak_share": peak_share,
     }
-    peak = Peak(scales.peak_force, scales.peak_depth, scales.contact_radius, contact_time)
+    peak = Peak(scales.peak_force, scales.peak_depth, scales.contact_radius, 2 * scales.peak_time)
     return Plan(Numerics(**{**chosen, **given}), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
 
 

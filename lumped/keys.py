@@ -119,13 +119,15 @@ class Flag:
 
 @dataclass(frozen=True)
 class Text:
-    """A text of one to 200 characters."""
+    """A printable text of one to 200 characters that may be part of a file's name."""
 
     required: bool = True
-    accepted: str = "a text of 1 to 200 characters"
+    accepted: str = "a printable text of 1 to 200 characters without / and \\"
 
     def read(self, value: object) -> str:
         if not isinstance(value, str) or not 1 <= len(value.strip()) <= 200:
+            raise ValueError
+        if not value.isprintable() or set(value) & set("/\\") or value.startswith("."):
             raise ValueError
         return value
 

@@ -46,10 +46,16 @@ def load(source: str | Path, overrides: Mapping[str, object] | None = None) -> t
     `overrides` maps dotted keys ("striker.velocity") to values that replace the file's. Raises BadInput
     with every fault found, at most 20.
     """
+    path = resolved(source)
+    return read(parsed(path), path.name, overrides)
+
+
+def resolved(source: str | Path) -> Path:
+    """The file that a path or the name of a packaged scene stands for. Raises BadInput for an unknown name."""
     path = Path(source)
     if not path.exists() and path.suffix != ".toml" and path.name == str(source):
-        path = data.scene_path(str(source))
-    return read(parsed(path), path.name, overrides)
+        return data.scene_path(str(source))
+    return path
 
 
 def read(

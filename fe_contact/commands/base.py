@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -13,7 +14,7 @@ from fe_contact.numerics import faults
 from lumped.errors import BadInput, Fault
 from lumped.result import Result
 from lumped.scene import Scene
-from lumped.scene_file import load
+from lumped.scene_file import load, resolved
 from lumped.toml_file import overridden, parse_assignment, parsed
 
 DONE, NOT_REACHED = 0, 3
@@ -46,7 +47,7 @@ def read_scene(args: argparse.Namespace) -> tuple[Scene, dict[str, Any]]:
     try:
         scene, table = load(args.scene, overrides)
     except BadInput as bad:
-        raise BadInput([*bad.faults, *_settings_faults(Path(args.scene), overrides)]) from None
+        raise BadInput([*bad.faults, *_settings_faults(args.scene, overrides)]) from None
     tolerance = getattr(args, "tolerance", None)
     fixed = any(text.split("=")[0].strip() == "numerics.tolerance" for text in args.overrides)
     if tolerance is not None and not fixed:
@@ -54,9 +55,10 @@ def read_scene(args: argparse.Namespace) -> tuple[Scene, dict[str, Any]]:
     return scene, table
 
 
-def _settings_faults(path: Path, overrides: dict[str, object]) -> list[Fault]:
+def _settings_faults(scene: str, overrides: dict[str, object]) -> list[Fault]:
     """Faults of the settings in a scene file whose physics is faulty too."""
     try:
+        path = resolved(scene)
         table = overridden(parsed(path), overrides, path.name).get("numerics", {})
     except BadInput:  # no TOML at all, which has been said
         return []
@@ -72,9 +74,13 @@ def number(text: str, option: str) -> float:
 
 
 def folder(args: argparse.Namespace, command: str, scene: Scene) -> Path:
-    """Where the results of a command go."""
+    """Where the results of a command go; raises BadInput, before any work, where nothing can be written."""
     chosen: Path | None = args.out
-    return chosen or Path("fe-contact-out") / f"{command}-{scene.name}"
+    where = chosen or Path("fe-contact-out") / f"{command}-{scene.name}"
+    standing = next(place for place in (where, *where.absolute().parents) if place.exists())
+    if not standing.is_dir() or not os.access(standing, os.W_OK):
+        raise BadInput(Fault("--out", str(where), "accepted: a folder that can be written"))
+    return where
 
 
 def progress_of(args: argparse.Namespace) -> Callable[[str], None]:
