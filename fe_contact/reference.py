@@ -179,5 +179,5 @@ def _shortfall(quantities: Mapping[str, Quantity], tolerance: float) -> str:
     name = max((*RULED_RELATIVE, *RULED_ABSOLUTE), key=width)
     return (
         f"tolerance {tolerance:g} not reached: {name} is known to {width(name):.2g}; "
-        "cure: a larger tolerance, or leave numerics to the plan"
+        "cure: a larger tolerance, or fewer numerics of your own"
     )

@@ -116,6 +116,25 @@ class Result:
         (directory / "result.json").write_text(text + "\n", encoding="utf-8")
 
 
+def write_failure(directory: Path, scene: Scene, method: str, message: str) -> None:
+    """Write the result.json of an impact that no solve brought to an end: what is known, and null for the rest."""
+    content = {
+        "schema": SCHEMA,
+        "method": method,
+        "converged": False,
+        "separated": False,
+        "model_sufficient": None,
+        "message": message,
+        "scene": scene.to_dict(),
+        "model": vars(scene.model),
+        "quantities": {name: {"value": None, "error": None, "unit": unit} for name, unit in UNITS.items()},
+        "provenance": provenance(),
+    }
+    directory.mkdir(parents=True, exist_ok=True)
+    text = json.dumps(_plain(content), indent=2, allow_nan=False, ensure_ascii=False)
+    (directory / "result.json").write_text(text + "\n", encoding="utf-8")
+
+
 def quantities_of(history: History, separated: bool) -> dict[str, float | None]:
     """The values of UNITS read off the rows of a history; duration and restitution None without separation.
 

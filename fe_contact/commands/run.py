@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
+from typing import Any
 
 from fe_contact.commands import base
-from lumped.errors import BadInput, Fault
+from lumped.errors import BadInput, Fault, NotReached
+from lumped.result import write_failure
 from lumped.scene import Scene
 
 SUMMARY = "one impact: history.csv and result.json, with error bars"
@@ -22,11 +25,19 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Run, write, report; 0 or 3."""
-    from fe_contact.methods import settings, simulate
-
     scene, table = base.read_scene(args)
     where = base.folder(args, "run", scene)
     _check(args, scene)
+    try:
+        return _impact(args, scene, table, where)
+    except NotReached as failure:
+        write_failure(where, scene, args.method, str(failure))
+        raise
+
+
+def _impact(args: argparse.Namespace, scene: Scene, table: dict[str, Any], where: Path) -> int:
+    from fe_contact.methods import settings, simulate
+
     if args.method != "fe":
         result = simulate(scene, args.method, table, progress=base.progress_of(args))
         result.write(where)
