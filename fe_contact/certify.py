@@ -17,12 +17,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.change import Change
 from fe_contact.curve import Curve, extrapolated
 from fe_contact.forms import Array
 from fe_contact.impact import march
@@ -38,107 +37,7 @@ MESH_ORDER = {1: 0.5, 2: 1, 3: 1, 4: 2}  # by element order: the edge allows thr
 LEAST_HALVED = 48  # steps below which halving them twice would leave too few to tell anything
 LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 20.0, "far_radius": 5.0}
 AS_EXPECTED = (0.6, 2.5)  # shares of the expected ratio of changes that show the order; faster does no harm
-LATE = 0.75  # share of the contact after which path and speed count for those at separation
 CAUSES = ("mesh", "penalty", "time_step", "far_field")
-PEAK_SHARE = 0.98  # the force's own error is the largest one while the force exceeds this share of its peak
-SMOOTHING = 0.04  # share of the contact over which a pointwise change counts as the error of its neighbours
-
-
-@dataclass(frozen=True)
-class Change:
-    """Two curves that differ in one setting, and the factor that turns their difference into an error."""
-
-    first: Curve
-    second: Curve
-    factor: float
-
-    def of(self, name: str) -> float:
-        """Error of a quantity, in its unit.
-
-        What is read at one instant takes the largest change around it: a difference of two curves may cross
-        zero just there, which makes neither of them right.
-        """
-        first, second = self.first.quantities[name], self.second.quantities[name]
-        if first is None or second is None:
-            return np.inf if first is not second else 0.0
-        around = {
-            "peak_force": self.factor * self._peak_force,
-            "peak_time": self.factor * self._peak_time,
-            "peak_depth": self.factor * self._depth_change[self._near_depth].max(),
-            "duration": self.factor * self._depth_change[self._late].max() / abs(self.first.leaving_speed),
-            "impulse": self.factor * self._impulse_change,
-            "restitution": self.factor * self.velocity / self.first.strike.velocity,
-        }
-        return max(self.factor * abs(first - second), float(around[name]))
-
-    def history(self) -> float:
-        """Norm of the force's change over the norm of the force."""
-        time = self.first.dense_time
-        change = np.trapezoid(self._force_change**2, time)
-        return self.factor * float(np.sqrt(change / np.trapezoid(self.first.dense_force**2, time)))
-
-    def force(self, time: Array) -> Array:
-        """Error of the force at times, N: the largest change in the neighbourhood of each."""
-        width = max(1, round(SMOOTHING * len(self._force_change)))
-        padded = np.pad(self._force_change, width, mode="edge")
-        around = np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1).max(axis=1)
-        return np.asarray(self.factor * np.interp(time, self.first.dense_time, around))
-
-    @cached_property
-    def _force_change(self) -> Array:
-        return np.abs(self.first.dense_force - self.second.force(self.first.dense_time))
-
-    @cached_property
-    def _depth_change(self) -> Array:
-        time = self.first.dense_time
-        return np.abs(self.first.depth_at(time) - self.second.depth_at(time))
-
-    @cached_property
-    def _near_depth(self) -> npt.NDArray[np.bool_]:
-        depth = self.first.depth_at(self.first.dense_time)
-        return np.asarray(depth > PEAK_SHARE * depth.max())
-
-    @cached_property
-    def velocity(self) -> float:
-        """Largest change of the velocity late in the contact, compared at equal shares of it, m/s."""
-        time = self.first.dense_time
-        shared = time * (self.second.duration / self.first.duration)
-        change = self.first.velocity_at(time) - self.second.velocity_at(shared)
-        return float(np.abs(change[self._late]).max())
-
-    @cached_property
-    def _impulse_change(self) -> float:
-        """Largest change of the impulse late in the contact, compared at equal shares of it, N s."""
-        time = self.first.dense_time
-        shared = time * (self.second.duration / self.first.duration)
-        change = self.first.impulse_at(time) - self.second.impulse_at(shared)
-        return float(np.abs(change[self._late]).max())
-
-    @cached_property
-    def _late(self) -> npt.NDArray[np.bool_]:
-        return np.asarray(self.first.dense_time >= LATE * self.first.duration)
-
-    @cached_property
-    def _peak_force(self) -> float:
-        return float(self._force_change[self._near_peak].max())
-
-    @cached_property
-    def _peak_time(self) -> float:
-        """How far a change of the force's slope moves its peak: slope over curvature, s."""
-        time, force, near = self.first.dense_time, self.first.dense_force, self._near_peak
-        top = min(max(int(force.argmax()), 1), len(force) - 2)
-        left = min(int(np.flatnonzero(near)[0]), top - 1)
-        right = max(int(np.flatnonzero(near)[-1]), top + 1)
-        slope = np.abs(np.gradient(self.second.force(time) - force, time)[left : right + 1]).max()
-        falling = (force[top] - force[right]) / (time[right] - time[top])
-        rising = (force[top] - force[left]) / (time[top] - time[left])
-        curvature = 2 * (falling + rising) / (time[right] - time[left])
-        return float(min(slope / abs(curvature), self.first.duration)) if curvature else self.first.duration
-
-    @cached_property
-    def _near_peak(self) -> npt.NDArray[np.bool_]:
-        force = self.first.dense_force
-        return np.asarray(force > PEAK_SHARE * force.max())
 
 
 @dataclass(frozen=True)
