@@ -7,19 +7,21 @@ the edge turns out to lie outside the mesh's finest elements, the mesh is scaled
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import ModuleType
 
 import numpy as np
 
+from fe_contact.account import record
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, interpolate, step_law
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.contact import ContactSolution
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall, TooManySteps
 from fe_contact.forms import Array
-from fe_contact.march import March, Snapshot, Strike, Work
+from fe_contact.march import March, Strike, Work
 from fe_contact.numerics import ENFORCEMENTS, SCHEMES, Numerics
 from fe_contact.separation import time_left
+from fe_contact.steps import State, Step
 from fe_contact.time_grid import step_length
 from lumped.members import get
 
@@ -40,30 +42,6 @@ VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
 STEPS_ALLOWED = 20  # multiple of the settings' steps after which the march gives up
 
 
-@dataclass(frozen=True)
-class _State:
-    time: float
-    depth: float
-    velocity: float
-    impulse: float
-    memory: SurfaceMemory
-
-
-@dataclass(frozen=True)
-class _Step:
-    """A step taken: its length, the state after it, force and contact radius in it, the axis' response."""
-
-    length: float
-    state: _State
-    force: float
-    radius: float
-    axis_response: float
-    solution: ContactSolution
-    scale: float
-    heat: float
-    work: Work
-
-
 def march(strike: Strike, surface: ScaledSurface, numerics: Numerics) -> March:
     """Integrate from first touch to separation, or to ``strike.end_time``.
 
@@ -82,10 +60,11 @@ class _Marcher:
         self.shortest = END_REACHED * numerics.contact_time
 
     def run(self) -> March:
+        strike = self.strike
         radii = np.linspace(0.0, MEMORY_REACH * self.numerics.contact_radius, MEMORY_POINTS)
         memory = SurfaceMemory.at_rest(radii, self.strike.relaxation)
-        states = [_State(0.0, 0.0, self.strike.velocity, 0.0, memory)]
-        steps: list[_Step] = []
+        states = [State(0.0, 0.0, self.strike.velocity, 0.0, memory)]
+        steps: list[Step] = []
         separated = False
         free_fluid = self.strike.relaxation.equilibrium == 0 and self.strike.gravity == 0
         resting = AT_REST * self.strike.velocity if free_fluid else 0.0
@@ -103,9 +82,10 @@ class _Marcher:
                 break
             steps.append(step)
             states.append(step.state)
-        return self._march(states, steps, separated, predicted[-PREDICTIONS:])
+        spread = np.ptp(predicted[-PREDICTIONS:]) if separated else 0.0
+        return record(strike, self.surface, self.numerics, self.scheme, states, steps, separated, float(spread))
 
-    def _time_left(self, steps: list[_Step]) -> float | None:
+    def _time_left(self, steps: list[Step]) -> float | None:
         """Time to separation while the striker leaves, else None."""
         if len(steps) < 4 or steps[-1].state.velocity >= 0:
             return None
@@ -115,7 +95,7 @@ class _Marcher:
         # a kink in the trend is not the end: contact ends faintly
         return None if left is None or (left <= self.shortest and not self._faint(steps, FAINT)) else left
 
-    def _advance(self, state: _State, steps: list[_Step], left: float | None) -> _Step | None:
+    def _advance(self, state: State, steps: list[Step], left: float | None) -> Step | None:
         """The next step: on the grid, shorter towards separation, and again where contact was lost in it.
 
         None if contact does not last even for the shortest step.
@@ -135,7 +115,7 @@ class _Marcher:
                     return None
 
     @staticmethod
-    def _faint(steps: list[_Step], share: float) -> bool:
+    def _faint(steps: list[Step], share: float) -> bool:
         """Whether the force has fallen below a share of its peak."""
         return steps[-1].force <= share * max(step.force for step in steps)
 
@@ -144,7 +124,7 @@ class _Marcher:
         numerics = self.numerics
         return numerics.contact_time * step_length(done, numerics.steps, numerics.peak_share)
 
-    def _step(self, state: _State, steps: list[_Step], length: float) -> _Step:
+    def _step(self, state: State, steps: list[Step], length: float) -> Step:
         strike, scheme, end = self.strike, self.scheme, self.strike.end_time
         law = step_law(strike.relaxation, scheme, length)
         carried = state.memory.carried(law)
@@ -160,14 +140,14 @@ class _Marcher:
         held = law.now * (depth - strike.height(state.memory.radii[touching])) + carried[0, touching]
         stress[0, touching] = held
         memory = state.memory.advanced(law, stress)
-        moved = _State(
+        moved = State(
             time=end if length >= end - state.time else state.time + length,
             depth=depth,
             velocity=state.velocity + length * (strike.gravity - force / strike.mass),
             impulse=state.impulse + length * force,
             memory=memory,
         )
-        return _Step(
+        return Step(
             length=length,
             state=moved,
             force=force,
@@ -181,8 +161,8 @@ class _Marcher:
 
     def _settle(
         self,
-        state: _State,
-        steps: list[_Step],
+        state: State,
+        steps: list[Step],
         law: StepLaw,
         carried: Array,
         free_depth: float,
@@ -217,7 +197,7 @@ class _Marcher:
                 raise ContactLost(state.time)
         raise ContactNotSettled(state.time)
 
-    def _expected_radius(self, state: _State, steps: list[_Step], depth: float, length: float) -> float:
+    def _expected_radius(self, state: State, steps: list[Step], depth: float, length: float) -> float:
         """Contact radius in the coming step: its square is nearly linear in time."""
         if not steps:
             return _overlap_radius(self.strike.height, depth, state.memory.radii)
@@ -234,7 +214,7 @@ class _Marcher:
         spread = np.interp(radii / scale, self.surface.operator.points, pressure / scale, right=0.0)
         return np.stack([displacement, spread])
 
-    def _flight(self, state: _State, left: float) -> list[_State]:
+    def _flight(self, state: State, left: float) -> list[State]:
         """The little time to separation, over which the force is below any rounding that matters."""
         if left == 0.0:
             return []
@@ -242,59 +222,13 @@ class _Marcher:
         depth = state.depth + left * (state.velocity + 0.5 * pull)
         return [replace(state, time=state.time + left, depth=depth, velocity=state.velocity + pull)]
 
-    def _rest(self, state: _State, resting: float) -> list[_State]:
+    def _rest(self, state: State, resting: float) -> list[State]:
         """A striker that a fluid has stopped, up to the end time; raises where it is no fluid or still moves."""
         strike = self.strike
         if resting == 0.0 or state.velocity > resting:
             raise ContactNotSettled(state.time)
         roots = np.linspace(np.sqrt(state.time), np.sqrt(strike.end_time), REST_ROWS)[1:]
         return [replace(state, time=float(root) ** 2) for root in roots]
-
-    def _march(self, states: list[_State], steps: list[_Step], separated: bool, predicted: list[float]) -> March:
-        ends = np.array([s.state.time for s in steps])
-        lengths = np.array([s.length for s in steps])
-        approaching = np.array([s.state.velocity > 0 for s in steps])
-        # growing contact is found at the end of the step, receding contact where the force is sampled
-        radius_time = np.where(approaching, ends, ends - (1 - self.scheme.SAMPLE) * lengths)
-        return March(
-            time=np.array([s.time for s in states]),
-            depth=np.array([s.depth for s in states]),
-            impulse=np.array([s.impulse for s in states]),
-            radius_time=radius_time,
-            radius=np.array([s.radius for s in steps]),
-            separated=separated,
-            snapshots=tuple(self._snapshot(s) for s in steps),
-            energy=self._energy(states, steps),
-            end_spread=max(predicted) - min(predicted) if separated else 0.0,
-            work=Work(len(steps), sum(s.work.contact_problems for s in steps), sum(s.work.iterations for s in steps)),
-        )
-
-    def _snapshot(self, step: _Step) -> Snapshot:
-        radii = step.scale * self.surface.operator.points
-        memory = step.state.memory
-        return Snapshot(
-            time=step.state.time - (1 - self.scheme.SAMPLE) * step.length,
-            contact_radius=step.radius,
-            radii=radii,
-            pressure=step.solution.pressure / step.scale,
-            elastic_pressure=np.interp(radii, memory.radii, memory.strain[1]),
-        )
-
-    def _energy(self, states: list[_State], steps: list[_Step]) -> dict[str, float]:
-        strike, last = self.strike, states[-1]
-        incoming = 0.5 * strike.mass * strike.velocity**2 + strike.mass * strike.gravity * last.depth
-        outgoing = 0.5 * strike.mass * last.velocity**2
-        stored = last.memory.stored(strike.relaxation)
-        heat = sum(step.heat for step in steps)
-        weights = self.surface.operator.weights
-        final = steps[-1]
-        modulus = step_law(strike.relaxation, self.scheme, final.length).now
-        springs = 0.5 * final.scale * float(weights @ final.solution.pressure**2) / (self.numerics.penalty * modulus)
-        contact = 0.0 if states[-1] is not final.state else springs
-        terms = {"in": incoming, "out": outgoing, "stored": stored, "viscous": heat}
-        terms |= {"radiated": 0.0, "contact": contact, "numerical": 0.0}
-        terms["residual"] = incoming - sum(value for key, value in terms.items() if key != "in")
-        return terms
 
 
 def _overlap_radius(height: Callable[[Array], Array], depth: float, radii: Array) -> float:
