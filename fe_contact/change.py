@@ -39,7 +39,7 @@ class Change:
             "peak_time": self.factor * self._peak_time,
             "peak_depth": self.factor * self._depth_change[self._near_depth].max(),
             "duration": self.factor * self._depth_change[self._late].max() / abs(self.first.leaving_speed),
-            "impulse": self.factor * self._late_change(Curve.impulse_at),
+            "impulse": self.factor * self._impulse,
             "restitution": self.factor * self.velocity / self.first.strike.velocity,
         }
         return max(self.factor * abs(first - second), float(around[name]))
@@ -63,18 +63,21 @@ class Change:
 
     @cached_property
     def _depth_change(self) -> Array:
-        time = self.first.dense_time
-        return np.abs(self.first.depth_at(time) - self.second.depth_at(time))
+        return np.abs(self.first.dense_depth - self.second.depth_at(self.first.dense_time))
 
     @cached_property
     def _near_depth(self) -> npt.NDArray[np.bool_]:
-        depth = self.first.depth_at(self.first.dense_time)
+        depth = self.first.dense_depth
         return np.asarray(depth > PEAK_SHARE * depth.max())
 
     @cached_property
     def velocity(self) -> float:
         """Largest change of the velocity late in the contact, m/s."""
         return self._late_change(Curve.velocity_at)
+
+    @cached_property
+    def _impulse(self) -> float:
+        return self._late_change(Curve.impulse_at)
 
     def _late_change(self, read: Callable[[Curve, Array], Array]) -> float:
         """Largest change of what is read late in the contact, compared at equal shares of it."""

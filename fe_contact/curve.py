@@ -102,6 +102,11 @@ class Curve:
         return self.force(self.dense_time)
 
     @cached_property
+    def dense_depth(self) -> Array:
+        """Depth at :attr:`dense_time`, m."""
+        return self.depth_at(self.dense_time)
+
+    @cached_property
     def leaving_speed(self) -> float:
         """Speed away from the target at the end, m/s."""
         return -float(self.velocity_at(np.array([self.duration]))[0])
@@ -110,7 +115,7 @@ class Curve:
     def quantities(self) -> dict[str, float | None]:
         """The numbers of ``result.json`` but the history's own error."""
         peak_time, peak_force = peak(self.dense_time, self.dense_force)
-        _, peak_depth = peak(self.dense_time, self.depth_at(self.dense_time))
+        _, peak_depth = peak(self.dense_time, self.dense_depth)
         impulse = float(self.mean_force[-1]) * self.duration
         return {
             "peak_force": peak_force,
