@@ -46,14 +46,11 @@ def record(
 
 
 def _snapshot(step: Step, surface: ScaledSurface, scheme: ModuleType) -> Snapshot:
-    radii = step.scale * surface.operator.points
-    memory = step.state.memory
     return Snapshot(
         time=step.state.time - (1 - scheme.SAMPLE) * step.length,
         contact_radius=step.radius,
-        radii=radii,
+        radii=step.scale * surface.operator.points,
         pressure=step.solution.pressure / step.scale,
-        elastic_pressure=np.interp(radii, memory.radii, memory.strain[1]),
     )
 
 

@@ -141,6 +141,7 @@ class _Runs:
         self._strike, self._poisson = strike, poisson
         self._marches: list[March] = []
         self._surfaces: dict[int, ScaledSurface] = {}
+        self._curves: dict[Numerics, Curve | None] = {}
 
     def march(self, settings: Numerics) -> March:
         """One run; raises where it fails."""
@@ -150,11 +151,16 @@ class _Runs:
         return self._marches[-1]
 
     def curve(self, settings: Numerics) -> Curve | None:
-        """One run as a curve, None where it fails: its cause of error is then unknown."""
-        try:
-            return Curve.of(self.march(settings), self._strike)
-        except NotReached:
-            return None
+        """One run as a curve, None where it fails: its cause of error is then unknown.
+
+        Settings asked for again are not run again: the fewest steps serve every other variation as base.
+        """
+        if settings not in self._curves:
+            try:
+                self._curves[settings] = Curve.of(self.march(settings), self._strike)
+            except NotReached:
+                self._curves[settings] = None
+        return self._curves[settings]
 
     def work(self, finest: ScaledSurface) -> TotalWork:
         """What all runs cost together."""

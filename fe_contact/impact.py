@@ -62,14 +62,14 @@ class _Marcher:
     def run(self) -> March:
         strike = self.strike
         radii = np.linspace(0.0, MEMORY_REACH * self.numerics.contact_radius, MEMORY_POINTS)
-        memory = SurfaceMemory.at_rest(radii, self.strike.relaxation)
-        states = [State(0.0, 0.0, self.strike.velocity, 0.0, memory)]
+        memory = SurfaceMemory.at_rest(radii, strike.relaxation)
+        states = [State(0.0, 0.0, strike.velocity, 0.0, memory)]
         steps: list[Step] = []
         separated = False
-        free_fluid = self.strike.relaxation.equilibrium == 0 and self.strike.gravity == 0
-        resting = AT_REST * self.strike.velocity if free_fluid else 0.0
+        free_fluid = strike.relaxation.equilibrium == 0 and strike.gravity == 0
+        resting = AT_REST * strike.velocity if free_fluid else 0.0
         predicted: list[float] = []
-        while states[-1].time < self.strike.end_time * (1 - 1e-12):
+        while states[-1].time < strike.end_time * (1 - 1e-12):
             if len(steps) > STEPS_ALLOWED * self.numerics.steps:
                 raise TooManySteps(len(steps), states[-1].time)
             left = self._time_left(steps)

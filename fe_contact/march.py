@@ -25,15 +25,12 @@ class Strike:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Surface in one step: time, s; contact radius, m; radii and pressure at the quadrature points, m, Pa;
-    the elastic pressure, for unit modulus, of the displacement at the same points.
-    """
+    """Surface in one step: time, s; contact radius, m; radii and pressure at the quadrature points, m, Pa."""
 
     time: float
     contact_radius: float
     radii: Array
     pressure: Array
-    elastic_pressure: Array
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from fe_contact.numerics import checked
+from fe_contact.progress import Progress, silent
 from lumped import laws
 from lumped import simulate as simulate_law
 from lumped.errors import BadInput, Fault, nearest
@@ -14,10 +15,6 @@ from lumped.scene import Scene
 
 EXACT = "mdr"  # exact for a rigid striker on a homogeneous half-space, in milliseconds
 OWN = ("fe", "cheapest")
-
-
-def _silent(message: str) -> None:
-    """No progress wanted."""
 
 
 def settings(table: Mapping[str, Any], tolerance: float | None, source: str) -> dict[str, Any]:
@@ -31,7 +28,7 @@ def simulate(
     method: str,
     table: Mapping[str, Any],
     tolerance: float | None = None,
-    progress: Callable[[str], None] = _silent,
+    progress: Progress = silent,
 ) -> Result:
     """One impact of ``scene`` by a method; see :func:`fe_contact.run` for the parameters and errors."""
     given = settings(table, tolerance, scene.source)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -14,15 +14,15 @@ from fe_contact.errors import MemoryTooSmall
 from fe_contact.march import Strike
 from fe_contact.numerics import RANGES, Numerics
 from fe_contact.plan import SETTING, Plan, plan, refined
+from fe_contact.progress import Progress, silent
 from lumped.history import History, densified
-from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity, Result, meets, provenance
+from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity, Result, meets, provenance, unmet
 from lumped.scene import Scene
 
+CURE = "cure: a larger tolerance, or fewer numerics of your own"
 ROUNDS = 4  # refinements before giving up
 ROWS_SHARE = 0.1  # of the tolerance that a line between two rows may err
 DOMINANT = 0.5  # causes above this share of the largest one are refined together
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
@@ -36,16 +36,12 @@ class Solved:
     wall: float
 
 
-def _silent(message: str) -> None:
-    """No progress wanted."""
-
-
-def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = _silent) -> Result:
+def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
     """Force history of a scene by finite elements, with error bars; see :func:`solve`."""
     return result_of(scene, solve(scene, given, progress))
 
 
-def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = _silent) -> Solved:
+def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Solved:
     """Plan, certify, refine until the bars meet the tolerance or nothing is left to refine.
 
     Parameters
@@ -140,7 +136,7 @@ def result_of(scene: Scene, solved: Solved) -> Result:
         provenance=provenance(),
         timing={"cpu_s": solved.cpu, "wall_s": solved.wall},
         work=asdict(certified.work),
-        message="" if converged else _shortfall(quantities, tolerance),
+        message="" if converged else f"{unmet(quantities, tolerance)}; {CURE}",
     )
 
 
@@ -164,20 +160,4 @@ def history(certified: Certified, tolerance: float) -> History:
         force=curve.force(rows),
         contact_radius=curve.radius_at(rows),
         force_error=certified.force_error(rows),
-    )
-
-
-def _shortfall(quantities: Mapping[str, Quantity], tolerance: float) -> str:
-    """One line: the quantity whose bar is widest, and what to do."""
-
-    def width(name: str) -> float:
-        quantity = quantities[name]
-        if quantity.error is None:
-            return 0.0
-        return quantity.error / abs(quantity.value or 1.0) if name in RULED_RELATIVE else quantity.error
-
-    name = max((*RULED_RELATIVE, *RULED_ABSOLUTE), key=width)
-    return (
-        f"tolerance {tolerance:g} not reached: {name} is known to {width(name):.2g}; "
-        "cure: a larger tolerance, or fewer numerics of your own"
     )

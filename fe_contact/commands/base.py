@@ -6,11 +6,11 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from fe_contact.numerics import faults
+from fe_contact.progress import Progress, silent
 from lumped.errors import BadInput, Fault
 from lumped.result import Result
 from lumped.scene import Scene
@@ -83,10 +83,10 @@ def folder(args: argparse.Namespace, command: str, scene: Scene) -> Path:
     return where
 
 
-def progress_of(args: argparse.Namespace) -> Callable[[str], None]:
+def progress_of(args: argparse.Namespace) -> Progress:
     """Progress for a person who watches: silent with --quiet or when stderr is piped."""
     if args.quiet or not sys.stderr.isatty():
-        return lambda message: None
+        return silent
     return lambda message: print(f"fe-contact: {message} ...", file=sys.stderr)
 
 

@@ -93,9 +93,7 @@ def _mark_peak(axes: Axes, result: Result, second: float, newton: float, above: 
     text = with_error(peak.value, peak.error or 0.0, "N")
     share = x / (second * result.history.time[-1])
     side = "left" if share < 0.25 else "right" if share > 0.75 else "center"
-    axes.annotate(
-        text, (x, above), (0.0, 4.0), textcoords="offset points", ha=side, va="bottom", color=style.BLUE
-    )
+    axes.annotate(text, (x, above), (0.0, 4.0), textcoords="offset points", ha=side, va="bottom", color=style.BLUE)
 
 
 def _motion(axes: Axes, history: History) -> None:

@@ -55,9 +55,7 @@ class Comparison:
     refused: Mapping[str, str]
 
 
-def compare(
-    solved: Solved, reference: Result, names: tuple[str, ...], measured: Measured | None = None
-) -> Comparison:
+def compare(solved: Solved, reference: Result, names: tuple[str, ...], measured: Measured | None = None) -> Comparison:
     """Judge laws by their names, and a measured curve where there is one. Raises BadInput for an unknown law."""
     members = {name: get(name) for name in names}
     laws: dict[str, Result] = {}

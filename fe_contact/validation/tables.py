@@ -54,9 +54,7 @@ def write_comparison(comparison: Comparison, where: Path) -> dict[str, Any]:
     comparison.reference.write(where)
     for name, law in comparison.laws.items():
         law.history.write_csv(where / f"{name}-history.csv")
-    rows = [
-        [j.name, j.score_percent, *(j.errors[name] for name in SCORE_COLUMNS)] for j in comparison.judgements
-    ]
+    rows = [[j.name, j.score_percent, *(j.errors[name] for name in SCORE_COLUMNS)] for j in comparison.judgements]
     write_csv(where / "scores.csv", ["law", "score_percent", *SCORE_COLUMNS.values()], rows)
     content = comparison_content(comparison)
     write_json(where / "compare.json", content)
