@@ -25,7 +25,7 @@ __version__ = "0.1.0"
 def run(
     scene: Scene,
     tolerance: float | None = None,
-    method: str = "fe",
+    method: str | None = None,
     numerics: Mapping[str, Any] | None = None,
 ) -> Result:
     """One impact.
@@ -34,7 +34,7 @@ def run(
     ----------
     scene : a :class:`lumped.Scene`.
     tolerance : asked of every ruled quantity; None leaves it to ``numerics`` or the default 1e-3.
-    method : ``fe``, ``cheapest`` or the name of a lumped law.
+    method : ``fe``, ``cheapest`` or the name of a lumped law; None: the law the scene names, else ``fe``.
     numerics : settings to keep, as in the ``[numerics]`` table of a scene file.
 
     Raises

@@ -24,7 +24,7 @@ import numpy as np
 from skfem import Basis
 
 from fe_contact.forms import Array, isotropic
-from fe_contact.impact import BEYOND
+from fe_contact.stepping import BEYOND
 from fe_contact.numerics import ENFORCEMENTS, SCHEMES
 from fe_contact.reference import Solved
 from fe_contact.surface_pressure import felt, peak_step, scale
@@ -56,7 +56,7 @@ class Fields:
 
 def check_fields(scene: Scene) -> None:
     """Raises BadInput where the interior does not follow from the surface: a relaxing body of constant bulk modulus."""
-    material = scene.material
+    material = scene.geometry.material
     if material.constant == "bulk" and not material.young.is_elastic:
         reason = "'bulk': the interior does not follow from the surface; accepted with --fields: \"poisson\""
         raise BadInput(Fault(scene.source, "target.material.constant", reason))

@@ -50,8 +50,9 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     given : checked settings that the plan must keep.
     progress : told, in a line, what happens.
 
-    Raises NotReached where no march came to an end.
+    Raises NotReached where no march came to an end, BadInput for a scene without geometry or of several impacts.
     """
+    scene.check_single("fe")
     cpu, wall = time.process_time(), time.perf_counter()
     chosen = plan(scene, given)
     strike = strike_of(scene)
@@ -59,7 +60,7 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     for attempt in range(ROUNDS + 1):
         progress(f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements along the contact radius")
         try:
-            certified = certify(strike, scene.material.nu, numerics)
+            certified = certify(strike, scene.geometry.material.nu, numerics)
         except MemoryTooSmall:
             numerics = numerics.varied(contact_radius=1.5 * numerics.contact_radius)
             continue
@@ -76,9 +77,9 @@ def strike_of(scene: Scene) -> Strike:
     """What the march needs of a scene."""
     return Strike(
         height=scene.profile.height,
-        mass=scene.mass,
+        mass=scene.reduced_mass,
         velocity=scene.velocity,
-        gravity=scene.model.gravity,
+        gravity=scene.gravity,
         relaxation=scene.contact_modulus,
         end_time=scene.end_time,
     )

@@ -28,12 +28,14 @@ class Peak:
 def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[LedgerEntry, ...]:
     """The ledger of a scene under `model` (default: the scene's own), with the scales of its impact."""
     resolved = model or scene.model
-    radius = scene.shape.tip_radius
+    if not scene.has_geometry:
+        return (_gravity(scene, resolved, peak),)
+    radius = scene.geometry.shape.tip_radius
     entries = [
         _inertia(scene, peak),
         _profile(scene, resolved, peak),
         _finite_strain(peak, radius),
-        _deformed_gap(scene.material.nu, peak, radius),
+        _deformed_gap(scene.geometry.material.nu, peak, radius),
         _sideways(scene),
         LedgerEntry("striker compliance", "rigid", None, "the scene gives the striker no material"),
         _gravity(scene, resolved, peak),
@@ -45,7 +47,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
 
 def _inertia(scene: Scene, peak: Peak) -> LedgerEntry:
     """Waves take the share w of the energy, half of it before the peak: F ~ energy^(3/5) loses 0.3 w."""
-    effect, treated, material = "target inertia", "neglected", scene.material
+    effect, treated, material = "target inertia", "neglected", scene.geometry.material
     if material.density is None:
         return LedgerEntry(effect, treated, None, "needs target.material.density")
     shear = material.shear.relaxed or material.shear.glassy
@@ -53,7 +55,7 @@ def _inertia(scene: Scene, peak: Peak) -> LedgerEntry:
         return LedgerEntry(effect, treated, None, "a dashpot alone has no wave speed")
     speed = math.sqrt(shear / material.density)
     energy = pulse_energy(material.nu, material.density, speed, peak.force, peak.duration)
-    share = energy / (0.5 * scene.mass * scene.velocity**2)
+    share = energy / (0.5 * scene.reduced_mass * scene.velocity**2)
     return LedgerEntry(effect, treated, 0.3 * share, f"radiates {share:.2g} of the kinetic energy; model.inertia")
 
 
@@ -62,8 +64,8 @@ def _profile(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     effect = "parabola against true profile"
     if model.profile == "exact":
         return LedgerEntry(effect, "true profile", 0.0)
-    exact = float(scene.shape.resolved("exact").load_curve.force(peak.depth))
-    parabola = float(scene.shape.resolved("parabola").load_curve.force(peak.depth))
+    exact = float(scene.geometry.shape.resolved("exact").load_curve.force(peak.depth))
+    parabola = float(scene.geometry.shape.resolved("parabola").load_curve.force(peak.depth))
     return LedgerEntry(effect, "parabola", abs(parabola / exact - 1.0), "model.profile = 'exact'")
 
 
@@ -86,7 +88,7 @@ def _deformed_gap(nu: float, peak: Peak, radius: float) -> LedgerEntry:
 
 def _sideways(scene: Scene) -> LedgerEntry:
     """At most what the instantaneous modulus changes by, to the power 2/5 of a peak force."""
-    effect, material = "constant nu against constant bulk modulus", scene.material
+    effect, material = "constant nu against constant bulk modulus", scene.geometry.material
     treated = "constant nu" if material.constant == "poisson" else "constant bulk modulus"
     if material.young.is_elastic:
         return LedgerEntry(effect, treated, 0.0, "elastic: the same")
@@ -99,6 +101,8 @@ def _sideways(scene: Scene) -> LedgerEntry:
 
 def _gravity(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     """The weight of the striker."""
+    if scene.target_mass is not None:
+        return LedgerEntry("gravity", "none between two free bodies", 0.0)
     if model.gravity != 0.0:
         return LedgerEntry("gravity", "included", 0.0)
     return LedgerEntry("gravity", "neglected", GRAVITY * scene.mass / peak.force, "m g; model.gravity")
@@ -109,7 +113,7 @@ def _plasticity(scene: Scene, peak: Peak) -> LedgerEntry:
 
     Thornton 1997, doi 10.1115/1.2787319: F = F_y + pi R p_y (depth - depth_y) beyond the yield depth.
     """
-    effect, strength = "plasticity", scene.material.yield_strength
+    effect, strength = "plasticity", scene.geometry.material.yield_strength
     if strength is None:
         return LedgerEntry(effect, "neglected", None, "needs target.material.yield_strength")
     if peak.contact_radius == 0.0:
@@ -122,7 +126,7 @@ def _plasticity(scene: Scene, peak: Peak) -> LedgerEntry:
 
 def _adhesion(scene: Scene, peak: Peak, radius: float) -> LedgerEntry:
     """The pull-off force (3/2) pi w R of Johnson, Kendall and Roberts 1971, doi 10.1098/rspa.1971.0141."""
-    work = scene.material.work_of_adhesion
+    work = scene.geometry.material.work_of_adhesion
     if work is None:
         return LedgerEntry("adhesion", "neglected", None, "needs target.material.work_of_adhesion")
     return LedgerEntry("adhesion", "neglected", 1.5 * math.pi * work * radius / peak.force, "JKR pull-off force")

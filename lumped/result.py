@@ -57,7 +57,9 @@ class Result:
     """What one method says of one scene.
 
     `error_budget`: relative to peak force, by cause; `error_budget_by_quantity`: the same for every quantity.
-    `model` is the model as resolved, to which every claimed error refers. Energies in J.
+    `model` is the model as resolved, to which every claimed error refers. Energies in J. `contacts`: start,
+    duration, velocity, restitution, peak_force, peak_time, peak_depth of each, where several were asked for;
+    duration and restitution among the quantities are the first one's.
     """
 
     method: str
@@ -77,6 +79,7 @@ class Result:
     timing: Mapping[str, Any] = field(default_factory=dict)
     work: Mapping[str, Any] = field(default_factory=dict)
     message: str = ""
+    contacts: tuple[Mapping[str, float | None], ...] = ()
 
     @property
     def model_sufficient(self) -> bool:
@@ -97,6 +100,7 @@ class Result:
             "model": vars(self.model),
             "numerics": self.numerics,
             "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
+            "contacts": list(self.contacts),
             "error_budget": self.error_budget,
             "error_budget_by_quantity": self.error_budget_by_quantity,
             "model_ledger": [asdict(entry) for entry in self.model_ledger],

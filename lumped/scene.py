@@ -1,4 +1,4 @@
-"""A scene: who strikes what, how fast. Physics only; frozen."""
+"""A scene: who strikes what, how fast, and by which law where it names one. Physics only; frozen."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import Choice, Count, Flag, Key, Number, Text, check_fields
+from lumped.keys import Choice, Count, Flag, Key, Number, Text, check_fields, read_table
 from lumped.materials import Material, Relaxation
+from lumped.members import get
 from lumped.scales import stiffest_impact
 from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
@@ -30,6 +31,8 @@ MOTION_KEYS: Mapping[str, Key] = {
     "end_time": Number(1e-15, 1e12, "s", required=False),
 }
 NAME_KEYS: Mapping[str, Key] = {"name": Text(required=False)}
+SECOND_BODY_KEYS: Mapping[str, Key] = {"target_mass": Number(1e-21, 1e12, "kg", required=False)}
+LAWS = "lumped.laws"
 
 
 @dataclass(frozen=True)
@@ -53,33 +56,63 @@ class Motion:
 
     def __post_init__(self) -> None:
         check_fields("motion", self, MOTION_KEYS)
-        if self.impacts > 1:
-            raise BadInput(Fault("motion", "impacts", "more than one impact is not available in this version"))
+
+
+@dataclass(frozen=True)
+class LawChoice:
+    """The `[law]` table: a lumped law by its name, with parameters of its own."""
+
+    name: str
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        keys = get(LAWS, self.name, source="law").KEYS
+        _, faults = read_table("law", "", self.values, keys)
+        if faults:
+            raise BadInput(faults)
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """What finite elements and the laws of the half-space need: striker's shape, target, its material."""
+
+    shape: Shape
+    target: Target
+    material: Material
 
 
 @dataclass(frozen=True)
 class Scene:
     """One impact: a rigid striker of `shape`, `mass` (kg) and `velocity` (m/s) on a target of `material`.
 
-    Raises BadInput, naming the key, for what cannot be used.
+    A law with parameters of its own needs neither shape nor material (both None); `law` may name one.
+    `target_mass`: mass of a free second body, kg; None: the target is held. Raises BadInput, naming the key,
+    for what cannot be used.
     """
 
-    shape: Shape
+    shape: Shape | None
     mass: float
     velocity: float
-    material: Material
+    material: Material | None = None
     target: Target = field(default_factory=HalfSpace)
     model: Model = Model()
     motion: Motion = Motion()
+    target_mass: float | None = None
+    law: LawChoice | None = None
     name: str = "scene"
     source: str = "scene"
 
     def __post_init__(self) -> None:
-        check_fields(self.source, self, {**NAME_KEYS, **STRIKER_KEYS})
-        faults = inertia_faults(self.source, self.model.inertia, self.material.density, self.target)
+        check_fields(self.source, self, {**NAME_KEYS, **STRIKER_KEYS, **SECOND_BODY_KEYS})
+        if (self.shape is None) != (self.material is None):
+            missing = "striker.shape" if self.shape is None else "target.material"
+            raise BadInput(Fault(self.source, missing, "missing; shape and material come together"))
+        density = None if self.material is None else self.material.density
+        target = self.target if self.has_geometry else None
+        faults = inertia_faults(self.source, self.model.inertia, density, target)
         if faults:
             raise BadInput(faults)
-        message = self._absurd_depth()
+        message = self._absurd_depth() if self.has_geometry else ""
         if message:
             raise BadInput(Fault(self.source, "striker.velocity", message))
 
@@ -98,46 +131,86 @@ class Scene:
         return read(table, source)[0]
 
     @property
+    def has_geometry(self) -> bool:
+        """Whether the scene has a shape and a material, not a law's parameters alone."""
+        return self.shape is not None
+
+    def check_single(self, method: str) -> None:
+        """Raise BadInput for several impacts, which need a memory that `method` does not have."""
+        if self.motion.impacts > 1:
+            reason = f"{self.motion.impacts}: {method} follows one impact; accepted: 1, or a law between two masses"
+            raise BadInput(Fault(self.source, "motion.impacts", reason))
+
+    @property
+    def geometry(self) -> Geometry:
+        """Shape, target and material; raises BadInput where the scene has a law's parameters alone."""
+        if self.shape is None or self.material is None:
+            reason = "missing; only the law of [law] runs without a shape and a material"
+            raise BadInput(Fault(self.source, "striker.shape", reason))
+        return Geometry(self.shape, self.target, self.material)
+
+    @property
+    def reduced_mass(self) -> float:
+        """m1 m2/(m1 + m2), kg; the striker's mass where the target is held."""
+        return self.mass if self.target_mass is None else self.mass / (1.0 + self.mass / self.target_mass)
+
+    @property
+    def gravity(self) -> float:
+        """What drives the approach, m/s2: two free bodies fall alike."""
+        return self.model.gravity if self.target_mass is None else 0.0
+
+    @property
     def profile(self) -> Shape:
-        """The striker's shape as `model.profile` resolves it."""
-        return self.shape.resolved(self.model.profile)
+        """The striker's shape as `model.profile` resolves it. Raises BadInput without geometry."""
+        return self.geometry.shape.resolved(self.model.profile)
 
     @property
     def contact_modulus(self) -> Relaxation:
-        """E*(t) of the target, Pa."""
-        return self.material.contact_modulus()
+        """E*(t) of the target, Pa. Raises BadInput without geometry."""
+        return self.geometry.material.contact_modulus()
 
     @property
     def elastic_contact_time(self) -> float:
-        """Hertz contact time with the relaxed modulus, or the glassy one of a fluid, s."""
-        modulus = self.contact_modulus
+        """Hertz contact time with the relaxed modulus, or the glassy one of a fluid; or of the bare law, s."""
+        if self.law is not None and not self.has_geometry:
+            law = get(LAWS, self.law.name).of(self)
+            return float(law.elastic_contact_time(self))
+        shape, modulus = self.geometry.shape, self.contact_modulus
         if modulus.relaxed:
-            return self.shape.hertz_impact(modulus.relaxed, self.mass, self.velocity).duration
+            return shape.hertz_impact(modulus.relaxed, self.reduced_mass, self.velocity).duration
         if modulus.glassy:
-            return self.shape.hertz_impact(modulus.glassy, self.mass, self.velocity).duration
-        return stiffest_impact(self.shape, modulus, self.mass, self.velocity).duration
+            return shape.hertz_impact(modulus.glassy, self.reduced_mass, self.velocity).duration
+        return stiffest_impact(shape, modulus, self.reduced_mass, self.velocity).duration
 
     @property
     def end_time(self) -> float:
         """When to stop if the bodies have not separated, s."""
-        return self.motion.end_time or END_IN_CONTACT_TIMES * self.elastic_contact_time
+        return self.motion.end_time or END_IN_CONTACT_TIMES * self.elastic_contact_time * self.motion.impacts
 
     def to_dict(self) -> dict[str, Any]:
         """The tables of a scene file that gives this scene back."""
-        motion: dict[str, Any] = {"impacts": self.motion.impacts, "end_time": self.end_time}
-        striker = self.shape.to_dict() | {"mass": self.mass, "velocity": self.velocity}
-        target = self.target.to_dict() | {"material": self.material.to_dict()}
-        return {
-            "name": self.name,
+        striker: dict[str, Any] = {"mass": self.mass, "velocity": self.velocity}
+        target: dict[str, Any] = {} if self.target_mass is None else {"mass": self.target_mass}
+        if self.shape is not None and self.material is not None:
+            striker = self.shape.to_dict() | striker
+            target = self.target.to_dict() | target | {"material": self.material.to_dict()}
+        tables = {
             "striker": striker,
             "target": target,
             "model": vars(self.model).copy(),
-            "motion": motion,
+            "motion": {"impacts": self.motion.impacts} | self._ending(),
+            "law": {} if self.law is None else {"name": self.law.name, **self.law.values},
         }
+        return {"name": self.name} | {key: table for key, table in tables.items() if table}
+
+    def _ending(self) -> dict[str, float]:
+        """The end time, where the scene alone tells it."""
+        known = self.motion.end_time is not None or self.has_geometry or self.law is not None
+        return {"end_time": self.end_time} if known else {}
 
     def _absurd_depth(self) -> str:
         """Even the stiffest answer of the material lets the striker sink in deeper than it is round."""
-        impact = stiffest_impact(self.shape, self.contact_modulus, self.mass, self.velocity)
+        impact = stiffest_impact(self.geometry.shape, self.contact_modulus, self.reduced_mass, self.velocity)
         if impact.contact_radius <= impact.depth:
             return (
                 f"the striker sinks in by {impact.depth:.3g} m, deeper than its radius: no small-displacement theory "
@@ -146,12 +219,15 @@ class Scene:
         return ""
 
 
-def inertia_faults(source: str, inertia: bool, density: float | None, target: Target) -> list[Fault]:
-    """What is missing for `model.inertia = true`."""
+def inertia_faults(source: str, inertia: bool, density: float | None, target: Target | None) -> list[Fault]:
+    """What is missing for `model.inertia = true`; without geometry there is no target."""
+    if not inertia:
+        return []
     faults = []
-    if inertia and not target.has_inertia:
-        reason = f"true is not available for {target.name} in this version; accepted: false"
+    if target is None or not target.has_inertia:
+        where = "a law of its own" if target is None else target.name
+        reason = f"true is not available for {where} in this version; accepted: false"
         faults.append(Fault(source, "model.inertia", reason))
-    if inertia and density is None:
+    if target is not None and density is None:
         faults.append(Fault(source, "target.material.density", "missing; model.inertia = true needs it, in kg/m3"))
     return faults

@@ -19,7 +19,9 @@ from lumped.scene import (
     MODEL_KEYS,
     MOTION_KEYS,
     NAME_KEYS,
+    SECOND_BODY_KEYS,
     STRIKER_KEYS,
+    LawChoice,
     Model,
     Motion,
     Scene,
@@ -29,12 +31,11 @@ from lumped.targets import Target
 from lumped.toml_file import overridden, parsed
 
 TABLES = ("striker", "target", "model", "motion", "law", "numerics")
-NETWORKS, SHAPES, TARGETS = "lumped.materials.networks", "lumped.shapes", "lumped.targets"
+NETWORKS, SHAPES, TARGETS, LAWS = "lumped.materials.networks", "lumped.shapes", "lumped.targets", "lumped.laws"
+TARGET_KEYS: Mapping[str, Key] = {"mass": SECOND_BODY_KEYS["target_mass"]}
 # The interface plans these keys: saying so helps more than calling them unknown.
 NOT_YET = {
     "striker.material": "a deformable striker is not available in this version; leave it out: rigid",
-    "target.mass": "a free second body is not available in this version; leave it out: held",
-    "law": "a law with parameters of its own is not available in this version; choose a law by its name instead",
 }
 
 Table = dict[str, Any]
@@ -75,19 +76,42 @@ class _Reader:
 
     def scene(self) -> tuple[Scene, Table]:
         """The scene and the raw numerics; raises BadInput when anything is wrong."""
-        name = self.name()
-        striker, shape = self.body("striker", SHAPES, STRIKER_KEYS)
-        _, target = self.body("target", TARGETS, {})
-        material = self.material()
+        name, law = self.name(), self.law()
+        alone = "law" in self.raw and "shape" not in self.table("striker", required=False, quiet=True)
+        bodies = self.masses_alone() if alone else self.bodies()
         model = self.checked("model", self.table("model", required=False), MODEL_KEYS)
-        motion = self.motion()
+        motion = self.checked("motion", self.table("motion", required=False), MOTION_KEYS)
         numerics = self.table("numerics", required=False)
-        self.inertia(model, target)
-        if self.faults or shape is None or target is None or material is None or motion is None:
+        if alone or bodies["target"] is not None:
+            self.inertia(model, bodies.get("target"))
+        if self.faults:
             raise BadInput(self.faults)
-        built = Scene(shape, **striker, material=material, target=target, model=Model(**model), motion=motion,
-                      name=name, source=self.source)  # fmt: skip
+        built = Scene(**bodies, law=law, model=Model(**model), motion=Motion(**motion), name=name, source=self.source)
+        if law is not None:
+            get(LAWS, law.name).of(built)
         return built, numerics
+
+    def bodies(self) -> Table:
+        """Striker, target and material of a scene with geometry; None for what has a fault."""
+        striker, shape = self.body("striker", SHAPES, STRIKER_KEYS)
+        held, target = self.body("target", TARGETS, TARGET_KEYS)
+        own = {"shape": shape, "target": target, "material": self.material(), "target_mass": held.get("mass")}
+        return {**striker, **own}
+
+    def masses_alone(self) -> Table:
+        """The masses of a scene that has a law of its own and no geometry."""
+        striker = self.checked("striker", self.table("striker"), STRIKER_KEYS)
+        held = self.checked("target", self.table("target", required=False), TARGET_KEYS)
+        return {**striker, "shape": None, "target_mass": held.get("mass")}
+
+    def law(self) -> LawChoice | None:
+        """The law with its parameters; None without one, or with a fault noted."""
+        table = self.table("law", required=False)
+        if not table:
+            return None
+        (own,) = alternatives(LAWS, table.get("name"))
+        values = self.checked("law", table, {"name": Member(LAWS), **own})
+        return LawChoice(values.pop("name").__name__.rpartition(".")[2], values) if not self.faults else None
 
     def name(self) -> str:
         """The scene's name, by default the file's; checks the keys of the top level too."""
@@ -97,7 +121,6 @@ class _Reader:
         for fault in faults:
             unknown = fault.key not in NAME_KEYS
             self.faults.append(replace(fault, message=unknown_key(fault.key, names)) if unknown else fault)
-        self.faults += [Fault(self.source, "law", NOT_YET["law"])] if "law" in self.raw else []
         return str(values.get("name", Path(self.source).stem))
 
     def body(self, part: str, package: str, common: Mapping[str, Key]) -> tuple[Table, Any]:
@@ -145,21 +168,11 @@ class _Reader:
             return None
         return Material(young, **common)
 
-    def motion(self) -> Motion | None:
-        """The motion, None with a fault noted."""
-        values = self.checked("motion", self.table("motion", required=False), MOTION_KEYS)
-        try:
-            return Motion(**values)
-        except BadInput as error:
-            self.faults += [replace(f, source=self.source, key=f"motion.{f.key}") for f in error.faults]
-            return None
-
     def inertia(self, model: Table, target: Target | None) -> None:
         """Whether the target can have the inertia asked for, and a density for it."""
         material = self.table("target", required=False, quiet=True).get("material")
         density = material.get("density") if isinstance(material, Mapping) else None
-        if target is not None:
-            self.faults += inertia_faults(self.source, model.get("inertia", False), density, target)
+        self.faults += inertia_faults(self.source, model.get("inertia", False), density, target)
 
     def table(self, key: str, inside: str = "", required: bool = True, quiet: bool = False) -> Table:
         """The table `key`, empty when it is missing or no table: a fault if required, unless `quiet`."""

@@ -18,14 +18,17 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """SCENE [--method M] [--tolerance T] [--out DIR] [--set a.b=value ...] [--fields] [--plot]."""
     base.scene_arguments(parser)
     base.output_arguments(parser)
-    parser.add_argument("--method", default="fe", help="fe (default), cheapest, or a lumped law")
+    parser.add_argument("--method", help="fe (default without [law]), cheapest, or a lumped law")
     parser.add_argument("--fields", action="store_true", help="VTU of the fields at peak force")
     parser.add_argument("--plot", action="store_true", help="force history and contact pressure as SVG and PNG")
 
 
 def execute(args: argparse.Namespace) -> int:
     """Run, write, report; 0 or 3."""
+    from fe_contact.methods import default
+
     scene, table = base.read_scene(args)
+    args.method = args.method or default(scene)
     where = base.folder(args, "run", scene)
     _check(args, scene)
     try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from fe_contact.commands import base
+from lumped.scene import Scene
 
 SUMMARY = "the packaged scenes, one line each"
 
@@ -16,9 +17,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Print; 0."""
     from lumped.data import scene_names
-    from lumped.scene import Scene
 
     for name in scene_names():
         scene = Scene.load(name)
-        print(f"{name:20s} {scene.shape.name} on {scene.target.name}, {scene.mass:g} kg at {scene.velocity:g} m/s")
+        print(f"{name:20s} {described(scene)}, {scene.mass:g} kg at {scene.velocity:g} m/s")
     return base.DONE
+
+
+def described(scene: Scene) -> str:
+    """Who strikes what, or by which law."""
+    if scene.shape is not None:
+        return f"{scene.shape.name} on {scene.target.name}"
+    return f"law {scene.law.name}" if scene.law is not None else "two masses"

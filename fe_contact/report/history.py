@@ -38,7 +38,7 @@ def plot_history(result: Result, solved: Solved, where: Path) -> tuple[Path, Pat
 
 def caption(scene: Scene) -> str:
     """The scene's parameters in two lines or more."""
-    material, shape, young = scene.material, scene.shape, scene.material.young
+    material, shape, young = scene.geometry.material, scene.geometry.shape, scene.geometry.material.young
     lengths = ", ".join(f"{key} {readable(float(getattr(shape, key)), 'm')}" for key in shape.keys)
     terms = [readable(young.equilibrium, "Pa")] if young.equilibrium else []
     pairs = zip(young.moduli, young.times, strict=True)

@@ -50,7 +50,7 @@ class LawPressure:
         rows = np.unique(np.linspace(0, len(history) - 1, PATH_POINTS).astype(int))
         return cls(
             modulus=Relaxation(modulus.relaxed) if result.method == "hertz" else modulus,
-            curve=result.scene.shape.resolved(result.model.profile).load_curve,
+            curve=result.scene.geometry.shape.resolved(result.model.profile).load_curve,
             times=history.time[rows],
             contact_radii=history.contact_radius[rows],
             velocities=history.velocity[rows],

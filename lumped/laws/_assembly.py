@@ -30,7 +30,8 @@ class Answer:
     """One integration of a law.
 
     `columns` maps times (n,) to depth, velocity, force and contact radius, shape (4, n), SI; `times` are its
-    own rows; `values` are the quantities (None where undefined), without history_l2.
+    own rows; `values` are the quantities (None where undefined), without history_l2. `until`: the last time to
+    follow, s; None: the scene's. `contacts`: the several contacts of one motion.
     """
 
     times: Array
@@ -39,17 +40,19 @@ class Answer:
     end: End
     energy: Mapping[str, float | None] = field(default_factory=dict)
     message: str = ""
+    until: float | None = None
+    contacts: tuple[Mapping[str, float | None], ...] = ()
 
     @property
     def rounding(self) -> float:
         """What rounding adds to every bar, relatively; and what calling the striker at rest adds."""
         return ROUNDING + (AT_REST if self.end is End.REST else 0.0)
 
-    def rows(self, end_time: float) -> Array:
-        """Its own times, and those until `end_time` which a striker at rest has still before it."""
+    def rows(self, scene: Scene) -> Array:
+        """Its own times, and those until the end which a striker at rest has still before it."""
         if self.end is not End.REST:
             return self.times
-        return np.append(self.times, [self.times[-1] * (1.0 + 1e-9), end_time])
+        return np.append(self.times, [self.times[-1] * (1.0 + 1e-9), self.until or scene.end_time])
 
 
 class Clock:
@@ -102,7 +105,7 @@ def assemble(
 
     `model` is the model as the law resolves it, where that is not the scene's.
     """
-    times = densified(answer.rows(scene.end_time), lambda t: answer.columns(t)[2], max(tolerance, FINEST_ROWS))
+    times = densified(answer.rows(scene), lambda t: answer.columns(t)[2], max(tolerance, FINEST_ROWS))
     depth, velocity, force, radius = answer.columns(times)
     # The rows themselves add what linear interpolation errs by, less than the tolerance; the bar is for the
     # rows.
@@ -128,6 +131,7 @@ def assemble(
         timing=clock.read(),
         work=work,
         message="; ".join(part for part in (answer.message, missed) if part),
+        contacts=answer.contacts,
     )
 
 

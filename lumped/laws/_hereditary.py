@@ -60,12 +60,12 @@ def simulate(
     problem = Hereditary.of(
         profile.load_curve,
         modulus,
-        scene.mass,
+        scene.reduced_mass,
         scene.velocity,
-        scene.model.gravity,
+        scene.gravity,
         scene.elastic_contact_time,
     )
-    elastic = profile.hertz_impact(problem.scales.unit, scene.mass, scene.velocity)
+    elastic = profile.hertz_impact(problem.scales.unit, scene.reduced_mass, scene.velocity)
     stiff = problem.stiffest(elastic.contact_radius) > STIFF
     rtol = min(max(tolerance * LOCAL_SHARE, TIGHTEST / NEXT), LOOSEST)
     curves = solve(problem, scene.end_time, Settings(rtol, stiff))
@@ -90,7 +90,7 @@ def _answer(scene: Scene, problem: Hereditary, curves: Curves, message: str) -> 
     _, depth = highest(curves.depth, curves.roots)
     velocity = float(curves.last[1]) * scales.velocity
     duration = curves.end_time * scales.time
-    impulse = scene.mass * (scene.velocity - velocity + scene.model.gravity * duration)
+    impulse = scene.reduced_mass * (scene.velocity - velocity + scene.gravity * duration)
     values: Mapping[str, float | None] = {
         "peak_force": force * scales.force,
         "peak_time": root**2 * scales.time,
@@ -107,6 +107,6 @@ def _answer(scene: Scene, problem: Hereditary, curves: Curves, message: str) -> 
 def _energy(scene: Scene, problem: Hereditary, curves: Curves) -> dict[str, float | None]:
     """Energies, J. `viscous` is the work done on the target and not given back: spent by now, or later."""
     depth, velocity, work = (float(value) for value in curves.last[:3])
-    unit = scene.mass * scene.velocity**2
+    unit = scene.reduced_mass * scene.velocity**2
     given, out = 0.5 * unit + unit * problem.gravity * depth, 0.5 * unit * velocity**2
     return {"in": given, "out": out, "viscous": unit * work, "residual": given - out - unit * work}

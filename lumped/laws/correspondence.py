@@ -17,6 +17,8 @@ from lumped.ending import End
 from lumped.hereditary.approach import approach, over_root
 from lumped.hereditary.problem import Hereditary
 from lumped.hereditary.solve import Settings, follow
+from lumped.laws._half_space import KEYS as KEYS
+from lumped.laws._half_space import check
 from lumped.laws._hereditary import Curves, simulate
 from lumped.result import Result
 from lumped.scene import Scene
@@ -36,7 +38,8 @@ class Correspondence:
 
 
 def of(scene: Scene) -> Correspondence:
-    """The law for a scene: every half-space has it."""
+    """The law for a scene: every half-space has it. Raises BadInput for a scene without geometry."""
+    check(scene, Correspondence.name)
     return Correspondence()
 
 

@@ -1,42 +1,41 @@
-"""Hertz's impact: F = (4/3) E* sqrt(R) depth^(3/2), elastic, with the relaxed modulus; nothing is lost."""
+"""The nonlinear elastic model, "(4)": F = k depth^(3/2), nothing is lost; of a scene, Hertz's impact.
+
+Of a scene k = (4/3) E* sqrt(R) with the relaxed modulus, the profile a parabola.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import ClassVar
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
-from lumped.errors import BadInput, Fault
-from lumped.laws._hereditary import simulate
-from lumped.laws.correspondence import solve
-from lumped.materials import Relaxation
-from lumped.result import Result
+from lumped.collide.bodies import Stage
+from lumped.keys import Key
+from lumped.laws._parameters import COMMON, EXPONENT, STIFFNESS, Parameters
+from lumped.laws._power_law import PowerLaw
 from lumped.scene import Scene
 
+KEYS: Mapping[str, Key] = {**STIFFNESS, **EXPONENT, **COMMON}
 
-@dataclass(frozen=True)
-class HertzLaw:
-    """The law with its contact modulus E*, Pa."""
 
-    modulus: float
+@dataclass(frozen=True, kw_only=True)
+class HertzLaw(PowerLaw):
+    """The law with its stiffness k, N/m^alpha."""
+
+    alpha: float = 1.5
     name: ClassVar[str] = "hertz"
 
-    @property
-    def message(self) -> str:
-        """What the law takes of the scene."""
-        return f"Hertz's law: elastic with the relaxed contact modulus {self.modulus:.6g} Pa, profile a parabola"
+    def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:
+        """None."""
+        return 0.0 * depth
 
-    def simulate(self, scene: Scene, tolerance: float) -> Result:
-        """One impact to this tolerance. Raises NotReached."""
-        parabola = scene.shape.resolved("parabola")
-        model = replace(scene.model, profile="parabola")
-        elastic = Relaxation(self.modulus)
-        return simulate(self.name, scene, parabola, elastic, tolerance, solve, model, self.message)
+    def damper_tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+        """None."""
+        return 0.0, 0.0 * depth
 
 
 def of(scene: Scene) -> HertzLaw:
-    """The law for a scene; raises BadInput for a fluid, which has no relaxed modulus."""
-    relaxed = scene.contact_modulus.relaxed
-    if relaxed == 0.0:
-        reason = "a fluid has no relaxed modulus, which Hertz's law needs; accepted: a solid, or another law"
-        raise BadInput(Fault(scene.source, "target.material", reason))
-    return HertzLaw(relaxed)
+    """The law for a scene. Raises BadInput, for a fluid too, which has no relaxed modulus."""
+    given = Parameters(scene, HertzLaw.name)
+    alpha = given.get("alpha", 1.5)
+    return HertzLaw(k=given.stiffness(alpha), alpha=alpha, **given.common())

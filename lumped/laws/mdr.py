@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from lumped.ending import End
 from lumped.interpolation import local, peak
 from lumped.laws._assembly import Answer, Clock, assemble, bars
+from lumped.laws._half_space import KEYS as KEYS
+from lumped.laws._half_space import check
 from lumped.result import Result, meets
 from lumped.scene import Scene
 from lumped.spring_row.coarse import coarse, problem_of
@@ -69,7 +71,8 @@ class SpringRow:
 
 
 def of(scene: Scene) -> SpringRow:
-    """The law for a scene: every half-space has it."""
+    """The law for a scene: every half-space has it. Raises BadInput for a scene without geometry."""
+    check(scene, SpringRow.name)
     return SpringRow()
 
 
@@ -97,7 +100,7 @@ def _answer(scene: Scene, end: End, level: Level, metered: Level) -> Answer:
     whole = np.hstack([level.approach, level.rebound[:, 1:]]) if level.rebound.size else level.approach
     time, depth, velocity, _, force, _ = whole
     peak_time, peak_force = peak(time, force)
-    impulse = scene.mass * (scene.velocity - velocity[-1] + scene.model.gravity * time[-1])
+    impulse = scene.reduced_mass * (scene.velocity - velocity[-1] + scene.gravity * time[-1])
     values = {
         "peak_force": peak_force,
         "peak_time": peak_time,
@@ -142,7 +145,7 @@ def _seen(fields: Array) -> Array:
 def _energy(scene: Scene, level: Level) -> dict[str, float | None]:
     """Energies at the end, J; `stored`: in springs, pressed or released with what they could not give back."""
     last = level.rebound[:, -1] if level.rebound.size else level.approach[:, -1]
-    given = 0.5 * scene.mass * scene.velocity**2 + scene.mass * scene.model.gravity * float(last[1])
-    out = 0.5 * scene.mass * float(last[2]) ** 2
+    given = 0.5 * scene.reduced_mass * scene.velocity**2 + scene.reduced_mass * scene.gravity * float(last[1])
+    out = 0.5 * scene.reduced_mass * float(last[2]) ** 2
     spent, held = level.energies.tolist()
     return {"in": given, "out": out, "viscous": spent, "stored": held, "residual": given - out - spent - held}

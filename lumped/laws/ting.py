@@ -16,6 +16,8 @@ from lumped.hereditary.approach import Approach, approach
 from lumped.hereditary.problem import Hereditary
 from lumped.hereditary.rebound import Rebound
 from lumped.hereditary.solve import Path, Settings
+from lumped.laws._half_space import KEYS as KEYS
+from lumped.laws._half_space import check
 from lumped.laws._hereditary import Curves, simulate
 from lumped.result import Result
 from lumped.scene import Scene
@@ -36,7 +38,8 @@ class Ting:
 
 
 def of(scene: Scene) -> Ting:
-    """The law for a scene: every half-space has it."""
+    """The law for a scene: every half-space has it. Raises BadInput for a scene without geometry."""
+    check(scene, Ting.name)
     return Ting()
 
 

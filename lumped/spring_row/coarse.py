@@ -13,7 +13,7 @@ MOST_STEPS = 10_000
 
 def problem_of(scene: Scene) -> Problem:
     """What the row of springs needs of a scene."""
-    return Problem(scene.profile, scene.contact_modulus, scene.mass, scene.velocity, scene.model.gravity)
+    return Problem(scene.profile, scene.contact_modulus, scene.reduced_mass, scene.velocity, scene.gravity)
 
 
 def coarse(problem: Problem, end_time: float, elements: int) -> Track:

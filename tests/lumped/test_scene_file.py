@@ -143,7 +143,7 @@ def test_all_faults_come_at_once_but_at_most_twenty() -> None:
     table = changed("striker.mass", -1.0)
     table["striker"]["radius"] = math.nan
     table["target"]["material"] |= {"nu": 0.5, "E0": "soft", "R3": 1.0}
-    table |= {"modle": {}, "motion": {"impacts": 2}}
+    table |= {"modle": {}, "motion": {"impacts": 0}}
     keys = {fault.split(": ")[1] for fault in faults(table)}
     expected = {"striker.mass", "striker.radius", "target.material.nu", "target.material.E0", "target.material.R3"}
     assert keys == expected | {"modle", "motion.impacts"}
@@ -155,8 +155,8 @@ def test_what_is_not_built_yet_says_what_is() -> None:
     (fault,) = [f for f in faults(changed("striker.shape", "cone")) if "striker.shape" in f]
     assert "not available in this version; available: sphere" in fault
     assert any("target.shape" in f and "half_space" in f for f in faults(changed("target.shape", "layer")))
-    for key in ("striker.material", "target.mass", "law"):
-        assert any(f"{key}: " in f and "not available" in f for f in faults(changed(key, {"k": 1.0})))
+    (fault,) = [f for f in faults(changed("striker.material", {"law": "elastic"})) if "striker.material" in f]
+    assert "not available" in fault
 
 
 def test_inertia_names_the_missing_density_too() -> None:

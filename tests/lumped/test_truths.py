@@ -119,7 +119,7 @@ def test_a_heavier_pull_changes_the_exit(impact: Build) -> None:
 def test_hertz_law_refuses_a_fluid(impact: Build) -> None:
     with pytest.raises(BadInput, match="fluid"):
         laws.hertz.of(impact(0.0, (1.0,), (0.1,)))
-    assert "relaxed" in laws.hertz.of(impact(0.5, (0.5,), (1.0,))).message
+    assert "relaxed" in laws.hertz.of(impact(0.5, (0.5,), (1.0,))).source
 
 
 def test_stiffer_springs_with_the_same_relaxation_push_harder() -> None:

@@ -1,0 +1,51 @@
+"""What moves, what it meets, and what the law remembers between two events."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Bodies(NamedTuple):
+    """The relative motion of two masses: reduced mass, kg; velocity at touch, m/s; gravity along it, m/s2."""
+
+    mass: float
+    velocity: float
+    gravity: float = 0.0
+
+
+class Stage(NamedTuple):
+    """Whether the bodies approach, the deepest indentation of this contact so far, m, and its speed at touch, m/s."""
+
+    approaching: bool
+    deepest: float
+    speed: float
+
+
+class PointLaw(Protocol):
+    """A force between two masses, F(depth, rate), N; depths >= 0 in m, rates in m/s, scalars or arrays.
+
+    Within one stage the force is smooth. `tensile`: whether it can pull before the depth is zero.
+    """
+
+    @property
+    def tensile(self) -> bool: ...
+
+    def force(self, depth: Any, rate: Any, stage: Stage) -> Any:
+        """F, compression positive."""
+
+    def tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+        """dF/d depth, N/m, and dF/d rate, N s/m."""
+
+    def lost(self, depth: Any, rate: Any, stage: Stage) -> Any:
+        """The part of the force whose work is not stored, N."""
+
+    def stored(self, depth: float, stage: Stage) -> float:
+        """Energy that the law could still give back at a depth, J."""
+
+    def time_scale(self, bodies: Bodies) -> float:
+        """A time in which an impact changes by its own size, s: about the elastic contact time."""

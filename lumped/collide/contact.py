@@ -1,0 +1,94 @@
+"""One contact: approach and rebound by turns, until the bodies part, rest, or the time is over."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.collide.bodies import Bodies, PointLaw, Stage
+from lumped.collide.phase import Event, March, Phase
+from lumped.collide.step import State
+from lumped.ending import AT_REST, End
+from lumped.errors import TooManySteps
+
+Array = NDArray[np.float64]
+FIRST_STEP = 1e-3  # of the law's time scale
+MOST_TURNS = 2000
+
+
+@dataclass(frozen=True)
+class Contact:
+    """The phases of one contact and how it ended."""
+
+    phases: tuple[Phase, ...]
+    end: End
+
+    @property
+    def start_time(self) -> float:
+        """Touch, s."""
+        return self.phases[0].start_time
+
+    @property
+    def end_time(self) -> float:
+        """When it ended, s."""
+        return self.phases[-1].end_time
+
+    @property
+    def first(self) -> State:
+        """The state at touch."""
+        return self.phases[0].steps[0].start
+
+    @property
+    def last(self) -> State:
+        """The state at its end."""
+        return self.phases[-1].last.end
+
+    @property
+    def deepest(self) -> float:
+        """Largest depth, m."""
+        return max(float(step.depth.max()) for phase in self.phases for step in phase.steps)
+
+
+def contact(
+    law: PointLaw, bodies: Bodies, exit_rule: str, start: State, time: float, until: float, tolerance: float
+) -> Contact:
+    """One contact from `start` at `time`, s, to its end or to `until`, s. Raises TooManySteps.
+
+    `exit_rule`: "force", contact ends when the force returns to zero, or "depth", at depth zero.
+    `tolerance`: error of the rate in one step, relative to the velocity at first touch.
+    """
+    scale = law.time_scale(bodies)
+    length = FIRST_STEP * scale
+    stage = Stage(start.rate > 0.0, start.depth, abs(start.rate) or bodies.velocity)
+    phases: list[Phase] = []
+    for _ in range(MOST_TURNS):
+        events = _events(law, stage, exit_rule)
+        march = March(law, stage, bodies, events, until, tolerance * bodies.velocity)
+        phase = march.phase(start, time, length)
+        phases.append(phase)
+        start, time, length = phase.last.end, phase.end_time, phase.last.length
+        if phase.event is None:
+            return Contact(tuple(phases), End.TIME)
+        if phase.event == "exit":
+            return Contact(tuple(phases), End.SEPARATED)
+        stage = Stage(not stage.approaching, max(stage.deepest, start.depth), stage.speed)
+        start = start._replace(rate=0.0)
+        if abs(phase.last.acceleration[-1]) * scale < AT_REST * bodies.velocity:
+            return Contact(tuple(phases), End.REST)
+    raise TooManySteps(f"contact: {MOST_TURNS} turns without separation; accepted: an earlier motion.end_time")
+
+
+def _events(law: PointLaw, stage: Stage, exit_rule: str) -> Mapping[str, Event]:
+    """What ends a stage: the turn of the motion, and in the rebound the end of contact."""
+    if stage.approaching:
+        return {"turn": lambda depth, rate: rate}
+    pulls = law.tensile and exit_rule == "force"
+
+    def force_left(depth: Array, rate: Array) -> Array:
+        force = law.force(np.maximum(depth, 0.0), rate, stage)
+        return np.asarray(np.where(depth > 0.0, force, -np.abs(force)))
+
+    return {"exit": force_left if pulls else lambda depth, rate: depth, "turn": lambda depth, rate: -rate}

@@ -1,0 +1,193 @@
+"""A law that is a force between two masses: its march, its bars and its Result, the same for every one."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.collide.bodies import Bodies, Stage
+from lumped.collide.contact import Contact
+from lumped.collide.motion import Motion, motion
+from lumped.collide.track import Track
+from lumped.ending import End
+from lumped.interpolation import highest
+from lumped.laws._assembly import Answer, Clock, assemble, bars
+from lumped.load_curves.base import LoadCurve
+from lumped.result import Result, meets
+from lumped.scene import END_IN_CONTACT_TIMES, Model, Scene
+
+Array = NDArray[np.float64]
+# Errors of the rate allowed in one step, relative to the velocity at touch; the end of contact errs far less.
+TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
+SAFETY = 2.0
+PARTS = np.arange(16) / 16.0
+CLOSE = 1e-2
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForceLaw(ABC):
+    """F(depth, rate) of two masses, contract :class:`lumped.collide.bodies.PointLaw`.
+
+    `exit`: contact ends when the force returns to zero ("force", no tension) or at depth zero ("depth").
+    `gap`: distance before touch, m; time starts at touch. `load_curve`: that of the scene the law was
+    made for, whose contact radius the history shows; None: without geometry it shows zero. `source`: in words,
+    what was taken of the scene.
+    """
+
+    exit: str = "force"
+    gap: float = 0.0
+    load_curve: LoadCurve | None = None
+    source: str = ""
+    name: ClassVar[str]
+    tensile: ClassVar[bool] = False
+    # Where the loss belongs among the energies of a Result.
+    loss: ClassVar[str] = "viscous"
+
+    @abstractmethod
+    def force(self, depth: Any, rate: Any, stage: Stage) -> Any:
+        """F, N, compression positive; depth >= 0, m, rate, m/s."""
+
+    @abstractmethod
+    def tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+        """dF/d depth, N/m, and dF/d rate, N s/m."""
+
+    @abstractmethod
+    def lost(self, depth: Any, rate: Any, stage: Stage) -> Any:
+        """The part of the force whose work is not stored, N."""
+
+    @abstractmethod
+    def stored(self, depth: float, stage: Stage) -> float:
+        """Energy that the law could still give back at a depth, J."""
+
+    @abstractmethod
+    def time_scale(self, bodies: Bodies) -> float:
+        """The elastic contact time, s."""
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Its numbers by the names of the scene file."""
+        return {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("load_curve", "source")}
+
+    def elastic_contact_time(self, scene: Scene) -> float:
+        """Contact time without damping, s."""
+        return self.time_scale(bodies_of(scene))
+
+    def simulate(self, scene: Scene, tolerance: float) -> Result:
+        """The impacts of a scene to this tolerance. Raises NotReached."""
+        clock, until = Clock(), self._until(scene)
+        coarse, steps = self._answer(scene, until, TOLERANCES[0])
+        for step_tolerance in TOLERANCES[1:]:
+            fine, counted = self._answer(scene, until, step_tolerance)
+            steps += counted
+            quantities, force_error = bars(fine, coarse, SAFETY)
+            if meets(quantities, tolerance):
+                break
+            coarse = fine
+        numerics = {"integrator": "Radau collocation", "step_tolerance": step_tolerance, "law": self.parameters}
+        work, model = {"steps": steps}, _model(scene)
+        return assemble(self.name, scene, tolerance, fine, quantities, force_error, clock, numerics, work, model)
+
+    def _until(self, scene: Scene) -> float:
+        return scene.motion.end_time or END_IN_CONTACT_TIMES * self.elastic_contact_time(scene) * scene.motion.impacts
+
+    def _answer(self, scene: Scene, until: float, step_tolerance: float) -> tuple[Answer, int]:
+        """One integration, and how many steps it took."""
+        moved = motion(self, bodies_of(scene), self.exit, scene.motion.impacts, until, step_tolerance)
+        track = Track(self, moved)
+        said = "" if moved.end is End.SEPARATED else moved.end.value
+        answer = Answer(
+            track.times,
+            lambda times: self._columns(track, times),
+            self._values(scene, track),
+            moved.end,
+            self._energy(scene, moved),
+            "; ".join(part for part in (self.source, said) if part),
+            until,
+            tuple(_listed(track, one) for one in moved.contacts) if scene.motion.impacts > 1 else (),
+        )
+        return answer, sum(len(phase.steps) for one in moved.contacts for phase in one.phases)
+
+    def _columns(self, track: Track, times: Array) -> Array:
+        depth, rate, force = track(times)
+        if self.exit == "force":
+            force = np.maximum(force, 0.0)
+        pressed = np.where(force > 0.0, np.maximum(depth, 0.0), 0.0)
+        radius = np.zeros_like(depth) if self.load_curve is None else self.load_curve.contact_radius(pressed)
+        return np.array([depth, rate, force, radius])
+
+    def _values(self, scene: Scene, track: Track) -> Mapping[str, float | None]:
+        moved, first = track.motion, track.motion.contacts[0]
+        peaks = [peak_of(track, one) for one in moved.contacts]
+        peak_time, peak_force = max(peaks, key=lambda peak: peak[1])
+        separated = first.end is End.SEPARATED
+        gained = sum(one.first.rate - one.last.rate for one in moved.contacts)
+        fallen = scene.gravity * sum(one.end_time - one.start_time for one in moved.contacts)
+        return {
+            "peak_force": peak_force,
+            "peak_time": peak_time,
+            "peak_depth": max(one.deepest for one in moved.contacts),
+            "duration": first.end_time if separated else None,
+            "restitution": -first.last.rate / scene.velocity if separated else None,
+            "impulse": scene.reduced_mass * (gained + fallen),
+        }
+
+    def _energy(self, scene: Scene, moved: Motion) -> dict[str, float | None]:
+        """Energies at the end of the last contact, J, each on its own."""
+        last, mass = moved.contacts[-1].last, scene.reduced_mass
+        given = 0.5 * mass * scene.velocity**2 + mass * scene.gravity * last.depth
+        out = 0.5 * mass * last.rate**2
+        earlier = sum(self._locked(one) for one in moved.contacts[:-1])
+        stored = self._locked(moved.contacts[-1])
+        lost = last.lost + earlier
+        return {"in": given, "out": out, "stored": stored, self.loss: lost, "residual": given - out - stored - lost}
+
+    def _locked(self, one: Contact) -> float:
+        """What is still stored when a contact ends; a surface that recovers before the next one loses it."""
+        return float(self.stored(max(one.last.depth, 0.0), one.phases[-1].stage))
+
+
+def bodies_of(scene: Scene) -> Bodies:
+    """The relative motion of a scene."""
+    return Bodies(scene.reduced_mass, scene.velocity, scene.gravity)
+
+
+def peak_of(track: Track, one: Contact) -> tuple[float, float]:
+    """Time, s, and height, N, of the highest force of a contact."""
+    ends = np.array([one.start_time, *_ends(one)])
+    places = np.unique(np.append((ends[:-1, None] + np.diff(ends)[:, None] * PARTS).ravel(), ends[-1]))
+    values = track(places)[2]
+    i = int(np.argmax(values))
+    reach = CLOSE * (places[min(i + 1, places.size - 1)] - places[max(i - 1, 0)])
+    rough, _ = highest(lambda at: track(at)[2], places)
+    close = np.unique(np.clip([rough - reach, rough, rough + reach], places[0], places[-1]))
+    return max(highest(lambda at: track(at)[2], close), (float(places[i]), float(values[i])), key=lambda p: p[1])
+
+
+def _ends(one: Contact) -> list[float]:
+    lengths = [step.length for phase in one.phases for step in phase.steps]
+    return list(one.start_time + np.cumsum(lengths))
+
+
+def _listed(track: Track, one: Contact) -> dict[str, float | None]:
+    """A contact in a list of several."""
+    separated = one.end is End.SEPARATED
+    peak_time, peak_force = peak_of(track, one)
+    return {
+        "start": one.start_time,
+        "duration": one.end_time - one.start_time if separated else None,
+        "velocity": one.first.rate,
+        "restitution": -one.last.rate / one.first.rate if separated and one.first.rate > 0.0 else None,
+        "peak_force": peak_force,
+        "peak_time": peak_time,
+        "peak_depth": one.deepest,
+    }
+
+
+def _model(scene: Scene) -> Model:
+    """A force law knows no other profile than the parabola which its stiffness stands for."""
+    return replace(scene.model, profile="parabola") if scene.has_geometry else scene.model

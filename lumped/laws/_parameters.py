@@ -1,0 +1,116 @@
+"""Where a force law's numbers come from: the `[law]` table, else the scene's geometry and material."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from lumped.errors import BadInput, Fault
+from lumped.keys import Choice, Key, Number
+from lumped.laws._force_law import bodies_of
+from lumped.laws._power_law import spring_of_peak
+from lumped.load_curves.base import LoadCurve
+from lumped.scene import Scene
+
+STIFFNESS: Mapping[str, Key] = {"k": Number(1e-30, 1e30, "N/m^alpha", required=False)}
+EXPONENT: Mapping[str, Key] = {"alpha": Number(0.5, 5.0, required=False)}
+COMMON: Mapping[str, Key] = {
+    "gap": Number(0.0, 1e6, "m", required=False),
+    "exit": Choice(("force", "depth"), required=False),
+}
+RESTITUTION: Mapping[str, Key] = {"e": Number(1e-4, 1.0, required=False)}
+# The exact law that tells the restitution of a scene's own material, and how well.
+EXACT, EXACT_TOLERANCE = "mdr", 1e-4
+
+
+def damping_keys(*names: str, unit: str = "") -> Mapping[str, Key]:
+    """Optional keys of a damper, each >= 0."""
+    return {name: Number(0.0, 1e30, unit, required=False) for name in names}
+
+
+@dataclass
+class Parameters:
+    """Reads the numbers of the law `name` for a scene, and notes what is missing; `checked` raises all of it."""
+
+    scene: Scene
+    name: str
+    faults: list[Fault] = field(default_factory=list)
+    taken: list[str] = field(default_factory=list)
+
+    @property
+    def values(self) -> Mapping[str, Any]:
+        """What the `[law]` table says, if it is about this law."""
+        law = self.scene.law
+        return law.values if law is not None and law.name == self.name else {}
+
+    @property
+    def load_curve(self) -> LoadCurve | None:
+        """The load curve of the scene's parabola."""
+        return self.scene.geometry.shape.resolved("parabola").load_curve if self.scene.has_geometry else None
+
+    def get(self, key: str, default: Any) -> Any:
+        """A number with a default."""
+        return self.values.get(key, default)
+
+    def common(self) -> dict[str, Any]:
+        """What every force law has, last: the words of `taken` are complete then. Raises BadInput."""
+        self.checked()
+        own = {key: self.values[key] for key in COMMON if key in self.values}
+        return {**own, "load_curve": self.load_curve, "source": "; ".join(self.taken)}
+
+    def checked(self) -> None:
+        """Raise BadInput with every fault noted."""
+        if self.faults:
+            raise BadInput(self.faults)
+
+    def stiffness(self, alpha: float) -> float:
+        """k of `[law]`; else that of the spring whose elastic impact peaks as the scene's Hertz impact does."""
+        if "k" in self.values:
+            return float(self.values["k"])
+        if not self.scene.has_geometry:
+            self.missing("k", "the stiffness in N/m^alpha; or a scene with shape and material")
+            return 1.0
+        relaxed = self.scene.contact_modulus.relaxed
+        if relaxed == 0.0:
+            reason = "a fluid has no relaxed modulus to take a stiffness from; accepted: a solid, or law.k"
+            self.faults.append(Fault(self.scene.source, "target.material", reason))
+            return 1.0
+        bodies = bodies_of(self.scene)
+        peak = self.scene.geometry.shape.hertz_impact(relaxed, bodies.mass, bodies.velocity).force
+        k = spring_of_peak(peak, alpha, bodies)
+        self.taken.append(f"k = {k:.6g} N/m^{alpha:g} from the Hertz impact with the relaxed modulus")
+        return k
+
+    def damping(self, names: Sequence[str]) -> tuple[str, float]:
+        """The one damping given, `names` or e; else e as the scene's own material has it by the exact law."""
+        given = [name for name in ("e", *names) if name in self.values]
+        accepted = " or ".join(("e", *names))
+        if len(given) == 1:
+            return given[0], float(self.values[given[0]])
+        if given:
+            reason = f"{', '.join(given)} are given; accepted: one of {accepted}"
+            self.faults.append(Fault(self.scene.source, f"law.{given[1]}", reason))
+            return given[0], 1.0
+        if not self.scene.has_geometry:
+            self.missing(names[0] if names else "e", f"the damping: one of {accepted}")
+            return "e", 1.0
+        return "e", self._own_restitution()
+
+    def missing(self, key: str, accepted: str) -> None:
+        """Note a key that has to be given."""
+        self.faults.append(Fault(self.scene.source, f"law.{key}", f"missing; accepted: {accepted}"))
+
+    def _own_restitution(self) -> float:
+        """The restitution of the scene by the exact law. Raises NotReached."""
+        from lumped import laws
+
+        if self.scene.contact_modulus.is_elastic:
+            return 1.0
+        e = laws.get(EXACT).of(self.scene).simulate(self.scene, EXACT_TOLERANCE).quantities["restitution"].value
+        if e is None:
+            reason = f"the scene does not separate, so it has no restitution to take; accepted: law.e for {self.name}"
+            self.faults.append(Fault(self.scene.source, "law.e", reason))
+            return 1.0
+        self.taken.append(f"e = {e:.6g} of the scene by {EXACT}")
+        return float(min(max(e, 1e-4), 1.0))

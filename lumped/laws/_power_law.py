@@ -1,0 +1,62 @@
+"""A spring k depth^alpha and a damper beside it: what most pounding laws are."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Any
+
+from lumped.collide.bodies import Bodies, Stage
+from lumped.laws._force_law import ForceLaw
+
+
+@dataclass(frozen=True, kw_only=True)
+class PowerLaw(ForceLaw):
+    """F = k depth^alpha + damper(depth, rate); k in N/m^alpha."""
+
+    k: float
+    alpha: float
+
+    @abstractmethod
+    def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:
+        """The damper's force, N."""
+
+    @abstractmethod
+    def damper_tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+        """The slopes of the damper's force over depth, N/m, and rate, N s/m."""
+
+    def force(self, depth: Any, rate: Any, stage: Stage) -> Any:
+        """F, N."""
+        return self.k * depth**self.alpha + self.damper(depth, rate, stage)
+
+    def tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+        """dF/d depth, dF/d rate."""
+        over_depth, over_rate = self.damper_tangents(depth, rate, stage)
+        return self.k * self.alpha * depth ** (self.alpha - 1.0) + over_depth, over_rate
+
+    def lost(self, depth: Any, rate: Any, stage: Stage) -> Any:
+        """The damper's force, N."""
+        return self.damper(depth, rate, stage)
+
+    def stored(self, depth: float, stage: Stage) -> float:
+        """k depth^(alpha + 1)/(alpha + 1), J."""
+        return float(self.k * depth ** (self.alpha + 1.0) / (self.alpha + 1.0))
+
+    def time_scale(self, bodies: Bodies) -> float:
+        """Contact time of the spring alone."""
+        return spring_contact_time(self.k, self.alpha, bodies)
+
+
+def spring_contact_time(k: float, alpha: float, bodies: Bodies) -> float:
+    """2 (d_m/v) int_0^1 dx/sqrt(1 - x^(alpha + 1)), s, of the impact on k depth^alpha."""
+    power = alpha + 1.0
+    depth = math.pow(0.5 * power * bodies.mass / k * bodies.velocity**2, 1.0 / power)
+    integral = math.sqrt(math.pi) * math.gamma(1.0 + 1.0 / power) / math.gamma(0.5 + 1.0 / power)
+    return 2.0 * depth / bodies.velocity * integral
+
+
+def spring_of_peak(force: float, alpha: float, bodies: Bodies) -> float:
+    """k, N/m^alpha, of the spring whose elastic impact peaks at `force`, N."""
+    energy = 0.5 * (alpha + 1.0) * bodies.mass * bodies.velocity**2
+    return float(force * (force / energy) ** alpha)

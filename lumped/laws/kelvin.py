@@ -1,0 +1,57 @@
+"""Kelvin's linear spring and dashpot, "(5)" to "(7)": F = k depth + c rate, c = 2 xi sqrt(k m).
+
+The force jumps to c v at touch. With `exit = "force"` contact ends when it returns to zero; Anagnostopoulos'
+damping "(7)" (1988, doi 10.1002/eqe.4290160312) belongs to `exit = "depth"`, where the dashpot may pull.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from lumped import restitution
+from lumped.collide.bodies import Stage
+from lumped.keys import Key
+from lumped.laws._parameters import COMMON, RESTITUTION, STIFFNESS, Parameters, damping_keys
+from lumped.laws._power_law import PowerLaw
+from lumped.scene import Scene
+
+KEYS: Mapping[str, Key] = {
+    **STIFFNESS,
+    **RESTITUTION,
+    **damping_keys("xi"),
+    **damping_keys("c", unit="N s/m"),
+    **COMMON,
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kelvin(PowerLaw):
+    """The law with stiffness k, N/m, and dashpot c, N s/m."""
+
+    c: float
+    alpha: float = 1.0
+    name: ClassVar[str] = "kelvin"
+    tensile: ClassVar[bool] = True
+
+    def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:
+        """c rate."""
+        return self.c * rate
+
+    def damper_tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+        """0, c."""
+        return 0.0, self.c + 0.0 * rate
+
+
+def of(scene: Scene) -> Kelvin:
+    """The law for a scene. Raises BadInput."""
+    given = Parameters(scene, Kelvin.name)
+    k = given.stiffness(1.0)
+    kind, value = given.damping(("xi", "c"))
+    common = given.common()
+    if kind == "e":
+        value = restitution.get("kelvin").damping(value, given.get("exit", "force"))
+    c = value if kind == "c" else 2.0 * value * math.sqrt(k * scene.reduced_mass)
+    return Kelvin(k=k, c=c, **common)
