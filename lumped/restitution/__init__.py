@@ -1,0 +1,45 @@
+"""Damping against the coefficient of restitution, one family a file, found by its name.
+
+Each member is a `Family`: `restitution(damping, exit)` and `damping(e, exit)` are exact, `published` holds the
+approximations of the literature.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from lumped import members as _members
+from lumped.errors import BadInput as _BadInput
+from lumped.errors import Fault as _Fault
+from lumped.errors import nearest as _nearest
+from lumped.restitution.base import Family as Family
+
+EXACT = "exact"
+
+
+def available() -> tuple[str, ...]:
+    """Names of the families."""
+    return _members.available(__name__)
+
+
+def get(name: str) -> Any:
+    """The family's module; raises BadInput with the nearest name."""
+    return _members.get(__name__, name, source="restitution")
+
+
+def damping(family: Family, e: float, exit: str = "force", formula: str = EXACT) -> float:
+    """The family's damping for e: exact at this exit, or by a published formula, which knows of no exit.
+
+    Raises BadInput, for an unknown formula with the nearest name.
+    """
+    if formula == EXACT:
+        return family.damping(e, exit)
+    names = (EXACT, *family.published)
+    if formula not in names:
+        message = f"{formula!r} is not known; accepted: {', '.join(names)}{_nearest(formula, names)}"
+        raise _BadInput(_Fault("restitution", "formula", message))
+    return family.published[formula](e)
+
+
+for _name in available():
+    _members.get(__name__, _name)
