@@ -26,6 +26,15 @@ class Stage(NamedTuple):
     speed: float
 
 
+class State(NamedTuple):
+    """Depth, m, its rate, m/s, the work lost since the first touch, J, and what the law remembers."""
+
+    depth: float
+    rate: float
+    lost: float
+    memory: tuple[float, ...] = ()
+
+
 class PointLaw(Protocol):
     """A force between two masses, F(depth, rate), N; depths >= 0 in m, rates in m/s, scalars or arrays.
 
@@ -34,6 +43,16 @@ class PointLaw(Protocol):
 
     @property
     def tensile(self) -> bool: ...
+
+    def within(self, start: State, length: float) -> PointLaw:
+        """The law as the Radau points of one step see it, which begins at `start` and is `length` s long.
+
+        Itself without memory. With memory the force at one point depends on the depths at the others too: the
+        slope over depth is then a matrix (s, s).
+        """
+
+    def remembered(self, depth: Array) -> tuple[float, ...]:
+        """The memory at the end of such a step, from the depths at its points, shape (s,)."""
 
     def force(self, depth: Any, rate: Any, stage: Stage) -> Any:
         """F, compression positive."""

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.collide.bodies import Bodies, PointLaw, Stage
+from lumped.collide.bodies import Bodies, PointLaw, Stage, State
 from lumped.collide.phase import Event, March, Phase
-from lumped.collide.step import State
 from lumped.ending import AT_REST, End
 from lumped.errors import TooManySteps
 

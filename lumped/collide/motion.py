@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from lumped.collide.bodies import Bodies, PointLaw, Stage
+from lumped.collide.bodies import Bodies, PointLaw, Stage, State
 from lumped.collide.contact import Contact, contact
-from lumped.collide.step import State
 from lumped.ending import End
 
 BISECTIONS = 200

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.collide.bodies import Bodies, PointLaw, Stage
-from lumped.collide.step import NODES, STAGES, State, Step, roughness, solved
+from lumped.collide.bodies import Bodies, PointLaw, Stage, State
+from lumped.collide.step import NODES, STAGES, Step, roughness, solved
 from lumped.errors import TooManySteps
 
 Array = NDArray[np.float64]

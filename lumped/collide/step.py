@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.collide.bodies import Bodies, PointLaw, Stage
+from lumped.collide.bodies import Bodies, PointLaw, Stage, State
 from lumped.collide.nodes import radau
 
 Array = NDArray[np.float64]
@@ -18,14 +18,6 @@ ITERATIONS = 12
 SMALL = 1e-9
 # The least depth a law is asked for: powers below one of it stay finite, as do their slopes.
 TINY = 1e-200
-
-
-class State(NamedTuple):
-    """Depth, m, its rate, m/s, and the work lost since the first touch, J."""
-
-    depth: float
-    rate: float
-    lost: float
 
 
 class Step(NamedTuple):
@@ -44,29 +36,32 @@ def solved(law: PointLaw, stage: Stage, bodies: Bodies, start: State, length: fl
     """The step whose accelerations satisfy m a + F(depth, rate) = m g at every point; None without convergence."""
     once, twice = length * NODES.once, length**2 * NODES.twice
     ballistic = start.depth + length * start.rate * NODES.points
-    acceleration = guess
+    acceleration, seen = guess, law.within(start, length)
     for iteration in range(1, ITERATIONS + 1):
         rate = start.rate + once @ acceleration
         depth = ballistic + twice @ acceleration
         pressed = np.maximum(depth, TINY)
-        excess = acceleration - bodies.gravity + law.force(pressed, rate, stage) / bodies.mass
-        stiffness, damping = law.tangents(pressed, rate, stage)
-        jacobian = ((stiffness * (depth > 0.0)) * twice.T + damping * once.T).T / bodies.mass
+        excess = acceleration - bodies.gravity + seen.force(pressed, rate, stage) / bodies.mass
+        stiffness, damping = seen.tangents(pressed, rate, stage)
+        over_depth = stiffness * (depth > 0.0)
+        bent = over_depth @ twice if over_depth.ndim == 2 else (over_depth * twice.T).T
+        jacobian = (bent + (damping * once.T).T) / bodies.mass
         jacobian.flat[:: STAGES + 1] += 1.0
         correction = np.linalg.solve(jacobian, excess)
         acceleration = acceleration - correction
         if not np.isfinite(correction).all():
             return None
         if np.abs(correction).max() <= SMALL * np.abs(acceleration).max():
-            return _finished(law, stage, start, length, acceleration, iteration)
+            return _finished(seen, stage, start, length, acceleration, iteration)
     return None
 
 
 def _finished(law: PointLaw, stage: Stage, start: State, length: float, acceleration: Array, iterations: int) -> Step:
     rate = start.rate + length * (NODES.once @ acceleration)
     depth = start.depth + length * (start.rate * NODES.points + length * (NODES.twice @ acceleration))
-    power = law.lost(np.maximum(depth, TINY), rate, stage) * rate
-    end = State(float(depth[-1]), float(rate[-1]), start.lost + length * float(NODES.weights @ power))
+    pressed = np.maximum(depth, TINY)
+    lost = start.lost + length * float(NODES.weights @ (law.lost(pressed, rate, stage) * rate))
+    end = State(float(depth[-1]), float(rate[-1]), lost, law.remembered(pressed))
     return Step(start, length, acceleration, rate, depth, end, iterations)
 
 

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.collide.bodies import Bodies, Stage
+from lumped.collide.bodies import Bodies, Stage, State
 from lumped.collide.contact import Contact
 from lumped.collide.motion import Motion, motion
 from lumped.collide.track import Track
@@ -55,6 +55,14 @@ class ForceLaw(ABC):
     @abstractmethod
     def tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
         """dF/d depth, N/m, and dF/d rate, N s/m."""
+
+    def within(self, start: State, length: float) -> ForceLaw:
+        """Itself: nothing is remembered."""
+        return self
+
+    def remembered(self, depth: Array) -> tuple[float, ...]:
+        """Nothing."""
+        return ()
 
     @abstractmethod
     def lost(self, depth: Any, rate: Any, stage: Stage) -> Any:
