@@ -71,6 +71,6 @@ def flight_time(law: PointLaw, bodies: Bodies, last: State) -> float | None:
         middle = 0.5 * (low + high)
         if middle in (low, high):
             break
-        depth, rate, _ = flown(last, gravity, middle)
-        low, high = (low, middle) if law.force(depth, rate, stage) <= 0.0 else (middle, high)
+        there = flown(last, gravity, middle)
+        low, high = (low, middle) if law.force(there.depth, there.rate, stage) <= 0.0 else (middle, high)
     return high

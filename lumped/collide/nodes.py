@@ -48,5 +48,5 @@ def radau(count: int) -> Nodes:
     first = 0.5 * np.array([legendre.legint(row, lbnd=-1.0) for row in np.eye(count)])
     second = 0.25 * np.array([legendre.legint(row, m=2, lbnd=-1.0) for row in np.eye(count)])
     once = legendre.legvander(zeros, count) @ first.T @ series
-    points: Array = 0.5 * (1.0 + zeros)
-    return Nodes(points, once, once @ once, once[-1], series, first, second)
+    points = 0.5 * (1.0 + zeros)
+    return Nodes(points, once, once @ once, np.array(once[-1]), series, first, second)
