@@ -147,7 +147,7 @@ class _Runs:
         """One run; raises where it fails."""
         surface = half_space.surface(self._poisson, settings)
         self._surfaces[id(surface)] = surface
-        self._marches.append(march(self._strike, surface, settings))
+        self._marches.append(march(self._strike, surface, settings, accounted=not self._marches))
         return self._marches[-1]
 
     def curve(self, settings: Numerics) -> Curve | None:

@@ -24,9 +24,9 @@ import numpy as np
 from skfem import Basis
 
 from fe_contact.forms import Array, isotropic
-from fe_contact.stepping import BEYOND
 from fe_contact.numerics import ENFORCEMENTS, SCHEMES
 from fe_contact.reference import Solved
+from fe_contact.stepping import BEYOND
 from fe_contact.surface_pressure import felt, peak_step, scale
 from lumped.errors import BadInput, Fault
 from lumped.members import get

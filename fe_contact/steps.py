@@ -22,18 +22,18 @@ class State:
 
 @dataclass(frozen=True)
 class Step:
-    """A step taken, SI units: its length, the state after it, force and contact radius in it.
+    """A step taken, SI units: its length, the state after it, force and contact radius in it, and when that was.
 
     ``axis_response`` is the axis' displacement times modulus, ``scale`` the contact radius the mesh was scaled
-    to, ``heat`` that of the dashpots, ``solution`` in units of the unit mesh.
+    to, ``solution`` in units of the unit mesh.
     """
 
     length: float
     state: State
     force: float
     radius: float
+    radius_time: float
     axis_response: float
     solution: ContactSolution
     scale: float
-    heat: float
     work: Work

@@ -19,6 +19,8 @@ import numpy as np
 from fe_contact.forms import Array
 from lumped.materials import Relaxation
 
+STENCIL = np.arange(4)[:, None]
+
 
 @dataclass(frozen=True)
 class StepLaw:
@@ -51,10 +53,10 @@ def step_law(relaxation: Relaxation, scheme: ModuleType, step: float) -> StepLaw
 
 @dataclass(frozen=True)
 class SurfaceMemory:
-    """Displacement and its elastic pressure on fixed radii.
+    """Displacement and, for its energies, its elastic pressure on fixed radii.
 
-    ``radii`` (r,) m; ``strain`` (2, r): displacement u, m, and the pressure that holds it elastically with
-    unit modulus, 1; ``branches`` (k, 2, r): the same of every branch.
+    ``radii`` (r,) m; ``strain`` (f, r): displacement u, m, and, where f = 2, the pressure that holds it
+    elastically with unit modulus, 1; ``branches`` (k, f, r): the same of every branch.
     """
 
     radii: Array
@@ -62,18 +64,18 @@ class SurfaceMemory:
     branches: Array
 
     @classmethod
-    def at_rest(cls, radii: Array, relaxation: Relaxation) -> SurfaceMemory:
-        """A relaxed, undeformed surface."""
-        shape = (2, radii.size)
+    def at_rest(cls, radii: Array, relaxation: Relaxation, fields: int) -> SurfaceMemory:
+        """A relaxed, undeformed surface that keeps its displacement, or with two fields its pressure too."""
+        shape = (fields, radii.size)
         return cls(radii, np.zeros(shape), np.zeros((len(relaxation.moduli), *shape)))
 
     def carried(self, law: StepLaw) -> Array:
-        """Part of the step's stress that the past fixes: modulus x displacement and pressure, (2, r)."""
-        return law.past_strain * self.strain + np.tensordot(law.past_branches, self.branches, axes=1)
+        """Part of the step's stress that the past fixes: modulus x displacement and pressure, (f, r)."""
+        of_branches = law.past_branches @ self.branches.reshape(len(self.branches), self.strain.size)
+        return law.past_strain * self.strain + of_branches.reshape(self.strain.shape)
 
-    def advanced(self, law: StepLaw, stress: Array) -> SurfaceMemory:
-        """State after a step whose stress, modulus x displacement and pressure (2, r), is known."""
-        strain = (stress - self.carried(law)) / law.now
+    def advanced(self, law: StepLaw, strain: Array) -> SurfaceMemory:
+        """State after a step that leads to a strain, (f, r)."""
         branches = law.decay[:, None, None] * self.branches + law.gain[:, None, None] * (strain - self.strain)
         return SurfaceMemory(self.radii, strain, branches)
 
@@ -102,17 +104,22 @@ class SurfaceMemory:
 
 
 def interpolate(field: Array, spacing: float, radii: Array) -> Array:
-    """Cubic interpolation of a field known at 0, spacing, 2 spacing, ...; outside it ends with its last value.
+    """Cubic interpolation of a field known at 0, spacing, 2 spacing, ... at radii within its reach.
 
     A straight line between the points would roughen a pressure, which is nearly the field's second
     derivative, by more than the contact problem's own error.
     """
-    position = np.minimum(radii / spacing, field.size - 1.0)
-    first = np.clip(position.astype(int) - 1, 0, field.size - 4)
+    position = radii / spacing
+    first = position.astype(np.intp)
+    first -= 1
+    np.maximum(first, 0, out=first)
+    np.minimum(first, field.size - 4, out=first)
     x = position - first
-    y0, y1, y2, y3 = field[first], field[first + 1], field[first + 2], field[first + 3]
-    slope, bend, twist = y1 - y0, y2 - 2 * y1 + y0, y3 - 3 * y2 + 3 * y1 - y0
-    return np.asarray(y0 + x * (slope + (x - 1) * (bend / 2 + (x - 2) * twist / 6)))
+    y0, y1, y2, y3 = field.take(first + STENCIL)
+    slope = y1 - y0
+    bend = y2 - y1 - slope
+    twist = y3 - 2 * y2 + y1 - bend
+    return np.asarray(y0 + x * (slope + (x - 1) * (bend / 2 + (x - 2) * (twist / 6))))
 
 
 def area_weights(radii: Array) -> Array:

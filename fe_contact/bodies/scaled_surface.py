@@ -14,8 +14,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
-from fe_contact.contact import ContactProblem
+from fe_contact.contact import ContactProblem, PressedSurface
 from fe_contact.forms import Array
 from fe_contact.operators import SurfaceOperator, monomials
 
@@ -27,13 +28,9 @@ class ScaledSurface:
     operator: SurfaceOperator
 
     @cached_property
-    def _with_striker(self) -> tuple[Array, Array]:
-        """Stiffness and trace with one more unknown: the striker's yielding under the new force."""
-        size = len(self.operator.stiffness)
-        stiffness = np.zeros((size + 1, size + 1))
-        stiffness[:size, :size] = self.operator.stiffness
-        trace = np.column_stack([self.operator.trace, np.ones(len(self.operator.points))])
-        return stiffness, trace
+    def _pressed(self) -> PressedSurface:
+        """What contact knows of it: one object, since the answers to a surface are kept by its identity."""
+        return PressedSurface(self.operator.stiffness, self.operator.trace, self.operator.weights)
 
     def problem(self, overlap: Array, penalty: float, yielding: float) -> ContactProblem:
         """Contact problem on the unit mesh.
@@ -44,13 +41,7 @@ class ScaledSurface:
         penalty : dimensionless penalty stiffness, in units of modulus over contact radius.
         yielding : striker's displacement times modulus per unit-mesh force; 0 holds it fixed.
         """
-        operator = self.operator
-        if yielding == 0.0:
-            return ContactProblem(operator.stiffness, operator.trace, operator.weights, overlap, penalty)
-        stiffness, trace = self._with_striker
-        stiffness = stiffness.copy()
-        stiffness[-1, -1] = 1 / yielding
-        return ContactProblem(stiffness, trace, operator.weights, overlap, penalty)
+        return ContactProblem(self._pressed, overlap, penalty, yielding)
 
     def response(self, pressure: Array) -> Array:
         """Displacement times modulus of all surface nodes, (n_s,), under a unit-mesh pressure (q,)."""
@@ -58,19 +49,26 @@ class ScaledSurface:
         return operator.response @ (operator.trace.T @ (operator.weights * pressure))
 
     def sample(self, nodal: Array, radii: Array) -> Array:
-        """Evaluate a nodal surface field at radii in units of the contact radius, outside the mesh as 1/r.
+        """Evaluate a nodal surface field at increasing radii in units of the contact radius, outside the mesh as 1/r.
 
         Beyond the far radius the field is the point force's, which the far boundary condition stands for.
         """
+        corners, places, members = self._facets
+        ends = radii.searchsorted(corners)
+        ends[0] = 0
+        reach = ends[-1]
+        table = np.concatenate([places, monomials(self.operator.order) @ nodal[members]])
+        start, stretch, *coefficients, field = np.repeat(table, ends[1:] - ends[:-1], axis=1)
+        x = (radii[:reach] - start) * stretch
+        for coefficient in reversed(coefficients):
+            field *= x
+            field += coefficient
+        return np.concatenate([field, nodal[-1] * corners[-1] / radii[reach:]])
+
+    @cached_property
+    def _facets(self) -> tuple[Array, Array, npt.NDArray[np.intp]]:
+        """Corners (f + 1,) of the surface's facets; where each starts and one over its length, (2, f); its nodes."""
         order, nodes = self.operator.order, self.operator.nodes
         corners = nodes[::order]
-        values = np.stack([nodal[k : len(nodal) - order + k : order] for k in range(order)] + [nodal[order::order]])
-        coefficients = monomials(order) @ values
-        facet = np.minimum(np.searchsorted(corners, radii, side="right") - 1, len(corners) - 2)
-        x = (radii - corners[facet]) / (corners[facet + 1] - corners[facet])
-        field: Array = coefficients[order][facet]
-        for power in range(order - 1, -1, -1):
-            field = field * x + coefficients[power][facet]
-        beyond = radii > corners[-1]
-        field[beyond] = nodal[-1] * corners[-1] / radii[beyond]
-        return field
+        members = np.arange(order + 1)[:, None] + order * np.arange(len(corners) - 1)
+        return corners, np.stack([corners[:-1], 1 / np.diff(corners)]), members

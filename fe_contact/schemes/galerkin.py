@@ -16,14 +16,17 @@ from fe_contact.forms import Array
 ORDER = 2
 SAMPLE = 0.5
 LEVER = 0.5
-SERIES = [(-1) ** k / math.factorial(k + 2) for k in range(9, -1, -1)]  # of (x - 1 + exp(-x)) / x^2
+SERIES_BELOW = 0.02
+SERIES = [(-1) ** k / math.factorial(k + 2) for k in range(5, -1, -1)]  # of (x - 1 + exp(-x)) / x^2
 
 
 def weights(moduli: Array, ratios: Array) -> tuple[Array, Array]:
     """Average over the step of each branch's stress: per increment, and of its past."""
     fade = -np.expm1(-ratios) / ratios
-    small = ratios < 0.1  # (1 - fade)/x by its series, where the difference would cancel
-    ramp = np.where(small, np.polyval(SERIES, ratios), (1 - fade) / np.where(small, 1.0, ratios))
+    ramp = (1 - fade) / ratios
+    small = ratios < SERIES_BELOW
+    if small.any():  # the difference would cancel
+        ramp[small] = np.polyval(SERIES, ratios[small])
     return moduli * ramp, moduli * fade
 
 

@@ -446,7 +446,8 @@ def test_condensing_to_the_surface_changes_nothing(
         reference = getattr(expected, name)
         np.testing.assert_allclose(getattr(found, name), reference, rtol=0, atol=1e-10 * np.abs(reference).max())
     for whole, small in zip(found.snapshots, expected.snapshots, strict=True):
-        np.testing.assert_allclose(whole.pressure, small.pressure, rtol=0, atol=1e-8 * small.pressure.max())
+        # steep at the edge, where rounding moves the points
+        np.testing.assert_allclose(whole.pressure, small.pressure, rtol=0, atol=1e-7 * small.pressure.max())
 
 
 def test_the_paraboloid_of_these_tests_is_the_one_of_the_suite(hertz_strike: Strikes) -> None:

@@ -1,0 +1,165 @@
+"""One time step of an impact: the contact problem on the mesh scaled to the contact radius expected in that step.
+
+Where the edge turns out to lie outside the mesh's finest elements, the mesh is scaled again and the step redone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from types import ModuleType
+
+import numpy as np
+
+from fe_contact.bodies.memory import StepLaw, SurfaceMemory, interpolate, step_law
+from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.contact import ContactSolution
+from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
+from fe_contact.forms import Array
+from fe_contact.march import Strike, Work
+from fe_contact.numerics import ENFORCEMENTS, SCHEMES, Numerics
+from fe_contact.steps import State, Step
+from lumped.members import get
+
+EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
+RESCALINGS = 60
+PATIENCE = 8  # rescalings after which the window widens by half each time: the edge may jitter in the last tail
+MEMORY_POINTS = 1200
+MEMORY_REACH = 1.5  # memory extends to this multiple of the expected contact radius
+BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
+VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
+
+
+class Stepper:
+    """Takes steps: what stays the same through an impact is held here, what changes is passed and returned.
+
+    ``accounted``: the memory also keeps the pressure that each of its branches carries, for the energies.
+    """
+
+    def __init__(self, strike: Strike, surface: ScaledSurface, numerics: Numerics, accounted: bool) -> None:
+        self.strike, self.surface, self.numerics = strike, surface, numerics
+        self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
+        self.enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
+        self.radii = np.linspace(0.0, MEMORY_REACH * numerics.contact_radius, MEMORY_POINTS)
+        self.heights = strike.height(self.radii)
+        self.accounted = accounted
+
+    def touch(self) -> State:
+        """The striker at the surface at rest."""
+        memory = SurfaceMemory.at_rest(self.radii, self.strike.relaxation, fields=2 if self.accounted else 1)
+        return State(0.0, 0.0, self.strike.velocity, 0.0, memory)
+
+    def step(self, state: State, steps: Sequence[Step], length: float) -> Step:
+        """The step of a length, s, from a state reached by ``steps``.
+
+        Raises ContactLost, ContactNotSettled or MemoryTooSmall.
+        """
+        strike, end = self.strike, self.strike.end_time
+        law = step_law(strike.relaxation, self.scheme, length)
+        carried = state.memory.carried(law)
+        lever = self.scheme.LEVER * length**2
+        free_depth = state.depth + length * state.velocity + lever * strike.gravity
+        scale, solution, work = self._settle(state, steps, law, carried[0], free_depth, lever / strike.mass, length)
+        pressure = solution.pressure
+        force = scale * float(self.surface.operator.weights @ pressure)
+        depth = free_depth - lever * force / strike.mass
+        radius = scale * solution.edge(self.surface.operator.points)
+        strain = self._strain(law, carried, depth, radius, scale, pressure)
+        moved = State(
+            time=end if length >= end - state.time else state.time + length,
+            depth=depth,
+            velocity=state.velocity + length * (strike.gravity - force / strike.mass),
+            impulse=state.impulse + length * force,
+            memory=state.memory.advanced(law, strain),
+        )
+        axis = float(law.now * strain[0, 0] + carried[0, 0])
+        found_at = self._radius_time(moved.velocity, state.time, length)
+        return Step(length, moved, force, radius, found_at, axis, solution, scale, work)
+
+    def _settle(
+        self,
+        state: State,
+        steps: Sequence[Step],
+        law: StepLaw,
+        carried: Array,
+        free_depth: float,
+        yielding: float,
+        length: float,
+    ) -> tuple[float, ContactSolution, Work]:
+        """Scale the mesh until the contact edge lies in its finest elements."""
+        points, limit = self.surface.operator.points, self.radii[-1]
+        scale = self._expected_radius(state, steps, free_depth, length)
+        touching = steps[-1].solution.signed_pressure > 0.0 if steps else points < 1.0
+        iterations = 0
+        for attempt in range(RESCALINGS):
+            radii = scale * points
+            if radii[-1] > limit:
+                raise MemoryTooSmall(radii[-1])
+            height = np.minimum(self.strike.height(radii), BEYOND * radii[-1])  # a profile may end
+            overlap = law.now * (free_depth - height) + interpolate(carried, self.radii[1], radii)
+            problem = self.surface.problem(overlap, self.numerics.penalty, law.now * yielding * scale)
+            solution = self.enforcement.enforce(problem, touching)
+            iterations += solution.iterations
+            if not solution.converged:
+                raise ContactNotSettled(state.time)
+            edge = solution.edge(points)
+            if abs(edge - 1) <= EDGE_WINDOW * 1.5 ** max(attempt - PATIENCE, 0):
+                return scale, solution, Work(1, (attempt + 1) * self.enforcement.SOLVES, iterations)
+            scale *= min(max(edge, 0.3), points[-1])
+            if scale < VANISHING * (steps[-1].radius if steps else self.numerics.contact_radius * VANISHING):
+                raise ContactLost(state.time)
+            touching = points < 1.0
+        raise ContactNotSettled(state.time)
+
+    def _expected_radius(self, state: State, steps: Sequence[Step], depth: float, length: float) -> float:
+        """Contact radius in the coming step: its square is smooth in time, and zero at touch."""
+        if not steps:
+            return _overlap_radius(self.strike.height, depth, self.radii)
+        known = [(step.radius_time, step.radius**2) for step in steps[-3:]]
+        if len(known) < 3:
+            known.insert(0, (0.0, 0.0))
+        square = _extrapolated(known, self._radius_time(state.velocity, state.time, length))
+        return float(np.sqrt(max(square, 0.05 * known[-1][1])))
+
+    def _radius_time(self, velocity: float, time: float, length: float) -> float:
+        """When the contact has the radius of a step: growing, at its end; receding, where the force is sampled."""
+        return time + length * (1.0 if velocity > 0 else self.scheme.SAMPLE)
+
+    def _strain(
+        self, law: StepLaw, carried: Array, depth: float, radius: float, scale: float, pressure: Array
+    ) -> Array:
+        """Surface displacement at the memory's radii after the step and, where accounted, its pressure; (f, r)."""
+        strain = np.empty_like(carried)
+        touching = int(self.radii.searchsorted(radius))
+        outside = self.radii[touching:] / scale
+        # in contact the surface is the striker's: what penalty is left in the trace must not be remembered
+        strain[0, :touching] = depth - self.heights[:touching]
+        stress = self.surface.sample(self.surface.response(pressure), outside)
+        strain[0, touching:] = (stress - carried[0, touching:]) / law.now
+        if self.accounted:
+            points = self.surface.operator.points
+            spread = np.interp(self.radii / scale, points, pressure / scale, right=0.0)
+            strain[1] = (spread - carried[1]) / law.now
+        return strain
+
+
+def _extrapolated(known: Sequence[tuple[float, float]], at: float) -> float:
+    """The polynomial through a few points, by Neville's scheme."""
+    times, values = zip(*known, strict=True)
+    for level in range(1, len(known)):
+        ends = zip(times, times[level:], values, values[1:], strict=False)
+        values = tuple(((at - t) * w - (at - u) * v) / (u - t) for t, u, v, w in ends)
+    return float(values[0])
+
+
+def _overlap_radius(height: Callable[[Array], Array], depth: float, radii: Array) -> float:
+    """Radius at which the undeformed profile lies ``depth`` above its tip, by bisection."""
+    low, high = 0.0, float(radii[-1])
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        if height(np.array([middle]))[0] < depth:
+            low = middle
+        else:
+            high = middle
+        if high - low < 0.01 * high:
+            break
+    return high
