@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+if TYPE_CHECKING:
+    from lumped.collide.step import Step
+
 Array = NDArray[np.float64]
+# The least depth a law is asked for: powers below one of it stay finite, as do their slopes.
+TINY = 1e-200
 
 
 class Bodies(NamedTuple):
@@ -59,6 +65,14 @@ class PointLaw(Protocol):
 
     def tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
         """dF/d depth, N/m, and dF/d rate, N s/m."""
+
+    def between(
+        self, steps: Sequence[Step], place: NDArray[np.intp], share: Array, depth: Array, rate: Array, stage: Stage
+    ) -> Array:
+        """F at places in a row of steps, each shape (n,): which step, what share of it has passed, depth and rate."""
+
+    def returned(self, bodies: Bodies, last: State) -> tuple[float, State] | None:
+        """How long the bodies are apart after a contact, s, and the state when they meet again; None: for ever."""
 
     def lost(self, depth: Any, rate: Any, stage: Stage) -> Any:
         """The part of the force whose work is not stored, N."""

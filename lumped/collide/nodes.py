@@ -43,7 +43,7 @@ def radau(count: int) -> Nodes:
     for _ in range(2):  # the eigenvalues behind the roots leave a few last digits
         zeros -= legendre.legval(zeros, difference) / legendre.legval(zeros, legendre.legder(difference))
     zeros[-1] = 1.0
-    series = np.linalg.inv(legendre.legvander(zeros, count - 1))
+    series: Array = np.linalg.inv(np.asarray(legendre.legvander(zeros, count - 1), dtype=np.float64))
     # d/dx of the series in x in [-1, 1] is twice that over the step's share in [0, 1]
     first = 0.5 * np.array([legendre.legint(row, lbnd=-1.0) for row in np.eye(count)])
     second = 0.25 * np.array([legendre.legint(row, m=2, lbnd=-1.0) for row in np.eye(count)])

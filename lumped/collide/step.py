@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.collide.bodies import Bodies, PointLaw, Stage, State
+from lumped.collide.bodies import TINY, Bodies, PointLaw, Stage, State
 from lumped.collide.nodes import radau
 
 Array = NDArray[np.float64]
@@ -16,8 +16,6 @@ NODES = radau(STAGES)
 ITERATIONS = 12
 # Newton's last correction, relative to the largest acceleration: the next one would be its square.
 SMALL = 1e-9
-# The least depth a law is asked for: powers below one of it stay finite, as do their slopes.
-TINY = 1e-200
 
 
 class Step(NamedTuple):

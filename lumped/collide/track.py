@@ -13,7 +13,7 @@ from lumped.collide.bodies import PointLaw
 from lumped.collide.contact import Contact
 from lumped.collide.motion import Motion
 from lumped.collide.phase import Phase
-from lumped.collide.step import NODES, STAGES, TINY
+from lumped.collide.step import NODES, STAGES
 
 Array = NDArray[np.float64]
 
@@ -27,9 +27,11 @@ class Track:
 
     @cached_property
     def times(self) -> Array:
-        """Where its steps begin and end, s, ascending."""
+        """Where its steps begin and end, s, ascending; the force may jump at touch, so the instant before is there."""
         ends = [np.cumsum([phase.start_time, *(s.length for s in phase.steps)]) for phase in self._phases]
-        return np.unique(np.concatenate(ends))
+        touches = np.array([contact.start_time for contact in self.motion.contacts[1:]])
+        parted = np.array([contact.end_time for contact in self.motion.contacts[:-1]])
+        return np.unique(np.concatenate([*ends, np.nextafter(touches, 0.0), np.nextafter(parted, np.inf)]))
 
     def __call__(self, times: Array) -> Array:
         """Depth, m, rate, m/s, and force, N, at `times`, shape (n,) from zero on: shape (3, n).
@@ -72,4 +74,4 @@ class Track:
         begun = np.array([step.start[:2] for step in phase.steps])[place]
         rate = begun[:, 1] + length * once
         depth = begun[:, 0] + length * (begun[:, 1] * share + length * np.where(share > 0.0, twice, 0.0))
-        return np.array([depth, rate, self.law.force(np.maximum(depth, TINY), rate, phase.stage)])
+        return np.array([depth, rate, self.law.between(phase.steps, place, share, depth, rate, phase.stage)])

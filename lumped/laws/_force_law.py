@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.collide.bodies import Bodies, Stage, State
+from lumped.collide.bodies import TINY, Bodies, Stage, State
 from lumped.collide.contact import Contact
+from lumped.collide.flight import returned
 from lumped.collide.motion import Motion, motion
+from lumped.collide.step import Step
 from lumped.collide.track import Track
 from lumped.ending import End
 from lumped.interpolation import highest
@@ -63,6 +65,16 @@ class ForceLaw(ABC):
     def remembered(self, depth: Array) -> tuple[float, ...]:
         """Nothing."""
         return ()
+
+    def between(
+        self, steps: Sequence[Step], place: NDArray[np.intp], share: Array, depth: Array, rate: Array, stage: Stage
+    ) -> Array:
+        """F at depths and rates, N: where in the steps does not matter without memory."""
+        return np.asarray(self.force(np.maximum(depth, TINY), rate, stage))
+
+    def returned(self, bodies: Bodies, last: State) -> tuple[float, State] | None:
+        """Free flight to the surface as it was."""
+        return returned(self, bodies, last)
 
     @abstractmethod
     def lost(self, depth: Any, rate: Any, stage: Stage) -> Any:
