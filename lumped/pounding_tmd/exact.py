@@ -1,0 +1,154 @@
+"""Exponent 1: between two switches the motion is linear, and its matrix exponential is exact to rounding."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil, log2
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.pounding_tmd.crossing import first_fall
+from lumped.pounding_tmd.equations import Equations, Stages
+from lumped.pounding_tmd.phase import Follow, Phase
+from lumped.pounding_tmd.switches import Switch, switches
+
+Array = NDArray[np.float64]
+BLOCK = 64
+LEAST_SHARE = 0.01  # of the spacing: a row nearer to the start of a phase would show nothing but rounding
+SERIES_TERMS, SERIES_REACH = 18, 0.25
+
+
+@dataclass(frozen=True, eq=False)
+class Flow:
+    """The linear motion with certain stages: dy/dt = matrix y; rows `spacing` apart, s."""
+
+    equations: Equations
+    stages: Stages
+    spacing: float
+
+    @cached_property
+    def matrix(self) -> Array:
+        """Shape (size, size)."""
+        return self.equations.rates(self.stages, np.eye(self.equations.size))
+
+    @cached_property
+    def forms(self) -> Array:
+        """The integrands as quadratic forms, shape (6, size, size), by polarization."""
+        unit = np.eye(self.equations.size)
+        alone = self.equations.integrands(self.stages, unit)
+        pairs = self.equations.integrands(self.stages, unit[:, :, None] + unit[:, None, :])
+        return np.asarray(0.5 * (pairs - alone[:, :, None] - alone[:, None, :]))
+
+    @cached_property
+    def switches(self) -> tuple[Switch, ...]:
+        """What can end this motion."""
+        return switches(self.equations, self.stages)
+
+    @cached_property
+    def levels(self) -> tuple[Array, Array]:
+        """The levels of the switches as affine functions of the state: rows, shape (m, size), and constants (m,)."""
+        size = self.equations.size
+        constants = np.array([switch.level(np.zeros(size)) for switch in self.switches])
+        rows = np.array([switch.level(np.eye(size)) for switch in self.switches]).reshape(-1, size)
+        return rows - constants[:, None], constants
+
+    def propagator(self, time: float | Array) -> Array:
+        """exp(matrix t), shape (..., size, size)."""
+        from scipy.linalg import expm
+
+        return np.asarray(expm(self.matrix * np.asarray(time)[..., None, None]))
+
+    @cached_property
+    def powers(self) -> Array:
+        """Propagators over 1 to BLOCK rows."""
+        return self.propagator(self.spacing * np.arange(1.0, BLOCK + 1.0))
+
+    @cached_property
+    def gramian(self) -> Array:
+        """`integral_forms` over one row."""
+        return self.integral_forms(self.spacing)
+
+    def integral_forms(self, time: float) -> Array:
+        """Forms W with int_0^t integrand ds = y W y, y the state at the start, shape (6, size, size).
+
+        A power series over t/2^k, then W(2t) = W(t) + P(t)^T W(t) P(t).
+        """
+        reach = float(np.linalg.norm(self.matrix, np.inf)) * time
+        doublings = max(0, ceil(log2(reach / SERIES_REACH))) if reach > 0.0 else 0
+        step = time * 0.5**doublings
+        term = step * self.forms
+        total = term
+        for order in range(2, SERIES_TERMS):
+            left = self.matrix.T @ term
+            term = (left + np.swapaxes(left, 1, 2)) * step / order
+            total = total + term
+        for level in range(doublings):
+            over = self.propagator(step * 2.0**level)
+            total = total + over.T @ total @ over
+        return np.asarray(total)
+
+    def integrals(self, times: Array, states: Array) -> Array:
+        """Integrals from the first to the last of rows of which all but the outermost lie `spacing` apart, (6,)."""
+        outer = {0, times.size - 2}
+        total = sum(_squares(self.integral_forms(times[i + 1] - times[i]), states[:, [i]]) for i in outer if i >= 0)
+        return np.asarray(total + _squares(self.gramian, states[:, 1 : max(times.size - 2, 1)]))
+
+
+def _squares(forms: Array, states: Array) -> Array:
+    """Sum over the columns y of y W y, shape (6,)."""
+    return np.asarray(np.einsum("mij,ik,jk->m", forms, states, states, optimize=True))
+
+
+def route(equations: Equations, spacing: float, end_time: float) -> Follow:
+    """How a phase is followed: each motion's exponentials are found once."""
+    flows: dict[Stages, Flow] = {}
+
+    def next_phase(stages: Stages, state: Array, time: float) -> tuple[Phase, Switch | None]:
+        flow = flows.setdefault(stages, Flow(equations, stages, spacing))
+        return follow(flow, state, time, end_time)
+
+    return next_phase
+
+
+def follow(flow: Flow, state: Array, time: float, end_time: float) -> tuple[Phase, Switch | None]:
+    """One phase, and the switch that ends it; None at `end_time`."""
+    times, columns, switch = [np.array([time])], [state[:, None]], None
+    for block_times, block in _blocks(flow, state, time, end_time):
+        found = first_fall(flow, times[-1][-1], columns[-1][:, -1], block_times, block, fresh=len(times) == 1)
+        if found is None:
+            times.append(block_times)
+            columns.append(block)
+            continue
+        inside = block_times < found.time
+        times += [block_times[inside], np.array([found.time])]
+        columns += [block[:, inside], found.state[:, None]]
+        switch = flow.switches[found.level]
+        break
+    return _phase(flow, np.concatenate(times), np.concatenate(columns, axis=1)), switch
+
+
+def _blocks(flow: Flow, state: Array, time: float, end_time: float) -> Iterator[tuple[Array, Array]]:
+    """Rows after `time`: on whole multiples of the spacing, and at `end_time`."""
+    count = int(time / flow.spacing + LEAST_SHARE) + 1
+    while count * flow.spacing < end_time:
+        ahead = min(BLOCK, ceil(end_time / flow.spacing) - count)
+        first = flow.propagator(count * flow.spacing - time) @ state
+        block = np.concatenate([first[None], flow.powers[: ahead - 1] @ first])
+        yield np.asarray(flow.spacing * np.arange(count, count + ahead)), block.T
+        count, time, state = count + ahead, flow.spacing * (count + ahead - 1), block[-1]
+    yield np.array([end_time]), (flow.propagator(end_time - time) @ state)[:, None]
+
+
+def _phase(flow: Flow, times: Array, states: Array) -> Phase:
+    def at(time: float) -> Array:
+        i = int(np.clip(np.searchsorted(times, time, side="right") - 1, 0, times.size - 1))
+        return np.asarray(flow.propagator(time - times[i]) @ states[:, i])
+
+    def integrals(time: float) -> Array:
+        before = times < time
+        return flow.integrals(np.append(times[before], time), states[:, before]) if before.any() else np.zeros(6)
+
+    return Phase(flow.stages, times, states, at, integrals)

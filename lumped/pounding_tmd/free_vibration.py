@@ -1,0 +1,52 @@
+"""The free vibration of a pounding tuned mass damper, by either route."""
+
+from __future__ import annotations
+
+from lumped.errors import BadInput, Fault, nearest
+from lumped.keys import Number, read_table
+from lumped.pounding_tmd import reading
+from lumped.pounding_tmd.equations import Equations
+from lumped.pounding_tmd.march import march, route_of
+from lumped.pounding_tmd.phase import ROWS_PER_PERIOD, row_spacing
+from lumped.pounding_tmd.result import PtmdResult
+from lumped.pounding_tmd.system import PoundingDamper, Start
+from lumped.pounding_tmd.track import Track
+
+ROUTES = ("exact", "integrated")
+TIME_KEYS = {"end_time": Number(1e-9, 1e9, "s"), "window": Number(1e-9, 1e9, "s")}
+
+
+def simulate(
+    system: PoundingDamper,
+    start: Start,
+    end_time: float = 20.0,
+    window: float = 5.0,
+    route: str | None = None,
+    rows_per_period: int = ROWS_PER_PERIOD,
+) -> PtmdResult:
+    """Vibration from `start` to `end_time`, s; root mean squares over the first `window` seconds.
+
+    `route`: "exact" (default for exponent 1: matrix exponentials between located switches) or "integrated"
+    (any exponent: DOP853). Rows lie `rows_per_period` to the shortest period. Raises BadInput and NotReached.
+    """
+    _, faults = read_table("simulate", "", {"end_time": end_time, "window": window}, TIME_KEYS)
+    equations = Equations(system)
+    route = route or ("exact" if equations.linear else "integrated")
+    if route not in ROUTES:
+        faults.append(Fault("simulate", "route", f"accepted: {', '.join(ROUTES)}{nearest(route, ROUTES)}"))
+    elif route == "exact" and not equations.linear:
+        faults.append(Fault("simulate", "route", "exact only for exponent 1; accepted here: integrated"))
+    if faults:
+        raise BadInput(faults)
+    spacing = row_spacing(equations, start, end_time, rows_per_period)
+    follow = route_of(route, equations, start, spacing, end_time)
+    track = Track(equations, march(equations, start, end_time, follow))
+    found = reading.contacts(track)
+    return PtmdResult(
+        system=system,
+        start=start,
+        motion=reading.motion(track),
+        contacts=found,
+        energy=reading.energy(track),
+        measures=reading.measures(track, found, window),
+    )
