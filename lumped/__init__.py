@@ -1,6 +1,8 @@
 """Physics of impact without a mesh: materials, shapes, scenes, histories, force laws."""
 
 from lumped import laws as laws
+from lumped import restitution as restitution
+from lumped import stereomechanics as stereomechanics
 from lumped.errors import BadInput as BadInput
 from lumped.errors import Fault as Fault
 from lumped.errors import FeContactError as FeContactError

@@ -6,7 +6,7 @@ approximations of the literature.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import cast as _cast
 
 from lumped import members as _members
 from lumped.errors import BadInput as _BadInput
@@ -22,9 +22,9 @@ def available() -> tuple[str, ...]:
     return _members.available(__name__)
 
 
-def get(name: str) -> Any:
+def get(name: str) -> Family:
     """The family's module; raises BadInput with the nearest name."""
-    return _members.get(__name__, name, source="restitution")
+    return _cast(Family, _members.get(__name__, name, source="restitution"))
 
 
 def damping(family: Family, e: float, exit: str = "force", formula: str = EXACT) -> float:

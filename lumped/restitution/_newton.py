@@ -20,4 +20,4 @@ def newton(value_and_slope: Callable[[float], tuple[float, float]], start: float
         x -= step
         if abs(step) <= LAST_STEP * abs(x):
             return x
-    raise NotReached(f"no damping met the restitution asked for in {ITERATIONS} iterations from {start:g}")
+    raise NotReached(f"no root was found in {ITERATIONS} iterations from {start:g}")

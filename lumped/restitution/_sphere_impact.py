@@ -61,7 +61,7 @@ def _expand(s: float, v: float, lost: float, x: float) -> Expansion:
 
 def _product(one: Series, other: Series) -> float:
     """The last known coefficient of the product of two series."""
-    return sum(map(mul, one, reversed(other)))
+    return float(sum(map(mul, one, reversed(other))))
 
 
 def _at(series: Series, step: float) -> float:
