@@ -50,6 +50,9 @@ class PointLaw(Protocol):
     @property
     def tensile(self) -> bool: ...
 
+    def touch(self, bodies: Bodies) -> State:
+        """The state at first touch."""
+
     def within(self, start: State, length: float) -> PointLaw:
         """The law as the Radau points of one step see it, which begins at `start` and is `length` s long.
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from lumped.collide.bodies import Bodies, PointLaw, Stage, State
 from lumped.collide.phase import Event, March, Phase
+from lumped.collide.step import Step
 from lumped.ending import AT_REST, End
 from lumped.errors import TooManySteps
 
@@ -83,11 +84,11 @@ def contact(
 def _events(law: PointLaw, stage: Stage, exit_rule: str) -> Mapping[str, Event]:
     """What ends a stage: the turn of the motion, and in the rebound the end of contact."""
     if stage.approaching:
-        return {"turn": lambda depth, rate: rate}
+        return {"turn": lambda step: step.rate}
     pulls = law.tensile and exit_rule == "force"
+    return {"exit": _force_left if pulls else lambda step: step.depth, "turn": lambda step: -step.rate}
 
-    def force_left(depth: Array, rate: Array) -> Array:
-        force = law.force(np.maximum(depth, 0.0), rate, stage)
-        return np.asarray(np.where(depth > 0.0, force, -np.abs(force)))
 
-    return {"exit": force_left if pulls else lambda depth, rate: depth, "turn": lambda depth, rate: -rate}
+def _force_left(step: Step) -> Array:
+    """The force as long as there is depth."""
+    return np.asarray(np.where(step.depth > 0.0, step.force, -np.abs(step.force)))

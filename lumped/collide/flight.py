@@ -16,6 +16,15 @@ def flown(state: State, gravity: float, time: float) -> State:
     return State(depth, state.rate + gravity * time, state.lost)
 
 
+def time_to_return(last: State, gravity: float, depth: float) -> float | None:
+    """When free flight from `last` comes down to a depth again, s; None where it never leaves it, or never returns."""
+    if gravity <= 0.0:
+        return None
+    top = -last.rate / gravity
+    fall = depth - flown(last, gravity, top).depth
+    return top + math.sqrt(2.0 * fall / gravity) if fall >= 0.0 else None
+
+
 def returned(law: PointLaw, bodies: Bodies, last: State) -> tuple[float, State] | None:
     """Flight of a law without memory: s, and the state when the bodies meet again; None for ever.
 
@@ -25,18 +34,16 @@ def returned(law: PointLaw, bodies: Bodies, last: State) -> tuple[float, State] 
     gravity = bodies.gravity
     if gravity <= 0.0:
         return None
-    top = -last.rate / gravity
-    highest = flown(last, gravity, top).depth
-    if highest <= 0.0:
-        time = top + math.sqrt(-2.0 * highest / gravity)
+    time = time_to_return(last, gravity, 0.0)
+    if time is not None:
         return time, flown(last, gravity, time)._replace(depth=0.0)
     stage = Stage(False, last.depth, bodies.velocity)
 
-    def apart(time: float) -> bool:
-        there = flown(last, gravity, time)
+    def apart(elapsed: float) -> bool:
+        there = flown(last, gravity, elapsed)
         return bool(law.force(there.depth, there.rate, stage) <= 0.0)
 
-    time = bisected(apart, 0.0, top)
+    time = bisected(apart, 0.0, -last.rate / gravity)
     return time, flown(last, gravity, time)
 
 

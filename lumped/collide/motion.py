@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from lumped.collide.bodies import Bodies, PointLaw, State
+from lumped.collide.bodies import Bodies, PointLaw
 from lumped.collide.contact import Contact, contact
 from lumped.ending import End
 
@@ -29,7 +29,7 @@ def motion(
     law: PointLaw, bodies: Bodies, exit_rule: str, impacts: int, until: float, tolerance: float
 ) -> Motion:
     """Up to `impacts` contacts, the first at time zero, followed until `until`, s. Raises TooManySteps."""
-    state, time, contacts = State(0.0, bodies.velocity, 0.0), 0.0, list[Contact]()
+    state, time, contacts = law.touch(bodies), 0.0, list[Contact]()
     while len(contacts) < impacts:
         contacts.append(contact(law, bodies, exit_rule, state, time, until, tolerance))
         if contacts[-1].end is not End.SEPARATED:

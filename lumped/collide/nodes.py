@@ -14,6 +14,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+STAGES = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,3 +51,10 @@ def radau(count: int) -> Nodes:
     once = legendre.legvander(zeros, count) @ first.T @ series
     points = 0.5 * (1.0 + zeros)
     return Nodes(points, once, once @ once, np.array(once[-1]), series, first, second)
+
+
+def through_zero(share: Array, count: int = STAGES) -> Array:
+    """Weights, shape (n, s + 1), of the values at zero and at the points in the polynomial through them all."""
+    places = np.concatenate([[0.0], radau(count).points])
+    basis = legendre.legvander(2.0 * share - 1.0, count)
+    return np.asarray(basis @ np.linalg.inv(legendre.legvander(2.0 * places - 1.0, count)))

@@ -14,7 +14,7 @@ from lumped.errors import TooManySteps
 
 Array = NDArray[np.float64]
 # An event happens where its value, at the Radau points of a step, is no longer above zero.
-Event = Callable[[Array, Array], Array]
+Event = Callable[[Step], Array]
 
 MOST_STEPS = 5000
 LOCATIONS = 30
@@ -82,14 +82,14 @@ class March:
 
     def _first(self, step: Step) -> str | None:
         """The event that happens first within a step."""
-        places = {name: np.flatnonzero(value(step.depth, step.rate) <= 0.0) for name, value in self.events.items()}
+        places = {name: np.flatnonzero(value(step) <= 0.0) for name, value in self.events.items()}
         found = {name: int(place[0]) for name, place in places.items() if place.size}
         return min(found, key=lambda name: found[name]) if found else None
 
     def _located(self, step: Step, event: str, now: float, guess: Array) -> Step | None:
         """The step that ends where the event happens: secants on its length, kept between what brackets it."""
         value = self.events[event]
-        values = value(step.depth, step.rate)
+        values = value(step)
         after = int(np.flatnonzero(values <= 0.0)[0])
         high, at_high = float(NODES.points[after]) * step.length, float(values[after])
         low = float(NODES.points[after - 1]) * step.length if after else 0.0
@@ -99,7 +99,7 @@ class March:
             trial = self._solved(step.start, length, guess)
             if trial is None:
                 return None
-            at = float(value(trial.depth[-1:], trial.rate[-1:])[0])
+            at = float(value(trial)[-1])
             low, high = (low, length) if at <= 0.0 else (length, high)
             following = _secant(previous, at_previous, length, at)
             if not low < following < high:

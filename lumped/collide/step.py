@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.collide.bodies import TINY, Bodies, PointLaw, Stage, State
+from lumped.collide.nodes import STAGES as STAGES
 from lumped.collide.nodes import radau
 
 Array = NDArray[np.float64]
-STAGES = 8
 NODES = radau(STAGES)
 ITERATIONS = 12
 # Newton's last correction, relative to the largest acceleration: the next one would be its square.
@@ -19,13 +19,14 @@ SMALL = 1e-9
 
 
 class Step(NamedTuple):
-    """One step from `start`, `length` s long; accelerations, rates and depths at the Radau points, shape (s,)."""
+    """One step from `start`, `length` s long; accelerations, rates, depths, forces at the Radau points, shape (s,)."""
 
     start: State
     length: float
     acceleration: Array
     rate: Array
     depth: Array
+    force: Array
     end: State
     iterations: int
 
@@ -50,17 +51,20 @@ def solved(law: PointLaw, stage: Stage, bodies: Bodies, start: State, length: fl
         if not np.isfinite(correction).all():
             return None
         if np.abs(correction).max() <= SMALL * np.abs(acceleration).max():
-            return _finished(seen, stage, start, length, acceleration, iteration)
+            return _finished(seen, stage, bodies, start, length, acceleration, iteration)
     return None
 
 
-def _finished(law: PointLaw, stage: Stage, start: State, length: float, acceleration: Array, iterations: int) -> Step:
+def _finished(
+    law: PointLaw, stage: Stage, bodies: Bodies, start: State, length: float, acceleration: Array, iterations: int
+) -> Step:
     rate = start.rate + length * (NODES.once @ acceleration)
     depth = start.depth + length * (start.rate * NODES.points + length * (NODES.twice @ acceleration))
     pressed = np.maximum(depth, TINY)
     lost = start.lost + length * float(NODES.weights @ (law.lost(pressed, rate, stage) * rate))
     end = State(float(depth[-1]), float(rate[-1]), lost, law.remembered(pressed))
-    return Step(start, length, acceleration, rate, depth, end, iterations)
+    force = bodies.mass * (bodies.gravity - acceleration)
+    return Step(start, length, acceleration, rate, depth, force, end, iterations)
 
 
 def roughness(step: Step) -> float:

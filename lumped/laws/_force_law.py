@@ -58,6 +58,10 @@ class ForceLaw(ABC):
     def tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
         """dF/d depth, N/m, and dF/d rate, N s/m."""
 
+    def touch(self, bodies: Bodies) -> State:
+        """At the surface, nothing lost yet."""
+        return State(0.0, bodies.velocity, 0.0)
+
     def within(self, start: State, length: float) -> ForceLaw:
         """Itself: nothing is remembered."""
         return self
@@ -109,8 +113,12 @@ class ForceLaw(ABC):
                 break
             coarse = fine
         numerics = {"integrator": "Radau collocation", "step_tolerance": step_tolerance, "law": self.parameters}
-        work, model = {"steps": steps}, _model(scene)
+        work, model = {"steps": steps}, self.resolved(scene)
         return assemble(self.name, scene, tolerance, fine, quantities, force_error, clock, numerics, work, model)
+
+    def resolved(self, scene: Scene) -> Model:
+        """The scene's model as this law has it: its stiffness stands for a parabola."""
+        return replace(scene.model, profile="parabola") if scene.has_geometry else scene.model
 
     def _until(self, scene: Scene) -> float:
         return scene.motion.end_time or END_IN_CONTACT_TIMES * self.elastic_contact_time(scene) * scene.motion.impacts
@@ -206,8 +214,3 @@ def _listed(track: Track, one: Contact) -> dict[str, float | None]:
         "peak_time": peak_time,
         "peak_depth": one.deepest,
     }
-
-
-def _model(scene: Scene) -> Model:
-    """A force law knows no other profile than the parabola which its stiffness stands for."""
-    return replace(scene.model, profile="parabola") if scene.has_geometry else scene.model

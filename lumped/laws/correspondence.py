@@ -7,40 +7,61 @@ rebound.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.collide import memory
+from lumped.collide.hereditary import HereditaryLoad
 from lumped.ending import End
 from lumped.hereditary.approach import approach, over_root
 from lumped.hereditary.problem import Hereditary
 from lumped.hereditary.solve import Settings, follow
-from lumped.laws._half_space import KEYS as KEYS
-from lumped.laws._half_space import check
+from lumped.keys import Choice, Key
+from lumped.laws._half_space import check_geometry
 from lumped.laws._hereditary import Curves, simulate
+from lumped.laws._hereditary_force import HereditaryForce
 from lumped.result import Result
 from lumped.scene import Scene
 
 Array = NDArray[np.float64]
+KEYS: Mapping[str, Key] = {
+    "exit": Choice(("force", "depth"), required=False),
+    "memory": Choice(memory.available(), required=False),
+}
 
 
 @dataclass(frozen=True)
 class Correspondence:
-    """The law as the paper uses it; everything it needs is in the scene."""
+    """The law; the rest is in the scene.
 
+    `exit`: contact ends when the force returns to zero ("force", as the paper clips it) or at depth zero ("depth",
+    the surface pulls). `memory`: what is left of it when the bodies meet again, a member of
+    :mod:`lumped.collide.memory`.
+    """
+
+    exit: str = "force"
+    memory: str = "recovering"
     name: ClassVar[str] = "correspondence"
 
     def simulate(self, scene: Scene, tolerance: float) -> Result:
-        """One impact to this tolerance. Raises NotReached."""
-        return simulate(self.name, scene, scene.profile, scene.contact_modulus, tolerance, solve)
+        """The impacts of a scene to this tolerance. Raises NotReached."""
+        if self.exit == "force" and scene.motion.impacts == 1:
+            return simulate(self.name, scene, scene.profile, scene.contact_modulus, tolerance, solve)
+        curve, time = scene.profile.load_curve, scene.elastic_contact_time
+        load = HereditaryLoad(curve, scene.contact_modulus)
+        law = HereditaryForce(exit=self.exit, rule=self.memory, load=load, scale=time, load_curve=curve)
+        return law.simulate(scene, tolerance)
 
 
 def of(scene: Scene) -> Correspondence:
-    """The law for a scene: every half-space has it. Raises BadInput for a scene without geometry."""
-    check(scene, Correspondence.name)
-    return Correspondence()
+    """The law for a scene, with the choices of `[law]`. Raises BadInput for a scene without geometry."""
+    check_geometry(scene, Correspondence.name)
+    law = scene.law
+    return Correspondence(**(law.values if law is not None and law.name == Correspondence.name else {}))
 
 
 def solve(problem: Hereditary, end_time: float, settings: Settings) -> Curves:
