@@ -178,9 +178,7 @@ class _Runs:
 
 def _error(change: Change | None, name: str) -> float:
     """Error of a quantity by one change; infinite where the variation failed."""
-    if change is None:
-        return np.inf
-    return change.history() if name == "history_l2" else change.of(name)
+    return np.inf if change is None else change.errors[name]
 
 
 def _trusted_order(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
-from fe_contact.curve import Curve
+from fe_contact.curve import DENSE, Curve, Reading
 from fe_contact.forms import Array
 
 PEAK_SHARE = 0.98  # the force's own error is the largest one while the force exceeds this share of its peak
 SMOOTHING = 0.04  # share of the contact over which a pointwise change counts as the error of its neighbours
-LATE = 0.75  # share of the contact after which path and speed count for those at separation
+LATE = int(np.searchsorted(DENSE, 0.75))  # from here on path and speed count for those at separation
 
 
 @dataclass(frozen=True)
@@ -25,30 +24,31 @@ class Change:
     second: Curve
     factor: float
 
-    def of(self, name: str) -> float:
-        """Error of a quantity, in its unit.
+    @cached_property
+    def errors(self) -> dict[str, float]:
+        """Error of every quantity, in its unit.
 
         What is read at one instant takes the largest change around it: a difference of two curves may cross
         zero just there, which makes neither of them right.
         """
+        first, depth = self.first, self._depth_change
+        speed = abs(first.leaving_speed) if first.separated else np.inf
+        around = {
+            "peak_force": float(self._force_change[self._near_peak].max()),
+            "peak_time": self._peak_time,
+            "peak_depth": float(depth[first.dense.depth > PEAK_SHARE * first.dense.depth.max()].max()),
+            "duration": float(depth[LATE:].max()) / speed,
+            "impulse": float(np.abs(first.dense.impulse - self.second.dense.impulse)[LATE:].max()),
+            "restitution": self.velocity / first.strike.velocity,
+        }
+        errors = {name: self._error(name, value) for name, value in around.items()}
+        return errors | {"history_l2": self.factor * self._history}
+
+    def _error(self, name: str, around: float) -> float:
         first, second = self.first.quantities[name], self.second.quantities[name]
         if first is None or second is None:
             return np.inf if first is not second else 0.0
-        around = {
-            "peak_force": self.factor * self._peak_force,
-            "peak_time": self.factor * self._peak_time,
-            "peak_depth": self.factor * self._depth_change[self._near_depth].max(),
-            "duration": self.factor * self._depth_change[self._late].max() / abs(self.first.leaving_speed),
-            "impulse": self.factor * self._impulse,
-            "restitution": self.factor * self.velocity / self.first.strike.velocity,
-        }
-        return max(self.factor * abs(first - second), float(around[name]))
-
-    def history(self) -> float:
-        """Norm of the force's change over the norm of the force."""
-        time = self.first.dense_time
-        change = np.trapezoid(self._force_change**2, time)
-        return self.factor * float(np.sqrt(change / np.trapezoid(self.first.dense_force**2, time)))
+        return self.factor * max(abs(first - second), around)
 
     def force(self, time: Array) -> Array:
         """Error of the force at times, N: the largest change in the neighbourhood of each."""
@@ -58,50 +58,37 @@ class Change:
         return np.asarray(self.factor * np.interp(time, self.first.dense_time, around))
 
     @cached_property
-    def _force_change(self) -> Array:
-        return np.abs(self.first.dense_force - self.second.force(self.first.dense_time))
-
-    @cached_property
-    def _depth_change(self) -> Array:
-        return np.abs(self.first.dense_depth - self.second.depth_at(self.first.dense_time))
-
-    @cached_property
-    def _near_depth(self) -> npt.NDArray[np.bool_]:
-        depth = self.first.dense_depth
-        return np.asarray(depth > PEAK_SHARE * depth.max())
-
-    @cached_property
     def velocity(self) -> float:
-        """Largest change of the velocity late in the contact, m/s."""
-        return self._late_change(Curve.velocity_at)
+        """Largest change of the velocity late in the contact, compared at equal shares of it, m/s."""
+        return float(np.abs(self.first.dense_velocity - self.second.dense_velocity)[LATE:].max())
 
-    @cached_property
-    def _impulse(self) -> float:
-        return self._late_change(Curve.impulse_at)
-
-    def _late_change(self, read: Callable[[Curve, Array], Array]) -> float:
-        """Largest change of what is read late in the contact, compared at equal shares of it."""
+    @property
+    def _history(self) -> float:
+        """Norm of the force's change over the norm of the force."""
         time = self.first.dense_time
-        shared = time * (self.second.duration / self.first.duration)
-        change = read(self.first, time) - read(self.second, shared)
-        return float(np.abs(change[self._late]).max())
+        change = np.trapezoid(self._force_change**2, time)
+        return float(np.sqrt(change / np.trapezoid(self.first.dense_force**2, time)))
 
     @cached_property
-    def _late(self) -> npt.NDArray[np.bool_]:
-        return np.asarray(self.first.dense_time >= LATE * self.first.duration)
+    def _second(self) -> Reading:
+        """The second curve at the first one's times."""
+        return self.second.read(self.first.dense_time)
 
     @cached_property
-    def _peak_force(self) -> float:
-        return float(self._force_change[self._near_peak].max())
+    def _force_change(self) -> Array:
+        return np.abs(self.first.dense_force - self._second.force)
 
-    @cached_property
+    @property
+    def _depth_change(self) -> Array:
+        return np.abs(self.first.dense.depth - self._second.depth)
+
+    @property
     def _peak_time(self) -> float:
         """How far a change of the force's slope moves its peak: slope over curvature, s."""
-        time, force, near = self.first.dense_time, self.first.dense_force, self._near_peak
+        time, force, near = self.first.dense_time, self.first.dense_force, np.flatnonzero(self._near_peak)
         top = min(max(int(force.argmax()), 1), len(force) - 2)
-        left = min(int(np.flatnonzero(near)[0]), top - 1)
-        right = max(int(np.flatnonzero(near)[-1]), top + 1)
-        slope = np.abs(np.gradient(self.second.force(time) - force, time)[left : right + 1]).max()
+        left, right = min(int(near[0]), top - 1), max(int(near[-1]), top + 1)
+        slope = np.abs(np.gradient(self._second.force - force, time)[left : right + 1]).max()
         falling = (force[top] - force[right]) / (time[right] - time[top])
         rising = (force[top] - force[left]) / (time[top] - time[left])
         curvature = 2 * (falling + rising) / (time[right] - time[left])

@@ -154,11 +154,12 @@ def history(certified: Certified, tolerance: float) -> History:
     """Rows dense enough for linear interpolation, with the force's error band."""
     curve = certified.curve
     rows = densified(curve.dense_time[::3], curve.force, ROWS_SHARE * tolerance)
+    read = curve.read(rows)
     return History(
         time=rows,
-        depth=curve.depth_at(rows),
-        velocity=curve.velocity_at(rows),
-        force=curve.force(rows),
+        depth=read.depth,
+        velocity=curve.velocity(rows, read.impulse),
+        force=read.force,
         contact_radius=curve.radius_at(rows),
         force_error=certified.force_error(rows),
     )

@@ -39,7 +39,7 @@ def force_bars(solved: Solved, own: float) -> dict[str, float]:
 def deepest(solved: Solved) -> float:
     """Time of the reference's maximum depth, s."""
     curve = solved.certified.curve
-    return float(curve.dense_time[np.argmax(curve.depth_at(curve.dense_time))])
+    return float(curve.dense_time[np.argmax(curve.dense.depth)])
 
 
 def radius_error(solved: Solved, law: Result) -> float | None:

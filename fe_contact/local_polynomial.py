@@ -1,0 +1,70 @@
+"""Polynomials through the nearest nodes of a curve, several fields at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.forms import Array
+
+STENCIL = 6  # nodes of a polynomial
+
+
+@dataclass(frozen=True, eq=False)
+class LocalPolynomials:
+    """Newton's form through every six successive ``nodes`` (n,), which increase, or through all if they are fewer.
+
+    ``differences`` (level, field, polynomial): divided differences on the first nodes of each polynomial.
+    """
+
+    nodes: Array
+    differences: Array
+
+    @classmethod
+    def through(cls, nodes: Array, values: Array) -> LocalPolynomials:
+        """Polynomials of the fields ``values`` (f, n)."""
+        size = min(STENCIL, len(nodes))
+        table = [values]
+        for level in range(1, size):
+            table.append((table[-1][:, 1:] - table[-1][:, :-1]) / (nodes[level:] - nodes[:-level]))
+        return cls(nodes, np.stack([level[:, : len(nodes) - size + 1] for level in table]))
+
+    def at(self, places: Array) -> tuple[Array, Array]:
+        """Value and derivative of every field, (f, p), each by the polynomial whose nodes lie around."""
+        size, fields, count = self.differences.shape
+        first = np.minimum(np.maximum(self.nodes.searchsorted(places) - size // 2, 0), count - 1)
+        value, slope = self.differences[-1].take(first, axis=1), np.zeros((fields, len(places)))
+        for level in range(size - 2, -1, -1):
+            step = places - self.nodes.take(first + level)
+            slope *= step
+            slope += value
+            value *= step
+            value += self.differences[level].take(first, axis=1)
+        return value, slope
+
+
+def peak(time: Array, values: Array) -> tuple[float, float]:
+    """Place and height of the maximum, by the quartic through the highest sample's neighbourhood."""
+    top = min(max(int(np.argmax(values)), 2), len(values) - 3)
+    around = slice(top - 2, top + 3)
+    span = time[top + 2] - time[top - 2]
+    x: Array = (time[around] - time[top]) / span
+    quartic = np.asarray(np.linalg.solve(np.vander(x), values[around]), dtype=np.float64)
+    fine = np.linspace(x[0], x[-1], 201)
+    best = float(fine[int(np.argmax(np.polyval(quartic, fine)))])
+    best = _stationary(quartic, best, best - fine[1] + fine[0], best + fine[1] - fine[0])
+    best = min(max(best, float(x[0])), float(x[-1]))
+    return float(time[top] + best * span), float(np.polyval(quartic, best))
+
+
+def _stationary(quartic: Array, place: float, low: float, high: float) -> float:
+    """Where the quartic's derivative vanishes between ``low`` and ``high``, by Newton's method; else near its end."""
+    slope = np.polyder(quartic)
+    bend = np.polyder(slope)
+    for _ in range(4):
+        curvature = float(np.polyval(bend, place))
+        if curvature >= 0.0:
+            return place
+        place = min(max(place - float(np.polyval(slope, place)) / curvature, low), high)
+    return place
