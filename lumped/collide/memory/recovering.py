@@ -21,7 +21,8 @@ def returned(load: HereditaryLoad, bodies: Bodies, last: State) -> tuple[float, 
     surface = FreeSurface.of(load, last)
 
     def apart(time: float) -> bool:
-        return bool(load.load(flown(last, bodies.gravity, time).depth) < surface.at(time)[0])
+        depth = flown(last, bodies.gravity, time).depth
+        return depth <= 0.0 or bool(load.load(depth) < surface.at(time)[0])
 
     time = bisected(apart, top, 2.0 * top)
     memory = tuple(surface.at(time)[1:].tolist())

@@ -1,0 +1,144 @@
+"""Contacts of the correspondence law that end at depth zero, or follow one another: against direct integration."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from lumped import BadInput, Model, Motion, Scene, laws, simulate
+from lumped.collide import memory
+from lumped.laws.correspondence import Correspondence
+from lumped.result import Result
+
+Build = Callable[..., Scene]
+Array = NDArray[np.float64]
+SOLID = {"relaxed": 1.0, "moduli": (0.8,), "times": (0.3,), "profile": "parabola"}
+
+
+def bouncing(impact: Build, impacts: int, gravity: float = 0.3, **solid: object) -> Scene:
+    """A sphere that comes back: gravity in m/s2."""
+    scene = impact(**{**SOLID, **solid}, gravity=gravity)
+    return replace(scene, motion=Motion(impacts=impacts, end_time=1e3))
+
+
+def followed(scene: Scene, rule: str, contacts: int) -> list[tuple[float, float, float, float]]:
+    """Start, s, velocity at touch, end and velocity at the end of every contact, by scipy's DOP853."""
+    modulus, curve = scene.contact_modulus, scene.profile.load_curve
+    (branch,), (tau,) = modulus.moduli, modulus.times
+
+    def load(depth: float) -> float:
+        return float(curve.force(max(depth, 0.0)))
+
+    def force(state: Array) -> float:
+        return modulus.glassy * load(state[0]) - branch * float(state[2])
+
+    def pressed(_: float, state: Array) -> list[float]:
+        return [state[1], scene.gravity - force(state) / scene.mass, (load(state[0]) - state[2]) / tau]
+
+    def apart(_: float, state: Array) -> list[float]:
+        # a free surface stands where the branches just balance: E_glassy y = E_1 w
+        standing = {"recovering": branch * state[2] / modulus.glassy, "continuous": load(state[0]), "reset": 0.0}[rule]
+        return [state[1], scene.gravity, (standing - state[2]) / tau]
+
+    def parts(_: float, state: Array) -> float:
+        return force(state) if state[1] < 0.0 else 1.0
+
+    def meets(_: float, state: Array) -> float:
+        level = {"recovering": force(state), "continuous": force(state), "reset": float(state[0])}[rule]
+        return level if state[1] > 0.0 else -1.0
+
+    for event in (parts, meets):
+        event.terminal = True  # type: ignore[attr-defined] - scipy reads it off the function
+    parts.direction, meets.direction = -1, 1  # type: ignore[attr-defined]
+    time, state, found = 0.0, np.array([0.0, scene.velocity, 0.0]), []
+    options = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-16}
+    for _ in range(contacts):
+        end = solve_ivp(pressed, (time, 1e3), state, events=parts, max_step=1e-3, **options)
+        found.append((time, state[1], float(end.t[-1]), float(end.y[1, -1])))
+        flight = solve_ivp(apart, (end.t[-1], 1e3), end.y[:, -1], events=meets, max_step=1e-2, **options)
+        time, state = float(flight.t[-1]), flight.y[:, -1]
+        state[2] *= 0.0 if rule == "reset" else 1.0
+    return found
+
+
+@pytest.mark.parametrize("rule", memory.available())
+def test_every_memory_against_direct_integration(rule: str, impact: Build) -> None:
+    scene = bouncing(impact, 3)
+    result = simulate(Correspondence(memory=rule), scene, 1e-7)
+    assert result.converged
+    assert len(result.contacts) == 3
+    for one, (start, velocity, end, leaving) in zip(result.contacts, followed(scene, rule, 3), strict=True):
+        assert one["start"] == pytest.approx(start, rel=1e-7)
+        assert one["velocity"] == pytest.approx(velocity, rel=1e-7)
+        assert one["duration"] == pytest.approx(end - start, rel=1e-6)
+        assert one["restitution"] == pytest.approx(-leaving / velocity, rel=1e-6)
+
+
+def test_memories_differ_only_while_something_is_remembered(impact: Build) -> None:
+    def second(rule: str, gravity: float) -> float:
+        scene = bouncing(impact, 2, gravity)
+        return float(simulate(Correspondence(memory=rule), scene, 1e-7).contacts[1]["restitution"] or 0.0)
+
+    flights = {gravity: [second(rule, gravity) for rule in memory.available()] for gravity in (0.05, 0.6)}
+    spread = {gravity: np.ptp(values) for gravity, values in flights.items()}
+    assert spread[0.05] < 1e-6  # a flight of some hundred relaxation times
+    assert spread[0.6] > 1e-5
+
+
+def test_tension_to_depth_zero_as_published(impact: Build, unit_time: float) -> None:
+    # the audit of the paper, section 4: contact not clipped, in units of the elastic contact time
+    for moduli, tau, e, duration in (((1.0,), 0.2, 0.539, 0.974), ((5.0,), 0.1, 0.017, None)):
+        scene = impact(1.0, moduli, (tau,), profile="parabola")
+        result = simulate(Correspondence(exit="depth"), scene, 1e-6)
+        assert result.quantities["restitution"].value == pytest.approx(e, abs=6e-4)
+        if duration is not None:
+            assert result.quantities["duration"].value == pytest.approx(duration * unit_time, rel=1e-3)
+        assert result.history.force.min() < 0.0
+        assert result.history.depth[-1] == pytest.approx(0.0, abs=1e-9 * result.history.depth.max())
+
+
+def quantities(result: Result) -> dict[str, float]:
+    return {name: quantity.value for name, quantity in result.quantities.items() if quantity.value is not None}
+
+
+@pytest.mark.parametrize(
+    ("moduli", "times", "viscosity"), [((0.8,), (0.3,), 0.0), ((2.0, 0.5), (0.02, 3.0), 0.0), ((0.5,), (1.0,), 0.05)]
+)
+def test_two_integrators_agree(
+    moduli: tuple[float, ...], times: tuple[float, ...], viscosity: float, impact: Build
+) -> None:
+    """The single impact of the law by its own integrator, and the first of two by collocation."""
+    scene = impact(1.0, moduli, times, viscosity)
+    single = quantities(simulate(Correspondence(), scene, 1e-8))
+    first = quantities(simulate(Correspondence(), replace(scene, motion=Motion(impacts=2)), 1e-8))
+    for name in ("peak_force", "peak_time", "peak_depth", "duration", "restitution", "impulse"):
+        assert first[name] == pytest.approx(single[name], rel=1e-6)
+
+
+def test_ball_comes_to_rest_or_bounces_as_high_as_its_speeds_say(impact: Build) -> None:
+    scene = bouncing(impact, 4)
+    result = simulate(Correspondence(), scene, 1e-7)
+    leaving = [-(one["restitution"] or 0.0) * (one["velocity"] or 0.0) for one in result.contacts]
+    for before, after, speed in zip(result.contacts, result.contacts[1:], leaving, strict=False):
+        flight = (after["start"] or 0.0) - (before["start"] or 0.0) - (before["duration"] or 0.0)
+        # up from the dent, and down to the surface, which stands higher by then
+        assert 0.9 < flight / (-2.0 * speed / scene.gravity) < 1.0
+        assert 0.0 < (after["velocity"] or 0.0) < (before["velocity"] or 0.0)
+    assert len({math.floor(1e6 * (one["restitution"] or 0.0)) for one in result.contacts}) == 4
+
+
+def test_choices_come_from_the_scene_and_only_they(impact: Build) -> None:
+    table = impact(**SOLID).to_dict() | {"law": {"name": "correspondence", "exit": "depth", "memory": "reset"}}
+    assert laws.correspondence.of(Scene.from_dict(table)) == Correspondence("depth", "reset")
+    with pytest.raises(BadInput, match="accepted: one of continuous, recovering, reset"):
+        Scene.from_dict(table | {"law": {"name": "correspondence", "memory": "gone"}})
+    with pytest.raises(BadInput, match=r"motion\.impacts"):
+        laws.ting.of(replace(impact(**SOLID), motion=Motion(impacts=2)))
+    with pytest.raises(BadInput, match=r"striker\.shape"):
+        laws.correspondence.of(Scene(None, 1.0, 1.0, model=Model()))
