@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,9 +32,9 @@ class Creep:
             value = value - compliance * np.expm1(-t / tau)
         return value
 
-    def operational(self, s: ArrayLike) -> NDArray[np.float64]:
-        """s times the Laplace transform of J, for s > 0 in 1/s, 1/Pa."""
-        frequency = np.asarray(s, dtype=float)
+    def operational(self, s: ArrayLike) -> NDArray[Any]:
+        """s times the Laplace transform of J, 1/Pa, for `s` as in `Relaxation.operational`."""
+        frequency = np.asarray(s)
         value = self.instantaneous + self.fluidity / frequency
         for compliance, tau in zip(self.compliances, self.times, strict=True):
             value = value + compliance / (1.0 + frequency * tau)

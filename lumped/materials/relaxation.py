@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
+from lumped.materials.fidelity import Fidelity
 
 if TYPE_CHECKING:
     from lumped.materials.creep import Creep
@@ -18,14 +19,16 @@ if TYPE_CHECKING:
 class Relaxation:
     """E(t) = equilibrium + sum_k moduli_k exp(-t/times_k) + viscosity * dirac(t).
 
-    Moduli in Pa, times in s, viscosity in Pa s. Raises BadInput for a negative or non-finite value, a
-    time that is not positive, lists of different length, or a modulus that is nothing at all.
+    Moduli in Pa, times in s, viscosity in Pa s. `fidelity` is how far the series stands from the modulus which
+    it was fitted to, None where it is the modulus itself. Raises BadInput for a negative or non-finite value,
+    a time that is not positive, lists of different length, or a modulus that is nothing at all.
     """
 
     equilibrium: float
     moduli: tuple[float, ...] = ()
     times: tuple[float, ...] = ()
     viscosity: float = 0.0
+    fidelity: Fidelity | None = None
 
     def __post_init__(self) -> None:
         numbers = np.array([self.equilibrium, self.viscosity, *self.moduli, *self.times], dtype=float)
@@ -64,9 +67,13 @@ class Relaxation:
             value = value + modulus * np.exp(-t / tau)
         return value
 
-    def operational(self, s: ArrayLike) -> NDArray[np.float64]:
-        """s times the Laplace transform of E, for s > 0 in 1/s, Pa: Q(s)/P(s) of "(13)" to "(16)"."""
-        frequency = np.asarray(s, dtype=float)
+    def operational(self, s: ArrayLike) -> NDArray[Any]:
+        """s times the Laplace transform of E, in Pa: Q(s)/P(s) of "(13)" to "(16)".
+
+        `s`, 1/s, is positive, or complex off the negative real axis; at s = i omega this is the complex modulus,
+        storage + i loss.
+        """
+        frequency = np.asarray(s)
         value = self.equilibrium + self.viscosity * frequency
         for modulus, tau in zip(self.moduli, self.times, strict=True):
             value = value + modulus * (frequency * tau) / (1.0 + frequency * tau)
@@ -75,7 +82,7 @@ class Relaxation:
     def scaled(self, factor: float) -> Relaxation:
         """The same times, every modulus and the viscosity multiplied by `factor` > 0."""
         moduli = tuple(factor * modulus for modulus in self.moduli)
-        return Relaxation(factor * self.equilibrium, moduli, self.times, factor * self.viscosity)
+        return Relaxation(factor * self.equilibrium, moduli, self.times, factor * self.viscosity, self.fidelity)
 
     def creep(self) -> Creep:
         """The creep compliance J(t) of the same material: E(s) J(s) = 1/s^2."""
