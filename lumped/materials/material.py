@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -69,8 +70,18 @@ class Material:
             table |= {"E": list(young.moduli), "tau": list(young.times)}
         if young.viscosity:
             table["eta"] = young.viscosity
+        table |= _fit_keys(young)
         known = {name: getattr(self, name) for name in KEYS}
         return table | {name: value for name, value in known.items() if value is not None}
+
+
+def _fit_keys(young: Relaxation) -> dict[str, Any]:
+    """What a fitted series says of its fit, in the keys of a Prony series."""
+    fidelity = young.fidelity
+    if fidelity is None:
+        return {}
+    known = {"fit_error_outside": fidelity.outside} if math.isfinite(fidelity.outside) else {}
+    return {"fit_window": list(fidelity.window), "fit_error": fidelity.inside} | known
 
 
 def bulk_fault(constant: str, bulk_modulus: float | None, relaxed: float) -> str:

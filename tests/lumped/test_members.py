@@ -21,6 +21,7 @@ SAMPLES = {
     "sls": [{"E1": 1e6, "E2": 1e6, "C1": 1e3}, {"E0": 1e6, "R1": 0.5, "R2": 0.01}],
     "prony": [{"E_inf": 1e6, "E": (1e6,), "tau": (1e-3,)}],
     "operators": [{"p": (1.0, 1e-3), "q": (1e6, 2e3)}],
+    "fractional_zener": [{"E_inf": 1e6, "E_glass": 1e7, "tau": 1e-2, "alpha": 0.5}],
 }
 SHAPES = {"sphere": {"radius": 0.01}}
 TARGETS: dict[str, dict[str, float]] = {"half_space": {}}

@@ -1,25 +1,52 @@
-"""A Prony series: a spring beside Maxwell elements, and a dashpot beside them all if `eta` is given."""
+"""A Prony series: a spring beside Maxwell elements, and a dashpot beside them all if `eta` is given.
 
+A series fitted to another modulus may say how well: `fit_window`, s, and the relative deviations `fit_error` in it
+and `fit_error_outside`.
+"""
+
+import math
 from dataclasses import replace
 
-from lumped.keys import Numbers
+from lumped.keys import Number, Numbers
+from lumped.materials.fidelity import Fidelity
 from lumped.materials.networks._ranges import MODULUS_OR_ZERO, TIME, VISCOSITY
 from lumped.materials.relaxation import Relaxation
 
+DEVIATION = Number(0.0, 1e6, required=False)
 KEYS = (
     {
         "E_inf": MODULUS_OR_ZERO,
         "E": Numbers(MODULUS_OR_ZERO, required=False),
         "tau": Numbers(TIME, required=False),
         "eta": replace(VISCOSITY, required=False),
+        "fit_window": Numbers(TIME, most=2, required=False),
+        "fit_error": DEVIATION,
+        "fit_error_outside": DEVIATION,
     },
 )
 
 
-def of(E_inf: float, E: tuple[float, ...] = (), tau: tuple[float, ...] = (), eta: float = 0.0) -> Relaxation:
+def of(
+    E_inf: float,
+    E: tuple[float, ...] = (),
+    tau: tuple[float, ...] = (),
+    eta: float = 0.0,
+    fit_window: tuple[float, ...] = (),
+    fit_error: float | None = None,
+    fit_error_outside: float = math.inf,
+) -> Relaxation:
     """E(t) = E_inf + sum_k E_k exp(-t/tau_k) + eta dirac(t)."""
     if len(E) != len(tau):
         raise ValueError(f"E has {len(E)} values and tau has {len(tau)}; accepted: as many of one as of the other")
     if E_inf + sum(E) + eta <= 0.0:
         raise ValueError("E_inf, every E and eta are zero; accepted: at least one above zero")
-    return Relaxation(E_inf, E, tau, eta)
+    return Relaxation(E_inf, E, tau, eta, _fidelity(fit_window, fit_error, fit_error_outside))
+
+
+def _fidelity(window: tuple[float, ...], inside: float | None, outside: float) -> Fidelity | None:
+    """What the series says of its fit, None when nothing."""
+    if not window and inside is None and outside == math.inf:
+        return None
+    if inside is None or len(window) != 2 or window[0] > window[1]:
+        raise ValueError("fit_window and fit_error belong together; accepted: fit_window = [shortest, longest] in s")
+    return Fidelity((window[0], window[1]), inside, outside)

@@ -1,0 +1,188 @@
+"""A Prony series from a modulus known otherwise: as E(s), as samples of E(t), as storage and loss moduli.
+
+The paper's general route (its Fig. 4): whatever the material is known by becomes a series, and the series every law.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.errors import BadInput, Fault, NotReached
+from lumped.materials.dynamic_moduli import DynamicModuli
+from lumped.materials.fidelity import Fidelity
+from lumped.materials.laplace import Transform, relaxation_modulus
+from lumped.materials.relaxation import Relaxation
+from lumped.materials.responses import Decay, Oscillation, stacked
+from lumped.materials.spectrum import Spectrum, fitted
+
+Array = NDArray[np.float64]
+
+# Candidate times a decade for data: finer than data can tell apart.
+DENSE = 8.0
+# Candidates reach so many decades beyond the window of the data: what relaxes outside is seen as its flank.
+BEYOND_DATA = 0.5
+BEYOND_WINDOW = 1.5
+# A series of log-spaced times errs as exp(-pi^2/h), h their distance in ln(time); Gauss-Newton needs fewer.
+FEWEST, GROWTH, ROUNDS = 0.4, 1.25, 10
+FITTED_A_DECADE, CHECKED_A_DECADE = 12, 100
+# The largest deviation between the checked times exceeds that at them by less.
+RIPPLE = 1.05
+# A root mean square of this share of the tolerance is as good as none.
+ENOUGH = 0.1
+# The slowest term relaxes in the window by this share of the tolerance.
+LAST = 0.1
+# Inversion errs by some 1e-11 of the modulus.
+LEAST_TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True)
+class PronyFit:
+    """A series and how far it is from what it was fitted to, relative to the modulus at each of `points`.
+
+    Of dynamic moduli the deviation is that of the complex modulus relative to its magnitude.
+    """
+
+    relaxation: Relaxation
+    max_error: float
+    rms_error: float
+    points: int
+
+
+def of_operational(
+    operational: Transform,
+    window: tuple[float, float],
+    tolerance: float = 1e-6,
+    *,
+    viscosity: float = 0.0,
+    relaxed: float | None = None,
+    glassy: float | None = None,
+) -> PronyFit:
+    """The series with few terms whose E(t) has this relative deviation at most at times in `window`, s.
+
+    `operational` maps complex s, 1/s, to s L{E(t)}, Pa, shape kept, with the parallel `viscosity`, Pa s, in it.
+    `relaxed` and `glassy`, Pa, are E at infinite and zero time without the viscosity: given, they are met too, and the
+    deviation outside of the window is bounded. Raises BadInput, and NotReached when no series is as close.
+    """
+    _check(window, tolerance, relaxed, glassy)
+    times, modulus, _ = _sampled(operational, window, FITTED_A_DECADE, viscosity, glassy)
+    checked, truth, unsure = _sampled(operational, window, CHECKED_A_DECADE, viscosity, glassy)
+    density, best = FEWEST * math.log(10.0) * math.log(2.0 / tolerance) / math.pi**2, math.inf
+    for _ in range(ROUNDS):
+        candidates = _candidates(*window, BEYOND_WINDOW, density)
+        spectrum = fitted(Decay(times), modulus - (relaxed or 0.0), modulus, candidates, ENOUGH * tolerance)
+        series = _relaxed_to(relaxed, _relaxation(spectrum, viscosity), window[1] / (LAST * tolerance))
+        deviation = RIPPLE * np.abs(series(checked) / truth - 1.0) + unsure / truth
+        best = min(best, float(deviation.max()))
+        if best <= tolerance:
+            return _told(series, deviation, window, _outside(series, checked, truth, relaxed, glassy))
+        density *= GROWTH
+    raise NotReached(
+        f"no Prony series of E(s) to {tolerance:g} over {window[0]:g} to {window[1]:g} s: {best:.2g} reached"
+    )
+
+
+def of_samples(times: ArrayLike, moduli: ArrayLike) -> PronyFit:
+    """The series closest to samples E(t), Pa, at times t >= 0, s, relatively; both of shape (n,), n >= 2.
+
+    Times may include zero and infinity. Raises BadInput for what is not positive, not finite, or of another shape.
+    """
+    t, values = np.asarray(times, dtype=float), np.asarray(moduli, dtype=float)
+    inner = t[(t > 0.0) & np.isfinite(t)]
+    if t.ndim != 1 or t.shape != values.shape or inner.size < 2 or np.isnan(t).any() or t.min() < 0.0:
+        raise BadInput(
+            Fault("samples", "times", "accepted: one-dimensional, as many as moduli, two or more above zero")
+        )
+    if not np.all(np.isfinite(values)) or np.any(values <= 0.0):
+        raise BadInput(Fault("samples", "moduli", "accepted: finite values above zero, in Pa"))
+    spectrum = fitted(Decay(t), values, values, _candidates(inner.min(), inner.max(), BEYOND_DATA, DENSE))
+    return _told(_relaxation(spectrum), np.abs(spectrum.residual), (inner.min(), inner.max()))
+
+
+def of_dynamic(data: DynamicModuli, *, viscous: bool = False) -> PronyFit:
+    """The series closest to storage and loss moduli, each residual relative to the magnitude of the modulus.
+
+    `viscous` allows for a dashpot in parallel: an infinite modulus against a sudden strain, which data that end at some
+    frequency cannot tell from a fast term. Times lie around the reciprocals of the measured frequencies.
+    """
+    magnitude = np.tile(np.abs(data.modulus), 2)
+    shortest, longest = 1.0 / float(data.omega.max()), 1.0 / float(data.omega.min())
+    response = Oscillation(data.omega, viscous)
+    spectrum = fitted(response, stacked(data.modulus), magnitude, _candidates(shortest, longest, BEYOND_DATA, DENSE))
+    series = _relaxation(spectrum, *spectrum.steady[1:].tolist())
+    return _told(series, np.hypot(*np.split(spectrum.residual, 2)), (shortest, longest))
+
+
+def _check(window: tuple[float, float], tolerance: float, relaxed: float | None, glassy: float | None) -> None:
+    """Every fault of the arguments at once."""
+    faults = []
+    if len(window) != 2 or not 0.0 < window[0] < window[1] < math.inf:
+        faults.append(Fault("prony fit", "window", "accepted: (shortest, longest), in s, finite and above zero"))
+    if not LEAST_TOLERANCE <= tolerance < 1.0:
+        faults.append(Fault("prony fit", "tolerance", f"accepted: from {LEAST_TOLERANCE:g} to below 1"))
+    for name, limit in (("relaxed", relaxed), ("glassy", glassy)):
+        if limit is not None and not 0.0 < limit < math.inf:
+            faults.append(
+                Fault("prony fit", name, "accepted: a finite modulus above zero, in Pa; leave it out otherwise")
+            )
+    if faults:
+        raise BadInput(faults)
+
+
+def _sampled(
+    operational: Transform,
+    window: tuple[float, float],
+    a_decade: int,
+    viscosity: float,
+    glassy: float | None,
+) -> tuple[Array, Array, Array]:
+    """Times, E(t) and its error, the known limit at time zero included. Raises BadInput."""
+    times = np.geomspace(*window, max(8, math.ceil(a_decade * math.log10(window[1] / window[0]))))
+    found = relaxation_modulus(operational, times, viscosity)
+    columns = np.array([times, found.value, found.error])
+    if glassy is not None:
+        columns = np.column_stack([[0.0, glassy, 0.0], columns])
+    if not np.all(columns[1] > columns[2]):
+        message = "E(t) is not above the error of its inversion; accepted: s L{E(t)} of a passive material"
+        raise BadInput(Fault("prony fit", "operational", message))
+    return columns[0], columns[1], columns[2]
+
+
+def _candidates(shortest: float, longest: float, beyond: float, a_decade: float) -> Array:
+    """Relaxation times, log-spaced, so many a decade."""
+    low, high = math.log10(shortest) - beyond, math.log10(longest) + beyond
+    return np.logspace(low, high, math.ceil(a_decade * (high - low)) + 1)
+
+
+def _relaxation(spectrum: Spectrum, viscosity: float = 0.0) -> Relaxation:
+    moduli, taus = tuple(spectrum.weights.tolist()), tuple(spectrum.taus.tolist())
+    return Relaxation(float(spectrum.steady[0]), moduli, taus, viscosity)
+
+
+def _relaxed_to(relaxed: float | None, series: Relaxation, last: float) -> Relaxation:
+    """What is constant in the window and above a known equilibrium relaxes with the time `last`, s, beyond it."""
+    if relaxed is None:
+        return series
+    slow = (series.equilibrium,) if series.equilibrium > 0.0 else ()
+    return replace(series, equilibrium=relaxed, moduli=series.moduli + slow, times=series.times + (last,) * len(slow))
+
+
+def _told(series: Relaxation, deviation: Array, window: tuple[float, float], outside: float = math.inf) -> PronyFit:
+    """The series with what is known of its deviations, (n,)."""
+    worst, rms = float(deviation.max()), float(np.sqrt(np.mean(deviation**2)))
+    told = replace(series, fidelity=Fidelity((float(window[0]), float(window[1])), worst, outside))
+    return PronyFit(told, worst, rms, deviation.size)
+
+
+def _outside(series: Relaxation, times: Array, truth: Array, relaxed: float | None, glassy: float | None) -> float:
+    """Bound outside of the window: series and modulus both fall, so beyond each end both lie between known values."""
+    if relaxed is None or glassy is None:
+        return math.inf
+    inner = times > 0.0
+    known, found = truth[inner], series(times[inner])
+    early = max(glassy - found[0], series.glassy - known[0]) / known[0]
+    late = max(known[-1] - relaxed, found[-1] - relaxed) / relaxed
+    return float(max(early, late))
