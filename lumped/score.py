@@ -17,6 +17,9 @@ POINTS = 201
 # A force counts as gone when it is this share of its peak; the last row of a finished contact may hold
 # rounding.
 GONE, NEARLY_GONE = 1e-9, 1e-6
+RATIOS = ("peak_time", "peak_depth", "duration", "impulse", "work")
+DIFFERENCES = ("restitution", "loss", "peak_shift")
+NO_MOTION: dict[str, float | None] = dict.fromkeys(("peak_depth", "restitution", "work", "loss"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,8 +39,10 @@ class Score:
     """How far a candidate is from a reference.
 
     `normalized_error`: "(20)" as a norm over a norm, on 201 points of the common time, the shorter curve
-    continued by zero. The other fields: candidate/reference - 1; restitution: candidate - reference. None
-    where undefined.
+    continued by zero; `shape`: the same after both are scaled to unit peak and unit duration. Candidate/reference
+    - 1: peak_force, peak_time, peak_depth, duration, impulse, and `work`, int F d depth up to the greatest depth.
+    Candidate - reference: restitution; `loss`, the share of that work which the rebound does not give back;
+    `peak_shift`, the peak's time over the duration. None where undefined.
     """
 
     normalized_error: float
@@ -47,6 +52,10 @@ class Score:
     duration: float | None
     restitution: float | None
     impulse: float | None
+    work: float | None
+    loss: float | None
+    shape: float | None
+    peak_shift: float | None
 
 
 def score(reference: History | Curve, candidate: History | Curve) -> Score:
@@ -54,16 +63,12 @@ def score(reference: History | Curve, candidate: History | Curve) -> Score:
     ours, theirs = _features(candidate), _features(reference)
     if not theirs["peak_force"]:
         raise BadInput(Fault("score", "reference", "has no force above zero; accepted: a contact"))
-    ratios = {name: _ratio(ours[name], theirs[name]) for name in theirs if name != "restitution"}
-    e, e_reference = ours["restitution"], theirs["restitution"]
     return Score(
         normalized_error=normalized_error(reference, candidate),
-        peak_force=ratios["peak_force"] or 0.0,
-        peak_time=ratios["peak_time"],
-        peak_depth=ratios["peak_depth"],
-        duration=ratios["duration"],
-        restitution=None if e is None or e_reference is None else e - e_reference,
-        impulse=ratios["impulse"],
+        peak_force=_ratio(ours["peak_force"], theirs["peak_force"]) or 0.0,
+        **{name: _ratio(ours[name], theirs[name]) for name in RATIOS},
+        **{name: _difference(ours[name], theirs[name]) for name in DIFFERENCES},
+        shape=_shape_error(reference, candidate, theirs, ours),
     )
 
 
@@ -90,27 +95,52 @@ def read_curve(path: Path) -> Curve:
 def _features(curve: History | Curve) -> dict[str, float | None]:
     """What two curves are compared by."""
     time, force = curve.time, curve.force
-    impulse = float(np.trapezoid(force, time))
-    if isinstance(curve, Curve):
-        top = int(np.argmax(force))
-        found = {"peak_time": float(time[top]), "peak_force": float(force[top])}
-        return {
-            **found,
-            "duration": _duration(time, force),
-            "impulse": impulse,
-            "peak_depth": None,
-            "restitution": None,
-        }
-    peak_time, peak_force = peak(time, force)
+    peak_time, peak_force = peak(time, force) if isinstance(curve, History) else _top(time, force)
     duration = _duration(time, force)
-    return {
+    found = {
         "peak_time": peak_time,
         "peak_force": peak_force,
-        "peak_depth": peak(time, curve.depth)[1],
         "duration": duration,
-        "impulse": impulse,
-        "restitution": None if duration is None else float(-curve.velocity[-1] / curve.velocity[0]),
+        "impulse": float(np.trapezoid(force, time)),
+        "peak_shift": (peak_time - float(time[0])) / duration if duration else None,
     }
+    return found | (_motion_of(curve, duration) if isinstance(curve, History) else NO_MOTION)
+
+
+def _motion_of(history: History, duration: float | None) -> dict[str, float | None]:
+    """What needs the depth: None where the bodies do not part."""
+    work = np.concatenate([[0.0], np.cumsum(0.5 * (history.force[1:] + history.force[:-1]) * np.diff(history.depth))])
+    given, ended = float(work[int(np.argmax(history.depth))]), duration is not None
+    return {
+        "peak_depth": peak(history.time, history.depth)[1],
+        "restitution": float(-history.velocity[-1] / history.velocity[0]) if ended else None,
+        "work": given,
+        "loss": float(work[-1]) / given if ended and given > 0.0 else None,
+    }
+
+
+def _top(time: Array, force: Array) -> tuple[float, float]:
+    """The highest row: between the rows of a measurement nothing is known."""
+    top = int(np.argmax(force))
+    return float(time[top]), float(force[top])
+
+
+def _shape_error(
+    reference: History | Curve,
+    candidate: History | Curve,
+    theirs: dict[str, float | None],
+    ours: dict[str, float | None],
+) -> float | None:
+    """The error "(20)" of the two curves over their durations and peaks; None where one does not end."""
+    if not theirs["duration"] or not ours["duration"] or not ours["peak_force"]:
+        return None
+    return normalized_error(_unit(reference, theirs), _unit(candidate, ours))
+
+
+def _unit(curve: History | Curve, features: dict[str, float | None]) -> Curve:
+    """The curve from touch on, time over duration, force over peak."""
+    time = (curve.time - curve.time[0]) / (features["duration"] or 1.0)
+    return Curve(time, curve.force / (features["peak_force"] or 1.0))
 
 
 def _duration(time: Array, force: Array) -> float | None:
@@ -124,3 +154,7 @@ def _duration(time: Array, force: Array) -> float | None:
 
 def _ratio(ours: float | None, theirs: float | None) -> float | None:
     return ours / theirs - 1.0 if ours is not None and theirs else None
+
+
+def _difference(ours: float | None, theirs: float | None) -> float | None:
+    return None if ours is None or theirs is None else ours - theirs

@@ -19,6 +19,7 @@ from lumped.score import score
 DEFAULT_LAWS = ("hertz", "correspondence", "ting", "mdr")
 LAW_TOLERANCE = 1e-6  # of a law's own integration: far below any reference's bar
 QUANTITIES = (*RULED_RELATIVE, "peak_time", "restitution")
+DISTANCES = ("work", "loss", "shape", "peak_shift")  # of the two curves, without a bar
 
 
 @dataclass(frozen=True)
@@ -26,9 +27,10 @@ class Judgement:
     """One candidate against the reference.
 
     ``score_percent`` by (20)-(21). ``errors`` are candidate minus reference over reference, restitution
-    absolute, None where undefined: peak_force, peak_depth, duration, impulse, peak_time, restitution; and,
-    never negative, contact_radius_rebound (relative to the largest radius), pressure_rebound (misplaced force over
-    force), held_until_max_depth (force, relative to the peak), history (force, norm over norm). ``bars``: how much of
+    absolute, None where undefined: peak_force, peak_depth, duration, impulse, peak_time, restitution; without a
+    bar, as :class:`lumped.Score` has them, work, loss, shape, peak_shift; and, never negative,
+    contact_radius_rebound (relative to the largest radius), pressure_rebound (misplaced force over force),
+    held_until_max_depth (force, relative to the peak), history (force, norm over norm). ``bars``: how much of
     an error the error bars of reference and candidate together leave open.
     """
 
@@ -73,15 +75,16 @@ def compare(solved: Solved, reference: Result, names: tuple[str, ...], measured:
 def _law(solved: Solved, reference: Result, law: Result) -> Judgement:
     errors = {name: _error(reference, law, name) for name in QUANTITIES}
     errors |= {"contact_radius_rebound": radius_error(solved, law), "pressure_rebound": pressure_error(solved, law)}
-    errors |= force_errors(solved, law.history)
+    scored = score(reference.history, law.history)
+    errors |= force_errors(solved, law.history) | {name: getattr(scored, name) for name in DISTANCES}
     own = float(law.history.force_error.max()) / (reference.quantities["peak_force"].value or np.inf)
     bars = {name: _bar(reference, name) + _bar(law, name) for name in QUANTITIES} | force_bars(solved, own)
-    return Judgement(law.method, 100 * score(reference.history, law.history).normalized_error, errors, bars)
+    return Judgement(law.method, 100 * scored.normalized_error, errors, bars)
 
 
 def _curve(solved: Solved, reference: Result, measured: Measured) -> Judgement:
     scored = score(reference.history, measured)
-    errors: dict[str, float | None] = {name: getattr(scored, name) for name in QUANTITIES}
+    errors: dict[str, float | None] = {name: getattr(scored, name) for name in (*QUANTITIES, *DISTANCES)}
     errors |= {"contact_radius_rebound": None, "pressure_rebound": None} | force_errors(solved, measured)
     bars = {name: _bar(reference, name) for name in QUANTITIES} | force_bars(solved, 0.0)
     return Judgement("measured", 100 * scored.normalized_error, errors, bars)

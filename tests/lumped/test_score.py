@@ -33,6 +33,41 @@ def test_features_are_relative_and_restitution_is_not() -> None:
     assert found.restitution == pytest.approx(-0.3)
 
 
+def sunk(force_share: float, time_share: float = 1.0) -> History:
+    """A half sine of depth; the force k depth on the way in and `force_share` of it on the way out."""
+    t = np.linspace(0.0, 1.0, 4001)
+    depth = np.sin(np.pi * t) + 0.0
+    depth[-1] = 0.0
+    force = 3.0 * depth * np.where(t <= 0.5, 1.0, force_share)
+    return History(time_share * t, depth, np.cos(np.pi * t), force, depth, 0.0 * t)
+
+
+def test_work_and_loss_are_those_of_the_loop() -> None:
+    """In: 3/2 J on the way; out: the rebound's share of it."""
+    found = score(sunk(1.0), sunk(0.4))
+    assert found.work == pytest.approx(0.0, abs=1e-12)
+    assert found.loss == pytest.approx(0.6, abs=1e-6)
+    assert score(sunk(0.4), sunk(0.4)).loss == 0.0
+
+
+def test_shape_knows_neither_height_nor_duration() -> None:
+    found = score(half_sine(2.0, 1.0), half_sine(3.0, 1.7))
+    assert found.normalized_error > 0.5
+    assert found.shape == pytest.approx(0.0, abs=1e-6)
+    assert found.peak_shift == pytest.approx(0.0, abs=1e-6)
+
+
+def test_a_skewed_pulse_has_another_shape_and_a_shifted_peak() -> None:
+    """(t/T)^2 in the sine: its peak at sqrt(1/2), and the error of the two pulses by quadrature."""
+    t = np.linspace(0.0, 1.0, 20001)
+    force = np.sin(np.pi * t**2)
+    force[-1] = 0.0
+    found = score(half_sine(1.0, 1.0), History(t, t, 1.0 - 2.0 * t, force, t, 0.0 * t))
+    assert found.peak_shift == pytest.approx(np.sqrt(0.5) - 0.5, abs=1e-6)
+    expected = np.sqrt(np.trapezoid((force - np.sin(np.pi * t)) ** 2, t) / 0.5)
+    assert found.shape == pytest.approx(expected, rel=1e-4)
+
+
 def test_normalized_error_pads_the_shorter_curve_with_zero() -> None:
     # two half sines, the second of twice the duration: int (s1-s2)^2 / int s1^2 over (0, 2)
     error = normalized_error(half_sine(1.0, 1.0), half_sine(1.0, 2.0))
@@ -46,7 +81,7 @@ def test_contact_that_does_not_end_has_no_duration() -> None:
     t = np.linspace(0.0, 1.0, 301)
     stuck = History(t, t, 1.0 - t, t, t, 0.0 * t)
     found = score(half_sine(2.0, 1.0), stuck)
-    assert (found.duration, found.restitution) == (None, None)
+    assert (found.duration, found.restitution, found.loss, found.shape, found.peak_shift) == (None,) * 5
 
 
 def test_measured_curve_is_read_and_scored(tmp_path: Path) -> None:
@@ -57,7 +92,8 @@ def test_measured_curve_is_read_and_scored(tmp_path: Path) -> None:
     found = score(read_curve(path), half_sine(2.0, 1.0))
     assert found.normalized_error < 1e-3
     assert found.peak_force == pytest.approx(0.0, abs=1e-6)
-    assert (found.peak_depth, found.restitution) == (None, None)
+    assert (found.peak_depth, found.restitution, found.work, found.loss) == (None,) * 4
+    assert found.shape == pytest.approx(0.0, abs=1e-3)
 
 
 @pytest.mark.parametrize(
