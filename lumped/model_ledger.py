@@ -37,6 +37,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
         _finite_strain(peak, radius),
         _deformed_gap(scene.geometry.material.nu, peak, radius),
         _sideways(scene),
+        _series(scene, peak),
         LedgerEntry("striker compliance", "rigid", None, "the scene gives the striker no material"),
         _gravity(scene, resolved, peak),
         _plasticity(scene, peak),
@@ -97,6 +98,17 @@ def _sideways(scene: Scene) -> LedgerEntry:
     poisson = replace(material, constant="poisson").contact_modulus().glassy
     bulk = replace(material, constant="bulk").contact_modulus().glassy
     return LedgerEntry(effect, treated, 1.0 - (bulk / poisson) ** 0.4, "bound; target.material.constant")
+
+
+def _series(scene: Scene, peak: Peak) -> LedgerEntry:
+    """How far a Prony series may be from the modulus which it was fitted to."""
+    effect, fidelity = "material series", scene.geometry.material.young.fidelity
+    if fidelity is None:
+        return LedgerEntry(effect, "the material itself", 0.0)
+    shortest, longest = fidelity.window
+    treated = f"fitted to {fidelity.inside:.2g} over {shortest:.3g} to {longest:.3g} s"
+    bound = fidelity.of_force(peak.duration)
+    return LedgerEntry(effect, treated, bound if math.isfinite(bound) else None, "bound until the contact recedes")
 
 
 def _gravity(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:

@@ -88,3 +88,19 @@ def test_ledger_decides_whether_the_model_is_sufficient() -> None:
     scene = Scene.load("steel-ball", {"model.gravity": 9.81})
     assert not simulate(laws.mdr.of(scene), scene, 1e-3).model_sufficient
     assert simulate(laws.mdr.of(scene), scene, 0.1).model_sufficient
+
+
+def test_a_fitted_series_is_charged_with_its_fit() -> None:
+    effect, peak = "material series", Peak(force=2.0, depth=1e-4, contact_radius=6e-4, duration=0.02)
+    material = {"law": "fractional_zener", "E_inf": 6e5, "E_glass": 1.2e6, "tau": 0.01, "alpha": 0.5, "nu": 0.45}
+    for accuracy in (1e-3, 1e-5):
+        scene = Scene.load("polymer-sphere", {"target.material": material | {"accuracy": accuracy}})
+        (told,) = [e for e in model_ledger(scene, peak) if e.effect == effect]
+        fidelity = scene.geometry.material.young.fidelity
+        assert fidelity is not None
+        assert told.estimate == fidelity.of_force(0.02)
+        assert 0.1 * accuracy < told.estimate < 1.1 * accuracy
+        slow = Peak(peak.force, peak.depth, peak.contact_radius, 1e3)
+        (beyond,) = [e for e in model_ledger(scene, slow) if e.effect == effect]
+        assert beyond.estimate == fidelity.outside
+    assert entry(Scene.load("polymer-sphere"), effect).estimate == 0.0

@@ -25,7 +25,7 @@ KEYS = (
     },
 )
 # In units of tau: impacts far shorter or longer need a window of their own, and the model ledger says so.
-WINDOW = (1e-5, 1e4)
+WINDOW = (1e-6, 1e3)
 ACCURACY = 1e-6
 
 
@@ -34,7 +34,7 @@ def of(
 ) -> Relaxation:
     """E(s) = E_inf + (E_glass - E_inf) (s tau)^alpha / (1 + (s tau)^alpha): E(t) is a Mittag-Leffler function.
 
-    Bagley and Torvik 1983, doi 10.2514/3.8142. `window`, s, is by default 1e-5 to 1e4 tau. Raises ValueError when the
+    Bagley and Torvik 1983, doi 10.2514/3.8142. `window`, s, is by default 1e-6 to 1e3 tau. Raises ValueError when the
     series cannot be as accurate.
     """
     if E_glass <= E_inf:
