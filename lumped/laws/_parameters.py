@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from lumped import restitution
 from lumped.errors import BadInput, Fault
 from lumped.keys import Choice, Key, Number
 from lumped.laws._force_law import bodies_of
@@ -27,6 +28,11 @@ EXACT, EXACT_TOLERANCE = "mdr", 1e-4
 def damping_keys(*names: str, unit: str = "") -> Mapping[str, Key]:
     """Optional keys of a damper, each >= 0."""
     return {name: Number(0.0, 1e30, unit, required=False) for name in names}
+
+
+def formula_key(family: str) -> Mapping[str, Key]:
+    """The key `damping`: by which formula e becomes the damping, exact by default or a published one."""
+    return {"damping": Choice((restitution.EXACT, *restitution.get(family).published), required=False)}
 
 
 @dataclass
@@ -86,6 +92,9 @@ class Parameters:
         """The one damping given, `names` or e; else e as the scene's own material has it by the exact law."""
         given = [name for name in ("e", *names) if name in self.values]
         accepted = " or ".join(("e", *names))
+        if "damping" in self.values and set(given) & set(names):
+            reason = f"names the formula for e, but {given[-1]} is given; accepted: e with it, or {given[-1]} alone"
+            self.faults.append(Fault(self.scene.source, "law.damping", reason))
         if len(given) == 1:
             return given[0], float(self.values[given[0]])
         if given:
@@ -96,6 +105,15 @@ class Parameters:
             self.missing(names[0] if names else "e", f"the damping: one of {accepted}")
             return "e", 1.0
         return "e", self._own_restitution()
+
+    def meeting(self, family: str, e: float) -> float:
+        """The dimensionless damping of a family for e at the law's exit, by the formula that `law.damping` names."""
+        exit, formula = self.get("exit", "force"), self.get("damping", restitution.EXACT)
+        try:
+            return restitution.damping(restitution.get(family), e, exit, formula)
+        except BadInput as bad:
+            self.faults += [Fault(self.scene.source, "law.e", fault.message) for fault in bad.faults]
+            return 0.0
 
     def missing(self, key: str, accepted: str) -> None:
         """Note a key that has to be given."""

@@ -11,14 +11,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from lumped import restitution
 from lumped.collide.bodies import Stage
 from lumped.keys import Key
-from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_keys
+from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_keys, formula_key
 from lumped.laws._power_law import PowerLaw
 from lumped.scene import Scene
 
-KEYS: Mapping[str, Key] = {**STIFFNESS, **EXPONENT, **RESTITUTION, **damping_keys("xi"), **COMMON}
+KEYS: Mapping[str, Key] = {
+    **STIFFNESS,
+    **EXPONENT,
+    **RESTITUTION,
+    **damping_keys("xi"),
+    **formula_key("jankowski"),
+    **COMMON,
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +59,7 @@ def of(scene: Scene) -> Jankowski:
     alpha = given.get("alpha", 1.5)
     k = given.stiffness(alpha)
     kind, xi = given.damping(("xi",))
-    common = given.common()
     if kind == "e":
-        xi = restitution.get("jankowski").damping(xi, given.get("exit", "force")) * math.sqrt((alpha + 1.0) / 2.5)
+        xi = given.meeting("jankowski", xi) * math.sqrt((alpha + 1.0) / 2.5)
+    common = given.common()
     return Jankowski(k=k, c=2.0 * xi * math.sqrt(scene.reduced_mass * k), alpha=alpha, **common)

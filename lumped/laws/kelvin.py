@@ -11,10 +11,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from lumped import restitution
 from lumped.collide.bodies import Stage
 from lumped.keys import Key
-from lumped.laws._parameters import COMMON, RESTITUTION, STIFFNESS, Parameters, damping_keys
+from lumped.laws._parameters import COMMON, RESTITUTION, STIFFNESS, Parameters, damping_keys, formula_key
 from lumped.laws._power_law import PowerLaw
 from lumped.scene import Scene
 
@@ -23,6 +22,7 @@ KEYS: Mapping[str, Key] = {
     **RESTITUTION,
     **damping_keys("xi"),
     **damping_keys("c", unit="N s/m"),
+    **formula_key("kelvin"),
     **COMMON,
 }
 
@@ -50,8 +50,8 @@ def of(scene: Scene) -> Kelvin:
     given = Parameters(scene, Kelvin.name)
     k = given.stiffness(1.0)
     kind, value = given.damping(("xi", "c"))
-    common = given.common()
     if kind == "e":
-        value = restitution.get("kelvin").damping(value, given.get("exit", "force"))
+        value = given.meeting("kelvin", value)
+    common = given.common()
     c = value if kind == "c" else 2.0 * value * math.sqrt(k * scene.reduced_mass)
     return Kelvin(k=k, c=c, **common)

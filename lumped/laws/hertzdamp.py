@@ -1,0 +1,50 @@
+"""Muthukumar and DesRoches' Hertzdamp: F = k depth^alpha (1 + xi rate/v0), v0 the velocity at touch.
+
+Doi 10.1002/eqe.557; the law of Hunt and Crossley with a damping that follows the velocity, so that the restitution
+does not depend on it. Of e, xi is the exact one unless `damping` names a published formula: theirs is `muthukumar`,
+3 (1-e^2)/4, and OpenSees recommends `ye`, 8 (1-e)/(5 e).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from lumped.collide.bodies import Stage
+from lumped.keys import Key
+from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_keys, formula_key
+from lumped.laws._spring_damped import SpringDamped
+from lumped.scene import Scene
+
+KEYS: Mapping[str, Key] = {
+    **STIFFNESS,
+    **EXPONENT,
+    **RESTITUTION,
+    **damping_keys("xi"),
+    **formula_key("hunt_crossley"),
+    **COMMON,
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hertzdamp(SpringDamped):
+    """The law with k, N/m^alpha, and xi."""
+
+    xi: float
+    name: ClassVar[str] = "hertzdamp"
+
+    def factor(self, stage: Stage) -> float:
+        """xi/v0, v0 that of this contact."""
+        return self.xi / stage.speed
+
+
+def of(scene: Scene) -> Hertzdamp:
+    """The law for a scene. Raises BadInput."""
+    given = Parameters(scene, Hertzdamp.name)
+    alpha = given.get("alpha", 1.5)
+    k = given.stiffness(alpha)
+    kind, xi = given.damping(("xi",))
+    if kind == "e":
+        xi = given.meeting("hunt_crossley", xi)
+    return Hertzdamp(k=k, xi=xi, alpha=alpha, **given.common())

@@ -1,0 +1,49 @@
+"""Hunt and Crossley's model: F = k depth^alpha (1 + chi rate), alpha free, damped in approach and rebound.
+
+Doi 10.1115/1.3423596. Of e, chi is the exact one unless `damping` names a published formula: all of
+:mod:`lumped.restitution.hunt_crossley`. At a given chi the restitution falls with the velocity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from lumped.collide.bodies import Stage
+from lumped.keys import Key
+from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_keys, formula_key
+from lumped.laws._spring_damped import SpringDamped
+from lumped.scene import Scene
+
+KEYS: Mapping[str, Key] = {
+    **STIFFNESS,
+    **EXPONENT,
+    **RESTITUTION,
+    **damping_keys("chi", unit="s/m"),
+    **formula_key("hunt_crossley"),
+    **COMMON,
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class HuntCrossley(SpringDamped):
+    """The law with k, N/m^alpha, and chi, s/m."""
+
+    chi: float
+    name: ClassVar[str] = "hunt_crossley"
+
+    def factor(self, stage: Stage) -> float:
+        """chi."""
+        return self.chi
+
+
+def of(scene: Scene) -> HuntCrossley:
+    """The law for a scene. Raises BadInput."""
+    given = Parameters(scene, HuntCrossley.name)
+    alpha = given.get("alpha", 1.5)
+    k = given.stiffness(alpha)
+    kind, chi = given.damping(("chi",))
+    if kind == "e":
+        chi = given.meeting("hunt_crossley", chi) / scene.velocity
+    return HuntCrossley(k=k, chi=chi, alpha=alpha, **given.common())

@@ -1,0 +1,49 @@
+"""Khatiwada, Chouw and Butterworth's generic model: F = k depth^alpha + c depth^alpha rate, alpha free.
+
+Eng. Struct. 62-63, 33-41 (2014), in the form of section 2.5 of the source paper: damping proportional to a power of
+the depth, for any exponent, and exact for the restitution asked for. It is the law of Hunt and Crossley, its damper
+with a constant c = chi k of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from lumped.collide.bodies import Stage
+from lumped.keys import Key
+from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_keys
+from lumped.laws._spring_damped import SpringDamped
+from lumped.scene import Scene
+
+KEYS: Mapping[str, Key] = {
+    **STIFFNESS,
+    **EXPONENT,
+    **RESTITUTION,
+    **damping_keys("c", unit="N s/m^(alpha + 1)"),
+    **COMMON,
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Khatiwada(SpringDamped):
+    """The law with k, N/m^alpha, and c, N s/m^(alpha + 1)."""
+
+    c: float
+    name: ClassVar[str] = "khatiwada"
+
+    def factor(self, stage: Stage) -> float:
+        """c/k."""
+        return self.c / self.k
+
+
+def of(scene: Scene) -> Khatiwada:
+    """The law for a scene. Raises BadInput."""
+    given = Parameters(scene, Khatiwada.name)
+    alpha = given.get("alpha", 1.5)
+    k = given.stiffness(alpha)
+    kind, c = given.damping(("c",))
+    if kind == "e":
+        c = given.meeting("khatiwada", c) * k / scene.velocity
+    return Khatiwada(k=k, c=c, alpha=alpha, **given.common())
