@@ -1,4 +1,4 @@
-"""Laws with memory in internal variables, integrated by scipy. Everything inside is without dimension.
+"""Laws with memory in internal variables, by collocation. Everything inside is without dimension.
 
 Time is counted in elastic contact times T, velocity in that of touch v, depth in v T, force in m v/T.
 """

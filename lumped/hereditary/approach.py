@@ -1,6 +1,6 @@
 """The approach, from touch to the turn; the contact radius grows, and every law with memory agrees on it.
 
-It is integrated over r = sqrt(t): depth, load and memories are smooth in r at touch, and not in t.
+It is followed over r = sqrt(t): depth, load and memories are smooth in r at touch, and not in t.
 """
 
 from __future__ import annotations
@@ -12,44 +12,80 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.ending import AT_REST
+from lumped.errors import NotReached
+from lumped.hereditary.march import March, Piece, Settings, Stretch
+from lumped.hereditary.motion import Motion
+from lumped.hereditary.path import Path, falling_zero
 from lumped.hereditary.problem import Hereditary
-from lumped.hereditary.solve import Path, Settings, follow
 
 Array = NDArray[np.float64]
+DEPTH, VELOCITY, WORK, FORCE, MEMORIES = range(5)
 # A velocity of AT_REST is rest only if the striker would take longer than this share of the time so far to
 # stop.
 SLOW = 1e-3
+# The first piece is this share of the root of the stiffest contact time.
+FIRST = 0.4
 
 
 @dataclass(frozen=True)
 class Approach:
-    """Its path over r; the time where it ended; whether the striker turned there, or came to rest."""
+    """Its path over r; whether the striker turned at its end, or came to rest; Newton steps and largest force."""
 
     path: Path
-    end: float
     turned: bool
     rests: bool
+    steps: int
+    largest: float
 
-    def state(self, time: Array) -> Array:
-        """States at times up to `end`, shape (3 + 2K, n)."""
-        return self.path.at(np.sqrt(np.minimum(time, self.end)))
+    @property
+    def end(self) -> float:
+        """The time where it ended."""
+        return self.path.end**2
 
 
-def over_root(problem: Hereditary) -> Callable[[float, Array], Array]:
-    """The equations of motion over r = sqrt(t)."""
-    return lambda root, state: 2.0 * root * problem.rate(state)
+def follow(
+    problem: Hereditary,
+    span: tuple[float, float],
+    state: Array,
+    first: float,
+    over: Callable[[Array], bool],
+    settings: Settings,
+    largest: float = 0.0,
+) -> March:
+    """March over a span of r from a state until `over`; `first` is the length to begin with. Raises NotReached."""
+
+    def attempt(root: float, length: float, state: Array) -> Piece | None:
+        motion = Motion.over_root(problem, settings.table, root, length)
+        return motion.piece(state, problem.gravity - float(state[FORCE]))
+
+    found = Stretch(attempt, FORCE, over).march(span, state, first, settings, largest)
+    if found.stuck:
+        raise NotReached(f"the motion could not be followed beyond {found.path.end**2 * problem.scales.time:.6g} s")
+    return found
 
 
 def approach(problem: Hereditary, end_time: float, settings: Settings) -> Approach:
     """Follow the motion to its turn, to rest, or to `end_time`, in units of the problem. Raises NotReached."""
     slow = AT_REST if problem.modulus.relaxed == 0.0 and problem.gravity == 0.0 else 0.0
-    span, rate = (0.0, float(np.sqrt(end_time))), over_root(problem)
-    path = follow(rate, span, problem.start(), [lambda _, state: float(state[1]) - slow], settings)
-    if path.event is None:
-        return Approach(path, end_time, turned=False, rests=False)
-    if slow:
-        force = float(problem.force(path.at(path.end)))
-        if slow > SLOW * force * path.end**2:
-            return Approach(path, path.end**2, turned=False, rests=True)
-        path = follow(rate, span, problem.start(), [lambda _, state: float(state[1])], settings)
-    return Approach(path, path.end**2, turned=True, rests=False)
+    found, end = _to_velocity(problem, end_time, slow, settings)
+    if slow and found.over:
+        force = float(found.path.at(end)[FORCE])
+        if slow > SLOW * force * end**2:
+            return Approach(found.path.until(end), False, True, found.steps, found.largest)
+        found, end = _to_velocity(problem, end_time, 0.0, settings)
+    return Approach(found.path.until(end), found.over, False, found.steps, found.largest)
+
+
+def _to_velocity(problem: Hereditary, end_time: float, slow: float, settings: Settings) -> tuple[March, float]:
+    """The march until the velocity has fallen to `slow`, and the place where it has."""
+
+    def over(values: Array) -> bool:
+        return bool(values[VELOCITY, -1] <= slow)
+
+    span, first = (0.0, end_time**0.5), FIRST * problem.shortest**0.5
+    found = follow(problem, span, problem.start(), first, over, settings)
+    if not found.over:
+        return found, found.path.end
+    low, high = (float(place) for place in found.path.breaks[-2:])
+    velocity, _ = found.path.curve(VELOCITY, 0.5 * (low + high))
+    return found, falling_zero(lambda place: velocity(place) - slow, low, high)

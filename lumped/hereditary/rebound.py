@@ -1,97 +1,171 @@
 """Ting's rebound: the contact shrinks back over the places that it passed, doi 10.1115/1.3625192.
 
 At time t the contact radius is what it was at an earlier time t1(t), where int_{t1}^t E(t-s) d depth(s) = 0,
-and the force is F(t) = int_0^{t1} E(t-s) dy(s).
+and the force is F(t) = int_0^{t1} E(t-s) dy(s). The rebound is followed over s = -sqrt(t1), from the turn to
+0, where contact ends: the approach is known at every place, the time is what is sought, and all is smooth.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.ending import End
+from lumped.errors import NotReached
 from lumped.hereditary.approach import Approach
+from lumped.hereditary.march import Piece, Settings, Stretch
+from lumped.hereditary.path import Path, falling_zero
 from lumped.hereditary.problem import Hereditary
-from lumped.hereditary.solve import Path, Settings, follow
+from lumped.hereditary.radau import Radau
 
 Array = NDArray[np.float64]
-ROOT_STEPS = 100
-NO_VELOCITY = 1e-200
+TIME, DEPTH, VELOCITY, WORK, FORCE, EDGE, MEMORIES = range(7)
+NEWTON_STEPS = 16
+CONVERGED, ROUNDING = 1e-8, 1e-14
+FIRST = 0.5
+DIVERGED, TINY = 1e100, 1e-200
+
+
+class Then(NamedTuple):
+    """The approach at the times t1 of the nodes, (N,): depth, load, and memories (K, N) of load and depth."""
+
+    time: Array
+    depth: Array
+    load: Array
+    loads: Array
+    depths: Array
 
 
 @dataclass(frozen=True)
 class Rebound:
-    """The rebound that follows an approach. States: depth, velocity, work done, memories x_k of the depth."""
+    """How far it was followed, why it ended, and the Newton steps it took.
+
+    Fields of the path over -sqrt(t1): time, depth, velocity, work done, force, depth at t1, memories x_k.
+    """
+
+    path: Path
+    end: End
+    steps: int
+
+
+@dataclass(frozen=True)
+class Retreat:
+    """The pieces of a rebound that follows an approach."""
 
     problem: Hereditary
     inward: Approach
+    table: Radau
 
-    def follow(self, end_time: float, settings: Settings) -> Path:
-        """The path until t1 = 0 (event 0), a second approach (1) or `end_time`. Raises NotReached."""
-        k = self.problem.terms
-        turn = self.inward.path.at(self.inward.path.end)
-        start = np.concatenate([turn[:3], turn[3 + k :]])
-        start[1] = 0.0
-        nearby = np.array([self.inward.end])
+    def piece(self, place: float, length: float, state: Array) -> Piece | None:
+        """The piece of a length at a place, from the state there; None where Newton's steps fail."""
+        over = place + length * self.table.nodes
+        then, weights = self._then(over), length * self.table.integral
+        modulus = self.problem.modulus
+        # The terms of the relaxation series act as springs where they are slow, as dashpots where they are fast.
+        dashpots = modulus.viscosity + float(self.problem.stiffnesses @ np.array(modulus.times))
+        for stiffness, viscosity in ((modulus.glassy, modulus.viscosity), (modulus.equilibrium, dashpots)):
+            found = self._solved(weights, state, then, self._pace(over, stiffness, viscosity))
+            if found:
+                return found
+        return None
 
-        def rate(time: float, state: Array) -> Array:
-            """The time derivative of one state; where t1 was a moment ago is a good guess for it."""
-            nonlocal nearby
-            nearby = self.same_edge(np.array([time]), state[:, None], nearby)
-            return self._rate(time, state, nearby)
+    def _solved(self, weights: Array, state: Array, then: Then, pace: Array) -> Piece | None:
+        """Newton's steps for the pace p = dt/ds at the nodes, which lets nothing lack."""
+        for step in range(1, NEWTON_STEPS + 1):
+            now = Trial(self.problem, weights, state, then, pace)
+            change = np.linalg.solve(now.change_of_lack(), now.lack)
+            pace = pace - change
+            size, scale = float(np.abs(change).max()), float(np.abs(pace).max())
+            if not size < DIVERGED:
+                return None
+            if size <= CONVERGED * scale:
+                values = Trial(self.problem, weights, state, then, pace).values()
+                forth = bool(np.all(np.diff(values[TIME]) >= -ROUNDING * values[TIME, -1]))
+                return Piece(values, step) if forth else None
+        return None
 
-        events = [lambda t, state: float(self.lack(state, np.zeros(3 + 2 * k), 0.0 * self.problem.rates)),
-                  lambda t, state: 1e-12 - float(state[1])]  # fmt: skip
-        return follow(rate, (self.inward.end, end_time), start, events, settings)
+    def _pace(self, over: Array, stiffness: float, viscosity: float) -> Array:
+        """The pace on a spring and a dashpot near the turn t_m: E (t - t_m)^2 + 2 eta (t - t_m) = E (t_m - t1)^2."""
+        back = self.inward.end - over * over
+        spring = stiffness * back
+        return np.asarray(-2.0 * over * spring / np.maximum(np.hypot(viscosity, spring), TINY))
 
-    def _rate(self, time: float, state: Array, earlier: Array) -> Array:
-        force = float(self._pressed(np.array([time]), earlier)[0][0])
-        change = np.empty_like(state)
-        change[0] = state[1]
-        change[1] = self.problem.gravity - force
-        change[2] = force * state[1]
-        change[3:] = state[1] - state[3:] * self.problem.rates
-        return change
+    def _then(self, over: Array) -> Then:
+        problem, k = self.problem, self.problem.terms
+        earlier = self.inward.path.at(-over)
+        load, _ = problem.loads(earlier[0])
+        return Then(over * over, earlier[0], load, earlier[4 : 4 + k], earlier[4 + k :])
 
-    def pressed(self, time: Array, state: Array) -> tuple[Array, Array]:
-        """F, and the depth at t1, which had the same contact radius; at times (n,) and states (3 + K, n)."""
-        guess = np.clip(2.0 * self.inward.end - time, 0.0, self.inward.end)
-        return self._pressed(time, self.same_edge(time, state, guess))
 
-    def _pressed(self, time: Array, earlier: Array) -> tuple[Array, Array]:
-        k = self.problem.terms
-        then = self.inward.state(earlier)
-        fade = np.exp(-np.outer(self.problem.rates, time - earlier))
-        memory = self.problem.stiffnesses @ (fade * then[3 : 3 + k])
-        return np.asarray(self.problem.modulus.equilibrium * self.problem.load(then[0]) + memory), then[0]
+class Trial:
+    """One Newton iterate: times, motion and the lack that should vanish, at the nodes."""
 
-    def lack(self, state: Array, then: Array, fade: Array) -> Array:
-        """The integral that vanishes at t1, int_{t1}^t E(t-s) d depth(s).
+    def __init__(self, problem: Hereditary, weights: Array, state: Array, then: Then, pace: Array) -> None:
+        self.problem, self.weights, self.state, self.then, self.pace = problem, weights, state, then, pace
+        modulus, stiff, rates = problem.modulus, problem.stiffnesses[:, None], problem.rates[:, None]
+        self.time = state[TIME] + weights @ pace
+        fade = np.exp(-np.maximum(self.time - then.time, 0.0) * rates)
+        carried = stiff * fade * then.loads
+        self.forgotten = (rates * carried).sum(axis=0)
+        self.force = modulus.equilibrium * then.load + carried.sum(axis=0)
+        self.velocity = state[VELOCITY] + weights @ ((problem.gravity - self.force) * pace)
+        self.rise = weights @ (self.velocity * pace)
+        self.ageing = np.eye(pace.size) + (weights * pace) * problem.rates[:, None, None]
+        self.memories = np.linalg.solve(self.ageing, (state[MEMORIES:, None] + self.rise)[..., None])[..., 0]
+        held = stiff * fade * then.depths
+        self.fading = (rates * held).sum(axis=0)
+        depth = modulus.equilibrium * (state[DEPTH] - then.depth + self.rise)
+        memory = (stiff * self.memories - held).sum(axis=0)
+        self.lack = depth + memory + modulus.viscosity * self.velocity
 
-        `state` has the shape (3 + K, ...), `then` is the state of the approach at t1, `fade` is exp(-(t-t1)/tau_k).
-        """
-        modulus, k = self.problem.modulus, self.problem.terms
-        memory = self.problem.stiffnesses @ (state[3:] - fade * then[3 + k :])
-        return np.asarray(modulus.equilibrium * (state[0] - then[0]) + memory + modulus.viscosity * state[1])
+    def change_of_lack(self) -> Array:
+        """d lack / d pace, (N, N)."""
+        problem, weights, pace = self.problem, self.weights, self.pace
+        velocity = weights * (problem.gravity - self.force) + (weights * (pace * self.forgotten)) @ weights
+        depth = weights * self.velocity + (weights * pace) @ velocity
+        aged = depth - weights * (self.memories * problem.rates[:, None])[:, None, :]
+        memory = np.tensordot(problem.stiffnesses, np.linalg.solve(self.ageing, aged), 1)
+        modulus = problem.modulus
+        change = modulus.equilibrium * depth + memory + modulus.viscosity * velocity
+        return np.asarray(change + self.fading[:, None] * weights)
 
-    def same_edge(self, time: Array, state: Array, guess: Array) -> Array:
-        """t1 at times (n,), from a guess by Newton steps inside a bracket; zero once contact has closed."""
-        turn = self.inward.end
-        low, high = np.zeros_like(time), np.full_like(time, turn)
-        t1 = guess
-        for _ in range(ROOT_STEPS):
-            then = self.inward.state(t1)
-            fade = np.exp(-np.outer(self.problem.rates, time - t1))
-            lack = self.lack(state, then, fade)
-            low, high = np.where(lack > 0.0, t1, low), np.where(lack > 0.0, high, t1)
-            stiffness = self.problem.modulus.equilibrium + self.problem.stiffnesses @ fade
-            slope = stiffness * np.maximum(then[1], NO_VELOCITY)
-            new = t1 + lack / slope
-            new = np.where((new <= low) | (new >= high), 0.5 * (low + high), new)
-            # A lack below rounding leaves t1 where it is: at the turn itself any t1 nearby will do.
-            new = np.where(np.abs(lack) <= 1e-16 * stiffness * state[0], t1, new)
-            if np.all(np.abs(new - t1) <= 1e-15 * turn):
-                return new
-            t1 = new
-        return t1
+    def values(self) -> Array:
+        """The fields at the first place and the nodes."""
+        state, values = self.state, np.empty((self.state.size, self.pace.size + 1))
+        values[:, 0] = state
+        values[TIME, 1:], values[VELOCITY, 1:], values[FORCE, 1:] = self.time, self.velocity, self.force
+        values[DEPTH, 1:], values[EDGE, 1:] = state[DEPTH] + self.rise, self.then.depth
+        values[WORK, 1:] = state[WORK] + self.weights @ (self.force * self.velocity * self.pace)
+        values[MEMORIES:, 1:] = self.memories
+        return values
+
+
+def rebound(problem: Hereditary, inward: Approach, end_time: float, settings: Settings) -> Rebound:
+    """Follow the rebound until contact closes, the striker approaches again, or `end_time`. Raises NotReached."""
+    k, end = problem.terms, inward.path.end
+    turn = inward.path.at(end)
+    start = np.concatenate([[end**2, turn[0], 0.0, turn[2], turn[3], turn[0]], turn[4 + k :]])
+    if turn[3] <= problem.gravity:
+        return Rebound(Path.of([-end, -end * (1.0 - 1e-12)], [np.repeat(start[:, None], settings.points + 1, 1)],
+                               settings.table), End.SECOND_APPROACH, 0)  # fmt: skip
+    retreat = Retreat(problem, inward, settings.table)
+
+    def over(values: Array) -> bool:
+        return bool(values[TIME, -1] >= end_time)
+
+    stretch = Stretch(retreat.piece, FORCE, over, TIME)
+    found = stretch.march((-end, 0.0), start, FIRST * end, settings)
+    path = found.path
+    if found.over:
+        low, high = (float(place) for place in path.breaks[-2:])
+        time, _ = path.curve(TIME, 0.5 * (low + high))
+        path = path.until(falling_zero(lambda place: end_time - time(place), low, high))
+        return Rebound(path, End.TIME, found.steps)
+    if found.stuck:
+        if problem.gravity > 0.0:
+            return Rebound(path, End.SECOND_APPROACH, found.steps)
+        raise NotReached(f"the rebound could not be followed beyond {path.at(path.end)[0] * problem.scales.time:.6g} s")
+    return Rebound(path, End.SEPARATED, found.steps)

@@ -11,23 +11,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-from numpy.typing import NDArray
-
 from lumped.collide import memory
 from lumped.collide.hereditary import HereditaryLoad
 from lumped.ending import End
-from lumped.hereditary.approach import approach, over_root
+from lumped.hereditary.approach import DEPTH, approach
+from lumped.hereditary.closing import close
+from lumped.hereditary.march import Settings
+from lumped.hereditary.path import Path
+from lumped.hereditary.phase import Phase, SinceTouch, UntilEnd
 from lumped.hereditary.problem import Hereditary
-from lumped.hereditary.solve import Settings, follow
 from lumped.keys import Choice, Key
 from lumped.laws._half_space import check_geometry
-from lumped.laws._hereditary import Curves, simulate
+from lumped.laws._hereditary import Course, simulate
 from lumped.laws._hereditary_force import HereditaryForce
 from lumped.result import Result
 from lumped.scene import Scene
 
-Array = NDArray[np.float64]
 KEYS: Mapping[str, Key] = {
     "exit": Choice(("force", "depth"), required=False),
     "memory": Choice(memory.available(), required=False),
@@ -64,35 +63,20 @@ def of(scene: Scene) -> Correspondence:
     return Correspondence(**(law.values if law is not None and law.name == Correspondence.name else {}))
 
 
-def solve(problem: Hereditary, end_time: float, settings: Settings) -> Curves:
-    """One integration from touch to the first F = 0, or to `end_time`, s."""
-    inward = approach(problem, end_time / problem.scales.time, settings)
-    path, end, evaluations = inward.path, End.REST if inward.rests else End.TIME, inward.path.evaluations
-    if inward.turned:
-        span = (0.0, float(np.sqrt(end_time / problem.scales.time)))
-        zero = [lambda _, state: float(problem.force(state))]
-        path = follow(over_root(problem), span, problem.start(), zero, settings)
-        end = End.TIME if path.event is None else End.SEPARATED
-        evaluations += path.evaluations
-    closing = path.end
+def solve(problem: Hereditary, end_time: float, settings: Settings) -> Course:
+    """One integration from touch to the first F = 0, or to `end_time` in its own units. Raises NotReached."""
+    inward = approach(problem, end_time, settings)
+    steps = inward.steps
+    if not inward.turned:
+        return Course((_phase(inward.path),), End.REST if inward.rests else End.TIME, steps)
+    closing = close(problem, inward, end_time, settings)
+    steps += closing.steps
+    phases = (_phase(closing.path),) if closing.path else ()
+    if closing.last is None:
+        return Course(phases, End.TIME, steps)
+    last = Phase(closing.last, UntilEnd(closing.end), DEPTH, DEPTH)
+    return Course((*phases, last), End.SEPARATED, steps)
 
-    def columns(times: Array) -> Array:
-        elapsed = times / problem.scales.time
-        state = path.at(np.minimum(np.sqrt(elapsed), closing))
-        scales, after = problem.scales, elapsed > closing**2 * (1.0 + 1e-12)
-        force = np.where(after, 0.0, np.maximum(problem.force(state), 0.0))
-        velocity = np.where(after & inward.rests, 0.0, state[1])
-        radius = problem.contact_radius(np.maximum(state[0], 0.0))
-        return np.array([state[0] * scales.depth, velocity * scales.velocity, force * scales.force, radius])
 
-    return Curves(
-        force=lambda roots: problem.force(path.at(roots)),
-        depth=lambda roots: path.at(roots)[0],
-        roots=path.places,
-        times=path.places**2,
-        columns=columns,
-        last=path.at(closing),
-        end_time=closing**2,
-        end=end,
-        evaluations=evaluations,
-    )
+def _phase(path: Path) -> Phase:
+    return Phase(path, SinceTouch(), DEPTH, DEPTH)

@@ -40,6 +40,10 @@ class LoadCurve(ABC):
         """dF/d depth = 2 a: at the edge the profile meets the surface with the stiffness of a flat punch."""
         return 2.0 * self.contact_radius(depth)
 
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Any, Any]:
+        """F/E* and dF/d depth at a depth, for those who need both at every step."""
+        return self.force(depth), self.dforce_ddepth(depth)
+
     def energy(self, depth: ArrayLike) -> NDArray[np.float64]:
         """Work of indentation int_0^depth F d depth = depth (F - a depth) + int_0^a depth(x)^2 dx."""
         d = np.maximum(np.asarray(depth, dtype=float), 0.0)

@@ -25,9 +25,13 @@ class SneddonSphere(LoadCurve):
 
     def force(self, depth: ArrayLike) -> Any:
         """F/E*, m^2."""
+        return self.force_and_slope(depth)[0]
+
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Any, Any]:
+        """F/E*, m^2, and 2 a, m."""
         u = np.asarray(_angle(np.maximum(depth, 0.0) / self.radius, np.tanh))
         t = np.tanh(u)
-        return self.radius**2 * (_minus_tanh(u, t) + t * t * u)
+        return self.radius**2 * (_minus_tanh(u, t) + t * t * u), 2.0 * self.radius * t
 
     def contact_radius(self, depth: ArrayLike) -> Any:
         """a = R tanh u with u tanh u = depth/R, m."""
@@ -49,9 +53,12 @@ class SneddonSphere(LoadCurve):
 
 
 def _angle(ratio: Any, tanh: Callable[[Any], Any]) -> Any:
-    """u >= 0 with u tanh u = ratio, by Newton; `tanh` is the scalar's or the array's."""
+    """u >= 0 with u tanh u = ratio, by Newton; `tanh` is the scalar's or the array's.
+
+    The first guess errs by 5 % at most, three steps make that 5e-14 and the fourth leaves rounding.
+    """
     u = (ratio + ratio * ratio / 3.0) ** 0.5 + 1e-300
-    for _ in range(6):
+    for _ in range(4):
         t = tanh(u)
         u = u - (u * t - ratio) / (t + u * (1.0 - t * t))
     return u
@@ -59,5 +66,7 @@ def _angle(ratio: Any, tanh: Callable[[Any], Any]) -> Any:
 
 def _minus_tanh(u: NDArray[np.float64], t: NDArray[np.float64]) -> NDArray[np.float64]:
     """u - tanh u to full relative precision."""
-    series = u**3 * np.polyval(SERIES[::-1], u * u)
-    return np.where(u < SERIES_BELOW, series, u - t)
+    square, series = u * u, np.zeros_like(u)
+    for coefficient in SERIES[::-1]:
+        series = series * square + coefficient
+    return np.where(u < SERIES_BELOW, u * square * series, u - t)

@@ -1,4 +1,4 @@
-"""Two independent exact answers agree: Ting's integrals by scipy, and a row of springs by its own march."""
+"""Two independent exact answers agree: Ting's integrals by collocation, and a row of springs by its own march."""
 
 from __future__ import annotations
 

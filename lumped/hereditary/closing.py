@@ -1,0 +1,120 @@
+"""The correspondence law's rebound, to its first F = 0.
+
+The last piece is followed over q = -sqrt(T - t), T the time of F = 0: there a force falls to nothing smoothly in
+q, even where the depth vanishes with it, and T itself is what is sought.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.errors import TooManySteps
+from lumped.hereditary.approach import DEPTH, FORCE, VELOCITY, Approach, follow
+from lumped.hereditary.march import MOST_PIECES, Piece, Settings, tail
+from lumped.hereditary.motion import Motion
+from lumped.hereditary.path import Path, falling_zero
+from lumped.hereditary.problem import Hereditary
+
+Array = NDArray[np.float64]
+SECANT_STEPS = 12
+CLOSED = 1e-14
+# Of the force now, what decelerates in the mean until the end of an elastic contact: 0.37 F t^2 = depth.
+MEAN_FORCE = 0.37
+
+
+@dataclass(frozen=True)
+class Closing:
+    """The path over r before the last piece (None: there is none) and that piece over q, which ends at `end`.
+
+    Without a last piece the path has reached the end time.
+    """
+
+    path: Path | None
+    last: Path | None
+    end: float
+    steps: int
+
+
+class Shut(NamedTuple):
+    """A last piece, its duration, and all Newton steps spent on it."""
+
+    piece: Piece
+    duration: float
+    steps: int
+
+
+def close(problem: Hereditary, inward: Approach, end_time: float, settings: Settings) -> Closing:
+    """From an approach that has turned to the first F = 0, or to `end_time`. Raises NotReached, TooManySteps."""
+    path, limit = inward.path.until(float(inward.path.breaks[-1])), end_time**0.5
+    steps, largest = 0, inward.largest
+    for _ in range(MOST_PIECES):
+        released = float(path.at(path.end)[FORCE]) <= 0.0
+        if path.end >= limit and not released:
+            return Closing(path, None, end_time, steps)
+        begin = float(path.breaks[-2]) if released else path.end
+        state = path.at(begin)
+        duration = _until_released(path, begin) if released else _until_flat(problem, state)
+        earlier = _before(path, begin)
+        last = _shut(problem, settings, state, duration) if 0.0 < duration < math.inf else None
+        if last:
+            steps += last.steps
+            end = begin**2 + last.duration
+            if end <= end_time and tail(last.piece.values[FORCE], settings.table) <= settings.rtol * largest:
+                over = Path.of([-(last.duration**0.5), 0.0], [last.piece.values], settings.table)
+                return Closing(earlier, over, end, steps)
+        target = min((begin**2 + min(0.5 * duration, 3.0 * begin**2)) ** 0.5, limit)
+        more = follow(problem, (begin, target), state, target - begin, _released, settings, largest)
+        steps += more.steps
+        path = earlier.joined(more.path) if earlier else more.path
+    raise TooManySteps(f"contact had not ended after {MOST_PIECES} pieces: accepted: an earlier end_time")
+
+
+def _released(values: Array) -> bool:
+    return bool(values[FORCE, -1] <= 0.0)
+
+
+def _before(path: Path, place: float) -> Path | None:
+    """The pieces before a break; None where there are none."""
+    count = int(np.searchsorted(path.breaks, place))
+    return Path(path.breaks[: count + 1], path.coefficients[:count], place) if count else None
+
+
+def _until_released(path: Path, begin: float) -> float:
+    """Time from `begin` to F = 0 in the last piece, which starts there."""
+    force, _ = path.curve(FORCE, 0.5 * (begin + path.end))
+    return falling_zero(force, begin, path.end) ** 2 - begin**2
+
+
+def _until_flat(problem: Hereditary, state: Array) -> float:
+    """About the time until the depth vanishes; infinite while the striker moves inward."""
+    depth, speed, force = float(state[DEPTH]), -float(state[VELOCITY]), float(state[FORCE]) - problem.gravity
+    if speed < 0.0 or force <= 0.0:
+        return math.inf
+    return 2.0 * depth / (speed + math.sqrt(speed**2 + 4.0 * MEAN_FORCE * force * depth))
+
+
+def _shut(problem: Hereditary, settings: Settings, state: Array, duration: float) -> Shut | None:
+    """The piece from a state that ends with F = 0: the duration by secants, from a guess."""
+    guess: float | Array = problem.gravity - float(state[FORCE])
+    before, steps = (0.0, 0.0), 0
+    for _ in range(SECANT_STEPS):
+        piece = Motion.to_end(problem, settings.table, duration).piece(state, guess)
+        if piece is None:
+            return None
+        steps += piece.steps
+        last = piece.values[:, -1]
+        # F over dF/d depth is a depth, which falls straight to zero.
+        slope = float(problem.loads(last[:1])[1][0])
+        left = float(last[FORCE]) / slope if slope else 0.0
+        rate = (left - before[1]) / (duration - before[0]) if before[0] else float(last[VELOCITY])
+        change = -left / rate if rate < 0.0 else 0.0
+        before, guess = (duration, left), problem.gravity - piece.values[FORCE, 1:]
+        if abs(change) <= CLOSED * duration:
+            return Shut(piece, duration, steps)
+        duration = min(max(duration + change, 0.5 * duration), 2.0 * duration)
+    return None

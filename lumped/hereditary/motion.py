@@ -1,0 +1,86 @@
+"""One piece of the motion under F = int E(t-s) dy(s): the memory is a matrix, the acceleration is found by Newton.
+
+Over a piece the acceleration is a polynomial through the nodes. Velocity and depth are its integrals, and each
+memory solves z = z0 + y - y0 - (1/tau) int z dt, which is linear: z = (1 + W/tau)^-1 (z0 + y - y0).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.hereditary.march import Piece
+from lumped.hereditary.problem import Hereditary
+from lumped.hereditary.radau import Radau
+
+Array = NDArray[np.float64]
+NEWTON_STEPS = 14
+# Newton's last correction, relative: what is left after it is its square.
+CONVERGED = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Times since the start of the piece at its nodes, (N,), and `weights`, (N, N), of integrals over time."""
+
+    problem: Hereditary
+    elapsed: Array
+    weights: Array
+
+    @classmethod
+    def over_root(cls, problem: Hereditary, table: Radau, root: float, length: float) -> Motion:
+        """The piece from `root` over this length in r = sqrt(t)."""
+        step = length * table.nodes
+        return cls(problem, step * (2.0 * root + step), 2.0 * length * table.integral * (root + step))
+
+    @classmethod
+    def to_end(cls, problem: Hereditary, table: Radau, duration: float) -> Motion:
+        """The piece of this duration in the root of the time left: there contact closes smoothly."""
+        left = 1.0 - table.nodes
+        return cls(problem, duration * (1.0 - left * left), 2.0 * duration * table.integral * left)
+
+    def piece(self, state: Array, guess: float | Array) -> Piece | None:
+        """The piece from a state, (4 + 2K,), the acceleration guessed; None where Newton's steps fail."""
+        problem, weights = self.problem, self.weights
+        modulus, terms = problem.modulus, problem.terms
+        # (1 + W/tau_k)^-1, shape (K, N, N): the rise of a memory by the rise of what it remembers.
+        eye = np.eye(self.elapsed.size)
+        answers = np.asarray(np.linalg.inv(eye + weights * problem.rates[:, None, None]), dtype=float)
+        response = (problem.stiffnesses[:, None, None] * answers).sum(axis=0) + modulus.equilibrium * eye
+        first = float(problem.loads(state[:1])[0][0])
+        kept = modulus.equilibrium * first + (problem.stiffnesses * state[4 : 4 + terms]) @ answers.sum(axis=2)
+        twice, coasted = weights @ weights, state[0] + state[1] * self.elapsed
+        a = np.full(self.elapsed.size, guess)
+        for step in range(1, NEWTON_STEPS + 1):
+            depth, velocity = coasted + twice @ a, state[1] + weights @ a
+            load, slope = problem.loads(depth)
+            force = response @ (load - first) + kept
+            matrix = (response * slope) @ twice
+            if modulus.viscosity:
+                bend = problem.bend(depth, slope)
+                force += modulus.viscosity * slope * velocity
+                matrix += modulus.viscosity * (slope[:, None] * weights + (bend * velocity)[:, None] * twice)
+            change = np.linalg.solve(matrix + eye, problem.gravity - force - a)
+            a += change
+            size, scale = float(np.abs(change).max()), float(np.abs(a).max())
+            if not size < 1e100:
+                return None
+            if size <= CONVERGED * scale:
+                return Piece(self._values(state, a, load - first + slope * (twice @ change), answers), step)
+        return None
+
+    def _values(self, state: Array, a: Array, rise: Array, answers: Array) -> Array:
+        """The fields at the first place and the nodes; `rise` is by how much the load has grown."""
+        k, weights = self.problem.terms, self.weights
+        velocity, force = state[1] + weights @ a, self.problem.gravity - a
+        depth = state[0] + weights @ velocity
+        values = np.empty((state.size, a.size + 1))
+        values[:, 0] = state
+        values[0, 1:], values[1, 1:], values[3, 1:] = depth, velocity, force
+        values[2, 1:] = state[2] + weights @ (force * velocity)
+        if k:
+            values[4 : 4 + k, 1:] = (answers @ (state[4 : 4 + k, None] + rise)[..., None])[..., 0]
+            values[4 + k :, 1:] = (answers @ (state[4 + k :, None] + depth - state[0])[..., None])[..., 0]
+        return values

@@ -1,0 +1,136 @@
+"""A solution in pieces, each a polynomial of every field of its state."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+from lumped.hereditary.radau import Radau
+
+Array = NDArray[np.float64]
+Curve = Callable[[float], float]
+POINTS_PER_PIECE = 12
+ROOT_STEPS = 100
+ROUNDING = 4e-16
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """`breaks` (m+1,) ascend; `coefficients` (m, fields, N+1) are those of Legendre polynomials in each piece.
+
+    `end` is the last place, at most the last break: what lies beyond an event is no part of the path.
+    """
+
+    breaks: Array
+    coefficients: Array
+    end: float
+
+    @classmethod
+    def of(cls, breaks: Sequence[float], values: Sequence[Array], table: Radau) -> Path:
+        """The path through `values`, for every piece (fields, N+1) at its first place and its nodes."""
+        return cls(np.array(breaks), np.array(values) @ table.series.T, float(breaks[-1]))
+
+    def joined(self, later: Path) -> Path:
+        """The path, whole, and one that goes on from its last break."""
+        breaks = np.append(self.breaks, later.breaks[1:])
+        return Path(breaks, np.concatenate([self.coefficients, later.coefficients]), later.end)
+
+    def until(self, end: float) -> Path:
+        """The same path with another end."""
+        return replace(self, end=end)
+
+    def at(self, places: Array | float) -> Array:
+        """All fields at places (n,), shape (fields, n); at one place (fields,)."""
+        basis, piece = self._basis(places)
+        return np.asarray(np.einsum("...fk,...k->f...", self.coefficients[piece], basis))
+
+    def field(self, index: int, places: Array) -> tuple[Array, Array]:
+        """One field and its derivative at places (n,)."""
+        basis, piece = self._basis(places)
+        own = self.coefficients[:, index]
+        rise = np.zeros_like(own)
+        rise[:, :-1] = legendre.legder(own, axis=1) * (2.0 / np.diff(self.breaks))[:, None]
+        return (own[piece] * basis).sum(axis=-1), (rise[piece] * basis).sum(axis=-1)
+
+    def curve(self, index: int, near: float) -> tuple[Curve, Curve]:
+        """One field and its derivative as functions of a place in the piece around `near`."""
+        piece = self._piece(near)
+        low, high = (float(place) for place in self.breaks[piece : piece + 2])
+        own = self.coefficients[piece, index]
+        rise = legendre.legder(own) * (2.0 / (high - low))
+
+        def function(series: list[float]) -> Curve:
+            return lambda place: legendre_sum(series, (2.0 * place - low - high) / (high - low))
+
+        return function(own.tolist()), function(rise.tolist())
+
+    @cached_property
+    def places(self) -> Array:
+        """Places that lie densely in every piece, shape (n,)."""
+        inside = self.breaks[self.breaks < self.end]
+        ends = np.append(inside[1:], self.end)
+        shares = np.arange(POINTS_PER_PIECE) / POINTS_PER_PIECE
+        return np.append((inside[:, None] + shares * (ends - inside)[:, None]).ravel(), self.end)
+
+    @cached_property
+    def sampled(self) -> Array:
+        """All fields at `places`, shape (fields, n)."""
+        return self.at(self.places)
+
+    def highest(self, index: int) -> tuple[float, float]:
+        """Place and height of the highest point of a field."""
+        values, places = self.sampled[index], self.places.tolist()
+        i = int(np.argmax(values))
+        # Each interval between samples lies in one piece, and the top in the one into which the curve rises.
+        for low, high in zip(places[max(i - 1, 0) : i + 1], places[i : i + 2], strict=False):
+            if low < high:
+                value, slope = self.curve(index, 0.5 * (low + high))
+                if slope(low) > 0.0 > slope(high):
+                    top = falling_zero(slope, low, high)
+                    return top, value(top)
+        return places[i], float(values[i])
+
+    def _piece(self, places: Array | float) -> Array:
+        """The index of the piece of each place."""
+        return np.minimum(np.searchsorted(self.breaks[1:-1], places, side="right"), len(self.coefficients) - 1)
+
+    def _basis(self, places: Array | float) -> tuple[Array, Array]:
+        """Legendre polynomials at places (n,), shape (n, N+1), and the piece of each."""
+        piece = self._piece(places)
+        low, high = self.breaks[piece], self.breaks[piece + 1]
+        x = (2.0 * np.asarray(places) - low - high) / (high - low)
+        basis = np.empty((self.coefficients.shape[2], *x.shape))
+        basis[0], basis[1] = 1.0, x
+        for n in range(1, len(basis) - 1):
+            basis[n + 1] = ((2 * n + 1) / (n + 1)) * x * basis[n] - (n / (n + 1)) * basis[n - 1]
+        return np.moveaxis(basis, 0, -1), piece
+
+
+def legendre_sum(series: list[float], x: float) -> float:
+    """sum_n series_n P_n(x) by Clenshaw's recurrence."""
+    above, value = 0.0, 0.0
+    for n in range(len(series) - 1, -1, -1):
+        above, value = value, series[n] + (2 * n + 1) / (n + 1) * x * value - (n + 1) / (n + 2) * above
+    return value
+
+
+def falling_zero(value: Curve, low: float, high: float) -> float:
+    """Where `value` falls to zero between `low`, where it is positive, and `high`: false position, Illinois."""
+    at_low, at_high, side, place = value(low), value(high), 0, high
+    if at_low <= 0.0:
+        return low
+    for _ in range(ROOT_STEPS):
+        before, place = place, high - at_high * (high - low) / (at_high - at_low)
+        found = value(place)
+        if found == 0.0 or abs(place - before) <= ROUNDING * abs(high):
+            break
+        if found > 0.0:
+            low, at_low, at_high, side = place, found, at_high * (0.5 if side == 1 else 1.0), 1
+        else:
+            high, at_high, at_low, side = place, found, at_low * (0.5 if side == -1 else 1.0), -1
+    return place
