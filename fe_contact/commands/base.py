@@ -7,7 +7,7 @@ import json
 import os
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from fe_contact.numerics import faults
 from fe_contact.progress import Progress, silent
@@ -73,7 +73,14 @@ def number(text: str, option: str) -> float:
         raise BadInput(Fault(option, "", f"{text!r}: accepted a number")) from None
 
 
-def folder(args: argparse.Namespace, command: str, scene: Scene) -> Path:
+class Named(Protocol):
+    """A scene, or whatever else a command works on."""
+
+    @property
+    def name(self) -> str: ...
+
+
+def folder(args: argparse.Namespace, command: str, scene: Named) -> Path:
     """Where the results of a command go; raises BadInput, before any work, where nothing can be written."""
     chosen: Path | None = args.out
     where = chosen or Path("fe-contact-out") / f"{command}-{scene.name}"

@@ -36,6 +36,8 @@ def simulate(
         faults.append(Fault("simulate", "route", f"accepted: {', '.join(ROUTES)}{nearest(route, ROUTES)}"))
     elif route == "exact" and not equations.linear:
         faults.append(Fault("simulate", "route", "exact only for exponent 1; accepted here: integrated"))
+    if system.damper is None and not (start.x1 or start.v1):
+        faults.append(Fault("start", "x1", "nothing moves without a damper; accepted: x1 or v1 that is not zero"))
     if faults:
         raise BadInput(faults)
     spacing = row_spacing(equations, start, end_time, rows_per_period)

@@ -36,6 +36,7 @@ def _follow(
     from scipy import integrate
 
     size, known = equations.size, switches(equations, stages)
+    events = [_terminal(switch.level, size, span[0]) for switch in known]
 
     def rate(_: float, y: Array) -> Array:
         return np.concatenate([equations.rates(stages, y[:size]), equations.integrands(stages, y[:size])])
@@ -43,7 +44,7 @@ def _follow(
     solve_ivp: Any = integrate.solve_ivp  # its stubs know only their own array shapes
     solution = solve_ivp(
         rate, span, np.concatenate([state, np.zeros(INTEGRALS)]), method="DOP853", rtol=RTOL, atol=ATOL * scales,
-        max_step=spacing, dense_output=True, events=[_terminal(switch.level, size) for switch in known] or None,
+        max_step=spacing, dense_output=True, events=events or None,
     )  # fmt: skip
     if solution.status < 0:
         raise NotReached(f"the integration stopped: {solution.message}")
@@ -73,11 +74,12 @@ def _scales(equations: Equations, start: Start) -> Array:
     return np.array([*bodies, *surfaces, *squares, *[energy] * (INTEGRALS - len(squares))])
 
 
-def _terminal(level: Callable[[Array], Array], size: int) -> Callable[[float, Array], float]:
+def _terminal(level: Callable[[Array], Array], size: int, start: float) -> Callable[[float, Array], float]:
     """The level in scipy's manner: attributes of the function say that it ends the run, and only falling."""
 
-    def marked(_: float, y: Array) -> float:
-        return float(level(y[:size]))
+    def marked(time: float, y: Array) -> float:
+        # No level is below zero when a phase begins; what rounding says there would hide a fall from zero.
+        return max(float(level(y[:size])), 0.0) if time == start else float(level(y[:size]))
 
     marked.terminal = True  # type: ignore[attr-defined]
     marked.direction = -1.0  # type: ignore[attr-defined]

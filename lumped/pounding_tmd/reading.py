@@ -66,7 +66,7 @@ def _contact(track: Track, index: int, side: int, run: list[Phase]) -> Contact:
         return equations.depth(index, states)
 
     end = run[-1].end if run[-1] is not track.phases[-1] else None
-    peak_force, peak_depth = (max(highest_of(phase, reading)[1] for phase in run) for reading in (force, depth))
+    peak_force, peak_depth = (max(highest_of(phase, reading) for phase in run) for reading in (force, depth))
     return Contact(side, run[0].start, end, peak_force, peak_depth)
 
 

@@ -9,13 +9,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.interpolation import highest
 from lumped.pounding_tmd.equations import Equations
 from lumped.pounding_tmd.phase import Phase
 
 Array = NDArray[np.float64]
 # Rows miss the top of a vibration by no more than this share of it.
 ROW_LOSS = 0.01
+NEAREST = 1e-7  # share of two rows to which a top is located; its height errs by the square
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ class Track:
         return np.concatenate([phase.states for phase in self.phases], axis=1)
 
     def rows(self, reading: Callable[[Phase, Array], Array]) -> Array:
-        """A reading of every row: `reading` maps a phase and its states (size, n) to (n,)."""
+        """A reading of every row: `reading` maps a phase and its states (size, ...) to (...)."""
         return np.concatenate([reading(phase, phase.states) for phase in self.phases])
 
     def at(self, time: float) -> Array:
@@ -59,8 +59,9 @@ class Track:
         tops = [float(np.max(reading(phase, phase.states))) for phase in self.phases]
         least = max(tops) - ROW_LOSS * abs(max(tops))
         near = [phase for phase, top in zip(self.phases, tops, strict=True) if top >= least]
-        return max(highest_of(phase, reading)[1] for phase in near)
+        return max(highest_of(phase, reading) for phase in near)
 
+    @cached_property
     def turns(self) -> list[float]:
         """Times at which the structure turns, s, ascending, with both ends of the motion."""
         from scipy.optimize import brentq
@@ -74,7 +75,7 @@ class Track:
         """When |x1| exceeds a level, m, for the last time, s; None while it still does at the end."""
         from scipy.optimize import brentq
 
-        turns = self.turns()
+        turns = self.turns
         heights = [float(self.at(time)[0]) for time in turns]
         above = [i for i, height in enumerate(heights) if abs(height) >= level]
         if not above or above[-1] == len(turns) - 1:
@@ -84,16 +85,20 @@ class Track:
         return float(brentq(lambda time: sign * self.at(time)[0] - level, after, before, xtol=1e-13))
 
 
-def highest_of(phase: Phase, reading: Callable[[Phase, Array], Array]) -> tuple[float, float]:
-    """Time, s, and height of the highest point of a reading of one phase."""
+def highest_of(phase: Phase, reading: Callable[[Phase, Array], Array]) -> float:
+    """The largest value of a reading of one phase, between the rows too."""
+    from scipy.optimize import minimize_scalar
+
     values = reading(phase, phase.states)
     i = int(np.argmax(values))
     around = phase.times[max(i - 1, 0) : i + 2]
-    if around.size < 2:
-        return float(phase.times[i]), float(values[i])
-
-    def curve(times: Array) -> Array:
-        return reading(phase, np.stack([phase.at(float(time)) for time in times], axis=1))
-
-    time, height = highest(curve, around)
-    return (time, height) if height > values[i] else (float(phase.times[i]), float(values[i]))
+    width = float(around[-1] - around[0])
+    if width == 0.0:
+        return float(values[i])
+    found = minimize_scalar(
+        lambda share: -float(reading(phase, phase.at(float(around[0] + share * width)))),
+        bounds=(0.0, 1.0),
+        method="bounded",
+        options={"xatol": NEAREST},
+    )
+    return max(float(values[i]), -float(found.fun))

@@ -1,0 +1,78 @@
+"""``fe-contact ptmd [FILE]``: section 5 of the paper, a structure with a pounding tuned mass damper."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fe_contact.commands import base
+
+if TYPE_CHECKING:
+    from lumped.pounding_tmd.study import Study
+
+SUMMARY = "free vibration of a pounding tuned mass damper: motion, contacts, energies, chart"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """[FILE] [--set a.b=value ...] [--out DIR] [--json] [--quiet]."""
+    parser.add_argument("file", nargs="?", default="paper", help="file (TOML) or packaged name; default: the paper's")
+    parser.add_argument(
+        "--set",
+        dest="overrides",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="override a key of the file",
+    )
+    base.output_arguments(parser)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Simulate, write, report; 0 or 3."""
+    from fe_contact.report.ptmd import plot_study
+    from fe_contact.validation.ptmd_files import write_study
+    from lumped.pounding_tmd.case_file import load
+    from lumped.pounding_tmd.study import study
+    from lumped.toml_file import parse_assignment
+
+    case = load(args.file, dict(parse_assignment(text) for text in args.overrides))
+    where = base.folder(args, "ptmd", case)
+    found = study(case, base.progress_of(args))
+    content = write_study(found, where)
+    plot_study(found, where)
+    print(json.dumps(content, allow_nan=False) if args.json else summary(found, where))
+    for line in warnings(found):
+        print(f"fe-contact: {line}", file=sys.stderr)
+    return base.NOT_REACHED if found.convergence.message else base.DONE
+
+
+def summary(found: Study, where: Path) -> str:
+    """The measures of every variant, then the energies, one a line."""
+    lines = [f"{found.case.name}: {found.case.end_time:g} s of free vibration"]
+    for name, result in found.results.items():
+        m = result.measures
+        halved = "not reached" if m.t50 is None else f"{m.t50:.3g} s"
+        lines.append(
+            f"{name:19s} rms x1 {1e3 * m.rms_displacement:.4g} mm, max |a1| {m.max_acceleration:.4g} m/s2, "
+            f"last above 50 % {halved}, contacts {m.contacts}"
+        )
+    m, energy = found.main.measures, found.main.energy
+    lines.append(f"peak force {m.peak_force:.4g} N, penetration {1e3 * m.peak_depth:.4g} mm")
+    lines.append(
+        f"of {energy.initial:.4g} J lost in structure {energy.lost_structure:.4g}, damper {energy.lost_damper:.4g}, "
+        f"ring {energy.lost_ring:.4g}; residual {energy.residual:.1e}"
+    )
+    return "\n  ".join([*lines, f"written to {where}"])
+
+
+def warnings(found: Study) -> list[str]:
+    """What did not converge, and an assumption of the contact law that does not hold."""
+    lines = [found.convergence.message] if found.convergence.message else []
+    if not found.model_sufficient:
+        known = [entry for entry in found.ledger if entry.estimate is not None]
+        worst = max(known, key=lambda entry: entry.estimate or 0.0)
+        lines.append(f"the contact law assumes small deformation: {worst.effect} is {worst.estimate:.2g}")
+    return lines

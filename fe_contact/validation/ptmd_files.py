@@ -1,0 +1,60 @@
+"""A study of the pounding tuned mass damper as files: rows and contacts in CSV, what they amount to in JSON."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fe_contact.validation.tables import plain, write_csv, write_json
+from lumped.pounding_tmd.result import COLUMNS
+from lumped.pounding_tmd.study import Study
+from lumped.result import provenance
+
+SCHEMA = "fe-contact/ptmd/1"
+CONTACT_COLUMNS = {
+    "side": "side",
+    "start": "start_s",
+    "end": "end_s",
+    "peak_force": "peak_force_N",
+    "peak_depth": "peak_depth_m",
+}
+
+
+def write_study(study: Study, where: Path) -> dict[str, Any]:
+    """Write ``ptmd.csv``, ``contacts.csv`` and ``ptmd.json`` into a folder, made when it is not there; the last's
+    content.
+    """
+    where.mkdir(parents=True, exist_ok=True)
+    motion = study.main.motion
+    table = np.column_stack([getattr(motion, name) for name in COLUMNS])
+    write_csv(where / "ptmd.csv", list(COLUMNS.values()), table.tolist())
+    rows = [[getattr(contact, name) for name in CONTACT_COLUMNS] for contact in study.main.contacts]
+    write_csv(where / "contacts.csv", list(CONTACT_COLUMNS.values()), rows)
+    content = study_content(study)
+    write_json(where / "ptmd.json", content)
+    return content
+
+
+def study_content(study: Study) -> dict[str, Any]:
+    """The content of ``ptmd.json``; SI units, null where undefined."""
+    message = study.convergence.message
+    content: dict[str, Any] = plain(
+        {
+            "schema": SCHEMA,
+            "name": study.case.name,
+            "converged": not message,
+            "model_sufficient": study.model_sufficient,
+            "message": message,
+            "case": study.case.to_dict(),
+            "measures": study.main.measures.to_dict(),
+            "energy": study.main.energy.to_dict(),
+            "variants": {name: result.measures.to_dict() for name, result in study.results.items()},
+            "convergence": asdict(study.convergence),
+            "model_ledger": [asdict(entry) for entry in study.ledger],
+            "provenance": provenance(),
+        }
+    )
+    return content
