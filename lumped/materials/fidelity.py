@@ -13,20 +13,21 @@ STEEPEST = 3.0
 
 @dataclass(frozen=True)
 class Fidelity:
-    """Largest relative deviation of a series from its modulus at times in `window`, s, and at any other time.
+    """Largest relative deviation of a series from its modulus at times in `window`, s, before it and after it.
 
-    `outside` is infinite where nothing is known. Raises BadInput.
+    Infinite where nothing is known. Raises BadInput.
     """
 
     window: tuple[float, float]
     inside: float
-    outside: float = math.inf
+    before: float = math.inf
+    after: float = math.inf
 
     def __post_init__(self) -> None:
         shortest, longest = self.window
         if not 0.0 < shortest <= longest < math.inf:
             raise BadInput(Fault("material", "fit_window", "accepted: shortest <= longest, both finite and above zero"))
-        if not (self.inside >= 0.0 and self.outside >= 0.0):
+        if not min(self.inside, self.before, self.after) >= 0.0:
             raise BadInput(Fault("material", "fit_error", "accepted: relative deviations >= 0"))
 
     def of_force(self, duration: float) -> float:
@@ -37,6 +38,5 @@ class Fidelity:
         """
         shortest, longest = self.window
         if duration > longest:
-            return max(self.inside, self.outside)
-        young = min(1.0, STEEPEST * shortest / duration)
-        return self.inside + (young * self.outside if young else 0.0)
+            return max(self.inside, self.before, self.after)
+        return self.inside + min(1.0, STEEPEST * shortest / duration) * self.before

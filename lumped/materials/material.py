@@ -80,7 +80,8 @@ def _fit_keys(young: Relaxation) -> dict[str, Any]:
     fidelity = young.fidelity
     if fidelity is None:
         return {}
-    known = {"fit_error_outside": fidelity.outside} if math.isfinite(fidelity.outside) else {}
+    bounds = {"fit_error_before": fidelity.before, "fit_error_after": fidelity.after}
+    known = {name: bound for name, bound in bounds.items() if math.isfinite(bound)}
     return {"fit_window": list(fidelity.window), "fit_error": fidelity.inside} | known
 
 

@@ -64,8 +64,8 @@ def of_operational(
     """The series with few terms whose E(t) has this relative deviation at most at times in `window`, s.
 
     `operational` maps complex s, 1/s, to s L{E(t)}, Pa, shape kept, with the parallel `viscosity`, Pa s, in it.
-    `relaxed` and `glassy`, Pa, are E at infinite and zero time without the viscosity: given, they are met too, and the
-    deviation outside of the window is bounded. Raises BadInput, and NotReached when no series is as close.
+    `relaxed` and `glassy`, Pa, are E at infinite and zero time without the viscosity: given, they are met too, and
+    the deviation after and before the window is bounded. Raises BadInput, and NotReached when no series is as close.
     """
     _check(window, tolerance, relaxed, glassy)
     times, modulus, _ = _sampled(operational, window, FITTED_A_DECADE, viscosity, glassy)
@@ -78,7 +78,7 @@ def of_operational(
         deviation = RIPPLE * np.abs(series(checked) / truth - 1.0) + unsure / truth
         best = min(best, float(deviation.max()))
         if best <= tolerance:
-            return _told(series, deviation, window, _outside(series, checked, truth, relaxed, glassy))
+            return _told(series, deviation, window, *_outside(series, checked, truth, relaxed, glassy))
         density *= GROWTH
     raise NotReached(
         f"no Prony series of E(s) to {tolerance:g} over {window[0]:g} to {window[1]:g} s: {best:.2g} reached"
@@ -170,19 +170,21 @@ def _relaxed_to(relaxed: float | None, series: Relaxation, last: float) -> Relax
     return replace(series, equilibrium=relaxed, moduli=series.moduli + slow, times=series.times + (last,) * len(slow))
 
 
-def _told(series: Relaxation, deviation: Array, window: tuple[float, float], outside: float = math.inf) -> PronyFit:
+def _told(
+    series: Relaxation, deviation: Array, window: tuple[float, float], before: float = math.inf, after: float = math.inf
+) -> PronyFit:
     """The series with what is known of its deviations, (n,)."""
     worst, rms = float(deviation.max()), float(np.sqrt(np.mean(deviation**2)))
-    told = replace(series, fidelity=Fidelity((float(window[0]), float(window[1])), worst, outside))
+    told = replace(series, fidelity=Fidelity((float(window[0]), float(window[1])), worst, before, after))
     return PronyFit(told, worst, rms, deviation.size)
 
 
-def _outside(series: Relaxation, times: Array, truth: Array, relaxed: float | None, glassy: float | None) -> float:
-    """Bound outside of the window: series and modulus both fall, so beyond each end both lie between known values."""
-    if relaxed is None or glassy is None:
-        return math.inf
+def _outside(
+    series: Relaxation, times: Array, truth: Array, relaxed: float | None, glassy: float | None
+) -> tuple[float, float]:
+    """Bounds before and after the window: series and modulus both fall, so both lie between known values."""
     inner = times > 0.0
     known, found = truth[inner], series(times[inner])
-    early = max(glassy - found[0], series.glassy - known[0]) / known[0]
-    late = max(known[-1] - relaxed, found[-1] - relaxed) / relaxed
-    return float(max(early, late))
+    before = math.inf if glassy is None else max(glassy - found[0], series.glassy - known[0]) / known[0]
+    after = math.inf if relaxed is None else max(known[-1], found[-1]) / relaxed - 1.0
+    return float(before), float(after)

@@ -1,7 +1,7 @@
 """A Prony series: a spring beside Maxwell elements, and a dashpot beside them all if `eta` is given.
 
-A series fitted to another modulus may say how well: `fit_window`, s, and the relative deviations `fit_error` in it
-and `fit_error_outside`.
+A series fitted to another modulus may say how well: `fit_window`, s, and the relative deviations `fit_error` in it,
+`fit_error_before` and `fit_error_after`.
 """
 
 import math
@@ -21,7 +21,8 @@ KEYS = (
         "eta": replace(VISCOSITY, required=False),
         "fit_window": Numbers(TIME, most=2, required=False),
         "fit_error": DEVIATION,
-        "fit_error_outside": DEVIATION,
+        "fit_error_before": DEVIATION,
+        "fit_error_after": DEVIATION,
     },
 )
 
@@ -33,20 +34,21 @@ def of(
     eta: float = 0.0,
     fit_window: tuple[float, ...] = (),
     fit_error: float | None = None,
-    fit_error_outside: float = math.inf,
+    fit_error_before: float = math.inf,
+    fit_error_after: float = math.inf,
 ) -> Relaxation:
     """E(t) = E_inf + sum_k E_k exp(-t/tau_k) + eta dirac(t)."""
     if len(E) != len(tau):
         raise ValueError(f"E has {len(E)} values and tau has {len(tau)}; accepted: as many of one as of the other")
     if E_inf + sum(E) + eta <= 0.0:
         raise ValueError("E_inf, every E and eta are zero; accepted: at least one above zero")
-    return Relaxation(E_inf, E, tau, eta, _fidelity(fit_window, fit_error, fit_error_outside))
+    return Relaxation(E_inf, E, tau, eta, _fidelity(fit_window, fit_error, fit_error_before, fit_error_after))
 
 
-def _fidelity(window: tuple[float, ...], inside: float | None, outside: float) -> Fidelity | None:
+def _fidelity(window: tuple[float, ...], inside: float | None, before: float, after: float) -> Fidelity | None:
     """What the series says of its fit, None when nothing."""
-    if not window and inside is None and outside == math.inf:
+    if not window and inside is None and before == after == math.inf:
         return None
     if inside is None or len(window) != 2 or window[0] > window[1]:
         raise ValueError("fit_window and fit_error belong together; accepted: fit_window = [shortest, longest] in s")
-    return Fidelity((window[0], window[1]), inside, outside)
+    return Fidelity((window[0], window[1]), inside, before, after)
