@@ -15,7 +15,7 @@ from lumped.ending import AT_REST, End
 from lumped.errors import TooManySteps
 
 Array = NDArray[np.float64]
-FIRST_STEP = 1e-3  # of the law's time scale
+FIRST_STEP = 0.125  # power of the tolerance: the first step in the law's time scale
 MOST_TURNS = 2000
 
 
@@ -61,7 +61,7 @@ def contact(
     `tolerance`: error of the rate in one step, relative to the velocity at first touch.
     """
     scale = law.time_scale(bodies)
-    length = FIRST_STEP * scale
+    length = tolerance**FIRST_STEP * scale
     stage = Stage(start.rate > 0.0, start.depth, abs(start.rate) or bodies.velocity)
     phases: list[Phase] = []
     for _ in range(MOST_TURNS):
@@ -76,7 +76,7 @@ def contact(
             return Contact(tuple(phases), End.SEPARATED)
         stage = Stage(not stage.approaching, max(stage.deepest, start.depth), stage.speed)
         start = start._replace(rate=0.0)
-        if abs(phase.last.acceleration[-1]) * scale < AT_REST * bodies.velocity:
+        if abs(phase.last.last_acceleration) * scale < AT_REST * bodies.velocity:
             return Contact(tuple(phases), End.REST)
     raise TooManySteps(f"contact: {MOST_TURNS} turns without separation; accepted: an earlier motion.end_time")
 
@@ -84,11 +84,17 @@ def contact(
 def _events(law: PointLaw, stage: Stage, exit_rule: str) -> Mapping[str, Event]:
     """What ends a stage: the turn of the motion, and in the rebound the end of contact."""
     if stage.approaching:
-        return {"turn": lambda step: step.rate}
+        return {"turn": TURN}
     pulls = law.tensile and exit_rule == "force"
-    return {"exit": _force_left if pulls else lambda step: step.depth, "turn": lambda step: -step.rate}
+    return {"exit": FORCE_LEFT if pulls else DEPTH_LEFT, "turn": TURN_BACK}
 
 
 def _force_left(step: Step) -> Array:
     """The force as long as there is depth."""
     return np.asarray(np.where(step.depth > 0.0, step.force, -np.abs(step.force)))
+
+
+TURN = Event(lambda step: step.rate, lambda step: step.last_acceleration)
+TURN_BACK = Event(lambda step: -step.rate, lambda step: -step.last_acceleration)
+DEPTH_LEFT = Event(lambda step: step.depth, lambda step: step.end.rate, surfaces=True)
+FORCE_LEFT = Event(_force_left, lambda step: step.last_slope(step.force), rough=True)

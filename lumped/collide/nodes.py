@@ -1,13 +1,15 @@
 """Radau's collocation in time: an integrator as numbers.
 
 Stages at the right-hand Radau points, order 2 s - 1, stiffly accurate and L-stable: Hairer and Wanner, Solving
-Ordinary Differential Equations II, IV.5, ISBN 978-3-642-05220-0.
+Ordinary Differential Equations II, IV.5, ISBN 978-3-642-05220-0. A force like depth^(3/2) is not smooth in time where
+the depth is zero: steps after a touch run in the p-th root of the time since then, a step that ends at depth zero in
+that of the time left, in which it is smooth.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -17,22 +19,39 @@ Array = NDArray[np.float64]
 STAGES = 8
 
 
-@dataclass(frozen=True, eq=False)
-class Nodes:
+class Nodes(NamedTuple):
     """Points in (0, 1], shape (s,), the last one 1, and matrices (s, s) that act on values there.
 
-    `once` and `twice` integrate from zero to each point, once and twice; `weights` (s,) over the whole step;
-    `series` turns values into Legendre coefficients on [0, 1]; `first` and `second`, shape (s, s + 1) and
-    (s, s + 2), those coefficients into the ones of the integrals.
+    `points` are shares of the step's time, `pace` is the time's slope over the place, which goes from 0 to 1 over the
+    step: the p-th root of the time since `begun` step lengths before the step, or, `mirrored`, until its end. `once`
+    integrates over the place from zero to each point, `twice` over the place and then over the time; `weights` (s,)
+    over the whole step. `series` turns values into Legendre coefficients in the place on [0, 1], `first`, shape
+    (s, s + 1), those into the ones of the integral. `leaving` (s,) is the slope over the place at the last point.
     """
 
+    power: int
+    begun: float
+    mirrored: bool
     points: Array
+    pace: Array
     once: Array
     twice: Array
     weights: Array
     series: Array
     first: Array
-    second: Array
+    leaving: Array
+    places: Array
+
+    def graded(self, power: int, begun: float = 0.0, mirrored: bool = False) -> Nodes:
+        """The same places, run through at another pace."""
+        low, high = begun ** (1.0 / power), (1.0 + begun) ** (1.0 / power)
+        root = low + (high - low) * (1.0 - self.places if mirrored else self.places)
+        points, pace = root**power - begun, power * (high - low) * root ** (power - 1)
+        if mirrored:
+            points = 1.0 - points
+        points[-1] = 1.0
+        twice = self.once @ (pace[:, None] * self.once)
+        return self._replace(power=power, begun=begun, mirrored=mirrored, points=points, pace=pace, twice=twice)
 
 
 @cache
@@ -44,13 +63,22 @@ def radau(count: int) -> Nodes:
     for _ in range(2):  # the eigenvalues behind the roots leave a few last digits
         zeros -= legendre.legval(zeros, difference) / legendre.legval(zeros, legendre.legder(difference))
     zeros[-1] = 1.0
-    series: Array = np.linalg.inv(np.asarray(legendre.legvander(zeros, count - 1), dtype=np.float64))
+    series = np.linalg.inv(legendre.legvander(zeros, count - 1))
     # d/dx of the series in x in [-1, 1] is twice that over the step's share in [0, 1]
     first = 0.5 * np.array([legendre.legint(row, lbnd=-1.0) for row in np.eye(count)])
-    second = 0.25 * np.array([legendre.legint(row, m=2, lbnd=-1.0) for row in np.eye(count)])
+    ends = np.array([2.0 * legendre.legval(1.0, legendre.legder(row)) for row in np.eye(count)])
     once = legendre.legvander(zeros, count) @ first.T @ series
-    points = 0.5 * (1.0 + zeros)
-    return Nodes(points, once, once @ once, np.array(once[-1]), series, first, second)
+    points, pace = 0.5 * (1.0 + zeros), np.ones(count)
+    last = np.array(once[-1])
+    return Nodes(1, 0.0, False, points, pace, once, once @ once, last, series, first, ends @ series, points)
+
+
+def place_of(share: Array, power: Array, begun: Array, mirrored: NDArray[np.bool_]) -> Array:
+    """Places in steps of these nodes where shares of their time have passed, all of one shape."""
+    root = (np.where(mirrored, 1.0 - share, share) + begun) ** (1.0 / power)
+    low, high = begun ** (1.0 / power), (1.0 + begun) ** (1.0 / power)
+    place = (root - low) / (high - low)
+    return np.where(mirrored, 1.0 - place, place)
 
 
 def through_zero(share: Array, count: int = STAGES) -> Array:

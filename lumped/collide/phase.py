@@ -4,22 +4,34 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.collide.bodies import Bodies, PointLaw, Stage, State
-from lumped.collide.step import NODES, STAGES, Step, roughness, solved
+from lumped.collide.nodes import STAGES, Nodes
+from lumped.collide.step import NODES, Step, roughness, solved
 from lumped.errors import TooManySteps
 
 Array = NDArray[np.float64]
-# An event happens where its value, at the Radau points of a step, is no longer above zero.
-Event = Callable[[Step], Array]
-
 MOST_STEPS = 5000
-LOCATIONS = 30
+LOCATIONS = 60
 PRECISE = 1e-14  # of the time reached: where an event lies
 SHORTEST, LONGEST, CAUTION = 0.1, 5.0, 0.8
+
+
+class Event(NamedTuple):
+    """An event happens where its value, at the points of a step, is no longer above zero.
+
+    `slope`: the value's slope over time at the end of a step; where it is rough secants take its place. `surfaces`:
+    at depth zero.
+    """
+
+    value: Callable[[Step], Array]
+    slope: Callable[[Step], float]
+    rough: bool = False
+    surfaces: bool = False
 
 
 @dataclass(frozen=True)
@@ -54,65 +66,77 @@ class March:
     def phase(self, start: State, time: float, length: float) -> Phase:
         """March from `start` with a first step of about `length`, s. Raises TooManySteps."""
         steps: list[Step] = []
-        now, state = time, start
-        guess = np.zeros(STAGES)
+        now, state, guess = time, start, np.full(STAGES, self.bodies.gravity)
+        power = self.law.grading if start.depth <= 0.0 else 1
         for _ in range(MOST_STEPS):
             length = min(length, self.until - now)
-            step = self._solved(state, length, guess)
+            nodes = NODES.graded(power, (now - time) / length) if power > 1 else NODES
+            step = self._solved(state, length, guess * nodes.pace, nodes)
             event = None if step is None else self._first(step)
             if step is not None and event is not None:
-                step = self._located(step, event, now, guess)
+                step = self._located(step, event, now)
             rough = np.inf if step is None else roughness(step) / self.allowed
             if step is None or rough > 1.0:
                 length = (length if step is None else step.length) * _factor(rough)
                 continue
             steps.append(step)
             now, state = now + step.length, step.end
-            guess = np.full(STAGES, step.acceleration[-1])
             if event is not None or now >= self.until * (1.0 - PRECISE):
                 return Phase(self.stage, time, tuple(steps), event)
+            guess = np.full(STAGES, step.last_acceleration)
             length = step.length * _factor(rough)
         raise TooManySteps(
             f"contact: {MOST_STEPS} time steps reach {now:.3g} s of {self.until:.3g} s; "
             "accepted: an earlier motion.end_time, or a law less stiff"
         )
 
-    def _solved(self, state: State, length: float, guess: Array) -> Step | None:
-        return solved(self.law, self.stage, self.bodies, state, length, guess)
+    def _solved(self, state: State, length: float, guess: Array, nodes: Nodes) -> Step | None:
+        return solved(self.law, self.stage, self.bodies, state, length, guess, nodes)
 
     def _first(self, step: Step) -> str | None:
         """The event that happens first within a step."""
-        places = {name: np.flatnonzero(value(step) <= 0.0) for name, value in self.events.items()}
+        places = {name: np.flatnonzero(event.value(step) <= 0.0) for name, event in self.events.items()}
         found = {name: int(place[0]) for name, place in places.items() if place.size}
         return min(found, key=lambda name: found[name]) if found else None
 
-    def _located(self, step: Step, event: str, now: float, guess: Array) -> Step | None:
-        """The step that ends where the event happens: secants on its length, kept between what brackets it."""
-        value = self.events[event]
-        values = value(step)
-        after = int(np.flatnonzero(values <= 0.0)[0])
-        high, at_high = float(NODES.points[after]) * step.length, float(values[after])
-        low = float(NODES.points[after - 1]) * step.length if after else 0.0
-        at_low = float(values[after - 1]) if after else -at_high
-        previous, at_previous, length, trial = high, at_high, _secant(low, at_low, high, at_high), None
+    def _located(self, step: Step, name: str, now: float) -> Step | None:
+        """The step that ends where the event happens: Newton's method on its length, kept between what brackets it."""
+        event = self.events[name]
+        low, high, length = 0.0, 2.0 * step.length, _expected(step, event.value(step))
+        nodes = self._ending(step, event, length)
+        guess = nodes.pace * step.accelerations(nodes.points * (length / step.length))
+        previous: tuple[float, float] | None = None
         for _ in range(LOCATIONS):
-            trial = self._solved(step.start, length, guess)
+            trial = self._solved(step.start, length, guess, nodes)
             if trial is None:
                 return None
-            at = float(value(trial)[-1])
+            at = float(event.value(trial)[-1])
+            slope = event.slope(trial)
+            if event.rough and previous is not None and previous[0] != length:
+                slope = (at - previous[1]) / (length - previous[0])
             low, high = (low, length) if at <= 0.0 else (length, high)
-            following = _secant(previous, at_previous, length, at)
-            if not low < following < high:
-                following = 0.5 * (low + high)
+            following = length - at / slope if slope < 0.0 else low
             if at == 0.0 or abs(following - length) <= PRECISE * (now + length):
                 return trial
-            previous, at_previous, length = length, at, following
+            previous, length = (length, at), following if low < following < high else 0.5 * (low + high)
+            nodes, guess = self._ending(step, event, length), trial.gain
         return trial
 
+    def _ending(self, step: Step, event: Event, length: float) -> Nodes:
+        """The nodes of a step of another length, s, which ends with an event."""
+        if event.surfaces and step.nodes.power == 1 and self.law.grading > 1:
+            return NODES.graded(self.law.grading, mirrored=True)
+        power, begun = step.nodes.power, step.nodes.begun * step.length / length
+        return NODES.graded(power, begun) if power > 1 else NODES
 
-def _secant(one: float, at_one: float, other: float, at_other: float) -> float:
-    """Where the line through two points is zero; the second where it is level."""
-    return other - at_other * (other - one) / (at_other - at_one) if at_other != at_one else other
+
+def _expected(step: Step, values: Array) -> float:
+    """After what time an event should happen, s, from its values at the points of a step: a line between two."""
+    after = int(np.flatnonzero(values <= 0.0)[0])
+    high, at_high = float(step.nodes.points[after]), float(values[after])
+    low, at_low = (float(step.nodes.points[after - 1]), float(values[after - 1])) if after else (0.0, -at_high)
+    share = high - at_high * (high - low) / (at_high - at_low) if at_high != at_low else high
+    return share * step.length
 
 
 def _factor(rough: float) -> float:

@@ -2,72 +2,107 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from lumped.collide.bodies import TINY, Bodies, PointLaw, Stage, State
 from lumped.collide.nodes import STAGES as STAGES
-from lumped.collide.nodes import radau
+from lumped.collide.nodes import Nodes, radau
 
 Array = NDArray[np.float64]
 NODES = radau(STAGES)
 ITERATIONS = 12
-# Newton's last correction, relative to the largest acceleration: the next one would be its square.
-SMALL = 1e-9
+# Newton's last correction times its ratio to the one before is more than what is left; relative to the largest gain
+# and to the gain that would change the rate by as much as it is.
+SMALL = 1e-11
+# A correction as small as this is rounding.
+ROUNDING = 1e-14
 
 
 class Step(NamedTuple):
-    """One step from `start`, `length` s long; accelerations, rates, depths, forces at the Radau points, shape (s,)."""
+    """One step from `start`, `length` s long; gains, rates, depths and forces at the points of `nodes`, shape (s,).
+
+    A gain, m/s2, is the acceleration times the pace of the nodes: the rate's slope over the place.
+    """
 
     start: State
     length: float
-    acceleration: Array
+    nodes: Nodes
+    gain: Array
     rate: Array
     depth: Array
     force: Array
     end: State
     iterations: int
 
+    @property
+    def last_acceleration(self) -> float:
+        """At its end, m/s2; not for a step whose nodes are mirrored."""
+        return float(self.gain[-1] / self.nodes.pace[-1])
 
-def solved(law: PointLaw, stage: Stage, bodies: Bodies, start: State, length: float, guess: Array) -> Step | None:
+    def last_slope(self, values: Array) -> float:
+        """The slope over time, at its end, of what has these values at its points; not for mirrored nodes."""
+        return float(self.nodes.leaving @ values / (self.nodes.pace[-1] * self.length))
+
+    def accelerations(self, shares: Array) -> Array:
+        """By its polynomial, m/s2, at shares of its time in (0, 1], shape (n,); not for mirrored nodes."""
+        power, begun = self.nodes.power, self.nodes.begun
+        if power == 1:
+            return np.asarray(legendre.legval(2.0 * shares - 1.0, self.nodes.series @ self.gain))
+        low, high = begun ** (1.0 / power), (1.0 + begun) ** (1.0 / power)
+        root = (shares + begun) ** (1.0 / power)
+        gains = legendre.legval(2.0 * (root - low) / (high - low) - 1.0, self.nodes.series @ self.gain)
+        return np.asarray(gains / (power * (high - low) * root ** (power - 1)))
+
+
+def solved(
+    law: PointLaw, stage: Stage, bodies: Bodies, start: State, length: float, guess: Array, nodes: Nodes = NODES
+) -> Step | None:
     """The step whose accelerations satisfy m a + F(depth, rate) = m g at every point; None without convergence."""
-    once, twice = length * NODES.once, length**2 * NODES.twice
-    ballistic = start.depth + length * start.rate * NODES.points
-    acceleration, seen = guess, law.within(start, length)
+    once, twice = length * nodes.once, length**2 * nodes.twice
+    ballistic = start.depth + length * start.rate * nodes.points
+    pull, push = nodes.pace * bodies.gravity, nodes.pace / bodies.mass
+    turning, bending = push[:, None] * once, push[:, None] * twice
+    gain, seen, before = guess, law.within(start, length), 0.0
     for iteration in range(1, ITERATIONS + 1):
-        rate = start.rate + once @ acceleration
-        depth = ballistic + twice @ acceleration
+        rate = start.rate + once @ gain
+        depth = ballistic + twice @ gain
         pressed = np.maximum(depth, TINY)
-        excess = acceleration - bodies.gravity + seen.force(pressed, rate, stage) / bodies.mass
+        excess = gain - pull + push * seen.force(pressed, rate, stage)
         stiffness, damping = seen.tangents(pressed, rate, stage)
         over_depth = stiffness * (depth > 0.0)
-        bent = over_depth @ twice if over_depth.ndim == 2 else (over_depth * twice.T).T
-        jacobian = (bent + (damping * once.T).T) / bodies.mass
+        jacobian = push[:, None] * (over_depth @ twice) if over_depth.ndim == 2 else over_depth[:, None] * bending
+        jacobian += damping[:, None] * turning
         jacobian.flat[:: STAGES + 1] += 1.0
         correction = np.linalg.solve(jacobian, excess)
-        acceleration = acceleration - correction
-        if not np.isfinite(correction).all():
+        gain = gain - correction
+        size = float(np.abs(correction).max())
+        scale = abs(gain[0]) + abs(gain[-1]) + (abs(start.rate) + abs(rate[-1])) / length
+        if not math.isfinite(size):
             return None
-        if np.abs(correction).max() <= SMALL * np.abs(acceleration).max():
-            return _finished(seen, stage, bodies, start, length, acceleration, iteration)
+        if size <= ROUNDING * scale or size * size <= SMALL * scale * before:
+            return _finished(seen, stage, bodies, start, length, nodes, gain, iteration)
+        before = size
     return None
 
 
 def _finished(
-    law: PointLaw, stage: Stage, bodies: Bodies, start: State, length: float, acceleration: Array, iterations: int
+    law: PointLaw, stage: Stage, bodies: Bodies, start: State, length: float, nodes: Nodes, gain: Array, count: int
 ) -> Step:
-    rate = start.rate + length * (NODES.once @ acceleration)
-    depth = start.depth + length * (start.rate * NODES.points + length * (NODES.twice @ acceleration))
+    rate = start.rate + length * (nodes.once @ gain)
+    depth = start.depth + length * (start.rate * nodes.points + length * (nodes.twice @ gain))
     pressed = np.maximum(depth, TINY)
-    lost = start.lost + length * float(NODES.weights @ (law.lost(pressed, rate, stage) * rate))
+    power = nodes.pace * law.lost(pressed, rate, stage) * rate
+    lost = start.lost + length * float(nodes.weights @ power)
     end = State(float(depth[-1]), float(rate[-1]), lost, law.remembered(pressed))
-    force = bodies.mass * (bodies.gravity - acceleration)
-    return Step(start, length, acceleration, rate, depth, force, end, iterations)
+    acceleration = np.divide(gain, nodes.pace, out=np.full(STAGES, bodies.gravity), where=nodes.pace > 0.0)
+    return Step(start, length, nodes, gain, rate, depth, bodies.mass * (bodies.gravity - acceleration), end, count)
 
 
 def roughness(step: Step) -> float:
-    """What the last Legendre terms of the acceleration are worth in rate over the step, m/s."""
-    last = NODES.series[-2:] @ step.acceleration
-    return step.length * float(np.abs(last).max())
+    """What the last Legendre terms of the gain are worth in rate over the step, m/s."""
+    return step.length * float(np.abs(step.nodes.series[-2:] @ step.gain).max())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -12,10 +13,38 @@ from numpy.typing import NDArray
 from lumped.collide.bodies import PointLaw
 from lumped.collide.contact import Contact
 from lumped.collide.motion import Motion
+from lumped.collide.nodes import STAGES, place_of
 from lumped.collide.phase import Phase
-from lumped.collide.step import NODES, STAGES
+from lumped.collide.step import Step
 
 Array = NDArray[np.float64]
+
+
+class Row(NamedTuple):
+    """The steps of a stage side by side, n of them: starts and lengths, s, and what their nodes are, shape (n,).
+
+    `rates` and `depths`, shape (n, s + 1), are the Legendre coefficients of rate and depth over the place.
+    """
+
+    starts: Array
+    lengths: Array
+    powers: Array
+    begun: Array
+    mirrored: NDArray[np.bool_]
+    rates: Array
+    depths: Array
+
+    @classmethod
+    def of(cls, phase: Phase) -> Row:
+        """Those of a phase."""
+        lengths = np.array([step.length for step in phase.steps])
+        starts = phase.start_time + np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
+        powers = np.array([float(step.nodes.power) for step in phase.steps])
+        begun = np.array([step.nodes.begun for step in phase.steps])
+        mirrored = np.array([step.nodes.mirrored for step in phase.steps])
+        rates = np.array([_series(step, step.gain, step.start.rate) for step in phase.steps])
+        depths = np.array([_series(step, step.nodes.pace * step.rate, step.start.depth) for step in phase.steps])
+        return cls(starts, lengths, powers, begun, mirrored, rates, depths)
 
 
 @dataclass(frozen=True)
@@ -41,15 +70,19 @@ class Track:
         found = np.zeros((3, times.size))
         for contact in self.motion.contacts:
             self._fly(found, times, contact)
-        for phase in self._phases:
+        for phase, row in zip(self._phases, self._rows, strict=True):
             inside = (times >= phase.start_time) & (times <= phase.end_time)
             if inside.any():
-                found[:, inside] = self._pressed(phase, times[inside])
+                found[:, inside] = self._pressed(phase, row, times[inside])
         return found
 
-    @property
+    @cached_property
     def _phases(self) -> list[Phase]:
         return [phase for contact in self.motion.contacts for phase in contact.phases]
+
+    @cached_property
+    def _rows(self) -> list[Row]:
+        return [Row.of(phase) for phase in self._phases]
 
     def _fly(self, found: Array, times: Array, contact: Contact) -> None:
         """Free flight from the end of a contact on, until a later one overwrites it."""
@@ -60,18 +93,19 @@ class Track:
         found[1, after] = last.rate + gravity * elapsed
         found[2, after] = 0.0
 
-    def _pressed(self, phase: Phase, times: Array) -> Array:
+    def _pressed(self, phase: Phase, row: Row, times: Array) -> Array:
         """The columns within one stage."""
-        lengths = np.array([step.length for step in phase.steps])
-        starts = phase.start_time + np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
-        place = np.clip(np.searchsorted(starts, times, side="right") - 1, 0, starts.size - 1)
-        length = lengths[place]
-        share = np.clip((times - starts[place]) / length, 0.0, 1.0)
-        series = np.array([NODES.series @ step.acceleration for step in phase.steps])
-        basis = legendre.legvander(2.0 * share - 1.0, STAGES + 1)
-        once = np.einsum("ij,ij->i", basis[:, :-1], (series @ NODES.first)[place])
-        twice = np.einsum("ij,ij->i", basis, (series @ NODES.second)[place])
-        begun = np.array([step.start[:2] for step in phase.steps])[place]
-        rate = begun[:, 1] + length * once
-        depth = begun[:, 0] + length * (begun[:, 1] * share + length * np.where(share > 0.0, twice, 0.0))
-        return np.array([depth, rate, self.law.between(phase.steps, place, share, depth, rate, phase.stage)])
+        which = np.clip(np.searchsorted(row.starts, times, side="right") - 1, 0, row.starts.size - 1)
+        share = np.clip((times - row.starts[which]) / row.lengths[which], 0.0, 1.0)
+        place = place_of(share, row.powers[which], row.begun[which], row.mirrored[which])
+        basis = legendre.legvander(2.0 * place - 1.0, STAGES)
+        rate = np.einsum("ij,ij->i", basis, row.rates[which])
+        depth = np.einsum("ij,ij->i", basis, row.depths[which])
+        return np.array([depth, rate, self.law.between(phase.steps, which, share, depth, rate, phase.stage)])
+
+
+def _series(step: Step, slope: Array, start: float) -> Array:
+    """The coefficients of what begins at `start` and has this slope over the place, times the length."""
+    series = step.length * (step.nodes.series @ slope @ step.nodes.first)
+    series[0] += start
+    return series

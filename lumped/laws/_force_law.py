@@ -50,6 +50,11 @@ class ForceLaw(ABC):
     # Where the loss belongs among the energies of a Result.
     loss: ClassVar[str] = "viscous"
 
+    @property
+    def grading(self) -> int:
+        """One: smooth in time from touch on."""
+        return 1
+
     @abstractmethod
     def force(self, depth: Any, rate: Any, stage: Stage) -> Any:
         """F, N, compression positive; depth >= 0, m, rate, m/s."""

@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from lumped.collide.bodies import Bodies, Stage
 from lumped.laws._force_law import ForceLaw
+
+GRADINGS = (1, 2, 4)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,6 +20,16 @@ class PowerLaw(ForceLaw):
 
     k: float
     alpha: float
+
+    @property
+    def exponents(self) -> tuple[float, ...]:
+        """The powers of the depth in the force."""
+        return (self.alpha,)
+
+    @cached_property
+    def grading(self) -> int:  # type: ignore[override]
+        """What makes whole numbers of the exponents; at least their fractions small beside it."""
+        return next((p for p in GRADINGS if all((p * n).is_integer() for n in self.exponents)), GRADINGS[-1])
 
     @abstractmethod
     def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:

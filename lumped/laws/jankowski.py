@@ -35,6 +35,11 @@ class Jankowski(PowerLaw):
     alpha: float = 1.5
     name: ClassVar[str] = "jankowski"
 
+    @property
+    def exponents(self) -> tuple[float, ...]:
+        """The spring's and the damper's."""
+        return (self.alpha, 0.5 * (self.alpha - 1.0))
+
     def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:
         """c depth^((alpha - 1)/2) rate in the approach."""
         if not stage.approaching:

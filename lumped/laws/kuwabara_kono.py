@@ -37,6 +37,11 @@ class KuwabaraKono(PowerLaw):
     name: ClassVar[str] = "kuwabara_kono"
     tensile: ClassVar[bool] = True
 
+    @property
+    def exponents(self) -> tuple[float, ...]:
+        """The spring's and the damper's."""
+        return (1.5, 0.5)
+
     def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:
         """(3/2) A k sqrt(depth) rate."""
         return 1.5 * self.A * self.k * np.sqrt(depth) * rate

@@ -36,6 +36,11 @@ class Tsuji(PowerLaw):
     name: ClassVar[str] = "tsuji"
     tensile: ClassVar[bool] = True
 
+    @property
+    def exponents(self) -> tuple[float, ...]:
+        """The spring's and the damper's."""
+        return (self.alpha, 0.5 * (self.alpha - 1.0))
+
     def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:
         """c depth^((alpha - 1)/2) rate."""
         return self.c * depth ** (0.5 * (self.alpha - 1.0)) * rate
