@@ -15,8 +15,9 @@ class Meter:
 
     def __init__(self, problem: Problem) -> None:
         self.modulus = problem.modulus
-        self.stiffness = np.array(problem.modulus.moduli)[:, None]
-        self.times = np.array(problem.modulus.times)[:, None]
+        stiffness, times = np.array(problem.modulus.moduli), np.array(problem.modulus.times)
+        # A spring of stiffness E with the force z in series with a dashpot E tau spends z^2/(E tau) and holds z^2/(2E).
+        self.shares = np.array([1.0 / (stiffness * times), 0.5 / stiffness])
         self.spent = 0.0
         self.released = 0.0
         self.held = 0.0
@@ -31,22 +32,28 @@ class Meter:
 
     def observe(self, row: Row, now: Instant) -> None:
         """Count one step, the trapezoid over time and over the row."""
-        x, power, density = self._densities(row, now)
-        inside = min(int(x.searchsorted(now.edge, side="right")), x.size)
-        places = np.append(x[:inside], now.edge)
-        at_edge = float(np.interp(now.edge, x, density))
-        rate = 2.0 * float(np.trapezoid(np.append(power[:inside], np.interp(now.edge, x, power)), places))
-        self.held = 2.0 * float(np.trapezoid(np.append(density[:inside], at_edge), places))
-        self.spent += 0.5 * (now.time - self._last.time) * (rate + self._power)
-        self.released += max(self._last.edge - now.edge, 0.0) * (at_edge + self._density)
-        self._last, self._power, self._density = now, rate, at_edge
+        x, both = row.x[: row.count], self._densities(row, now)
+        pressed = min(int(x.searchsorted(now.edge, side="right")), x.size)
+        beyond = now.edge - x[pressed - 1]
+        at_edge = both[:, pressed - 1]
+        if pressed < x.size:
+            at_edge = at_edge + (both[:, pressed] - at_edge) * (beyond / (x[pressed] - x[pressed - 1]))
+        inside = both[:, :pressed]
+        cells = (inside[:, 1:] + inside[:, :-1]) @ (x[1:pressed] - x[: pressed - 1])
+        # Half of the trapezoid's sums, twice for the two sides.
+        power, self.held = (cells + beyond * (inside[:, -1] + at_edge)).tolist()
+        density = float(at_edge[1])
+        self.spent += 0.5 * (now.time - self._last.time) * (power + self._power)
+        self.released += max(self._last.edge - now.edge, 0.0) * (density + self._density)
+        self._last, self._power, self._density = now, power, density
 
-    def _densities(self, row: Row, now: Instant) -> tuple[Array, Array, Array]:
-        """Places of the springs; per length of one side, the power spent, W/m, and the energy held, J/m."""
+    def _densities(self, row: Row, now: Instant) -> Array:
+        """Per length of one side at every spring, the power spent, W/m, and the energy held, J/m, shape (2, n)."""
         n, modulus = row.count, self.modulus
         z = row.z[:, :n]
-        power = (z**2 / (self.stiffness * self.times)).sum(axis=0) + modulus.viscosity * now.velocity**2
-        density = (z**2 / (2.0 * self.stiffness)).sum(axis=0)
+        both: Array = np.dot(self.shares, z * z)
+        if modulus.viscosity:
+            both[0] += modulus.viscosity * now.velocity**2
         if modulus.equilibrium:
-            density += (modulus.equilibrium * now.depth - row.rest[:n]) ** 2 / (2.0 * modulus.equilibrium)
-        return row.x[:n], power, density
+            both[1] += (modulus.equilibrium * now.depth - row.rest[:n]) ** 2 / (2.0 * modulus.equilibrium)
+        return both
