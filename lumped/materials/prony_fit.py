@@ -1,6 +1,6 @@
 """A Prony series from a modulus known otherwise: as E(s), as samples of E(t), as storage and loss moduli.
 
-The paper's general route (its Fig. 4): whatever the material is known by becomes a series, and the series every law.
+The paper's general route (its Fig. 4): what a material is known by becomes a series, and a series goes into every law.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def of_operational(
     for _ in range(ROUNDS):
         candidates = _candidates(*window, BEYOND_WINDOW, density)
         spectrum = fitted(Decay(times), modulus - (relaxed or 0.0), modulus, candidates, ENOUGH * tolerance)
-        series = _relaxed_to(relaxed, _relaxation(spectrum, viscosity), window[1] / (LAST * tolerance))
+        series = _relaxation(spectrum, viscosity, relaxed, last=window[1] / (LAST * tolerance))
         deviation = RIPPLE * np.abs(series(checked) / truth - 1.0) + unsure / truth
         best = min(best, float(deviation.max()))
         if best <= tolerance:
@@ -157,17 +157,15 @@ def _candidates(shortest: float, longest: float, beyond: float, a_decade: float)
     return np.logspace(low, high, math.ceil(a_decade * (high - low)) + 1)
 
 
-def _relaxation(spectrum: Spectrum, viscosity: float = 0.0) -> Relaxation:
-    moduli, taus = tuple(spectrum.weights.tolist()), tuple(spectrum.taus.tolist())
-    return Relaxation(float(spectrum.steady[0]), moduli, taus, viscosity)
-
-
-def _relaxed_to(relaxed: float | None, series: Relaxation, last: float) -> Relaxation:
-    """What is constant in the window and above a known equilibrium relaxes with the time `last`, s, beyond it."""
+def _relaxation(
+    spectrum: Spectrum, viscosity: float = 0.0, relaxed: float | None = None, last: float = math.inf
+) -> Relaxation:
+    """The series of a spectrum; what is constant above a known equilibrium relaxes with the time `last`, s."""
+    level, moduli, taus = float(spectrum.steady[0]), tuple(spectrum.weights.tolist()), tuple(spectrum.taus.tolist())
     if relaxed is None:
-        return series
-    slow = (series.equilibrium,) if series.equilibrium > 0.0 else ()
-    return replace(series, equilibrium=relaxed, moduli=series.moduli + slow, times=series.times + (last,) * len(slow))
+        return Relaxation(level, moduli, taus, viscosity)
+    slow = (level,) if level > 0.0 else ()
+    return Relaxation(relaxed, moduli + slow, taus + (last,) * len(slow), viscosity)
 
 
 def _told(

@@ -158,6 +158,13 @@ def test_a_viscosity_passes_by_the_series() -> None:
     assert fit.relaxation.viscosity == 0.1
 
 
+def test_an_elastic_material_has_no_terms() -> None:
+    for relaxed in (None, 5.0):
+        fit = of_operational(lambda s: 5.0 + 0.0 * s, (0.1, 10.0), relaxed=relaxed)
+        assert fit.relaxation.moduli == ()
+        assert fit.relaxation.equilibrium == pytest.approx(5.0, rel=1e-12)
+
+
 def test_what_does_not_decay_is_not_reached() -> None:
     with pytest.raises(NotReached, match="reached"):
         of_operational(lambda s: 1.0 + s / (s + 1.0) ** 2, (1e-2, 10.0))
