@@ -85,9 +85,11 @@ def _listed(response: Response, target: Array, scale: Array, taus: Array) -> Spe
 
 def _merged(spectrum: Spectrum, candidates: Array) -> Spectrum:
     """Pairs of neighbours as one term at their mean time."""
+    if spectrum.taus.size == 0:
+        return spectrum
     places = np.searchsorted(candidates, spectrum.taus)
     runs = np.split(np.arange(places.size), np.flatnonzero(np.diff(places) > 1) + 1)
-    groups = [part for run in runs for part in ([run] if run.size == PAIR else np.split(run, run.size)) if run.size]
+    groups = [part for run in runs for part in ([run] if run.size == PAIR else np.split(run, run.size))]
     weights = np.array([spectrum.weights[group].sum() for group in groups])
     logs = np.log(spectrum.taus) * spectrum.weights
     taus = np.exp([logs[group].sum() / weight for group, weight in zip(groups, weights, strict=True)])
