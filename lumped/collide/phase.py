@@ -83,8 +83,8 @@ class March:
             now, state = now + step.length, step.end
             if event is not None or now >= self.until * (1.0 - PRECISE):
                 return Phase(self.stage, time, tuple(steps), event)
-            guess = np.full(STAGES, step.last_acceleration)
             length = step.length * _factor(rough)
+            guess = step.last_acceleration + step.last_slope(step.gain / step.nodes.pace) * length * NODES.points
         raise TooManySteps(
             f"contact: {MOST_STEPS} time steps reach {now:.3g} s of {self.until:.3g} s; "
             "accepted: an earlier motion.end_time, or a law less stiff"

@@ -99,7 +99,9 @@ def _finished(
     power = nodes.pace * law.lost(pressed, rate, stage) * rate
     lost = start.lost + length * float(nodes.weights @ power)
     end = State(float(depth[-1]), float(rate[-1]), lost, law.remembered(pressed))
-    acceleration = np.divide(gain, nodes.pace, out=np.full(STAGES, bodies.gravity), where=nodes.pace > 0.0)
+    acceleration = gain
+    if nodes.power > 1:
+        acceleration = np.divide(gain, nodes.pace, out=np.full(STAGES, bodies.gravity), where=nodes.pace > 0.0)
     return Step(start, length, nodes, gain, rate, depth, bodies.mass * (bodies.gravity - acceleration), end, count)
 
 

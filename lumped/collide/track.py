@@ -7,7 +7,6 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from lumped.collide.bodies import PointLaw
@@ -18,12 +17,14 @@ from lumped.collide.phase import Phase
 from lumped.collide.step import Step
 
 Array = NDArray[np.float64]
+# How near to a touch the rows begin, as a power of 1/2, in the length of its step.
+NEAREST = 48.0
 
 
 class Row(NamedTuple):
     """The steps of a stage side by side, n of them: starts and lengths, s, and what their nodes are, shape (n,).
 
-    `rates` and `depths`, shape (n, s + 1), are the Legendre coefficients of rate and depth over the place.
+    `series`, shape (n, 2, s + 1), are the Legendre coefficients of depth and rate over the place.
     """
 
     starts: Array
@@ -31,8 +32,7 @@ class Row(NamedTuple):
     powers: Array
     begun: Array
     mirrored: NDArray[np.bool_]
-    rates: Array
-    depths: Array
+    series: Array
 
     @classmethod
     def of(cls, phase: Phase) -> Row:
@@ -42,9 +42,7 @@ class Row(NamedTuple):
         powers = np.array([float(step.nodes.power) for step in phase.steps])
         begun = np.array([step.nodes.begun for step in phase.steps])
         mirrored = np.array([step.nodes.mirrored for step in phase.steps])
-        rates = np.array([_series(step, step.gain, step.start.rate) for step in phase.steps])
-        depths = np.array([_series(step, step.nodes.pace * step.rate, step.start.depth) for step in phase.steps])
-        return cls(starts, lengths, powers, begun, mirrored, rates, depths)
+        return cls(starts, lengths, powers, begun, mirrored, np.array([_series(step) for step in phase.steps]))
 
 
 @dataclass(frozen=True)
@@ -61,6 +59,19 @@ class Track:
         touches = np.array([contact.start_time for contact in self.motion.contacts[1:]])
         parted = np.array([contact.end_time for contact in self.motion.contacts[:-1]])
         return np.unique(np.concatenate([*ends, np.nextafter(touches, 0.0), np.nextafter(parted, np.inf)]))
+
+    @cached_property
+    def rows(self) -> Array:
+        """Its times, and between them towards a touch or an end of depth ever more, where the force may be steep."""
+        close = [self.times]
+        for phase in self._phases:
+            starts = phase.start_time + np.concatenate([[0.0], np.cumsum([step.length for step in phase.steps])])
+            for start, step in zip(starts, phase.steps, strict=False):
+                power, begun, mirrored = step.nodes.power, step.nodes.begun, step.nodes.mirrored
+                if power > 1 and begun == 0.0:
+                    share = step.length * 2.0 ** (-power * np.arange(1.0, NEAREST / power))
+                    close.append(start + step.length - share if mirrored else start + share)
+        return np.unique(np.concatenate(close))
 
     def __call__(self, times: Array) -> Array:
         """Depth, m, rate, m/s, and force, N, at `times`, shape (n,) from zero on: shape (3, n).
@@ -87,6 +98,8 @@ class Track:
     def _fly(self, found: Array, times: Array, contact: Contact) -> None:
         """Free flight from the end of a contact on, until a later one overwrites it."""
         after = times > contact.end_time
+        if not after.any():
+            return
         elapsed = times[after] - contact.end_time
         last, gravity = contact.last, self.motion.gravity
         found[0, after] = last.depth + elapsed * (last.rate + 0.5 * gravity * elapsed)
@@ -95,17 +108,26 @@ class Track:
 
     def _pressed(self, phase: Phase, row: Row, times: Array) -> Array:
         """The columns within one stage."""
-        which = np.clip(np.searchsorted(row.starts, times, side="right") - 1, 0, row.starts.size - 1)
-        share = np.clip((times - row.starts[which]) / row.lengths[which], 0.0, 1.0)
-        place = place_of(share, row.powers[which], row.begun[which], row.mirrored[which])
-        basis = legendre.legvander(2.0 * place - 1.0, STAGES)
-        rate = np.einsum("ij,ij->i", basis, row.rates[which])
-        depth = np.einsum("ij,ij->i", basis, row.depths[which])
+        which = np.maximum(np.searchsorted(row.starts, times, side="right") - 1, 0)
+        share = np.minimum((times - row.starts[which]) / row.lengths[which], 1.0)
+        graded = bool((row.powers > 1.0).any())
+        place = place_of(share, row.powers[which], row.begun[which], row.mirrored[which]) if graded else share
+        depth, rate = np.einsum("kn,njk->jn", legendre_terms(2.0 * place - 1.0), row.series[which])
         return np.array([depth, rate, self.law.between(phase.steps, which, share, depth, rate, phase.stage)])
 
 
-def _series(step: Step, slope: Array, start: float) -> Array:
-    """The coefficients of what begins at `start` and has this slope over the place, times the length."""
-    series = step.length * (step.nodes.series @ slope @ step.nodes.first)
-    series[0] += start
-    return series
+def legendre_terms(x: Array) -> Array:
+    """P_0 to P_s at places x in [-1, 1], shape (n,): shape (s + 1, n)."""
+    terms = np.empty((STAGES + 1, x.size))
+    terms[0], terms[1] = 1.0, x
+    for k in range(1, STAGES):
+        terms[k + 1] = ((2 * k + 1) * x * terms[k] - k * terms[k - 1]) / (k + 1)
+    return terms
+
+
+def _series(step: Step) -> Array:
+    """The coefficients of depth and rate: their slopes over the place integrated from the start of the step."""
+    slopes = np.array([step.nodes.pace * step.rate, step.gain])
+    series = step.length * (slopes @ step.nodes.series.T @ step.nodes.first)
+    series[:, 0] += step.start.depth, step.start.rate
+    return np.asarray(series)

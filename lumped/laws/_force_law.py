@@ -17,7 +17,6 @@ from lumped.collide.motion import Motion, motion
 from lumped.collide.step import Step
 from lumped.collide.track import Track
 from lumped.ending import End
-from lumped.interpolation import highest
 from lumped.laws._assembly import Answer, Clock, assemble, bars
 from lumped.load_curves.base import LoadCurve
 from lumped.result import Result, meets
@@ -25,10 +24,11 @@ from lumped.scene import END_IN_CONTACT_TIMES, Model, Scene
 
 Array = NDArray[np.float64]
 # Errors of the rate allowed in one step, relative to the velocity at touch; the end of contact errs far less.
-TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
+# The first one is that asked of the result, if it is not beyond these; every next one is finer by FINER.
+COARSEST, FINEST, FINER = 1e-3, 1e-12, 1e-2
 SAFETY = 2.0
-PARTS = np.arange(16) / 16.0
-CLOSE = 1e-2
+# Half the width of the parabolas through which a peak is found, in that of its surroundings.
+CLOSER = (0.5, 0.05, 0.005)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,12 +109,14 @@ class ForceLaw(ABC):
     def simulate(self, scene: Scene, tolerance: float) -> Result:
         """The impacts of a scene to this tolerance. Raises NotReached."""
         clock, until = Clock(), self._until(scene)
-        coarse, steps = self._answer(scene, until, TOLERANCES[0])
-        for step_tolerance in TOLERANCES[1:]:
+        step_tolerance = min(max(tolerance, FINEST / FINER), COARSEST)
+        coarse, steps = self._answer(scene, until, step_tolerance)
+        while True:
+            step_tolerance *= FINER
             fine, counted = self._answer(scene, until, step_tolerance)
             steps += counted
             quantities, force_error = bars(fine, coarse, SAFETY)
-            if meets(quantities, tolerance):
+            if meets(quantities, tolerance) or step_tolerance <= FINEST:
                 break
             coarse = fine
         numerics = {"integrator": "Radau collocation", "step_tolerance": step_tolerance, "law": self.parameters}
@@ -134,7 +136,7 @@ class ForceLaw(ABC):
         track = Track(self, moved)
         said = "" if moved.end is End.SEPARATED else moved.end.value
         answer = Answer(
-            track.times,
+            track.rows,
             lambda times: self._columns(track, times),
             self._values(scene, track),
             moved.end,
@@ -190,20 +192,24 @@ def bodies_of(scene: Scene) -> Bodies:
 
 
 def peak_of(track: Track, one: Contact) -> tuple[float, float]:
-    """Time, s, and height, N, of the highest force of a contact."""
-    ends = np.array([one.start_time, *_ends(one)])
-    places = np.unique(np.append((ends[:-1, None] + np.diff(ends)[:, None] * PARTS).ravel(), ends[-1]))
-    values = track(places)[2]
+    """Time, s, and height, N, of the highest force of a contact: the vertex of ever smaller parabolas."""
+    steps = [step for phase in one.phases for step in phase.steps]
+    starts = one.start_time + np.concatenate([[0.0], np.cumsum([step.length for step in steps])])
+    points = [start + step.length * step.nodes.points for start, step in zip(starts, steps, strict=False)]
+    places = np.concatenate([[one.start_time], *points])
+    values = np.concatenate([track(places[:1])[2], *(step.force for step in steps)])
     i = int(np.argmax(values))
-    reach = CLOSE * (places[min(i + 1, places.size - 1)] - places[max(i - 1, 0)])
-    rough, _ = highest(lambda at: track(at)[2], places)
-    close = np.unique(np.clip([rough - reach, rough, rough + reach], places[0], places[-1]))
-    return max(highest(lambda at: track(at)[2], close), (float(places[i]), float(values[i])), key=lambda p: p[1])
-
-
-def _ends(one: Contact) -> list[float]:
-    lengths = [step.length for phase in one.phases for step in phase.steps]
-    return list(one.start_time + np.cumsum(lengths))
+    highest = time, height = float(places[i]), float(values[i])
+    width = float(places[min(i + 1, places.size - 1)] - places[max(i - 1, 0)])
+    for share in CLOSER:
+        left, right = max(time - share * width, one.start_time), min(time + share * width, one.end_time)
+        low, middle, high = (float(force) for force in track(np.array([left, 0.5 * (left + right), right]))[2])
+        bent = low - 2.0 * middle + high
+        if bent >= 0.0 or abs(high - low) > -2.0 * bent:
+            break
+        shift = 0.5 * (low - high) / bent
+        time, height = 0.5 * (left + right) + 0.5 * shift * (right - left), middle - 0.25 * shift * (low - high)
+    return max(highest, (time, height), key=lambda peak: peak[1])
 
 
 def _listed(track: Track, one: Contact) -> dict[str, float | None]:

@@ -27,7 +27,7 @@ class PowerLaw(ForceLaw):
         return (self.alpha,)
 
     @cached_property
-    def grading(self) -> int:  # type: ignore[override]
+    def grading(self) -> int:
         """What makes whole numbers of the exponents; at least their fractions small beside it."""
         return next((p for p in GRADINGS if all((p * n).is_integer() for n in self.exponents)), GRADINGS[-1])
 
