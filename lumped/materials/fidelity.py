@@ -27,7 +27,7 @@ class Fidelity:
         shortest, longest = self.window
         if not 0.0 < shortest <= longest < math.inf:
             raise BadInput(Fault("material", "fit_window", "accepted: shortest <= longest, both finite and above zero"))
-        if not min(self.inside, self.before, self.after) >= 0.0:
+        if not all(deviation >= 0.0 for deviation in (self.inside, self.before, self.after)):
             raise BadInput(Fault("material", "fit_error", "accepted: relative deviations >= 0"))
 
     def of_force(self, duration: float) -> float:
@@ -39,4 +39,5 @@ class Fidelity:
         shortest, longest = self.window
         if duration > longest:
             return max(self.inside, self.before, self.after)
-        return self.inside + min(1.0, STEEPEST * shortest / duration) * self.before
+        young = STEEPEST * shortest
+        return self.inside + (self.before if duration <= young else young / duration * self.before)

@@ -17,7 +17,7 @@ from lumped.materials.fidelity import Fidelity
 from lumped.materials.laplace import Transform, relaxation_modulus
 from lumped.materials.relaxation import Relaxation
 from lumped.materials.responses import Decay, Oscillation, stacked
-from lumped.materials.spectrum import Spectrum, fitted
+from lumped.materials.spectrum import Spectrum, Target, fitted
 
 Array = NDArray[np.float64]
 
@@ -73,7 +73,7 @@ def of_operational(
     density, best = FEWEST * math.log(10.0) * math.log(2.0 / tolerance) / math.pi**2, math.inf
     for _ in range(ROUNDS):
         candidates = _candidates(*window, BEYOND_WINDOW, density)
-        spectrum = fitted(Decay(times), modulus - (relaxed or 0.0), modulus, candidates, ENOUGH * tolerance)
+        spectrum = fitted(Target(Decay(times), modulus - (relaxed or 0.0), modulus), candidates, ENOUGH * tolerance)
         series = _relaxation(spectrum, viscosity, relaxed, last=window[1] / (LAST * tolerance))
         deviation = RIPPLE * np.abs(series(checked) / truth - 1.0) + unsure / truth
         best = min(best, float(deviation.max()))
@@ -98,7 +98,7 @@ def of_samples(times: ArrayLike, moduli: ArrayLike) -> PronyFit:
         )
     if not np.all(np.isfinite(values)) or np.any(values <= 0.0):
         raise BadInput(Fault("samples", "moduli", "accepted: finite values above zero, in Pa"))
-    spectrum = fitted(Decay(t), values, values, _candidates(inner.min(), inner.max(), BEYOND_DATA, DENSE))
+    spectrum = fitted(Target(Decay(t), values, values), _candidates(inner.min(), inner.max(), BEYOND_DATA, DENSE))
     return _told(_relaxation(spectrum), np.abs(spectrum.residual), (inner.min(), inner.max()))
 
 
@@ -110,8 +110,8 @@ def of_dynamic(data: DynamicModuli, *, viscous: bool = False) -> PronyFit:
     """
     magnitude = np.tile(np.abs(data.modulus), 2)
     shortest, longest = 1.0 / float(data.omega.max()), 1.0 / float(data.omega.min())
-    response = Oscillation(data.omega, viscous)
-    spectrum = fitted(response, stacked(data.modulus), magnitude, _candidates(shortest, longest, BEYOND_DATA, DENSE))
+    target = Target(Oscillation(data.omega, viscous), stacked(data.modulus), magnitude)
+    spectrum = fitted(target, _candidates(shortest, longest, BEYOND_DATA, DENSE))
     series = _relaxation(spectrum, *spectrum.steady[1:].tolist())
     return _told(series, np.hypot(*np.split(spectrum.residual, 2)), (shortest, longest))
 

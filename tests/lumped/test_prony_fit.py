@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -128,6 +129,23 @@ def test_stated_error_of_the_fractional_solid_covers_the_true_one(alpha: float, 
     assert (series.glassy, series.relaxed) == pytest.approx((ratio, 1.0), rel=tolerance)
 
 
+def test_stated_errors_cover_the_true_ones_of_random_fractional_solids() -> None:
+    rng = np.random.default_rng(11)
+    for _ in range(10):
+        alpha, ratio, accuracy = rng.uniform(0.1, 0.9), 10.0 ** rng.uniform(0.1, 4.0), 10.0 ** rng.uniform(-7.0, -3.0)
+        shortest = 10.0 ** rng.uniform(-6.0, -2.0)
+        series = fractional_zener.of(1.0, ratio, 1.0, alpha, (shortest, shortest * 1e5), accuracy)
+        fidelity = series.fidelity
+        assert fidelity is not None
+        assert fidelity.inside <= accuracy
+        edges = (1e-8 * shortest, *fidelity.window, 1e6 * fidelity.window[1])
+        bounds = (fidelity.before, fidelity.inside, fidelity.after)
+        for (low, high), bound in zip(pairwise(edges), bounds, strict=True):
+            times = np.geomspace(low, high, 101)
+            truth = 1.0 + (ratio - 1.0) * fractional(alpha, times)
+            assert np.abs(series(times) / truth - 1.0).max() <= max(bound, fidelity.inside)
+
+
 def test_deviation_outside_of_the_window_is_bounded() -> None:
     series = fractional_zener.of(1e6, 1e7, 0.01, 0.5, window=(1e-5, 1.0), accuracy=1e-4)
     fidelity = series.fidelity
@@ -156,6 +174,14 @@ def test_a_viscosity_passes_by_the_series() -> None:
     fit = of_operational(series.operational, (1e-3, 0.1), 1e-8, viscosity=0.1)
     assert_same(fit.relaxation, series, 1e-8)
     assert fit.relaxation.viscosity == 0.1
+
+
+def test_few_samples_are_met_with_what_they_can_tell() -> None:
+    times = np.array([1e-3, 1e-2, 0.1, 1.0])
+    fit = of_samples(times, SERIES(times))
+    deviation = np.abs(fit.relaxation(times) / SERIES(times) - 1.0)
+    assert fit.max_error == pytest.approx(deviation.max(), abs=1e-14)
+    assert fit.max_error <= 1e-6
 
 
 def test_an_elastic_material_has_no_terms() -> None:
@@ -191,7 +217,7 @@ def test_a_fit_travels_with_the_table_of_its_material() -> None:
 def test_bound_of_the_force_is_that_of_the_ages_it_meets() -> None:
     fidelity = Fidelity((1e-3, 1.0), 1e-6, 0.1, 0.2)
     assert fidelity.of_force(2.0) == 0.2
-    assert fidelity.of_force(1e-3) == pytest.approx(0.1, rel=1e-4)
+    assert fidelity.of_force(0.0) == fidelity.of_force(1e-3) == pytest.approx(0.1, rel=1e-4)
     assert fidelity.of_force(0.5) == pytest.approx(1e-6 + 0.1 * 3e-3 / 0.5)
     assert Fidelity((1e-3, 1.0), 1e-6).of_force(0.5) == math.inf
 
@@ -279,3 +305,5 @@ def test_what_a_series_says_of_its_fit_is_checked() -> None:
         Fidelity((2.0, 1.0), 1e-6)
     with pytest.raises(BadInput, match="fit_error"):
         Fidelity((1.0, 2.0), -1e-6)
+    with pytest.raises(BadInput, match="fit_error"):
+        Fidelity((1.0, 2.0), 1e-6, 0.1, math.nan)
