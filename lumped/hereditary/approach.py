@@ -51,39 +51,50 @@ def follow(
     over: Callable[[Array], bool],
     settings: Settings,
     largest: float = 0.0,
+    before: Path | None = None,
 ) -> March:
     """March over a span of r from a state until `over`; `first` is the length to begin with. Raises NotReached."""
 
     def attempt(root: float, length: float, state: Array) -> Piece | None:
-        motion = Motion.over_root(problem, settings.table, root, length)
-        return motion.piece(state, problem.gravity - float(state[FORCE]))
+        force: float | Array = float(state[FORCE])
+        if before is not None:
+            force, _ = before.field(FORCE, root + length * settings.table.nodes)
+        return Motion.over_root(problem, settings.table, root, length).piece(state, problem.gravity - force)
 
-    found = Stretch(attempt, FORCE, over).march(span, state, first, settings, largest)
+    found = Stretch(attempt, FORCE, over).march(span, state, first, settings, largest, before)
     if found.stuck:
         raise NotReached(f"the motion could not be followed beyond {found.path.end**2 * problem.scales.time:.6g} s")
     return found
 
 
-def approach(problem: Hereditary, end_time: float, settings: Settings) -> Approach:
-    """Follow the motion to its turn, to rest, or to `end_time`, in units of the problem. Raises NotReached."""
+def approach(
+    problem: Hereditary, end_time: float, settings: Settings, before: Approach | None = None
+) -> Approach:
+    """Follow the motion to its turn, to rest, or to `end_time`, in units of the problem. Raises NotReached.
+
+    `before` is the same approach found with fewer nodes: its pieces are kept, and it is where Newton starts.
+    """
+    known = None if before is None else before.path
     slow = AT_REST if problem.modulus.relaxed == 0.0 and problem.gravity == 0.0 else 0.0
-    found, end = _to_velocity(problem, end_time, slow, settings)
+    found, end = _to_velocity(problem, end_time, slow, settings, known)
     if slow and found.over:
         force = float(found.path.at(end)[FORCE])
         if slow > SLOW * force * end**2:
             return Approach(found.path.until(end), False, True, found.steps, found.largest)
-        found, end = _to_velocity(problem, end_time, 0.0, settings)
+        found, end = _to_velocity(problem, end_time, 0.0, settings, known)
     return Approach(found.path.until(end), found.over, False, found.steps, found.largest)
 
 
-def _to_velocity(problem: Hereditary, end_time: float, slow: float, settings: Settings) -> tuple[March, float]:
+def _to_velocity(
+    problem: Hereditary, end_time: float, slow: float, settings: Settings, before: Path | None
+) -> tuple[March, float]:
     """The march until the velocity has fallen to `slow`, and the place where it has."""
 
     def over(values: Array) -> bool:
         return bool(values[VELOCITY, -1] <= slow)
 
     span, first = (0.0, end_time**0.5), FIRST * problem.shortest**0.5
-    found = follow(problem, span, problem.start(), first, over, settings)
+    found = follow(problem, span, problem.start(), first, over, settings, before=before)
     if not found.over:
         return found, found.path.end
     low, high = (float(place) for place in found.path.breaks[-2:])

@@ -22,7 +22,7 @@ from lumped.hereditary.problem import Hereditary
 
 Array = NDArray[np.float64]
 SECANT_STEPS = 12
-CLOSED = 1e-14
+CLOSED = 1e-12
 # Of the force now, what decelerates in the mean until the end of an elastic contact: 0.37 F t^2 = depth.
 MEAN_FORCE = 0.37
 
@@ -47,11 +47,28 @@ class Shut(NamedTuple):
     duration: float
     steps: int
 
+    def error(self, settings: Settings) -> float:
+        """What the last of its polynomials add to the force."""
+        return tail(self.piece.values[FORCE], settings.table)
 
-def close(problem: Hereditary, inward: Approach, end_time: float, settings: Settings) -> Closing:
-    """From an approach that has turned to the first F = 0, or to `end_time`. Raises NotReached, TooManySteps."""
+    def path(self, settings: Settings) -> Path:
+        """The piece over q."""
+        return Path.of([-(self.duration**0.5), 0.0], [self.piece.values], settings.table)
+
+
+def close(
+    problem: Hereditary, inward: Approach, end_time: float, settings: Settings, before: Closing | None = None
+) -> Closing:
+    """From an approach that has turned to the first F = 0, or to `end_time`. Raises NotReached, TooManySteps.
+
+    `before` is the same found with fewer nodes: its pieces are kept, and it is where Newton starts.
+    """
     path, limit = inward.path.until(float(inward.path.breaks[-1])), end_time**0.5
     steps, largest = 0, inward.largest
+    if before and before.last:
+        known = _again(problem, path, settings, largest, before)
+        if known and known.end <= end_time:
+            return known
     for _ in range(MOST_PIECES):
         released = float(path.at(path.end)[FORCE]) <= 0.0
         if path.end >= limit and not released:
@@ -60,18 +77,34 @@ def close(problem: Hereditary, inward: Approach, end_time: float, settings: Sett
         state = path.at(begin)
         duration = _until_released(path, begin) if released else _until_flat(problem, state)
         earlier = _before(path, begin)
-        last = _shut(problem, settings, state, duration) if 0.0 < duration < math.inf else None
+        guess = np.full(settings.points, problem.gravity - state[FORCE])
+        last = _shut(problem, settings, state, duration, guess) if 0.0 < duration < math.inf else None
         if last:
             steps += last.steps
             end = begin**2 + last.duration
-            if end <= end_time and tail(last.piece.values[FORCE], settings.table) <= settings.rtol * largest:
-                over = Path.of([-(last.duration**0.5), 0.0], [last.piece.values], settings.table)
-                return Closing(earlier, over, end, steps)
+            if end <= end_time and last.error(settings) <= settings.rtol * largest:
+                return Closing(earlier, last.path(settings), end, steps)
         target = min((begin**2 + min(0.5 * duration, 3.0 * begin**2)) ** 0.5, limit)
         more = follow(problem, (begin, target), state, target - begin, _released, settings, largest)
         steps += more.steps
         path = earlier.joined(more.path) if earlier else more.path
     raise TooManySteps(f"contact had not ended after {MOST_PIECES} pieces: accepted: an earlier end_time")
+
+
+def _again(problem: Hereditary, path: Path, settings: Settings, largest: float, before: Closing) -> Closing | None:
+    """The closing in the pieces of one found before; None where they will not do."""
+    assert before.last is not None
+    begin, steps = before.path.end if before.path else 0.0, 0
+    if path.end < begin:
+        span, state = (path.end, begin), path.at(path.end)
+        more = follow(problem, span, state, begin - path.end, _released, settings, largest, before.path)
+        path, steps = path.joined(more.path), more.steps
+    earlier, nodes = _before(path, begin), -((before.end - begin**2) ** 0.5) * (1.0 - settings.table.nodes)
+    guess = problem.gravity - before.last.field(FORCE, nodes)[0]
+    last = _shut(problem, settings, path.at(begin), before.end - begin**2, guess)
+    if last is None or last.error(settings) > settings.rtol * largest:
+        return None
+    return Closing(earlier, last.path(settings), begin**2 + last.duration, steps + last.steps)
 
 
 def _released(values: Array) -> bool:
@@ -98,9 +131,8 @@ def _until_flat(problem: Hereditary, state: Array) -> float:
     return 2.0 * depth / (speed + math.sqrt(speed**2 + 4.0 * MEAN_FORCE * force * depth))
 
 
-def _shut(problem: Hereditary, settings: Settings, state: Array, duration: float) -> Shut | None:
-    """The piece from a state that ends with F = 0: the duration by secants, from a guess."""
-    guess: float | Array = problem.gravity - float(state[FORCE])
+def _shut(problem: Hereditary, settings: Settings, state: Array, duration: float, guess: Array) -> Shut | None:
+    """The piece from a state that ends with F = 0: by secants from a duration, the acceleration from a guess."""
     before, steps = (0.0, 0.0), 0
     for _ in range(SECANT_STEPS):
         piece = Motion.to_end(problem, settings.table, duration).piece(state, guess)

@@ -18,7 +18,7 @@ POINTS = 16
 MOST_PIECES = 3000
 GROWTH, SHRINKAGE, CAUTION = 3.0, 0.15, 0.8
 UNSOLVED = 0.25
-SHORTEST = 1e-13
+SHORTEST, SAME = 1e-13, 1e-14
 
 
 @dataclass(frozen=True)
@@ -67,13 +67,21 @@ class Stretch:
     time: int | None = None
 
     def march(
-        self, span: tuple[float, float], start: Array, first: float, settings: Settings, largest: float = 0.0
+        self,
+        span: tuple[float, float],
+        start: Array,
+        first: float,
+        settings: Settings,
+        largest: float = 0.0,
+        before: Path | None = None,
     ) -> March:
         """From the first place of the span until the event, or to its end. Raises TooManySteps.
 
-        `first` is the length to begin with, `largest` the largest force before.
+        `first` is the length to begin with, `largest` the largest force so far. The breaks of a path that was
+        found `before` with fewer nodes are kept.
         """
-        breaks, steps, length = [span[0]], 0, first
+        plan = [] if before is None else before.breaks[1:].tolist()
+        breaks, steps, length = [span[0]], 0, _ahead(plan, span, span[0], first)
         values: list[Array] = []
         table, state = settings.table, start
         while len(values) < MOST_PIECES:
@@ -88,10 +96,12 @@ class Stretch:
                 if factor >= CAUTION:
                     largest, state = peak, piece.values[:, -1]
                     values.append(piece.values)
-                    breaks.append(place + length if length < span[1] - place else span[1])
+                    breaks.append(_landed(plan, span, place + length))
                     over = self.over(piece.values)
                     if over or breaks[-1] >= span[1]:
                         return March(Path.of(breaks, values, table), steps, largest, over)
+                    length = _ahead(plan, span, breaks[-1], length * factor)
+                    continue
             length *= factor
             if length <= SHORTEST * (span[1] - span[0]):
                 if not values:
@@ -105,6 +115,18 @@ class Stretch:
         if self.time is None:
             return error
         return max(error, tail(values[self.time], table) / float(values[self.time, -1]))
+
+
+def _ahead(plan: list[float], span: tuple[float, float], place: float, length: float) -> float:
+    """The length up to the next break of the plan, or else the one proposed."""
+    near = SAME * (span[1] - span[0])
+    return next((later - place for later in plan if later - place > near), length)
+
+
+def _landed(plan: list[float], span: tuple[float, float], place: float) -> float:
+    """The break of the plan, or the end of the span, that was aimed at, else the place itself."""
+    near = SAME * (span[1] - span[0])
+    return next((known for known in (*plan, span[1]) if abs(known - place) <= near), place)
 
 
 def tail(force: Array, table: Radau) -> float:

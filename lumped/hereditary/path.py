@@ -14,7 +14,7 @@ from lumped.hereditary.radau import Radau
 
 Array = NDArray[np.float64]
 Curve = Callable[[float], float]
-POINTS_PER_PIECE = 12
+POINTS_PER_PIECE = 24
 ROOT_STEPS = 100
 ROUNDING = 4e-16
 

@@ -58,11 +58,15 @@ class Retreat:
     problem: Hereditary
     inward: Approach
     table: Radau
+    before: Path | None
 
     def piece(self, place: float, length: float, state: Array) -> Piece | None:
         """The piece of a length at a place, from the state there; None where Newton's steps fail."""
         over = place + length * self.table.nodes
         then, weights = self._then(over), length * self.table.integral
+        if self.before is not None:
+            places = np.clip(over, self.before.breaks[0], self.before.breaks[-1])
+            return self._solved(weights, state, then, self.before.field(TIME, places)[1])
         modulus = self.problem.modulus
         # The terms of the relaxation series act as springs where they are slow, as dashpots where they are fast.
         dashpots = modulus.viscosity + float(self.problem.stiffnesses @ np.array(modulus.times))
@@ -143,21 +147,27 @@ class Trial:
         return values
 
 
-def rebound(problem: Hereditary, inward: Approach, end_time: float, settings: Settings) -> Rebound:
-    """Follow the rebound until contact closes, the striker approaches again, or `end_time`. Raises NotReached."""
+def rebound(
+    problem: Hereditary, inward: Approach, end_time: float, settings: Settings, before: Rebound | None = None
+) -> Rebound:
+    """Follow the rebound until contact closes, the striker approaches again, or `end_time`. Raises NotReached.
+
+    `before` is the same found with fewer nodes: its pieces are kept, and it is where Newton starts.
+    """
+    known = before.path if before else None
     k, end = problem.terms, inward.path.end
     turn = inward.path.at(end)
     start = np.concatenate([[end**2, turn[0], 0.0, turn[2], turn[3], turn[0]], turn[4 + k :]])
     if turn[3] <= problem.gravity:
         return Rebound(Path.of([-end, -end * (1.0 - 1e-12)], [np.repeat(start[:, None], settings.points + 1, 1)],
                                settings.table), End.SECOND_APPROACH, 0)  # fmt: skip
-    retreat = Retreat(problem, inward, settings.table)
+    retreat = Retreat(problem, inward, settings.table, known)
 
     def over(values: Array) -> bool:
         return bool(values[TIME, -1] >= end_time)
 
     stretch = Stretch(retreat.piece, FORCE, over, TIME)
-    found = stretch.march((-end, 0.0), start, FIRST * end, settings)
+    found = stretch.march((-end, 0.0), start, FIRST * end, settings, before=known)
     path = found.path
     if found.over:
         low, high = (float(place) for place in path.breaks[-2:])

@@ -15,7 +15,7 @@ from lumped.collide import memory
 from lumped.collide.hereditary import HereditaryLoad
 from lumped.ending import End
 from lumped.hereditary.approach import DEPTH, approach
-from lumped.hereditary.closing import close
+from lumped.hereditary.closing import Closing, close
 from lumped.hereditary.march import Settings
 from lumped.hereditary.path import Path
 from lumped.hereditary.phase import Phase, SinceTouch, UntilEnd
@@ -63,19 +63,19 @@ def of(scene: Scene) -> Correspondence:
     return Correspondence(**(law.values if law is not None and law.name == Correspondence.name else {}))
 
 
-def solve(problem: Hereditary, end_time: float, settings: Settings) -> Course:
+def solve(problem: Hereditary, end_time: float, settings: Settings, before: Course | None = None) -> Course:
     """One integration from touch to the first F = 0, or to `end_time` in its own units. Raises NotReached."""
-    inward = approach(problem, end_time, settings)
-    steps = inward.steps
+    inward = approach(problem, end_time, settings, before.inward if before else None)
     if not inward.turned:
-        return Course((_phase(inward.path),), End.REST if inward.rests else End.TIME, steps)
-    closing = close(problem, inward, end_time, settings)
-    steps += closing.steps
+        return Course((_phase(inward.path),), End.REST if inward.rests else End.TIME, inward.steps, inward)
+    known = before.outward if before and isinstance(before.outward, Closing) else None
+    closing = close(problem, inward, end_time, settings, known)
+    steps = inward.steps + closing.steps
     phases = (_phase(closing.path),) if closing.path else ()
     if closing.last is None:
-        return Course(phases, End.TIME, steps)
+        return Course(phases, End.TIME, steps, inward, closing)
     last = Phase(closing.last, UntilEnd(closing.end), DEPTH, DEPTH)
-    return Course((*phases, last), End.SEPARATED, steps)
+    return Course((*phases, last), End.SEPARATED, steps, inward, closing)
 
 
 def _phase(path: Path) -> Phase:
