@@ -25,11 +25,16 @@ class Bodies(NamedTuple):
 
 
 class Stage(NamedTuple):
-    """Whether the bodies approach, the deepest indentation of this contact so far, m, and its speed at touch, m/s."""
+    """Whether the bodies approach, the deepest indentation of this contact so far, m, and its speed at touch, m/s.
+
+    `turn`: the depth where the stage began, m; `kept`: what the law keeps of the stages before.
+    """
 
     approaching: bool
     deepest: float
     speed: float
+    turn: float = 0.0
+    kept: tuple[float, ...] = ()
 
 
 class State(NamedTuple):
@@ -44,7 +49,7 @@ class State(NamedTuple):
 class PointLaw(Protocol):
     """A force between two masses, F(depth, rate), N; depths >= 0 in m, rates in m/s, scalars or arrays.
 
-    Within one stage the force is smooth. `tensile`: whether it can pull before the depth is zero.
+    Within one stage the force is smooth but for its corners. `tensile`: whether it can pull before the depth is zero.
     """
 
     @property
@@ -72,6 +77,12 @@ class PointLaw(Protocol):
 
     def tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
         """dF/d depth, N/m, and dF/d rate, N s/m."""
+
+    def corners(self, stage: Stage) -> tuple[float, ...]:
+        """Depths, m, in the order in which a stage meets them, where the force has a corner."""
+
+    def kept(self, depth: float, stage: Stage) -> tuple[float, ...]:
+        """What the next stage has to know of this one, which ends at `depth`."""
 
     def between(
         self, steps: Sequence[Step], place: NDArray[np.intp], share: Array, depth: Array, rate: Array, stage: Stage

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,10 +61,11 @@ def contact(
     """
     scale = law.time_scale(bodies)
     length = tolerance**FIRST_STEP * scale
-    stage = Stage(start.rate > 0.0, start.depth, abs(start.rate) or bodies.velocity)
+    stage = Stage(start.rate > 0.0, start.depth, abs(start.rate) or bodies.velocity, start.depth)
+    corners = law.corners(stage)
     phases: list[Phase] = []
     for _ in range(MOST_TURNS):
-        events = _events(law, stage, exit_rule)
+        events = _events(law, stage, exit_rule) | _corner(stage, corners)
         march = March(law, stage, bodies, events, until, tolerance * bodies.velocity)
         phase = march.phase(start, time, length)
         phases.append(phase)
@@ -74,19 +74,31 @@ def contact(
             return Contact(tuple(phases), End.TIME)
         if phase.event == "exit":
             return Contact(tuple(phases), End.SEPARATED)
-        stage = Stage(not stage.approaching, max(stage.deepest, start.depth), stage.speed)
-        start = start._replace(rate=0.0)
+        if phase.event == "corner":
+            corners = corners[1:]
+            continue
+        kept = law.kept(start.depth, stage)
+        stage = Stage(not stage.approaching, max(stage.deepest, start.depth), stage.speed, start.depth, kept)
+        start, corners = start._replace(rate=0.0), law.corners(stage)
         if abs(phase.last.last_acceleration) * scale < AT_REST * bodies.velocity:
             return Contact(tuple(phases), End.REST)
     raise TooManySteps(f"contact: {MOST_TURNS} turns without separation; accepted: an earlier motion.end_time")
 
 
-def _events(law: PointLaw, stage: Stage, exit_rule: str) -> Mapping[str, Event]:
+def _events(law: PointLaw, stage: Stage, exit_rule: str) -> dict[str, Event]:
     """What ends a stage: the turn of the motion, and in the rebound the end of contact."""
     if stage.approaching:
         return {"turn": TURN}
     pulls = law.tensile and exit_rule == "force"
     return {"exit": FORCE_LEFT if pulls else DEPTH_LEFT, "turn": TURN_BACK}
+
+
+def _corner(stage: Stage, corners: tuple[float, ...]) -> dict[str, Event]:
+    """The next corner of the force within a stage."""
+    if not corners:
+        return {}
+    sign, depth = (1.0 if stage.approaching else -1.0), corners[0]
+    return {"corner": Event(lambda step: sign * (depth - step.depth), lambda step: -sign * step.end.rate)}
 
 
 def _force_left(step: Step) -> Array:

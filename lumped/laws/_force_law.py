@@ -27,8 +27,8 @@ Array = NDArray[np.float64]
 # The first one is that asked of the result, if it is not beyond these; every next one is finer by FINER.
 COARSEST, FINEST, FINER = 1e-3, 1e-12, 1e-2
 SAFETY = 2.0
-# Half the width of the parabolas through which a peak is found, in that of its surroundings.
-CLOSER = (0.5, 0.05, 0.005)
+# Half the widths of the parabolas through which a peak is found, in that of its surroundings.
+CLOSER = (0.5, 0.1, 0.02, 0.004)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,6 +72,14 @@ class ForceLaw(ABC):
         return self
 
     def remembered(self, depth: Array) -> tuple[float, ...]:
+        """Nothing."""
+        return ()
+
+    def corners(self, stage: Stage) -> tuple[float, ...]:
+        """None."""
+        return ()
+
+    def kept(self, depth: float, stage: Stage) -> tuple[float, ...]:
         """Nothing."""
         return ()
 
@@ -192,24 +200,34 @@ def bodies_of(scene: Scene) -> Bodies:
 
 
 def peak_of(track: Track, one: Contact) -> tuple[float, float]:
-    """Time, s, and height, N, of the highest force of a contact: the vertex of ever smaller parabolas."""
+    """Time, s, and height, N, of the highest force of a contact."""
     steps = [step for phase in one.phases for step in phase.steps]
-    starts = one.start_time + np.concatenate([[0.0], np.cumsum([step.length for step in steps])])
-    points = [start + step.length * step.nodes.points for start, step in zip(starts, steps, strict=False)]
-    places = np.concatenate([[one.start_time], *points])
-    values = np.concatenate([track(places[:1])[2], *(step.force for step in steps)])
+    ends = one.start_time + np.cumsum([step.length for step in steps])
+    i = int(np.argmax([step.force.max() for step in steps]))
+    found = [(one.start_time, float(track(np.array([one.start_time]))[2, 0]))]
+    # Where the highest point is the end of its step, the peak may lie before the first point of the next one.
+    around = (i, i + 1) if i + 1 < len(steps) and steps[i].force.argmax() == steps[i].force.size - 1 else (i,)
+    for k in around:
+        found.append(_vertex(track, ends[k] - steps[k].length * (1.0 - np.append(0.0, steps[k].nodes.points))))
+    return max(found, key=lambda peak: peak[1])
+
+
+def _vertex(track: Track, places: Array) -> tuple[float, float]:
+    """The highest force between the first and the last of ascending places: the vertex of ever smaller parabolas."""
+    values = track(places)[2]
     i = int(np.argmax(values))
-    highest = time, height = float(places[i]), float(values[i])
+    time, height = float(places[i]), float(values[i])
     width = float(places[min(i + 1, places.size - 1)] - places[max(i - 1, 0)])
     for share in CLOSER:
-        left, right = max(time - share * width, one.start_time), min(time + share * width, one.end_time)
+        left, right = max(time - share * width, float(places[0])), min(time + share * width, float(places[-1]))
         low, middle, high = (float(force) for force in track(np.array([left, 0.5 * (left + right), right]))[2])
-        bent = low - 2.0 * middle + high
-        if bent >= 0.0 or abs(high - low) > -2.0 * bent:
-            break
-        shift = 0.5 * (low - high) / bent
-        time, height = 0.5 * (left + right) + 0.5 * shift * (right - left), middle - 0.25 * shift * (low - high)
-    return max(highest, (time, height), key=lambda peak: peak[1])
+        bent, tilt = low - 2.0 * middle + high, low - high
+        if bent < 0.0 and abs(tilt) < -2.0 * bent:
+            shift, height = 0.5 * tilt / bent, middle - 0.125 * tilt**2 / bent
+        else:
+            shift, height = (-1.0, low) if tilt > 0.0 else (1.0, high)
+        time = 0.5 * (left + right) + 0.5 * shift * (right - left)
+    return time, height
 
 
 def _listed(track: Track, one: Contact) -> dict[str, float | None]:
