@@ -1,0 +1,37 @@
+"""Impacts of the paper's concrete striker, whose head and pole are not printed: radius and section are assumed."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from lumped.laws import correspondence
+from lumped.load_curves.hertz import Hertz
+from lumped.materials import Material
+from lumped.materials.networks import sls
+from lumped.paper.examples import Concrete
+from lumped.paper.struck_bar import StruckBar, bar_impedance
+from lumped.paper.value import Value
+from lumped.result import Result
+from lumped.scene import Model, Scene
+from lumped.shapes import Sphere
+
+TOLERANCE = 1e-6
+# The fit takes the printed moduli as contact moduli, so Poisson's ratio plays no part.
+NU = 0.0
+
+
+@cache
+def proposed(concrete: Concrete, radius: float, velocity: float) -> Result:
+    """The 3-parameter solid on a round head of this radius, m, at a velocity, m/s. Raises NotReached."""
+    material = Material(sls.of(E1=concrete.E1, E2=concrete.E2, C1=concrete.C1), NU)
+    parabola = Model(profile="parabola")
+    scene = Scene(Sphere(radius), concrete.mass, velocity, material, model=parabola, name="concrete striker")
+    return correspondence.of(scene).simulate(scene, TOLERANCE)
+
+
+@cache
+def on_bar(concrete: Concrete, radius: float, side: float, velocity: float) -> tuple[Value, Value, Value]:
+    """Peak force, N, duration, s, restitution of the elastic striker on a long bar of square section, side in m."""
+    stiffness = concrete.E2 * float(Hertz(radius).force(1.0))
+    impedance = bar_impedance(concrete.E2, concrete.density, side**2)
+    return StruckBar(concrete.mass, velocity, stiffness, impedance).impact()

@@ -1,0 +1,48 @@
+"""Free vibrations of the paper's structure: with the ring, without it, without any damper; each computed once."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from lumped.errors import BadInput, Fault
+from lumped.paper.examples import Ptmd, RingLining
+from lumped.paper.ring_impact import stiffness
+from lumped.pounding_tmd import Measures, Oscillator, PoundingDamper, Ring, Start, simulate
+
+# The damper's path is exact to rounding, which some fifty contacts carry on.
+ROUNDING = 1e-9
+STARTS = ("both", "structure")
+
+
+@cache
+def with_ring(ptmd: Ptmd, lining: RingLining, start: str, nu: float) -> Measures:
+    """The pounding damper; `start`: "both" masses or the "structure" alone displaced. Raises BadInput, NotReached."""
+    ring = Ring(ptmd.gap, stiffness(lining, nu), 1.0)
+    return _measures(ptmd, PoundingDamper(_structure(ptmd), _damper(ptmd), ring), start)
+
+
+@cache
+def without_ring(ptmd: Ptmd, start: str) -> Measures:
+    """The damper without pounding."""
+    return _measures(ptmd, PoundingDamper(_structure(ptmd), _damper(ptmd)), start)
+
+
+@cache
+def without_damper(ptmd: Ptmd) -> Measures:
+    """The structure alone."""
+    return _measures(ptmd, PoundingDamper(_structure(ptmd)), "structure")
+
+
+def _measures(ptmd: Ptmd, system: PoundingDamper, start: str) -> Measures:
+    if start not in STARTS:
+        raise BadInput(Fault("free vibration", "start", f"{start!r}; accepted: {', '.join(STARTS)}"))
+    released = Start.both(ptmd.displacement) if start == "both" else Start.structure(ptmd.displacement)
+    return simulate(system, released, ptmd.end_time, ptmd.window).measures
+
+
+def _structure(ptmd: Ptmd) -> Oscillator:
+    return Oscillator(ptmd.m1, ptmd.k1, ptmd.c1)
+
+
+def _damper(ptmd: Ptmd) -> Oscillator:
+    return Oscillator(ptmd.m2, ptmd.k2, ptmd.c2)

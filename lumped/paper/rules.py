@@ -1,0 +1,110 @@
+"""Verdict by rule: whether recomputed values agree with printed ones, `data/paper/rules.toml`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+
+from lumped.data import directory
+from lumped.errors import BadInput, Fault, nearest
+from lumped.keys import Choice, Key, Number, Text, read_table
+from lumped.paper.value import Value
+from lumped.toml_file import parsed
+
+AGREES, DIFFERS, UNKNOWN = "agrees", "differs", "cannot be computed from the text"
+SEPARATOR = ";"
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One rule: its kind, the allowance `width`, and what it says in words."""
+
+    name: str
+    kind: str
+    says: str
+    width: float = 0.0
+
+    @property
+    def compares(self) -> bool:
+        """Whether each recomputed value stands against a printed one."""
+        return self.kind in ("digits", "relative")
+
+    def verdict(self, printed: str, values: Sequence[Value]) -> str:
+        """AGREES when every value keeps the rule over the whole of its bar, UNKNOWN when nothing is to be compared."""
+        if self.kind == "none":
+            return UNKNOWN
+        margins = MARGINS[self.kind](printed, values, self.width)
+        kept = all(margin >= value.error for margin, value in zip(margins, values, strict=True))
+        return AGREES if kept else DIFFERS
+
+
+def numbers(printed: str) -> tuple[float, ...]:
+    """The printed numbers, separated by semicolons. Raises ValueError for another text."""
+    return tuple(float(part) for part in printed.split(SEPARATOR))
+
+
+def half_unit(printed: str) -> float:
+    """Half a unit of the last digit of a printed number: "80.3" -> 0.05, "1.05e11" -> 5e8."""
+    exponent = Decimal(printed.strip()).as_tuple().exponent
+    if not isinstance(exponent, int):
+        raise ValueError(f"{printed!r} has no last digit")
+    return float(Decimal(5).scaleb(exponent - 1))
+
+
+def load() -> dict[str, Rule]:
+    """The packaged rules by name. Raises BadInput."""
+    path = directory() / "paper" / "rules.toml"
+    keys: Mapping[str, Key] = {
+        "kind": Choice((*MARGINS, "none")), "says": Text(), "width": Number(-1.0, 1.0, required=False),
+    }  # fmt: skip
+    found, faults = {}, []
+    for name, table in parsed(path).items():
+        values, more = read_table(path.name, name, table if isinstance(table, Mapping) else {}, keys)
+        faults += more
+        if not more:
+            found[name] = Rule(name, **values)
+    if faults:
+        raise BadInput(faults)
+    return found
+
+
+def get(rules: Mapping[str, Rule], name: str, source: str) -> Rule:
+    """A rule by its name; raises BadInput with the nearest one."""
+    if name not in rules:
+        accepted = f"accepted: {', '.join(rules)}{nearest(name, tuple(rules))}"
+        raise BadInput(Fault(source, name, f"unknown rule; {accepted}"))
+    return rules[name]
+
+
+def _digits(printed: str, values: Sequence[Value], width: float) -> list[float]:
+    parts = printed.split(SEPARATOR)
+    return [half_unit(part) - abs(value.value - float(part)) for part, value in zip(parts, values, strict=True)]
+
+
+def _relative(printed: str, values: Sequence[Value], width: float) -> list[float]:
+    pairs = zip(numbers(printed), values, strict=True)
+    return [width * abs(number) - abs(value.value - number) for number, value in pairs]
+
+
+def _within(printed: str, values: Sequence[Value], width: float) -> list[float]:
+    return [width - abs(value.value) for value in values]
+
+
+def _above(printed: str, values: Sequence[Value], width: float) -> list[float]:
+    return [value.value - width for value in values]
+
+
+def _below(printed: str, values: Sequence[Value], width: float) -> list[float]:
+    return [width - value.value for value in values]
+
+
+def _between(printed: str, values: Sequence[Value], width: float) -> list[float]:
+    low, high = numbers(printed)
+    return [min(value.value - low, high - value.value) for value in values]
+
+
+# How far inside its allowance each value lies, in the value's unit: (printed, values, width) -> margins.
+MARGINS: Mapping[str, Callable[[str, Sequence[Value], float], list[float]]] = {
+    "digits": _digits, "relative": _relative, "within": _within, "above": _above, "below": _below, "between": _between,
+}  # fmt: skip
