@@ -32,7 +32,8 @@ def exact(k: float, alpha: float, bodies: Bodies, e: float) -> Numbers:
     """
     kinetic = 0.5 * bodies.mass * bodies.velocity**2
     depth = ((1.0 + e**2) * kinetic / k) ** (1.0 / (alpha + 1.0))
-    return recipe(k * depth ** (alpha - 1.0), depth, (1.0 - e) * (1.0 + e) * kinetic, min(YIELD_SHARE, e**2 / (1.0 + e**2)))
+    share = min(YIELD_SHARE, e**2 / (1.0 + e**2))
+    return recipe(k * depth ** (alpha - 1.0), depth, (1.0 - e) * (1.0 + e) * kinetic, share)
 
 
 def published(k: float, alpha: float, bodies: Bodies, e: float) -> Numbers:

@@ -14,6 +14,8 @@ from lumped.collide.bodies import TINY, Bodies, Stage, State
 from lumped.collide.contact import Contact
 from lumped.collide.flight import returned
 from lumped.collide.motion import Motion, motion
+from lumped.collide.outcome import Outcome, outcome_of
+from lumped.collide.outcome import peak_of as peak_of
 from lumped.collide.step import Step
 from lumped.collide.track import Track
 from lumped.ending import End
@@ -27,8 +29,6 @@ Array = NDArray[np.float64]
 # The first one is that asked of the result, if it is not beyond these; every next one is finer by FINER.
 COARSEST, FINEST, FINER = 1e-3, 1e-12, 1e-2
 SAFETY = 2.0
-# Half the widths of the parabolas through which a peak is found, in that of its surroundings.
-CLOSER = (0.5, 0.1, 0.02, 0.004)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,6 +131,15 @@ class ForceLaw(ABC):
         work, model = {"steps": steps}, self.resolved(scene)
         return assemble(self.name, scene, tolerance, fine, quantities, force_error, clock, numerics, work, model)
 
+    def outcome(self, scene: Scene, tolerance: float = 1e-6) -> Outcome:
+        """What a study of many impacts needs of the first contact, by one march and without bars. Raises TooManySteps.
+
+        `tolerance`: relative; the march is as fine as that of a Result which meets it at once.
+        """
+        step_tolerance = min(max(tolerance, FINEST / FINER), COARSEST) * FINER
+        track = Track(self, motion(self, bodies_of(scene), self.exit, 1, self._until(scene), step_tolerance))
+        return outcome_of(track, track.motion.contacts[0])
+
     def resolved(self, scene: Scene) -> Model:
         """The scene's model as this law has it: its stiffness stands for a parabola."""
         return replace(scene.model, profile="parabola") if scene.has_geometry else scene.model
@@ -142,16 +151,17 @@ class ForceLaw(ABC):
         """One integration, and how many steps it took."""
         moved = motion(self, bodies_of(scene), self.exit, scene.motion.impacts, until, step_tolerance)
         track = Track(self, moved)
+        outcomes = tuple(outcome_of(track, one) for one in moved.contacts)
         said = "" if moved.end is End.SEPARATED else moved.end.value
         answer = Answer(
             track.rows,
             lambda times: self._columns(track, times),
-            self._values(scene, track),
+            self._values(scene, moved, outcomes),
             moved.end,
             self._energy(scene, moved),
             "; ".join(part for part in (self.source, said) if part),
             until,
-            tuple(_listed(track, one) for one in moved.contacts) if scene.motion.impacts > 1 else (),
+            tuple(outcome._asdict() for outcome in outcomes) if scene.motion.impacts > 1 else (),
         )
         return answer, sum(len(phase.steps) for one in moved.contacts for phase in one.phases)
 
@@ -163,19 +173,16 @@ class ForceLaw(ABC):
         radius = np.zeros_like(depth) if self.load_curve is None else self.load_curve.contact_radius(pressed)
         return np.array([depth, rate, force, radius])
 
-    def _values(self, scene: Scene, track: Track) -> Mapping[str, float | None]:
-        moved, first = track.motion, track.motion.contacts[0]
-        peaks = [peak_of(track, one) for one in moved.contacts]
-        peak_time, peak_force = max(peaks, key=lambda peak: peak[1])
-        separated = first.end is End.SEPARATED
+    def _values(self, scene: Scene, moved: Motion, outcomes: Sequence[Outcome]) -> Mapping[str, float | None]:
+        highest = max(outcomes, key=lambda outcome: outcome.peak_force)
         gained = sum(one.first.rate - one.last.rate for one in moved.contacts)
         fallen = scene.gravity * sum(one.end_time - one.start_time for one in moved.contacts)
         return {
-            "peak_force": peak_force,
-            "peak_time": peak_time,
-            "peak_depth": max(one.deepest for one in moved.contacts),
-            "duration": first.end_time if separated else None,
-            "restitution": -first.last.rate / scene.velocity if separated else None,
+            "peak_force": highest.peak_force,
+            "peak_time": highest.peak_time,
+            "peak_depth": max(outcome.peak_depth for outcome in outcomes),
+            "duration": outcomes[0].duration,
+            "restitution": outcomes[0].restitution,
             "impulse": scene.reduced_mass * (gained + fallen),
         }
 
@@ -197,49 +204,3 @@ class ForceLaw(ABC):
 def bodies_of(scene: Scene) -> Bodies:
     """The relative motion of a scene."""
     return Bodies(scene.reduced_mass, scene.velocity, scene.gravity)
-
-
-def peak_of(track: Track, one: Contact) -> tuple[float, float]:
-    """Time, s, and height, N, of the highest force of a contact."""
-    steps = [step for phase in one.phases for step in phase.steps]
-    ends = one.start_time + np.cumsum([step.length for step in steps])
-    i = int(np.argmax([step.force.max() for step in steps]))
-    found = [(one.start_time, float(track(np.array([one.start_time]))[2, 0]))]
-    # Where the highest point is the end of its step, the peak may lie before the first point of the next one.
-    around = (i, i + 1) if i + 1 < len(steps) and steps[i].force.argmax() == steps[i].force.size - 1 else (i,)
-    for k in around:
-        found.append(_vertex(track, ends[k] - steps[k].length * (1.0 - np.append(0.0, steps[k].nodes.points))))
-    return max(found, key=lambda peak: peak[1])
-
-
-def _vertex(track: Track, places: Array) -> tuple[float, float]:
-    """The highest force between the first and the last of ascending places: the vertex of ever smaller parabolas."""
-    values = track(places)[2]
-    i = int(np.argmax(values))
-    time, height = float(places[i]), float(values[i])
-    width = float(places[min(i + 1, places.size - 1)] - places[max(i - 1, 0)])
-    for share in CLOSER:
-        left, right = max(time - share * width, float(places[0])), min(time + share * width, float(places[-1]))
-        low, middle, high = (float(force) for force in track(np.array([left, 0.5 * (left + right), right]))[2])
-        bent, tilt = low - 2.0 * middle + high, low - high
-        if bent < 0.0 and abs(tilt) < -2.0 * bent:
-            shift, height = 0.5 * tilt / bent, middle - 0.125 * tilt**2 / bent
-        else:
-            shift, height = (-1.0, low) if tilt > 0.0 else (1.0, high)
-        time = 0.5 * (left + right) + 0.5 * shift * (right - left)
-    return time, height
-
-
-def _listed(track: Track, one: Contact) -> dict[str, float | None]:
-    """A contact in a list of several."""
-    separated = one.end is End.SEPARATED
-    peak_time, peak_force = peak_of(track, one)
-    return {
-        "start": one.start_time,
-        "duration": one.end_time - one.start_time if separated else None,
-        "velocity": one.first.rate,
-        "restitution": -one.last.rate / one.first.rate if separated and one.first.rate > 0.0 else None,
-        "peak_force": peak_force,
-        "peak_time": peak_time,
-        "peak_depth": one.deepest,
-    }
