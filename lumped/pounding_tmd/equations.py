@@ -77,7 +77,16 @@ class Equations:
         """Force of a side if nothing were cut off, N, positive in compression."""
         if self.surface is None:
             return np.zeros_like(y[0])
-        return self.surface.force(y[self.side(index)], self.speed(index, stage, y))
+        return self.surface.force(self._surface_state(index, stage, y), self.speed(index, stage, y))
+
+    def _surface_state(self, index: int, stage: Stage, y: Array) -> Array:
+        """State of the surface of a side; where it goes with the damper, and not linearly, its place is that of the
+        damper: an integrated one drifts off, and would keep a force after the damper has gone.
+        """
+        state = y[self.side(index)]
+        if self.linear or stage not in (Stage.PRESSED, Stage.FOLLOWED):
+            return state
+        return np.concatenate([self.place(index, y)[None], state[1:]])
 
     def force(self, stages: Stages, y: Array) -> Array:
         """f of "(33)", N: positive at x2 - x1 > gap, where it pushes the damper back and the structure along."""

@@ -59,6 +59,8 @@ def after(equations: Equations, stages: Stages, switch: Switch, y: Array) -> tup
         state[side.start] = 0.0
         if stages[switch.side] is Stage.RECOVERING:
             state[side] = 0.0
+    if to is Stage.RECOVERING:
+        state[side.start] = equations.place(switch.side, y)
     if to is Stage.PRESSED and stages[switch.side] is not Stage.FOLLOWED:
         state[side.start] = equations.place(switch.side, y)
         if float(equations.side_force(switch.side, to, state)) < 0.0 and stages[switch.side] is Stage.HELD:
