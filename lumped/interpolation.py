@@ -31,8 +31,10 @@ def local(x: Array, y: Array, at: Array, points: int = POINTS) -> Array:
 
 
 def peak(x: Array, y: Array) -> tuple[float, float]:
-    """Place and height of the highest point of a smooth curve given by its rows, x ascending strictly."""
-    return highest(lambda at: local(x, y, at), x)
+    """Place and height of the highest point of a smooth curve given by its rows, x ascending; of equal x the first."""
+    new = np.concatenate([[True], np.diff(x) > 0.0])
+    rows, values = x[new], y[new]
+    return highest(lambda at: local(rows, values, at), rows)
 
 
 def highest(curve: Callable[[Array], Array], places: Array) -> tuple[float, float]:

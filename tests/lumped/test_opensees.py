@@ -1,0 +1,113 @@
+"""Export to OpenSees: names, order, signs and units of the arguments, and what is refused."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lumped import BadInput, Scene, laws, opensees
+from lumped.collide.bodies import Stage
+from lumped.scene import LawChoice
+
+BODY = Scene(None, mass=0.002, velocity=1.5)
+
+
+def exported(name: str, scene: Scene = BODY, **values: Any) -> opensees.UniaxialMaterial:
+    chosen = replace(scene, law=LawChoice(name, values))
+    return opensees.material(laws.get(name).of(chosen), chosen)
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "material", "arguments"),
+    [
+        ("linear_spring", {"k": 1e5}, "ViscoelasticGap", {"K": 1e5, "C": 0.0}),
+        ("kelvin", {"k": 1e5, "c": 3.0}, "ViscoelasticGap", {"K": 1e5, "C": 3.0}),
+        ("jankowski", {"k": 1e7, "xi": 0.3}, "JankowskiImpact", {"Kh": 1e7, "xi": 0.3, "Meff": 0.002, "n": 1.5}),
+        ("mahmoud", {"k": 1e5, "xi": 0.3}, "JankowskiImpact", {"Kh": 1e5, "xi": 0.3, "Meff": 0.002, "n": 1.0}),
+        ("hertz", {"k": 1e7, "alpha": 2.0}, "Hertzdamp", {"Kh": 1e7, "xiNorm": 0.0, "n": 2.0}),
+        ("hertzdamp", {"k": 1e7, "xi": 0.4}, "Hertzdamp", {"Kh": 1e7, "xiNorm": 0.4, "n": 1.5}),
+        ("hunt_crossley", {"k": 1e7, "chi": 0.4}, "Hertzdamp", {"Kh": 1e7, "xiNorm": 0.6, "n": 1.5}),
+        ("khatiwada", {"k": 1e7, "c": 4e6}, "Hertzdamp", {"Kh": 1e7, "xiNorm": 0.6, "n": 1.5}),
+        (
+            "impact_bilinear",
+            {"k1": 2e5, "k2": 5e4, "yield_depth": 2e-5},
+            "ImpactMaterial",
+            {"K1": 2e5, "K2": 5e4, "Delta_y": -2e-5},
+        ),
+    ],
+)
+def test_arguments_are_those_of_the_material(
+    name: str, values: dict[str, float], material: str, arguments: dict[str, float]
+) -> None:
+    found = exported(name, gap=0.01, **values)
+    assert found.name == material
+    assert dict(found.arguments) == pytest.approx({**arguments, "gap": -0.01})
+
+
+def test_the_mass_is_that_of_the_two_bodies() -> None:
+    found = exported("jankowski", replace(BODY, target_mass=0.002), k=1e7, xi=0.3)
+    assert found.arguments["Meff"] == pytest.approx(0.001)
+    assert found.arguments["xi"] == pytest.approx(0.3)
+
+
+def test_a_law_without_a_gap_gets_one_that_opensees_accepts() -> None:
+    assert exported("hertz", k=1e7).arguments["gap"] == -opensees.LEAST_GAP
+
+
+def hughes(found: opensees.UniaxialMaterial, depth: float, rate: float, speed: float) -> float:
+    """The force that the source of OpenSees computes from its arguments."""
+    a = found.arguments
+    if found.name == "ViscoelasticGap":
+        return a["K"] * depth + a["C"] * rate
+    if found.name == "Hertzdamp":
+        return (a["Kh"] + a["xiNorm"] * a["Kh"] / speed * rate) * depth ** a["n"]
+    damper = 2.0 * a["xi"] * np.sqrt(a["Kh"] * depth ** (a["n"] - 1.0) * a["Meff"]) * rate
+    return float(a["Kh"] * depth ** a["n"] + (damper if rate > 0.0 else 0.0))
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("kelvin", {"k": 1e5, "xi": 0.3}),
+        ("jankowski", {"k": 1e7, "xi": 0.3, "alpha": 1.8}),
+        ("mahmoud", {"k": 1e5, "xi": 0.3}),
+        ("hertzdamp", {"k": 1e7, "xi": 0.4}),
+        ("hunt_crossley", {"k": 1e7, "chi": 0.4, "alpha": 1.2}),
+        ("khatiwada", {"k": 1e7, "c": 4e6}),
+    ],
+)
+def test_the_material_has_the_force_of_the_law(name: str, values: dict[str, float]) -> None:
+    scene = replace(BODY, law=LawChoice(name, values))
+    law = laws.get(name).of(scene)
+    found = opensees.material(law, scene)
+    for depth, rate in ((1e-5, 1.2), (5e-5, 0.3), (3e-5, -0.8)):
+        force = float(law.force(depth, rate, Stage(rate > 0.0, 6e-5, scene.velocity)))
+        assert hughes(found, depth, rate, scene.velocity) == pytest.approx(force, rel=1e-12)
+
+
+def test_lines_are_comments_and_one_command() -> None:
+    scene = replace(BODY, law=LawChoice("jankowski", {"k": 1.25e7, "xi": 0.3, "gap": 0.01}))
+    law = laws.get("jankowski").of(scene)
+    *said, command = opensees.lines(law, scene, tag=7).splitlines()
+    assert command == "uniaxialMaterial JankowskiImpact 7 12500000 0.3 0.002 -0.01 1.5"
+    assert all(line.startswith("# ") for line in said)
+    assert "tangent" in said[-1]
+    python = opensees.lines(law, scene, tag=7, language="python").splitlines()[-1]
+    assert python == 'ops.uniaxialMaterial("JankowskiImpact", 7, 12500000, 0.3, 0.002, -0.01, 1.5)'
+
+
+def test_tension_at_the_end_is_told_where_the_law_has_none() -> None:
+    assert any("pulls" in text for text in exported("kelvin", k=1e5, xi=0.2).differences)
+    assert not any("pulls" in text for text in exported("kelvin", k=1e5, xi=0.2, exit="depth").differences)
+
+
+def test_a_law_without_a_material_names_those_that_have_one() -> None:
+    with pytest.raises(BadInput, match=r"tsuji has no OpenSees material; .*jankowski.*kelvin"):
+        exported("tsuji", k=1e7, alpha_t=0.3)
+    scene = replace(BODY, law=LawChoice("hertz", {"k": 1e7}))
+    with pytest.raises(BadInput, match=re.escape("'apdl' is not accepted; accepted: tcl, python")):
+        opensees.lines(laws.get("hertz").of(scene), scene, language="apdl")
