@@ -24,24 +24,28 @@ class Peak:
     contact_radius: float
     duration: float
 
+    @property
+    def steepness(self) -> float:
+        """depth/a: for a sphere a/R."""
+        return self.depth / self.contact_radius if self.contact_radius > 0.0 else 0.0
+
 
 def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[LedgerEntry, ...]:
     """The ledger of a scene under `model` (default: the scene's own), with the scales of its impact."""
     resolved = model or scene.model
     if not scene.has_geometry:
         return (_gravity(scene, resolved, peak),)
-    radius = scene.geometry.shape.tip_radius
     entries = [
         _inertia(scene, peak),
         _profile(scene, resolved, peak),
-        _finite_strain(peak, radius),
-        _deformed_gap(scene.geometry.material.nu, peak, radius),
+        _finite_strain(peak),
+        _deformed_gap(scene.geometry.material.nu, peak),
         _sideways(scene),
         _series(scene, peak),
         LedgerEntry("striker compliance", "rigid", None, "the scene gives the striker no material"),
         _gravity(scene, resolved, peak),
         _plasticity(scene, peak),
-        _adhesion(scene, peak, radius),
+        _adhesion(scene, peak),
     ]
     return tuple(entries)
 
@@ -70,21 +74,21 @@ def _profile(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     return LedgerEntry(effect, "parabola", abs(parabola / exact - 1.0), "model.profile = 'exact'")
 
 
-def _finite_strain(peak: Peak, radius: float) -> LedgerEntry:
-    """Stresses err by the order of the strain, Tabor's 0.2 a/R (1951, ISBN 978-0-19-850776-5)."""
-    note = "order of magnitude: Tabor's representative strain 0.2 a/R"
-    return LedgerEntry("finite strain", "small displacements", 0.2 * peak.contact_radius / radius, note)
+def _finite_strain(peak: Peak) -> LedgerEntry:
+    """Stresses err by the order of the strain, Tabor's 0.2 a/R (1951, ISBN 978-0-19-850776-5), a/R = depth/a."""
+    note = "order of magnitude: Tabor's representative strain 0.2 depth/a"
+    return LedgerEntry("finite strain", "small displacements", 0.2 * peak.steepness, note)
 
 
-def _deformed_gap(nu: float, peak: Peak, radius: float) -> LedgerEntry:
+def _deformed_gap(nu: float, peak: Peak) -> LedgerEntry:
     """The surface moves inward while the gap is measured where it was.
 
     Inside Hertz's contact u_r = -(1-2nu)/(1-nu) (2/3pi) (a^2/R) (a/r) [1-(1-r^2/a^2)^(3/2)] (Johnson, eq.
     3.41b), near the axis -r times k = (1-2nu)/(1-nu) a/(pi R). The profile is met at r(1+k), as if 1/R were
-    (1+2k)/R, and F ~ sqrt(R) changes by k.
+    (1+2k)/R, and F ~ sqrt(R) changes by k. Other profiles count with depth/a for a/R.
     """
-    estimate = (1.0 - 2.0 * nu) / (1.0 - nu) * peak.contact_radius / (math.pi * radius)
-    return LedgerEntry("deformed-gap kinematics", "small displacements", estimate, "(1-2nu)/(1-nu) a/(pi R)")
+    estimate = (1.0 - 2.0 * nu) / (1.0 - nu) * peak.steepness / math.pi
+    return LedgerEntry("deformed-gap kinematics", "small displacements", estimate, "(1-2nu)/(1-nu) depth/(pi a)")
 
 
 def _sideways(scene: Scene) -> LedgerEntry:
@@ -136,9 +140,12 @@ def _plasticity(scene: Scene, peak: Peak) -> LedgerEntry:
     return LedgerEntry(effect, "neglected", 1.0 - 0.5 * share * (3.0 - share**2), note)
 
 
-def _adhesion(scene: Scene, peak: Peak, radius: float) -> LedgerEntry:
+def _adhesion(scene: Scene, peak: Peak) -> LedgerEntry:
     """The pull-off force (3/2) pi w R of Johnson, Kendall and Roberts 1971, doi 10.1098/rspa.1971.0141."""
     work = scene.geometry.material.work_of_adhesion
     if work is None:
         return LedgerEntry("adhesion", "neglected", None, "needs target.material.work_of_adhesion")
+    radius = scene.geometry.shape.tip_radius
+    if radius is None:
+        return LedgerEntry("adhesion", "neglected", None, "the pull-off force is known for a round tip only")
     return LedgerEntry("adhesion", "neglected", 1.5 * math.pi * work * radius / peak.force, "JKR pull-off force")

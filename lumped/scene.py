@@ -209,9 +209,10 @@ class Scene:
         return {"end_time": self.end_time} if known else {}
 
     def _absurd_depth(self) -> str:
-        """Even the stiffest answer of the material lets the striker sink in deeper than it is round."""
-        impact = stiffest_impact(self.geometry.shape, self.contact_modulus, self.reduced_mass, self.velocity)
-        if impact.contact_radius <= impact.depth:
+        """Even the stiffest answer of the material lets a round striker sink in deeper than it is round."""
+        shape = self.geometry.shape
+        impact = stiffest_impact(shape, self.contact_modulus, self.reduced_mass, self.velocity)
+        if shape.tip_radius is not None and impact.contact_radius <= impact.depth:
             return (
                 f"the striker sinks in by {impact.depth:.3g} m, deeper than its radius: no small-displacement theory "
                 "holds; accepted: a lower velocity or mass, or a stiffer material"

@@ -36,9 +36,9 @@ class Shape(ABC):
         """The equivalent one-dimensional profile g(x) = x int_0^x h'(r)/sqrt(x^2-r^2) dr, x >= 0."""
 
     @property
-    @abstractmethod
-    def tip_radius(self) -> float:
-        """Radius of curvature of the lowest point, m."""
+    def tip_radius(self) -> float | None:
+        """Radius of curvature of the lowest point, m; None where it has none."""
+        return None
 
     @property
     @abstractmethod

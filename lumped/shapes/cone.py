@@ -1,0 +1,64 @@
+"""The cone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.keys import Key, Number, check_fields
+from lumped.load_curves.hertz import HertzImpact
+from lumped.load_curves.power import Power
+from lumped.shapes.base import Shape
+
+KEYS: Mapping[str, Key] = {"angle": Number(0.01, 80.0, "degrees, between face and undeformed surface")}
+
+
+@dataclass(frozen=True)
+class Cone(Shape):
+    """A cone whose face stands at `angle`, degrees, to the undeformed surface: Table 1's theta. Raises BadInput."""
+
+    angle: float
+    name: ClassVar[str] = "cone"
+    keys: ClassVar[Mapping[str, Key]] = KEYS
+
+    def __post_init__(self) -> None:
+        check_fields("cone", self, KEYS)
+
+    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+        """r tan(angle)."""
+        return np.asarray(self._tangent * np.abs(np.asarray(r, dtype=float)))
+
+    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+        """tan(angle)."""
+        return np.full(np.shape(r), self._tangent)
+
+    def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
+        """(pi/2) x tan(angle)."""
+        return np.asarray(self.load_curve.depth(x))
+
+    @property
+    def load_curve(self) -> Power:
+        """Love's and Sneddon's closed form, F = (2/pi) E* depth^2/tan(angle)."""
+        return Power(self._tangent, 1.0)
+
+    def resolved(self, profile: str) -> Shape:
+        """Itself: it has no other profile."""
+        return self
+
+    def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
+        """Scales of the elastic impact, exact."""
+        return self.load_curve.impact(modulus, mass, velocity)
+
+    @property
+    def _tangent(self) -> float:
+        return math.tan(math.radians(self.angle))
+
+
+def of(angle: float) -> Cone:
+    """A cone of `angle`, degrees."""
+    return Cone(angle)

@@ -1,0 +1,64 @@
+"""The profile c r^n: a continuous family from the cone to the flat punch."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.keys import Key, Number, check_fields
+from lumped.load_curves.hertz import HertzImpact
+from lumped.load_curves.power import Power
+from lumped.shapes.base import Shape
+
+KEYS: Mapping[str, Key] = {
+    "coefficient": Number(1e-30, 1e30, "m^(1-n)"),
+    "exponent": Number(1.0, 12.0),
+}
+
+
+@dataclass(frozen=True)
+class PowerProfile(Shape):
+    """height = coefficient r^exponent. Raises BadInput for a value out of range."""
+
+    coefficient: float
+    exponent: float
+    name: ClassVar[str] = "power"
+    keys: ClassVar[Mapping[str, Key]] = KEYS
+
+    def __post_init__(self) -> None:
+        check_fields("power", self, KEYS)
+
+    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+        """c r^n."""
+        return np.asarray(self.coefficient * np.abs(np.asarray(r, dtype=float)) ** self.exponent)
+
+    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+        """n c r^(n - 1)."""
+        ratio = np.abs(np.asarray(r, dtype=float))
+        return np.asarray(self.exponent * self.coefficient * ratio ** (self.exponent - 1.0))
+
+    def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
+        """c kappa x^n."""
+        return np.asarray(self.load_curve.depth(x))
+
+    @property
+    def load_curve(self) -> Power:
+        """Galin's and Sneddon's closed form."""
+        return Power(self.coefficient, self.exponent)
+
+    def resolved(self, profile: str) -> Shape:
+        """Itself: it has no other profile."""
+        return self
+
+    def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
+        """Scales of the elastic impact, exact."""
+        return self.load_curve.impact(modulus, mass, velocity)
+
+
+def of(coefficient: float, exponent: float) -> PowerProfile:
+    """The profile of a coefficient c, m^(1-n), and an exponent n."""
+    return PowerProfile(coefficient, exponent)
