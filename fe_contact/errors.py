@@ -32,3 +32,10 @@ class TooManySteps(NotReached):
 
     def __init__(self, steps: int, time: float) -> None:
         super().__init__(f"{steps} steps reached only t = {time:.6g} s; cure: lower motion.end_time or raise steps")
+
+
+class IndentationNotSettled(NotReached):
+    """The contact problem at one depth did not settle."""
+
+    def __init__(self, depth: float) -> None:
+        super().__init__(f"contact at depth {depth:.3g} m did not settle; cure: a lower numerics.penalty")

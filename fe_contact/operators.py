@@ -12,6 +12,7 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import scipy.sparse.linalg as linalg
 from skfem import (
     Basis,
@@ -71,13 +72,26 @@ def surface_operator(mesh: MeshTri, order: int, poisson: float) -> SurfaceOperat
     poisson : Poisson's ratio.
     """
     basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
-    matrix = system_matrix(basis, poisson)
+    return condensed(basis, system_matrix(basis, poisson), 2 * basis.get_dofs("axis").flatten(), poisson)
+
+
+def condensed(basis: Any, matrix: Any, fixed: npt.NDArray[np.integer[Any]], poisson: float) -> SurfaceOperator:
+    """Factorise the stiffness of a body once and condense it to its contact zone.
+
+    Parameters
+    ----------
+    basis : scalar scikit-fem basis with N functions, its mesh with the boundary ``surface``; contact radius 1.
+    matrix : stiffness for E* = 1, sparse (2 N, 2 N).
+    fixed : degrees of freedom held at zero.
+    poisson : Poisson's ratio.
+    """
+    order = basis.elem.maxdeg
     surface = _surface_dofs(basis)
     nodes = basis.doflocs[0, surface]
     corners = nodes[::order]
     zone = corners[: np.searchsorted(corners, CONTACT_ZONE) + 1]  # whole facets only
     in_zone = surface[: (len(zone) - 1) * order + 1]
-    free = np.setdiff1d(np.arange(matrix.shape[0]), 2 * basis.get_dofs("axis").flatten())
+    free = np.setdiff1d(np.arange(matrix.shape[0]), fixed)
     factor = linalg.splu(
         matrix[free][:, free],
         permc_spec="MMD_AT_PLUS_A",

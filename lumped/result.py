@@ -109,8 +109,8 @@ class Result:
             "provenance": self.provenance,
             "timing": self.timing,
         }
-        plain: dict[str, Any] = _plain(content)
-        return plain
+        found: dict[str, Any] = plain(content)
+        return found
 
     def write(self, directory: Path) -> None:
         """Write history.csv and result.json into `directory`, made when it is not there."""
@@ -135,7 +135,7 @@ def write_failure(directory: Path, scene: Scene, method: str, message: str) -> N
         "provenance": provenance(),
     }
     directory.mkdir(parents=True, exist_ok=True)
-    text = json.dumps(_plain(content), indent=2, allow_nan=False, ensure_ascii=False)
+    text = json.dumps(plain(content), indent=2, allow_nan=False, ensure_ascii=False)
     (directory / "result.json").write_text(text + "\n", encoding="utf-8")
 
 
@@ -188,16 +188,16 @@ def provenance() -> Mapping[str, str]:
     return found
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Python's own types only, None for what is not finite."""
     if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     if isinstance(value, np.generic):
-        return _plain(value.item())
+        return plain(value.item())
     if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
+        return plain(value.tolist())
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value

@@ -10,6 +10,7 @@ from typing import Any
 
 from lumped import data
 from lumped.errors import BadInput, Fault
+from lumped.indenter import Indenter
 from lumped.keys import Key, optional, read_table, unknown_key
 from lumped.materials import Material
 from lumped.materials.material import KEYS as MATERIAL_KEYS
@@ -49,6 +50,12 @@ def load(source: str | Path, overrides: Mapping[str, object] | None = None) -> t
     """
     path = resolved(source)
     return read(parsed(path), path.name, overrides)
+
+
+def load_indenter(source: str | Path, overrides: Mapping[str, object] | None = None) -> tuple[Indenter, Table]:
+    """What a slow indentation needs of a file, and its raw `[numerics]`. Raises BadInput with every fault."""
+    path = resolved(source)
+    return _Reader(path.name, overridden(parsed(path), overrides or {}, path.name)).indenter()
 
 
 def resolved(source: str | Path) -> Path:
@@ -91,9 +98,20 @@ class _Reader:
             get(LAWS, law.name).of(built)
         return built, numerics
 
-    def bodies(self) -> Table:
+    def indenter(self) -> tuple[Indenter, Table]:
+        """The scene without its motion; raises BadInput when anything is wrong."""
+        name = self.name()
+        bodies = self.bodies(optional(STRIKER_KEYS))
+        model = self.checked("model", self.table("model", required=False), MODEL_KEYS)
+        numerics = self.table("numerics", required=False)
+        if self.faults:
+            raise BadInput(self.faults)
+        own = {key: bodies[key] for key in ("shape", "material", "target")}
+        return Indenter(**own, model=Model(**model), name=name, source=self.source), numerics
+
+    def bodies(self, striker_keys: Mapping[str, Key] = STRIKER_KEYS) -> Table:
         """Striker, target and material of a scene with geometry; None for what has a fault."""
-        striker, shape = self.body("striker", SHAPES, STRIKER_KEYS)
+        striker, shape = self.body("striker", SHAPES, striker_keys)
         held, target = self.body("target", TARGETS, TARGET_KEYS)
         own = {"shape": shape, "target": target, "material": self.material(), "target_mass": held.get("mass")}
         return {**striker, **own}

@@ -11,6 +11,7 @@ from skfem import MeshTri
 
 from meshes.errors import MeshError
 from meshes.session import session
+from meshes.triangles import triangulated
 
 EDGE_REFINEMENT = 24.0  # element size inside the contact over element size at its edge
 GROWTH = 2.0  # growth of the element size per unit distance, for one element per contact radius
@@ -46,7 +47,7 @@ def half_space(elements_per_contact: float, far_radius: float) -> MeshTri:
     size = 1 / elements_per_contact
     points, triangles = _triangulate(size, min(GROWTH * size, LARGEST_GROWTH), far_radius)
     points[np.abs(points) < 1e-12 * far_radius] = 0.0  # onto the axis and the surface exactly
-    mesh = MeshTri(np.ascontiguousarray(points), np.ascontiguousarray(triangles))
+    mesh = MeshTri(points, triangles)
     return mesh.with_boundaries(
         {
             "surface": lambda x: x[1] == 0.0,
@@ -62,7 +63,7 @@ def _triangulate(size: float, growth: float, far_radius: float) -> tuple[np.ndar
     near_edge = f"({size / EDGE_REFINEMENT!r}+{growth!r}*{to_edge})"
     elsewhere = f"({size!r}+{growth / 2!r}*(({to_axis}-1)+Fabs({to_axis}-1)))"
     with session("half_space") as gmsh:
-        geometry, meshing = gmsh.model.geo, gmsh.model.mesh
+        geometry = gmsh.model.geo
         centre, edge = geometry.addPoint(0, 0, 0), geometry.addPoint(1, 0, 0)
         right, bottom = geometry.addPoint(far_radius, 0, 0), geometry.addPoint(0, -far_radius, 0)
         outline = [
@@ -73,15 +74,5 @@ def _triangulate(size: float, growth: float, far_radius: float) -> tuple[np.ndar
         ]
         geometry.addPlaneSurface([geometry.addCurveLoop(outline)])
         geometry.synchronize()
-        field = meshing.field.add("MathEval")  # the smaller of the two sizes
-        meshing.field.setString(field, "F", f"({near_edge}+{elsewhere}-Fabs({near_edge}-{elsewhere}))/2")
-        meshing.field.setAsBackgroundMesh(field)
-        meshing.generate(2)
-        tags, coordinates, _ = meshing.getNodes()
-        kinds, _, connectivity = meshing.getElements(2)
-        corners = connectivity[list(kinds).index(2)].astype(int)
-    used, triangles = np.unique(corners, return_inverse=True)
-    row_of_tag = np.zeros(int(tags.max()) + 1, dtype=int)
-    row_of_tag[tags.astype(int)] = np.arange(len(tags))
-    points = coordinates.reshape(-1, 3)[row_of_tag[used], :2].T
-    return points, triangles.reshape(-1, 3).T
+        # the smaller of the two sizes
+        return triangulated(gmsh, f"({near_edge}+{elsewhere}-Fabs({near_edge}-{elsewhere}))/2")

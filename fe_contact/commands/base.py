@@ -6,18 +6,21 @@ import argparse
 import json
 import os
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from fe_contact.numerics import faults
 from fe_contact.progress import Progress, silent
 from lumped.errors import BadInput, Fault
+from lumped.indenter import Indenter
 from lumped.result import Result
 from lumped.scene import Scene
-from lumped.scene_file import load, resolved
+from lumped.scene_file import load, load_indenter, resolved
 from lumped.toml_file import overridden, parse_assignment, parsed
 
 DONE, NOT_REACHED = 0, 3
+Read = TypeVar("Read")
 
 
 def scene_arguments(parser: argparse.ArgumentParser) -> None:
@@ -43,9 +46,18 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
 
 def read_scene(args: argparse.Namespace) -> tuple[Scene, dict[str, Any]]:
     """Scene and raw settings of a command line; raises BadInput with every fault of both."""
+    return _read(args, load)
+
+
+def read_indenter(args: argparse.Namespace) -> tuple[Indenter, dict[str, Any]]:
+    """What a slow indentation needs, and raw settings; raises BadInput with every fault of both."""
+    return _read(args, load_indenter)
+
+
+def _read(args: argparse.Namespace, reader: Callable[..., tuple[Read, dict[str, Any]]]) -> tuple[Read, dict[str, Any]]:
     overrides = dict(parse_assignment(text) for text in args.overrides)
     try:
-        scene, table = load(args.scene, overrides)
+        scene, table = reader(args.scene, overrides)
     except BadInput as bad:
         raise BadInput([*bad.faults, *_settings_faults(args.scene, overrides)]) from None
     tolerance = getattr(args, "tolerance", None)
@@ -110,7 +122,7 @@ def report(args: argparse.Namespace, result: Result, where: Path) -> int:
 def warn(result: Result) -> None:
     """One line each on stderr: a tolerance not reached, a model that is too small."""
     if not result.converged:
-        print(f"fe-contact: {result.message}", file=sys.stderr)
+        complain(result.message)
     if not result.model_sufficient:
         known = [entry for entry in result.model_ledger if entry.estimate is not None]
         worst = max(known, key=lambda entry: entry.estimate or 0.0)
@@ -119,6 +131,11 @@ def warn(result: Result) -> None:
             f"about {worst.estimate:.2g} of the peak force; {worst.note}",
             file=sys.stderr,
         )
+
+
+def complain(message: str) -> None:
+    """One line on stderr."""
+    print(f"fe-contact: {message}", file=sys.stderr)
 
 
 def summary(result: Result, where: Path) -> str:

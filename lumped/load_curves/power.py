@@ -52,7 +52,7 @@ class Power(LoadCurve):
         return self.exponent * self._steepness * np.asarray(contact_radius) ** (self.exponent - 1.0)
 
     def impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
-        """Scales of the elastic impact: energy at rest, and 2 (d_m/v) int_0^1 dx/sqrt(1 - x^(alpha + 1)), modulus in Pa."""
+        """Scales of the elastic impact on a modulus, Pa: it lasts 2 (d_m/v) int_0^1 dx/sqrt(1 - x^(alpha + 1))."""
         power = self.alpha + 1.0
         inertia = mass / modulus / self.geometry_factor
         depth = math.pow(0.5 * power * inertia * velocity**2, 1.0 / power)

@@ -40,6 +40,11 @@ class Parabola(Shape):
         return np.asarray(np.asarray(x, dtype=float) ** 2 / self.radius)
 
     @property
+    def exponent_of_force(self) -> float:
+        """3/2."""
+        return 1.5
+
+    @property
     def tip_radius(self) -> float:
         """Its radius, m."""
         return self.radius

@@ -36,6 +36,16 @@ class Shape(ABC):
         """The equivalent one-dimensional profile g(x) = x int_0^x h'(r)/sqrt(x^2-r^2) dr, x >= 0."""
 
     @property
+    @abstractmethod
+    def exponent_of_force(self) -> float:
+        """alpha in F ~ depth^alpha on the half-space, Table 1; for the true sphere that of its start."""
+
+    @property
+    def fixed_radius(self) -> float | None:
+        """Contact radius that no depth changes, m; None where it grows with the depth."""
+        return None
+
+    @property
     def tip_radius(self) -> float | None:
         """Radius of curvature of the lowest point, m; None where it has none."""
         return None

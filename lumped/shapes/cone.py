@@ -42,6 +42,11 @@ class Cone(Shape):
         return np.asarray(self.load_curve.depth(x))
 
     @property
+    def exponent_of_force(self) -> float:
+        """2."""
+        return 2.0
+
+    @property
     def load_curve(self) -> Power:
         """Love's and Sneddon's closed form, F = (2/pi) E* depth^2/tan(angle)."""
         return Power(self._tangent, 1.0)

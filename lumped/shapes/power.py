@@ -46,6 +46,11 @@ class PowerProfile(Shape):
         return np.asarray(self.load_curve.depth(x))
 
     @property
+    def exponent_of_force(self) -> float:
+        """1 + 1/n."""
+        return self.load_curve.alpha
+
+    @property
     def load_curve(self) -> Power:
         """Galin's and Sneddon's closed form."""
         return Power(self.coefficient, self.exponent)

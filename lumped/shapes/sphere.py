@@ -48,6 +48,11 @@ class Sphere(Shape):
             return np.where(ratio <= 1.0, self.radius * ratio * np.arctanh(ratio), np.inf)
 
     @property
+    def exponent_of_force(self) -> float:
+        """3/2."""
+        return 1.5
+
+    @property
     def tip_radius(self) -> float:
         """Its radius, m."""
         return self.radius

@@ -1,0 +1,73 @@
+"""``fe-contact indent SCENE --depths d1,d2,...``: slow indentation, with error bars."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import Any
+
+from fe_contact.commands import base
+from lumped.errors import BadInput, Fault, nearest
+from lumped.indentation import Indentation
+from lumped.indenter import Indenter
+
+SUMMARY = "slow indentation to given depths: indentation.csv and result.json, with error bars"
+EXACT = ("mdr", "ting", "correspondence")  # at rest they all are the load curve of the exact profile
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """SCENE --depths d1,d2,... [--method M] [--tolerance T] [--instant] [--set a.b=value ...] [--out DIR]."""
+    base.scene_arguments(parser)
+    base.output_arguments(parser)
+    parser.add_argument("--depths", required=True, help="depths in m, separated by commas")
+    parser.add_argument("--method", default="fe", help="fe (default), cheapest, hertz, or an exact law")
+    parser.add_argument("--instant", action="store_true", help="the material against a sudden indentation")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Press, write, report; 0 or 3."""
+    from fe_contact.methods import settings
+
+    indenter, table = base.read_indenter(args)
+    given = settings(table, None, indenter.source)
+    depths = tuple(base.number(text, "--depths") for text in args.depths.split(","))
+    where = base.folder(args, "indent", indenter)
+    found = _indented(args, indenter, depths, given)
+    found.write(where)
+    if args.json:
+        print(json.dumps(found.to_json(), allow_nan=False))
+    else:
+        print("\n".join([*_lines(found), f"  written to {where}"]))
+    if not found.converged:
+        base.complain(found.message)
+    return base.DONE if found.converged else base.NOT_REACHED
+
+
+def _indented(
+    args: argparse.Namespace, indenter: Indenter, depths: tuple[float, ...], given: dict[str, Any]
+) -> Indentation:
+    """By finite elements or by a closed form; raises BadInput for any other method."""
+    from fe_contact.plan import DEFAULT_TOLERANCE
+
+    if args.method == "fe":
+        from fe_contact.indentation import indent
+
+        return indent(indenter, depths, given, args.instant, base.progress_of(args))
+    names = ("fe", "cheapest", "hertz", *EXACT)
+    if args.method not in names:
+        reason = f"{args.method!r}: accepted {', '.join(names)}{nearest(args.method, names)}"
+        raise BadInput(Fault("--method", "", reason))
+    from lumped.slow import indent as closed_form
+
+    method = EXACT[0] if args.method == "cheapest" else args.method
+    return closed_form(indenter, depths, method, args.instant, given.get("tolerance", DEFAULT_TOLERANCE))
+
+
+def _lines(found: Indentation) -> list[str]:
+    """Depth and force, one a line, and the power law through them."""
+    lines = [f"{found.indenter.name}: {found.method}, tolerance {found.tolerance:g}"]
+    for depth, force, error in zip(found.depth, found.force, found.force_error, strict=True):
+        lines.append(f"  {depth:.6g} m  {force:.6g} +- {error:.1e} N")
+    for name, quantity in found.quantities.items():
+        lines.append(f"  {name:11s} {quantity.value:.6g} +- {quantity.error or 0.0:.1e} {quantity.unit}")
+    return lines

@@ -1,0 +1,147 @@
+"""Slow indentation by finite elements: every depth, every setting varied once, bars from what changes.
+
+Elastic with one modulus, so that a force is modulus times what the unit material answers.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.certify import LEAST_HALVED_SETTING, LEAST_ORDER, MESH_ORDER, SAFETY
+from fe_contact.forms import Array
+from fe_contact.numerics import RANGES, Numerics
+from fe_contact.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, SETTING, refined
+from fe_contact.pressing import pressed
+from fe_contact.progress import Progress, silent
+from fe_contact.targets import half_space
+from lumped.indentation import Indentation
+from lumped.indenter import Indenter
+
+CAUSES = ("mesh", "penalty", "far_field")
+ROUNDS = 5  # refinements before giving up
+DOMINANT = 0.5  # causes above this share of the largest one are refined together
+
+
+@dataclass(frozen=True, eq=False)
+class Pressing:
+    """Force over modulus, m^2, and contact radius, m, at every depth, (n,); counted work."""
+
+    force: Array
+    contact_radius: Array
+    work: Mapping[str, int]
+
+
+def indent(
+    indenter: Indenter,
+    depths: tuple[float, ...],
+    given: Mapping[str, Any],
+    instant: bool = False,
+    progress: Progress = silent,
+) -> Indentation:
+    """Press to every depth, m, refine what stands in the way of the tolerance, and say what was reached.
+
+    ``given``: checked settings to keep; ``instant``: the material against a sudden indentation.
+    Raises BadInput for depths and materials that cannot be, NotReached where contact does not settle.
+    """
+    clock = time.process_time(), time.perf_counter()
+    modulus, depth = indenter.modulus(instant), np.array(indenter.checked(depths))
+    numerics = settings(given)
+    pinned = set(given) - {"tolerance"}
+    for attempt in range(ROUNDS + 1):
+        progress(f"{numerics.elements_per_contact:g} elements along the contact radius")
+        base = press(indenter, depth, numerics)
+        budget = _budget(base, lambda changed: press(indenter, depth, changed), numerics)
+        finer = _refined(numerics, budget, pinned)
+        if finer == numerics or attempt == ROUNDS:
+            break
+        numerics = finer
+    error = np.sum([budget[cause] for cause in CAUSES], axis=0)
+    force = modulus * base.force
+    kept = ("tolerance", "elements_per_contact", "order", "penalty", "enforcement", "far_radius")
+    return Indentation(
+        indenter=indenter,
+        method="fe",
+        modulus=modulus,
+        tolerance=numerics.tolerance,
+        depth=depth,
+        force=force,
+        contact_radius=base.contact_radius,
+        force_error=error * force,
+        budget=budget,
+        numerics={key: value for key, value in numerics.as_dict().items() if key in kept},
+        timing={"cpu_s": time.process_time() - clock[0], "wall_s": time.perf_counter() - clock[1]},
+        work=base.work,
+    )
+
+
+def settings(given: Mapping[str, Any]) -> Numerics:
+    """Settings of an indentation: those of an impact without its time."""
+    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    elements = ELEMENTS * max(1.0, (1e-4 / tolerance) ** 0.25)
+    chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "steps": 8}
+    return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
+
+
+def press(indenter: Indenter, depth: Array, numerics: Numerics) -> Pressing:
+    """Every depth, m, with one setting of everything; from the largest to the smallest, each guessing the next."""
+    surface: ScaledSurface = half_space.surface(indenter.material.nu, numerics)
+    profile, force, radius = indenter.profile, np.empty_like(depth), np.empty_like(depth)
+    guess = profile.fixed_radius or _touching(profile.height, float(depth.max()))
+    problems = iterations = 0
+    for i in np.argsort(-depth):
+        found = pressed(surface, profile, float(depth[i]), guess, numerics)
+        force[i], radius[i] = found.force, found.contact_radius
+        guess, problems, iterations = found.contact_radius, problems + found.problems, iterations + found.iterations
+    work = {
+        "degrees_of_freedom": surface.operator.degrees_of_freedom,
+        "contact_problems": problems,
+        "iterations": iterations,
+    }
+    return Pressing(force, radius, work)
+
+
+def _budget(base: Pressing, run: Callable[[Numerics], Pressing], numerics: Numerics) -> dict[str, Array]:
+    """Relative error of the force by cause, at every depth: each setting halved, or doubled where it is coarse.
+
+    A body without a length of its own answers alike at every depth, so the largest change speaks for all.
+    """
+    orders = {"mesh": MESH_ORDER[numerics.order], **LEAST_ORDER}
+    found = {}
+    for cause in CAUSES:
+        key, order = SETTING[cause], orders[cause]
+        value = getattr(numerics, key)
+        finer = value < LEAST_HALVED_SETTING[key]
+        other = run(numerics.varied(**{key: 2.0 * value if finer else 0.5 * value}))
+        change = np.abs(other.force / base.force - 1.0).max()
+        found[cause] = np.full_like(base.force, SAFETY * (2**order if finer else 1) / (2**order - 1) * change)
+    return found
+
+
+def _refined(numerics: Numerics, budget: Mapping[str, Array], pinned: set[str]) -> Numerics:
+    """Settings with less of what dominates, the same where the tolerance is met or nothing is left to refine."""
+    errors = {cause: float(error.max()) for cause, error in budget.items()}
+    if sum(errors.values()) <= numerics.tolerance:
+        return numerics
+    worst, finer = max(errors.values()), numerics
+    for cause, error in errors.items():
+        candidate = refined(finer, cause)
+        key = SETTING[cause]
+        if error >= DOMINANT * worst and key not in pinned and getattr(candidate, key) <= RANGES[key][1]:
+            finer = candidate
+    return finer
+
+
+def _touching(height: Callable[[Array], Array], depth: float) -> float:
+    """A radius at which the undeformed profile lies within a factor of two of ``depth`` above its tip, m."""
+    radius = depth
+    while float(height(np.array([radius]))[0]) < depth:
+        radius *= 2.0
+    while float(height(np.array([radius]))[0]) > depth:
+        radius *= 0.5
+    return radius

@@ -1,0 +1,116 @@
+"""Slow indentation: force and contact radius over depth, and the power law through them."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.indenter import Indenter
+from lumped.result import Quantity, plain, provenance
+
+Array = NDArray[np.float64]
+SCHEMA = "fe-contact/indentation/1"
+COLUMNS = ("depth_m", "force_N", "contact_radius_m", "force_error_N")
+FEWEST = 3  # depths which a power law with an error bar needs
+
+
+@dataclass(frozen=True, eq=False)
+class Indentation:
+    """Force, N, contact radius, m, and half-width of the force's bar, N, at every asked depth, m; shape (n,).
+
+    `modulus` is the E* of the material at this speed, Pa; `budget` the relative error of the force by cause, (n,).
+    """
+
+    indenter: Indenter
+    method: str
+    modulus: float
+    tolerance: float
+    depth: Array
+    force: Array
+    contact_radius: Array
+    force_error: Array
+    budget: Mapping[str, Array] = field(default_factory=dict)
+    numerics: Mapping[str, Any] = field(default_factory=dict)
+    timing: Mapping[str, float] = field(default_factory=dict)
+    work: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def converged(self) -> bool:
+        """Whether every bar lies within the tolerance."""
+        return bool(np.all(self.force_error <= self.tolerance * self.force))
+
+    @property
+    def message(self) -> str:
+        """What was missed."""
+        if self.converged:
+            return ""
+        return f"tolerance {self.tolerance:g} not reached: force to {np.max(self.force_error / self.force):.2g}"
+
+    @property
+    def quantities(self) -> dict[str, Quantity]:
+        """`alpha`, `D`, and `D_at_alpha` with the exponent of Table 1's row held; from three depths on."""
+        row = self.indenter.shape.exponent_of_force
+        if np.unique(self.depth).size < FEWEST:
+            return {}
+        return power_law(self.depth, self.force / self.modulus, self.force_error / self.force, row)
+
+    def to_json(self) -> dict[str, Any]:
+        """The content of result.json."""
+        content = {
+            "schema": SCHEMA,
+            "method": self.method,
+            "converged": self.converged,
+            "tolerance": self.tolerance,
+            "message": self.message,
+            "scene": self.indenter.to_dict(),
+            "contact_modulus": self.modulus,
+            "numerics": self.numerics,
+            "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
+            "error_budget": {cause: float(np.max(error)) for cause, error in self.budget.items()},
+            "work": self.work,
+            "provenance": provenance(),
+            "timing": self.timing,
+        }
+        found: dict[str, Any] = plain(content)
+        return found
+
+    def write(self, directory: Path) -> None:
+        """Write indentation.csv and result.json into `directory`, made when it is not there."""
+        directory.mkdir(parents=True, exist_ok=True)
+        table = np.column_stack([self.depth, self.force, self.contact_radius, self.force_error])
+        path = directory / "indentation.csv"
+        np.savetxt(path, table, fmt="%.17g", delimiter=",", header=",".join(COLUMNS), comments="")
+        text = json.dumps(self.to_json(), indent=2, allow_nan=False, ensure_ascii=False)
+        (directory / "result.json").write_text(text + "\n", encoding="utf-8")
+
+
+def power_law(depth: Array, force: Array, error: Array, row: float) -> dict[str, Quantity]:
+    """D and alpha of force = D depth^alpha by least squares of ln force on ln depth; `force` is F/E*, m^2.
+
+    `error`: relative half-widths of the force, (n,); bars hold whatever the signs of the errors. `row`: the exponent
+    held for D_at_alpha.
+    """
+    x, y = np.log(depth), np.log(force)
+    centred = x - x.mean()
+    slopes = centred / (centred @ centred)
+    levels = 1.0 / x.size - x.mean() * slopes
+    alpha, level, held = float(slopes @ y), float(levels @ y), float(np.mean(y - row * x))
+    bar = -np.log1p(-np.minimum(error, 0.99))
+    return {
+        "alpha": Quantity(alpha, float(np.abs(slopes) @ bar), "1"),
+        "D": _factor(level, float(np.abs(levels) @ bar), alpha),
+        "D_at_alpha": _factor(held, float(bar.mean()), row),
+    }
+
+
+def _factor(logarithm: float, error: float, alpha: float) -> Quantity:
+    """A geometry factor from its logarithm."""
+    value = math.exp(logarithm)
+    return Quantity(value, value * math.expm1(error), f"m^{2.0 - alpha:.4g}")

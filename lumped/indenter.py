@@ -1,0 +1,80 @@
+"""What a slow indentation needs of a scene: shape, target and material, but no mass and no motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from lumped.errors import BadInput, Fault
+from lumped.keys import Number
+from lumped.materials import Material
+from lumped.scene import Model
+from lumped.shapes import Shape
+from lumped.targets import HalfSpace, Target
+
+DEPTH = Number(1e-15, 1e6, "m")
+MOST_DEPTHS = 10_000
+
+
+@dataclass(frozen=True)
+class Indenter:
+    """A rigid `shape` pressed slowly into a target of `material`; `name` and `source` are those of the scene."""
+
+    shape: Shape
+    material: Material
+    target: Target = field(default_factory=HalfSpace)
+    model: Model = field(default_factory=Model)
+    name: str = "scene"
+    source: str = "scene"
+
+    @classmethod
+    def load(cls, source: str | Path, overrides: Mapping[str, object] | None = None) -> Indenter:
+        """Of a scene file or a packaged scene's name; mass and velocity may be missing. Raises BadInput."""
+        from lumped.scene_file import load_indenter
+
+        return load_indenter(source, overrides)[0]
+
+    @property
+    def profile(self) -> Shape:
+        """The striker's shape as `model.profile` resolves it."""
+        return self.shape.resolved(self.model.profile)
+
+    def modulus(self, instant: bool) -> float:
+        """E* against a slow or, `instant`, a sudden indentation, Pa. Raises BadInput where there is none."""
+        contact = self.material.contact_modulus()
+        if instant and contact.viscosity > 0.0:
+            raise self._refused("has a dashpot in parallel: infinitely stiff at once; accepted: leave out --instant")
+        if not instant and contact.relaxed == 0.0:
+            raise self._refused("is a fluid: no force stays; accepted: --instant, or a solid")
+        return contact.glassy if instant else contact.relaxed
+
+    def checked(self, depths: tuple[float, ...]) -> tuple[float, ...]:
+        """The depths, m, as they were given; raises BadInput for one that cannot be."""
+        if not 1 <= len(depths) <= MOST_DEPTHS:
+            raise BadInput(Fault("--depths", "", f"{len(depths)} depths; accepted: 1 to {MOST_DEPTHS}"))
+        faults = [Fault("--depths", "", f"{d:g}: accepted {DEPTH.accepted}") for d in depths if not _accepted(d)]
+        radius = self.shape.tip_radius
+        if radius is not None:
+            reason = f"accepted below the striker's radius {radius:g} m"
+            faults += [Fault("--depths", "", f"{d:g}: {reason}") for d in depths if _accepted(d) and d >= radius]
+        if faults:
+            raise BadInput(faults)
+        return depths
+
+    def to_dict(self) -> dict[str, Any]:
+        """The tables of a scene file that gives it back."""
+        return {
+            "name": self.name,
+            "striker": self.shape.to_dict(),
+            "target": self.target.to_dict() | {"material": self.material.to_dict()},
+            "model": vars(self.model).copy(),
+        }
+
+    def _refused(self, reason: str) -> BadInput:
+        return BadInput(Fault(self.source, "target.material", reason))
+
+
+def _accepted(depth: float) -> bool:
+    return DEPTH.low <= depth <= DEPTH.high

@@ -1,0 +1,69 @@
+"""The flat-ended rigid cylinder."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.keys import Key, Number, check_fields
+from lumped.load_curves.flat_punch import FlatPunch
+from lumped.load_curves.hertz import HertzImpact
+from lumped.shapes.base import Shape
+
+KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}
+
+
+@dataclass(frozen=True)
+class Punch(Shape):
+    """A flat end of this radius, m. Raises BadInput for a radius out of range."""
+
+    radius: float
+    name: ClassVar[str] = "punch"
+    keys: ClassVar[Mapping[str, Key]] = KEYS
+
+    def __post_init__(self) -> None:
+        check_fields("punch", self, KEYS)
+
+    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+        """Zero up to the rim, infinite beyond."""
+        return np.where(np.abs(np.asarray(r, dtype=float)) <= self.radius, 0.0, np.inf)
+
+    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+        """Zero up to the rim, infinite beyond."""
+        return self.height(r)
+
+    def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
+        """Zero up to the rim, infinite beyond."""
+        return self.height(x)
+
+    @property
+    def exponent_of_force(self) -> float:
+        """1."""
+        return 1.0
+
+    @property
+    def fixed_radius(self) -> float:
+        """Its own, m."""
+        return self.radius
+
+    @property
+    def load_curve(self) -> FlatPunch:
+        """Boussinesq's closed form."""
+        return FlatPunch(self.radius)
+
+    def resolved(self, profile: str) -> Shape:
+        """Itself: it has no other profile."""
+        return self
+
+    def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
+        """Scales of the elastic impact, exact."""
+        return self.load_curve.impact(modulus, mass, velocity)
+
+
+def of(radius: float) -> Punch:
+    """A punch of `radius`, m."""
+    return Punch(radius)

@@ -1,0 +1,36 @@
+"""Slow indentation by the closed forms: the exact answer of the half-space, or Hertz's."""
+
+from __future__ import annotations
+
+from time import perf_counter, process_time
+
+import numpy as np
+
+from lumped.indentation import Indentation
+from lumped.indenter import Indenter
+
+ROUNDING = 1e-12
+
+
+def indent(
+    indenter: Indenter, depths: tuple[float, ...], method: str, instant: bool = False, tolerance: float = 1e-3
+) -> Indentation:
+    """Force and contact radius at every depth, m, by the load curve of the profile; Hertz's is the parabola's.
+
+    Raises BadInput for depths and materials that cannot be.
+    """
+    cpu, wall = process_time(), perf_counter()
+    depth, modulus = np.array(indenter.checked(depths)), indenter.modulus(instant)
+    shape = indenter.shape.resolved("parabola") if method == "hertz" else indenter.profile
+    force = modulus * np.asarray(shape.load_curve.force(depth))
+    return Indentation(
+        indenter=indenter,
+        method=method,
+        modulus=modulus,
+        tolerance=tolerance,
+        depth=depth,
+        force=force,
+        contact_radius=np.asarray(shape.load_curve.contact_radius(depth)),
+        force_error=ROUNDING * force,
+        timing={"cpu_s": process_time() - cpu, "wall_s": perf_counter() - wall},
+    )
