@@ -12,18 +12,20 @@ from typing import Any
 
 import numpy as np
 
-from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.certify import LEAST_HALVED_SETTING, LEAST_ORDER, MESH_ORDER, SAFETY
 from fe_contact.forms import Array
 from fe_contact.numerics import RANGES, Numerics
 from fe_contact.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, SETTING, refined
-from fe_contact.pressing import pressed
+from fe_contact.pressing import Still
 from fe_contact.progress import Progress, silent
-from fe_contact.targets import half_space
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
+from lumped.members import get
+from lumped.shapes import Shape
 
+TARGETS = "fe_contact.targets"
 CAUSES = ("mesh", "penalty", "far_field")
+BISECTIONS = 60
 ROUNDS = 5  # refinements before giving up
 DOMINANT = 0.5  # causes above this share of the largest one are refined together
 
@@ -90,20 +92,16 @@ def settings(given: Mapping[str, Any]) -> Numerics:
 
 def press(indenter: Indenter, depth: Array, numerics: Numerics) -> Pressing:
     """Every depth, m, with one setting of everything; from the largest to the smallest, each guessing the next."""
-    surface: ScaledSurface = half_space.surface(indenter.material.nu, numerics)
-    profile, force, radius = indenter.profile, np.empty_like(depth), np.empty_like(depth)
-    guess = profile.fixed_radius or _touching(profile.height, float(depth.max()))
-    problems = iterations = 0
+    overlapping = _overlapping(indenter.profile, depth)
+    body: Still = get(TARGETS, indenter.target.name).still(indenter, overlapping, numerics)
+    force, radius = np.empty_like(depth), np.empty_like(depth)
+    growth, problems, iterations = 1.0, 0, 0
     for i in np.argsort(-depth):
-        found = pressed(surface, profile, float(depth[i]), guess, numerics)
-        force[i], radius[i] = found.force, found.contact_radius
-        guess, problems, iterations = found.contact_radius, problems + found.problems, iterations + found.iterations
-    work = {
-        "degrees_of_freedom": surface.operator.degrees_of_freedom,
-        "contact_problems": problems,
-        "iterations": iterations,
-    }
-    return Pressing(force, radius, work)
+        found = body.press(float(depth[i]), growth * float(overlapping[i]))
+        force[i], radius[i], growth = found.force, found.contact_radius, found.contact_radius / overlapping[i]
+        problems, iterations = problems + found.problems, iterations + found.iterations
+    counted = {"contact_problems": problems, "iterations": iterations}
+    return Pressing(force, radius, {"degrees_of_freedom": body.degrees_of_freedom, **counted})
 
 
 def _budget(base: Pressing, run: Callable[[Numerics], Pressing], numerics: Numerics) -> dict[str, Array]:
@@ -137,11 +135,19 @@ def _refined(numerics: Numerics, budget: Mapping[str, Array], pinned: set[str]) 
     return finer
 
 
-def _touching(height: Callable[[Array], Array], depth: float) -> float:
-    """A radius at which the undeformed profile lies within a factor of two of ``depth`` above its tip, m."""
-    radius = depth
-    while float(height(np.array([radius]))[0]) < depth:
-        radius *= 2.0
-    while float(height(np.array([radius]))[0]) > depth:
-        radius *= 0.5
-    return radius
+def _overlapping(profile: Shape, depth: Array) -> Array:
+    """Radius at which the undeformed profile lies ``depth``, m, above its tip; shape (n,), m."""
+    if profile.fixed_radius is not None:
+        return np.full_like(depth, profile.fixed_radius)
+    return np.array([_overlap_radius(profile, float(one)) for one in depth])
+
+
+def _overlap_radius(profile: Shape, depth: float) -> float:
+    """By bisection; where the profile ends before, its end."""
+    low, high = 0.0, depth
+    while float(profile.height(np.array([high]))[0]) < depth:
+        high *= 2.0
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if float(profile.height(np.array([middle]))[0]) < depth else (low, middle)
+    return high

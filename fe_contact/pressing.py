@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import ModuleType
 from typing import Protocol
 
@@ -14,16 +14,13 @@ from fe_contact.errors import IndentationNotSettled
 from fe_contact.forms import Array
 from fe_contact.numerics import ENFORCEMENTS, Numerics
 from lumped.members import get
+from lumped.shapes import Shape
 
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
 RESCALINGS = 60
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
-
-
-class Profile(Protocol):
-    """Height of a striker over the radius."""
-
-    def height(self, r: Array) -> Array: ...
+EDGE_FIT = (0.6, 0.97)  # shares of the contact radius between which the pressure tells where it ends
+EDGE_DEGREE = 2
 
 
 @dataclass(frozen=True)
@@ -36,24 +33,94 @@ class Pressed:
     iterations: int
 
 
-def pressed(surface: ScaledSurface, profile: Profile, depth: float, guess: float, numerics: Numerics) -> Pressed:
-    """Press to a depth, m, the mesh scaled until the contact edge lies in its finest elements.
+class Still(Protocol):
+    """A body at rest, ready to be pressed by one profile."""
 
-    ``guess``: a contact radius to begin with, m. Raises IndentationNotSettled.
-    """
-    enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
-    points, scale, iterations = surface.operator.points, guess, 0
-    for attempt in range(1, RESCALINGS + 1):
-        height = np.minimum(profile.height(scale * points), BEYOND * scale)
-        solution: ContactSolution = enforcement.enforce(
-            surface.problem(depth - height, numerics.penalty, 0.0), points < 1.0
-        )
-        iterations += solution.iterations
-        if not solution.converged:
-            break
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Unknowns of the finite-element system behind it."""
+
+    def press(self, depth: float, guess: float) -> Pressed:
+        """Press to a depth, m; ``guess``: a contact radius to begin with, m. Raises NotReached."""
+
+
+@dataclass(frozen=True)
+class ScaledStill:
+    """A body without a length of its own: the mesh is scaled until the contact edge lies in its finest elements."""
+
+    surface: ScaledSurface
+    profile: Shape
+    numerics: Numerics
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Unknowns of the one mesh."""
+        return self.surface.operator.degrees_of_freedom
+
+    def press(self, depth: float, guess: float) -> Pressed:
+        """Press to a depth, m. Raises IndentationNotSettled."""
+        points, scale, iterations = self.surface.operator.points, guess, 0
+        for attempt in range(1, RESCALINGS + 1):
+            solution, solves = _enforced(self.surface, self.profile, depth, scale, self.numerics, points < 1.0)
+            iterations += solution.iterations
+            if not solution.converged:
+                break
+            edge = solution.edge(points)
+            if abs(edge - 1.0) <= EDGE_WINDOW:
+                force = scale * float(self.surface.operator.weights @ solution.pressure)
+                radius = self.profile.fixed_radius or scale * edge
+                return Pressed(force, radius, attempt * solves, iterations)
+            scale *= min(max(edge, 0.3), points[-1])
+        raise IndentationNotSettled(depth)
+
+
+@dataclass(frozen=True)
+class FixedStill:
+    """A body with lengths of its own, on one mesh in units of ``reference``, m: the contact may end anywhere in it."""
+
+    surface: ScaledSurface
+    profile: Shape
+    numerics: Numerics
+    reference: float
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Unknowns of the one mesh."""
+        return self.surface.operator.degrees_of_freedom
+
+    def press(self, depth: float, guess: float) -> Pressed:
+        """Press to a depth, m. Raises IndentationNotSettled, also where the contact leaves the fine mesh."""
+        points, expected = self.surface.operator.points, guess / self.reference
+        numerics = replace(self.numerics, penalty=self.numerics.penalty / expected)
+        solution, solves = _enforced(self.surface, self.profile, depth, self.reference, numerics, points < expected)
         edge = solution.edge(points)
-        if abs(edge - 1.0) <= EDGE_WINDOW:
-            force = scale * float(surface.operator.weights @ solution.pressure)
-            return Pressed(force, scale * edge, attempt * enforcement.SOLVES, iterations)
-        scale *= min(max(edge, 0.3), points[-1])
-    raise IndentationNotSettled(depth)
+        if not solution.converged or not np.isfinite(edge):
+            raise IndentationNotSettled(depth)
+        radius = self.profile.fixed_radius or self.reference * _ending(points, solution.pressure, edge)
+        force = self.reference * float(self.surface.operator.weights @ solution.pressure)
+        return Pressed(force, radius, solves, solution.iterations)
+
+
+def _enforced(
+    surface: ScaledSurface, profile: Shape, depth: float, scale: float, numerics: Numerics, touching: Array
+) -> tuple[ContactSolution, int]:
+    """The contact problem on the mesh scaled by ``scale``, m; and how many solves it took."""
+    enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
+    height = np.minimum(profile.height(scale * surface.operator.points), BEYOND * scale)
+    problem = surface.problem(depth - height, numerics.penalty, 0.0)
+    return enforcement.enforce(problem, touching), enforcement.SOLVES
+
+
+def _ending(points: Array, pressure: Array, edge: float) -> float:
+    """Where the pressure ends, from its inside: its square is smooth and falls to zero like a straight line.
+
+    At the edge itself, anywhere in an element, the pressure rings.
+    """
+    inside = (points > EDGE_FIT[0] * edge) & (points < EDGE_FIT[1] * edge)
+    if np.count_nonzero(inside) <= 2 * EDGE_DEGREE:
+        return edge
+    fit = np.polynomial.Polynomial.fit(points[inside], pressure[inside] ** 2, EDGE_DEGREE)
+    roots = fit.roots()
+    real = np.real(roots[np.abs(np.imag(roots)) < 1e-9 * edge])
+    near = real[(real > EDGE_FIT[1] * edge) & (real < (2.0 - EDGE_FIT[1]) * edge)]
+    return float(near[np.argmin(np.abs(near - edge))]) if near.size else edge

@@ -6,13 +6,21 @@ from functools import lru_cache
 
 import meshes
 from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.forms import Array
 from fe_contact.numerics import Numerics
 from fe_contact.operators import surface_operator
+from fe_contact.pressing import ScaledStill, Still
+from lumped.indenter import Indenter
 
 
 def surface(poisson: float, numerics: Numerics) -> ScaledSurface:
     """Contact surface for these settings; made once a process, then shared by every impact that agrees."""
     return _surface(poisson, numerics.elements_per_contact, numerics.order, numerics.far_radius)
+
+
+def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
+    """The half-space at rest; ``radii``, m, of the contacts to come need not be known."""
+    return ScaledStill(surface(indenter.material.nu, numerics), indenter.profile, numerics)
 
 
 @lru_cache(maxsize=32)

@@ -1,0 +1,42 @@
+"""A layer on a rigid foundation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.keys import Choice, Key, Number, check_fields
+from lumped.shapes.base import Shape
+from lumped.targets.base import Target
+
+KEYS: Mapping[str, Key] = {
+    "thickness": Number(1e-9, 1e6, "m"),
+    "base": Choice(("bonded", "sliding")),
+}
+
+
+@dataclass(frozen=True)
+class Layer(Target):
+    """A layer of this thickness, m, bonded to a rigid foundation or sliding on it without leaving it."""
+
+    thickness: float
+    base: str
+    name: ClassVar[str] = "layer"
+    keys: ClassVar[Mapping[str, Key]] = KEYS
+    has_inertia: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        check_fields("layer", self, KEYS)
+
+    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
+        """depth - height(r)."""
+        return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
+
+
+def of(thickness: float, base: str) -> Layer:
+    """A layer of `thickness`, m, on a `base`."""
+    return Layer(thickness, base)
