@@ -53,6 +53,8 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     Raises NotReached where no march came to an end, BadInput for a scene without geometry or of several impacts.
     """
     scene.check_single("fe")
+    if scene.has_geometry:
+        scene.check_half_space("fe")
     cpu, wall = time.process_time(), time.perf_counter()
     chosen = plan(scene, given)
     strike = strike_of(scene)

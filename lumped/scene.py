@@ -130,6 +130,12 @@ class Scene:
 
         return read(table, source)[0]
 
+    def check_half_space(self, method: str) -> None:
+        """Raise BadInput for a target which `method` has no answer for."""
+        if not isinstance(self.target, HalfSpace):
+            reason = f"{self.target.name}: {method} has no impact on it in this version; accepted: half_space"
+            raise BadInput(Fault(self.source, "target.shape", reason))
+
     @property
     def has_geometry(self) -> bool:
         """Whether the scene has a shape and a material, not a law's parameters alone."""

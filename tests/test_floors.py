@@ -148,7 +148,7 @@ def test_the_top_level_is_the_agreed_one() -> None:
     assert entries - {entry for pattern in ignored for entry in matching(entries, pattern)} == TOP_LEVEL
 
 
-MESH_HELPERS = {"errors", "session"}
+MESH_HELPERS = {"errors", "session", "triangles"}
 
 
 def members(folder: str) -> set[str]:

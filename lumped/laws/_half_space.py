@@ -22,3 +22,4 @@ def check_geometry(scene: Scene, name: str) -> None:
     if not scene.has_geometry:
         reason = f"missing; the law {name} follows from the striker's shape and the target's material"
         raise BadInput(Fault(scene.source, "striker.shape", reason))
+    scene.check_half_space(name)

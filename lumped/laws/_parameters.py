@@ -77,6 +77,7 @@ class Parameters:
         if not self.scene.has_geometry:
             self.missing("k", "the stiffness in N/m^alpha; or a scene with shape and material")
             return 1.0
+        self.scene.check_half_space(self.name)
         relaxed = self.scene.contact_modulus.relaxed
         if relaxed == 0.0:
             reason = "a fluid has no relaxed modulus to take a stiffness from; accepted: a solid, or law.k"

@@ -23,8 +23,13 @@ SAMPLES = {
     "operators": [{"p": (1.0, 1e-3), "q": (1e6, 2e3)}],
     "fractional_zener": [{"E_inf": 1e6, "E_glass": 1e7, "tau": 1e-2, "alpha": 0.5}],
 }
-SHAPES = {"sphere": {"radius": 0.01}}
-TARGETS: dict[str, dict[str, float]] = {"half_space": {}}
+SHAPES = {
+    "sphere": {"radius": 0.01},
+    "cone": {"angle": 10.0},
+    "power": {"coefficient": 100.0, "exponent": 3.0},
+    "punch": {"radius": 0.01},
+}
+TARGETS: dict[str, dict[str, object]] = {"half_space": {}, "layer": {"thickness": 0.01, "base": "bonded"}}
 
 
 def test_samples_cover_every_member() -> None:
@@ -52,7 +57,7 @@ def test_shape_is_frozen_and_named_like_its_file(name: str) -> None:
     assert shape.name == name
     assert shape.to_dict() == {"shape": name, **SHAPES[name]}
     with pytest.raises(dataclasses.FrozenInstanceError):
-        shape.radius = 1.0
+        setattr(shape, next(iter(SHAPES[name])), 1.0)
 
 
 @pytest.mark.parametrize("name", TARGETS)

@@ -65,7 +65,7 @@ def test_yielding_starts_at_its_threshold() -> None:
 
 def test_adhesion_gravity_and_strain_are_simple_ratios() -> None:
     scene = Scene.load("polymer-sphere", {"target.material.work_of_adhesion": 0.05})
-    peak = Peak(force=2.0, depth=1e-4, contact_radius=6e-4, duration=0.02)
+    peak = Peak(force=2.0, depth=6e-5, contact_radius=6e-4, duration=0.02)
     found = {e.effect: e.estimate for e in model_ledger(scene, peak)}
     assert found["adhesion"] == pytest.approx(1.5 * math.pi * 0.05 * 0.006 / 2.0)
     assert found["gravity"] == pytest.approx(9.81 * 0.05 / 2.0)
