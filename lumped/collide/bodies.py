@@ -55,9 +55,8 @@ class PointLaw(Protocol):
     @property
     def tensile(self) -> bool: ...
 
-    @property
-    def grading(self) -> int:
-        """The power p for which the force near depth zero is smooth in the p-th root of the time from there."""
+    def grading(self, stage: Stage) -> int:
+        """The power p for which, in a stage, the force near depth zero is smooth in the p-th root of the time from there."""
 
     def touch(self, bodies: Bodies) -> State:
         """The state at first touch."""

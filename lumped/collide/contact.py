@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.collide.bodies import Bodies, PointLaw, Stage, State
+from lumped.collide.nodes import STAGES
 from lumped.collide.phase import Event, March, Phase
 from lumped.collide.step import Step
 from lumped.ending import AT_REST, End
 from lumped.errors import TooManySteps
 
 Array = NDArray[np.float64]
-FIRST_STEP = 0.125  # power of the tolerance: the first step in the law's time scale
 MOST_TURNS = 2000
 
 
@@ -60,8 +60,8 @@ def contact(
     `tolerance`: error of the rate in one step, relative to the velocity at first touch.
     """
     scale = law.time_scale(bodies)
-    length = tolerance**FIRST_STEP * scale
     stage = Stage(start.rate > 0.0, start.depth, abs(start.rate) or bodies.velocity, start.depth)
+    length = tolerance ** (law.grading(stage) / STAGES) * scale
     corners = law.corners(stage)
     phases: list[Phase] = []
     for _ in range(MOST_TURNS):

@@ -53,6 +53,25 @@ class Nodes(NamedTuple):
         twice = self.once @ (pace[:, None] * self.once)
         return self._replace(power=power, begun=begun, mirrored=mirrored, points=points, pace=pace, twice=twice)
 
+    def again(self, ratio: float) -> float:
+        """The share of its length for a step that begins at the same time, with `ratio` times its root's length.
+
+        A mirrored one leaves as much of its end to another, and takes what is before.
+        """
+        low, high = self.roots
+        share = float((low + ratio * (high - low)) ** self.power - self.begun)
+        return 1.0 - share if self.mirrored else share
+
+    def following(self, ratio: float) -> float:
+        """The share of its length for the step that follows, with `ratio` times its root's length."""
+        low, high = self.roots
+        return float((high + ratio * (high - low)) ** self.power - (1.0 + self.begun))
+
+    @property
+    def roots(self) -> tuple[float, float]:
+        """The root at the step's start and at its end, in units of the one which its length has."""
+        return self.begun ** (1.0 / self.power), (1.0 + self.begun) ** (1.0 / self.power)
+
 
 @cache
 def radau(count: int) -> Nodes:

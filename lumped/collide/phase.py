@@ -19,6 +19,8 @@ MOST_STEPS = 5000
 LOCATIONS = 60
 PRECISE = 1e-14  # of the time reached: where an event lies
 SHORTEST, LONGEST, CAUTION = 0.1, 5.0, 0.8
+# So much rougher than allowed a step need not be located any better to be refused.
+HOPELESS = 2.0
 
 
 class Event(NamedTuple):
@@ -67,7 +69,7 @@ class March:
         """March from `start` with a first step of about `length`, s. Raises TooManySteps."""
         steps: list[Step] = []
         now, state, guess = time, start, np.full(STAGES, self.bodies.gravity)
-        power = self.law.grading if start.depth <= 0.0 else 1
+        power = self.law.grading(self.stage) if start.depth <= 0.0 else 1
         for _ in range(MOST_STEPS):
             length = min(length, self.until - now)
             nodes = NODES.graded(power, (now - time) / length) if power > 1 else NODES
@@ -75,15 +77,18 @@ class March:
             event = None if step is None else self._first(step)
             if step is not None and event is not None:
                 step = self._located(step, event, now)
-            rough = np.inf if step is None else roughness(step) / self.allowed
-            if step is None or rough > 1.0:
-                length = (length if step is None else step.length) * _factor(rough)
+            rough = 0.0 if step is None else roughness(step) / self.allowed
+            if step is None:
+                length *= SHORTEST
+                continue
+            if rough > 1.0:
+                length = step.length * step.nodes.again(_ratio(rough, step.nodes.power))
                 continue
             steps.append(step)
             now, state = now + step.length, step.end
             if event is not None or now >= self.until * (1.0 - PRECISE):
                 return Phase(self.stage, time, tuple(steps), event)
-            length = step.length * _factor(rough)
+            length = step.length * nodes.following(_ratio(rough, power))
             guess = step.last_acceleration + step.last_slope(step.gain / step.nodes.pace) * length * NODES.points
         raise TooManySteps(
             f"contact: {MOST_STEPS} time steps reach {now:.3g} s of {self.until:.3g} s; "
@@ -100,7 +105,10 @@ class March:
         return min(found, key=lambda name: found[name]) if found else None
 
     def _located(self, step: Step, name: str, now: float) -> Step | None:
-        """The step that ends where the event happens: Newton's method on its length, kept between what brackets it."""
+        """The step that ends where the event happens: Newton's method on its length, kept between what brackets it.
+
+        Or one near it that is too rough anyway.
+        """
         event = self.events[name]
         low, high, length = 0.0, 2.0 * step.length, _expected(step, event.value(step))
         nodes = self._ending(step, event, length)
@@ -110,6 +118,8 @@ class March:
             trial = self._solved(step.start, length, guess, nodes)
             if trial is None:
                 return None
+            if roughness(trial) > HOPELESS * self.allowed:
+                return trial
             at = float(event.value(trial)[-1])
             slope = event.slope(trial)
             if event.rough and previous is not None and previous[0] != length:
@@ -124,8 +134,9 @@ class March:
 
     def _ending(self, step: Step, event: Event, length: float) -> Nodes:
         """The nodes of a step of another length, s, which ends with an event."""
-        if event.surfaces and step.nodes.power == 1 and self.law.grading > 1:
-            return NODES.graded(self.law.grading, mirrored=True)
+        left = self.law.grading(self.stage) if event.surfaces and step.nodes.power == 1 else 1
+        if left > 1:
+            return NODES.graded(left, mirrored=True)
         power, begun = step.nodes.power, step.nodes.begun * step.length / length
         return NODES.graded(power, begun) if power > 1 else NODES
 
@@ -139,8 +150,7 @@ def _expected(step: Step, values: Array) -> float:
     return share * step.length
 
 
-def _factor(rough: float) -> float:
-    """How much longer the next step may be: the last Legendre terms fall with the power s of the length."""
-    if rough == 0.0:
-        return LONGEST
-    return float(np.clip(CAUTION * rough ** (-1.0 / STAGES), SHORTEST, LONGEST))
+def _ratio(rough: float, power: int) -> float:
+    """How much longer the root of the next step may be: the last Legendre terms fall with the power s of it."""
+    ratio = CAUTION * rough ** (-1.0 / STAGES) if rough > 0.0 else LONGEST
+    return float(min(max(ratio, SHORTEST ** (1.0 / power)), LONGEST ** (1.0 / power)))

@@ -50,8 +50,7 @@ class ForceLaw(ABC):
     # Where the loss belongs among the energies of a Result.
     loss: ClassVar[str] = "viscous"
 
-    @property
-    def grading(self) -> int:
+    def grading(self, stage: Stage) -> int:
         """One: smooth in time from touch on."""
         return 1
 

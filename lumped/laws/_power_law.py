@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 from lumped.collide.bodies import Bodies, Stage
@@ -21,15 +20,14 @@ class PowerLaw(ForceLaw):
     k: float
     alpha: float
 
-    @property
-    def exponents(self) -> tuple[float, ...]:
+    def exponents(self, stage: Stage) -> tuple[float, ...]:
         """The powers of the depth in the force."""
         return (self.alpha,)
 
-    @cached_property
-    def grading(self) -> int:
+    def grading(self, stage: Stage) -> int:
         """What makes whole numbers of the exponents; at least their fractions small beside it."""
-        return next((p for p in GRADINGS if all((p * n).is_integer() for n in self.exponents)), GRADINGS[-1])
+        powers = self.exponents(stage)
+        return next((p for p in GRADINGS if all((p * n).is_integer() for n in powers)), GRADINGS[-1])
 
     @abstractmethod
     def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:

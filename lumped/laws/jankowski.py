@@ -35,10 +35,9 @@ class Jankowski(PowerLaw):
     alpha: float = 1.5
     name: ClassVar[str] = "jankowski"
 
-    @property
-    def exponents(self) -> tuple[float, ...]:
+    def exponents(self, stage: Stage) -> tuple[float, ...]:
         """The spring's and the damper's."""
-        return (self.alpha, 0.5 * (self.alpha - 1.0))
+        return (self.alpha, 0.5 * (self.alpha - 1.0)) if stage.approaching else (self.alpha,)
 
     def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:
         """c depth^((alpha - 1)/2) rate in the approach."""

@@ -37,8 +37,7 @@ class KuwabaraKono(PowerLaw):
     name: ClassVar[str] = "kuwabara_kono"
     tensile: ClassVar[bool] = True
 
-    @property
-    def exponents(self) -> tuple[float, ...]:
+    def exponents(self, stage: Stage) -> tuple[float, ...]:
         """The spring's and the damper's."""
         return (1.5, 0.5)
 

@@ -36,8 +36,7 @@ class Tsuji(PowerLaw):
     name: ClassVar[str] = "tsuji"
     tensile: ClassVar[bool] = True
 
-    @property
-    def exponents(self) -> tuple[float, ...]:
+    def exponents(self, stage: Stage) -> tuple[float, ...]:
         """The spring's and the damper's."""
         return (self.alpha, 0.5 * (self.alpha - 1.0))
 
