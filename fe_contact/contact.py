@@ -9,7 +9,7 @@ displacement ``x`` and the striker's own retreat ``y`` minimise the strictly con
     pressure = penalty max(g - T x - y, 0) ,    y = yielding sum W pressure .
 
 Newton's step solves with the points now in contact. On a mesh that breathes with the contact these are the same
-few sets again and again, so that the answer to every set is kept and a step is two matrix-vector products. A
+few sets again and again, so that the answer to every set is kept and a step is one matrix-vector product. A
 line search on ``J`` makes it converge from anywhere; an exhausted budget is reported, never returned as a number.
 """
 
@@ -25,11 +25,11 @@ from scipy.linalg.lapack import dposv
 from fe_contact.forms import Array
 
 MAX_ITERATIONS = 60
-UNGUARDED = 4  # iterations that nearly always suffice, and need no line search
+UNGUARDED = 8  # iterations that nearly always suffice, and need no line search
 ENERGY_ROUNDING = 1e-15  # a change of the energy below this share is rounding
 SETS_KEPT = 256  # sets of touching points whose answer is kept
 
-Motion = tuple[Array, float]  # displacement of the surface, (n,), and retreat of the striker
+Touching = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,29 +50,18 @@ class ContactProblem:
     penalty: float
     yielding: float = 0.0
 
-    def gap(self, displacement: Array, retreat: float = 0.0) -> Array:
-        """Overlap left at the points, (q,), positive where they press."""
-        left: Array = self.overlap - self.surface.trace @ displacement
-        if retreat:
-            left -= retreat
-        return left
-
-    def energy(self, displacement: Array, retreat: float = 0.0) -> float:
-        """J of the module's docstring."""
-        pressed = np.maximum(self.gap(displacement, retreat), 0.0)
-        strain = displacement @ (self.surface.stiffness @ displacement)
-        striker = retreat**2 / self.yielding if retreat else 0.0
-        return 0.5 * float(strain + striker + self.penalty * (self.surface.weights @ pressed**2))
-
 
 @dataclass(frozen=True)
 class ContactSolution:
-    """Displacement (n,), signed pressure (q,) (negative where open), Newton iterations, convergence."""
+    """Signed pressure (q,) (negative where open), Newton iterations, convergence.
 
-    displacement: Array
+    ``sets``: touching points (q,) of every contact problem on the way, first guesses for a problem much like it.
+    """
+
     signed_pressure: Array
     iterations: int
     converged: bool
+    sets: tuple[Touching, ...]
 
     @property
     def pressure(self) -> Array:
@@ -91,80 +80,101 @@ class ContactSolution:
         return float(points[last] + (points[last + 1] - points[last]) * inside / (inside - outside))
 
 
-def solve(problem: ContactProblem, touching: npt.NDArray[np.bool_]) -> ContactSolution:
+def solve(problem: ContactProblem, touching: Touching) -> ContactSolution:
     """Solve from a first guess of the points in contact, shape (q,)."""
-    before: Motion | None = None
+    before: _Point | None = None
     held = touching.tobytes()
     for iteration in range(1, MAX_ITERATIONS + 1):
-        point, gap = _newton_point(problem, _held(problem.surface, problem.penalty, held))
+        answer = _answer(problem.surface, problem.penalty, held)
+        gap, retreat = answer.gap(problem)
         found = (gap > 0.0).tobytes()
         if found == held:
-            return ContactSolution(point[0], problem.penalty * gap, iteration, True)
-        if before is not None:
-            point, still = _descended(problem, before, point)
-            gap = problem.gap(*point)
-            if still:
-                return ContactSolution(point[0], problem.penalty * gap, iteration, True)
-            found = (gap > 0.0).tobytes()
+            return _solution(problem, gap, iteration, True)
         if iteration >= UNGUARDED:
+            point = _Point(problem.surface.trace.T @ (answer.springs * gap), retreat, gap)
+            if before is not None:
+                point, still = _descended(problem, before, point)
+                gap, found = point.gap, (point.gap > 0.0).tobytes()
+                if still:
+                    return _solution(problem, gap, iteration, True)
             before = point
         held = found
-    return ContactSolution(point[0], problem.penalty * gap, MAX_ITERATIONS, False)
+    return _solution(problem, gap, MAX_ITERATIONS, False)
+
+
+def _solution(problem: ContactProblem, gap: Array, iterations: int, converged: bool) -> ContactSolution:
+    return ContactSolution(problem.penalty * gap, iterations, converged, (gap > 0.0,))
 
 
 @dataclass(frozen=True, eq=False)
-class _Held:
-    """Answer of a surface whose touching points are held to be those of a set.
+class _Answer:
+    """Minimum of the energy with the set of touching points held fixed, for every overlap.
 
-    ``displacement`` (n, q) per free overlap and fixed striker; ``lifted`` (n,) per unit overlap everywhere, with
-    ``left`` (q,) of it and the force ``stiffness``; ``springs`` (q,) force per overlap left at each point.
+    ``left`` (q, q): gap per free overlap, positive where points press, under a fixed striker; ``lifted`` (q,) its
+    row sums, the gap of a striker moved by one; ``springs`` (q,) force per gap; ``stiffness`` force per striker's
+    motion.
     """
 
-    displacement: Array
-    lifted: Array
     left: Array
-    stiffness: float
+    lifted: Array
     springs: Array
+    stiffness: float
+
+    def gap(self, problem: ContactProblem) -> tuple[Array, float]:
+        """Gap (q,) and the striker's retreat."""
+        gap: Array = self.left @ problem.overlap
+        if problem.yielding == 0.0:
+            return gap, 0.0
+        force = float(self.springs @ gap) / (1.0 + problem.yielding * self.stiffness)
+        retreat = problem.yielding * force
+        gap -= retreat * self.lifted
+        return gap, retreat
 
 
 @lru_cache(maxsize=SETS_KEPT)
-def _held(surface: PressedSurface, penalty: float, touching: bytes) -> _Held:
+def _answer(surface: PressedSurface, penalty: float, touching: bytes) -> _Answer:
     springs = penalty * surface.weights * np.frombuffer(touching, bool)
     weighted = surface.trace.T * springs
     _, displacement, failure = dposv(surface.stiffness + weighted @ surface.trace, weighted)
     if failure:
         raise FloatingPointError("the condensed stiffness lost its positive definiteness")
-    lifted = displacement.sum(axis=1)
-    left = 1.0 - surface.trace @ lifted
-    return _Held(np.ascontiguousarray(displacement), lifted, left, float(springs @ left), springs)
+    left = np.eye(len(springs)) - surface.trace @ displacement
+    lifted = left.sum(axis=1)
+    return _Answer(left, lifted, springs, float(springs @ lifted))
 
 
-def _newton_point(problem: ContactProblem, held: _Held) -> tuple[Motion, Array]:
-    """Minimum of the energy with the set of touching points held fixed: displacement, retreat; the gap there."""
-    displacement = held.displacement @ problem.overlap
-    gap = problem.gap(displacement)
-    if problem.yielding == 0.0:
-        return (displacement, 0.0), gap
-    force = float(held.springs @ gap) / (1.0 + problem.yielding * held.stiffness)
-    retreat = problem.yielding * force
-    return (displacement - retreat * held.lifted, retreat), gap - retreat * held.left
+@dataclass(frozen=True, eq=False)
+class _Point:
+    """A place between Newton's points: nodal load (n,) that displaces the surface, striker's retreat, gap (q,)."""
+
+    load: Array
+    retreat: float
+    gap: Array
+
+    def towards(self, other: _Point, share: float) -> _Point:
+        """The point at a share of the way to another."""
+        return _Point(
+            self.load + share * (other.load - self.load),
+            self.retreat + share * (other.retreat - self.retreat),
+            self.gap + share * (other.gap - self.gap),
+        )
+
+    def energy(self, problem: ContactProblem) -> float:
+        """J of the module's docstring."""
+        strain = self.load @ np.linalg.solve(problem.surface.stiffness, self.load)
+        striker = self.retreat**2 / problem.yielding if problem.yielding else 0.0
+        pressed = problem.surface.weights @ np.maximum(self.gap, 0.0) ** 2
+        return 0.5 * float(strain + striker + problem.penalty * pressed)
 
 
-def _descended(problem: ContactProblem, start: Motion, end: Motion) -> tuple[Motion, bool]:
+def _descended(problem: ContactProblem, start: _Point, end: _Point) -> tuple[_Point, bool]:
     """The end, or the nearest point towards it of less energy than the start; whether the energy stands still."""
-    energy, lowest = problem.energy(*start), problem.energy(*end)
-    if lowest > energy * (1 + ENERGY_ROUNDING):
-        end, lowest = _line_search(problem, start, end, energy)
-    return end, abs(energy - lowest) <= ENERGY_ROUNDING * abs(lowest)
-
-
-def _line_search(problem: ContactProblem, start: Motion, end: Motion, energy: float) -> tuple[Motion, float]:
-    """Halve the step until the energy falls; Newton's direction is one of descent."""
-    share = 0.5
-    while share > 1e-10:
-        trial = (start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
-        reached = problem.energy(*trial)
-        if reached < energy:
-            return trial, reached
+    energy = start.energy(problem)
+    point, lowest, share = end, end.energy(problem), 1.0
+    while lowest > energy * (1 + ENERGY_ROUNDING):
         share /= 2
-    return start, energy
+        if share < 1e-10:
+            return start, True
+        point = start.towards(end, share)
+        lowest = point.energy(problem)
+    return point, abs(energy - lowest) <= ENERGY_ROUNDING * abs(lowest)

@@ -15,9 +15,8 @@ from fe_contact.numerics import Numerics
 from fe_contact.separation import time_left
 from fe_contact.stepping import Stepper
 from fe_contact.steps import State, Step
-from fe_contact.time_grid import step_length
+from fe_contact.time_grid import share_of_rest, step_length
 
-APPROACH_TO_END = 0.4  # share of the time left that a step may take near separation
 END_REACHED = 1e-3  # time left over contact time at which separation is read off the trend
 PREDICTIONS = 3  # of the separation: how far they lie apart tells how well its time can be read
 NOISE = 1e-4  # share of the peak force below which a contact problem may drown in the mesh's error
@@ -86,7 +85,7 @@ class _Marcher:
         numerics = self.numerics
         length = numerics.contact_time * step_length(len(steps), numerics.steps, numerics.peak_share)
         if left is not None:
-            length = min(length, APPROACH_TO_END * left)
+            length = min(length, left * share_of_rest(left / numerics.contact_time, numerics.steps))
         length = min(length, self.strike.end_time - state.time)
         while True:
             try:

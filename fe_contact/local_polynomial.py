@@ -60,11 +60,11 @@ def peak(time: Array, values: Array) -> tuple[float, float]:
 
 def _stationary(quartic: Array, place: float, low: float, high: float) -> float:
     """Where the quartic's derivative vanishes between ``low`` and ``high``, by Newton's method; else near its end."""
-    slope = np.polyder(quartic)
-    bend = np.polyder(slope)
+    a, b, c, d, _ = quartic.tolist()
     for _ in range(4):
-        curvature = float(np.polyval(bend, place))
-        if curvature >= 0.0:
+        slope = ((4 * a * place + 3 * b) * place + 2 * c) * place + d
+        bend = (12 * a * place + 6 * b) * place + 2 * c
+        if bend >= 0.0:
             return place
-        place = min(max(place - float(np.polyval(slope, place)) / curvature, low), high)
+        place = min(max(place - slope / bend, low), high)
     return place

@@ -19,9 +19,10 @@ from lumped.scene import Scene
 
 DEFAULT_TOLERANCE = 1e-3
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-3 and 1e-4: see `fe-contact tradeoff`
+SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
 VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
 STEPS_AT_DEFAULT = 48
-STEPS_ORDER = 0.1  # steps grow with tolerance to this power: 60 at 1e-4
+STEPS_ORDER = 0.096  # steps grow with tolerance to this power: 60 at 1e-4
 SOONEST_PEAK = 1e-6  # share of the contact below which the time grid would lose its digits
 EARLY_PEAK = 0.28  # a force that peaks before this share of the contact needs more steps in proportion
 DEFAULTS: Mapping[str, Any] = {
@@ -48,7 +49,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     Raises NotReached where even the coarse row of springs does not come to an end.
     """
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
-    scales = mdr.estimate(scene)
+    scales = mdr.estimate(scene, SPRINGS)
     contact_time = scales.duration or scene.end_time
     peak_share = min(max(scales.peak_time / contact_time, SOONEST_PEAK), 1.0)
     chosen = {

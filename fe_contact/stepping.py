@@ -26,6 +26,7 @@ PATIENCE = 8  # rescalings after which the window widens by half each time: the 
 MEMORY_POINTS = 1200
 MEMORY_REACH = 1.5  # memory extends to this multiple of the expected contact radius
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
+COARSE = np.geomspace(1e-6, 1.0, 200)  # where, in units of the memory's reach, the first contact is looked for
 VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
 
 
@@ -58,11 +59,13 @@ class Stepper:
         carried = state.memory.carried(law)
         lever = self.scheme.LEVER * length**2
         free_depth = state.depth + length * state.velocity + lever * strike.gravity
-        scale, solution, work = self._settle(state, steps, law, carried[0], free_depth, lever / strike.mass, length)
+        scale, edge, solution, work = self._settle(
+            state, steps, law, carried[0], free_depth, lever / strike.mass, length
+        )
         pressure = solution.pressure
         force = scale * float(self.surface.operator.weights @ pressure)
         depth = free_depth - lever * force / strike.mass
-        radius = scale * solution.edge(self.surface.operator.points)
+        radius = scale * edge
         strain = self._strain(law, carried, depth, radius, scale, pressure)
         moved = State(
             time=end if length >= end - state.time else state.time + length,
@@ -84,11 +87,11 @@ class Stepper:
         free_depth: float,
         yielding: float,
         length: float,
-    ) -> tuple[float, ContactSolution, Work]:
-        """Scale the mesh until the contact edge lies in its finest elements."""
+    ) -> tuple[float, float, ContactSolution, Work]:
+        """Scale the mesh until the contact edge lies in its finest elements: scale, edge on the unit mesh, solution."""
         points, limit = self.surface.operator.points, self.radii[-1]
         scale = self._expected_radius(state, steps, free_depth, length)
-        touching = steps[-1].solution.signed_pressure > 0.0 if steps else points < 1.0
+        guesses = steps[-1].solution.sets if steps else (points < 1.0,)
         iterations = 0
         for attempt in range(RESCALINGS):
             radii = scale * points
@@ -97,23 +100,23 @@ class Stepper:
             height = np.minimum(self.strike.height(radii), BEYOND * radii[-1])  # a profile may end
             overlap = law.now * (free_depth - height) + interpolate(carried, self.radii[1], radii)
             problem = self.surface.problem(overlap, self.numerics.penalty, law.now * yielding * scale)
-            solution = self.enforcement.enforce(problem, touching)
+            solution = self.enforcement.enforce(problem, *guesses)
             iterations += solution.iterations
             if not solution.converged:
                 raise ContactNotSettled(state.time)
             edge = solution.edge(points)
             if abs(edge - 1) <= EDGE_WINDOW * 1.5 ** max(attempt - PATIENCE, 0):
-                return scale, solution, Work(1, (attempt + 1) * self.enforcement.SOLVES, iterations)
+                return scale, edge, solution, Work(1, (attempt + 1) * self.enforcement.SOLVES, iterations)
             scale *= min(max(edge, 0.3), points[-1])
             if scale < VANISHING * (steps[-1].radius if steps else self.numerics.contact_radius * VANISHING):
                 raise ContactLost(state.time)
-            touching = points < 1.0
+            guesses = (points < 1.0,)
         raise ContactNotSettled(state.time)
 
     def _expected_radius(self, state: State, steps: Sequence[Step], depth: float, length: float) -> float:
         """Contact radius in the coming step: its square is smooth in time, and zero at touch."""
         if not steps:
-            return _overlap_radius(self.strike.height, depth, self.radii)
+            return _overlap_radius(self.strike.height, depth, self.radii[-1])
         known = [(step.radius_time, step.radius**2) for step in steps[-3:]]
         if len(known) < 3:
             known.insert(0, (0.0, 0.0))
@@ -143,23 +146,17 @@ class Stepper:
 
 
 def _extrapolated(known: Sequence[tuple[float, float]], at: float) -> float:
-    """The polynomial through a few points, by Neville's scheme."""
-    times, values = zip(*known, strict=True)
-    for level in range(1, len(known)):
-        ends = zip(times, times[level:], values, values[1:], strict=False)
-        values = tuple(((at - t) * w - (at - u) * v) / (u - t) for t, u, v, w in ends)
-    return float(values[0])
+    """The polynomial through two or three points, Newton's form."""
+    (before, previous), (last, value) = known[-2:]
+    slope = (value - previous) / (last - before)
+    if len(known) < 3:
+        return value + slope * (at - last)
+    first, start = known[0]
+    bend = (slope - (previous - start) / (before - first)) / (last - first)
+    return value + (at - last) * (slope + bend * (at - before))
 
 
-def _overlap_radius(height: Callable[[Array], Array], depth: float, radii: Array) -> float:
-    """Radius at which the undeformed profile lies ``depth`` above its tip, by bisection."""
-    low, high = 0.0, float(radii[-1])
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        if height(np.array([middle]))[0] < depth:
-            low = middle
-        else:
-            high = middle
-        if high - low < 0.01 * high:
-            break
-    return high
+def _overlap_radius(height: Callable[[Array], Array], depth: float, reach: float) -> float:
+    """About the radius at which the undeformed profile lies ``depth`` above its tip."""
+    radii = reach * COARSE
+    return float(radii[min(int(height(radii).searchsorted(depth)), len(radii) - 1)])

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 GROWTH_AFTER = 1.25  # ratio of successive steps once the expected contact time is over
+LAST_SHARE = (0.4, 0.75)  # least and largest share of the time left that a step near separation may take
 
 
 def step_length(done: int, steps: int, peak_share: float) -> float:
@@ -25,6 +27,16 @@ def step_length(done: int, steps: int, peak_share: float) -> float:
     return last * GROWTH_AFTER ** (done - steps + 1)
 
 
+def share_of_rest(left: float, steps: int) -> float:
+    """Share of the time left, itself a share of the contact time, that the next step may take.
+
+    As many steps are left as the grading at the end of a contact would have: the time left falls with their square.
+    """
+    to_go = max(steps * math.sqrt(left / 3), 1.0)
+    return min(max((2 * to_go - 1) / to_go**2, LAST_SHARE[0]), LAST_SHARE[1])
+
+
+@lru_cache(maxsize=4096)
 def elapsed(share: float, peak_share: float) -> float:
     """Time over contact time after a share of the steps; 0 at 0, 1 at 1, ``peak_share`` at 1/2 at most."""
     middle = _inverse_smoothstep(min(peak_share, 0.5))

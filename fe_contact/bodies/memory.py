@@ -20,6 +20,7 @@ from fe_contact.forms import Array
 from lumped.materials import Relaxation
 
 STENCIL = np.arange(4)[:, None]
+TO_MONOMIALS = np.linalg.inv(np.vander(np.arange(4.0), increasing=True))  # of the cubic through four values
 
 
 @dataclass(frozen=True)
@@ -39,15 +40,15 @@ class StepLaw:
 def step_law(relaxation: Relaxation, scheme: ModuleType, step: float) -> StepLaw:
     """Numbers of one time step, s, of a scheme (see :mod:`fe_contact.schemes`); moduli in Pa."""
     ratios = step / np.asarray(relaxation.times)
-    moduli = np.asarray(relaxation.moduli)
-    per_increment, of_past = scheme.weights(moduli, ratios)
+    per_increment, of_past = scheme.weights(np.asarray(relaxation.moduli), ratios)
     now = scheme.equilibrium_share() * relaxation.equilibrium + per_increment.sum() + relaxation.viscosity / step
+    lost = np.expm1(-ratios)
     return StepLaw(
         now=float(now),
         past_strain=float(relaxation.equilibrium - now),
         past_branches=of_past,
-        decay=np.exp(-ratios),
-        gain=-np.expm1(-ratios) / ratios,
+        decay=1.0 + lost,
+        gain=-lost / ratios,
     )
 
 
@@ -115,11 +116,8 @@ def interpolate(field: Array, spacing: float, radii: Array) -> Array:
     np.maximum(first, 0, out=first)
     np.minimum(first, field.size - 4, out=first)
     x = position - first
-    y0, y1, y2, y3 = field.take(first + STENCIL)
-    slope = y1 - y0
-    bend = y2 - y1 - slope
-    twist = y3 - 2 * y2 + y1 - bend
-    return np.asarray(y0 + x * (slope + (x - 1) * (bend / 2 + (x - 2) * (twist / 6))))
+    constant, slope, bend, twist = TO_MONOMIALS @ field.take(first + STENCIL)
+    return np.asarray(constant + x * (slope + x * (bend + x * twist)))
 
 
 def area_weights(radii: Array) -> Array:

@@ -8,21 +8,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-import numpy.typing as npt
-
-from fe_contact.contact import ContactProblem, ContactSolution, solve
+from fe_contact.contact import ContactProblem, ContactSolution, Touching, solve
 
 SOLVES = 2
 
 
-def enforce(problem: ContactProblem, touching: npt.NDArray[np.bool_]) -> ContactSolution:
-    """Solve, take the pressure as multiplier, solve again."""
-    first = solve(problem, touching)
+def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:
+    """Solve, take the pressure as multiplier, solve again; a lone guess serves the first, its answer the second."""
+    first = solve(problem, guesses[0])
     shifted = replace(problem, overlap=problem.overlap + first.pressure / problem.penalty)
-    second = solve(shifted, first.signed_pressure > 0.0)
-    return replace(
-        second,
+    second = solve(shifted, *(guesses[1:] or first.sets))
+    return ContactSolution(
+        signed_pressure=second.signed_pressure,
         iterations=first.iterations + second.iterations,
         converged=first.converged and second.converged,
+        sets=first.sets + second.sets,
     )

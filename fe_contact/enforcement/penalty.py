@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
-
-from fe_contact.contact import ContactProblem, ContactSolution, solve
+from fe_contact.contact import ContactProblem, ContactSolution, Touching, solve
 
 SOLVES = 1
 
 
-def enforce(problem: ContactProblem, touching: npt.NDArray[np.bool_]) -> ContactSolution:
+def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:
     """Solve once."""
-    return solve(problem, touching)
+    return solve(problem, guesses[0])

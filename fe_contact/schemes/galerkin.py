@@ -17,7 +17,7 @@ ORDER = 2
 SAMPLE = 0.5
 LEVER = 0.5
 SERIES_BELOW = 0.02
-SERIES = [(-1) ** k / math.factorial(k + 2) for k in range(5, -1, -1)]  # of (x - 1 + exp(-x)) / x^2
+SERIES = [(-1) ** k / math.factorial(k + 2) for k in range(5, -1, -1)]
 
 
 def weights(moduli: Array, ratios: Array) -> tuple[Array, Array]:
@@ -26,8 +26,17 @@ def weights(moduli: Array, ratios: Array) -> tuple[Array, Array]:
     ramp = (1 - fade) / ratios
     small = ratios < SERIES_BELOW
     if small.any():  # the difference would cancel
-        ramp[small] = np.polyval(SERIES, ratios[small])
+        ramp[small] = _ramp(ratios[small])
     return moduli * ramp, moduli * fade
+
+
+def _ramp(ratios: Array) -> Array:
+    """(x - 1 + exp(-x)) / x^2 by its series."""
+    total = np.full_like(ratios, SERIES[0])
+    for coefficient in SERIES[1:]:
+        total *= ratios
+        total += coefficient
+    return total
 
 
 def equilibrium_share() -> float:

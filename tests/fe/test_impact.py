@@ -394,7 +394,7 @@ def solve_whole(problem: WholeProblem, touching: np.ndarray) -> ContactSolution:
         motion = spsolve(system.tocsc(), problem.trace.T @ (springs @ problem.overlap))
         left = problem.overlap - problem.trace @ motion
         if np.array_equal(left > 0, touching):
-            return ContactSolution(motion, problem.penalty * left, iteration, True)
+            return ContactSolution(problem.penalty * left, iteration, True, (touching,))
         touching = left > 0
     raise AssertionError("the uncondensed route did not converge")
 
