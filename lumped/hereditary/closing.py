@@ -66,7 +66,7 @@ def close(
     path, limit = inward.path.until(float(inward.path.breaks[-1])), end_time**0.5
     steps, largest = 0, inward.largest
     if before and before.last:
-        known = _again(problem, path, settings, largest, before)
+        known = _again(problem, path, settings, largest, before, before.last)
         if known and known.end <= end_time:
             return known
     for _ in range(MOST_PIECES):
@@ -91,16 +91,17 @@ def close(
     raise TooManySteps(f"contact had not ended after {MOST_PIECES} pieces: accepted: an earlier end_time")
 
 
-def _again(problem: Hereditary, path: Path, settings: Settings, largest: float, before: Closing) -> Closing | None:
-    """The closing in the pieces of one found before; None where they will not do."""
-    assert before.last is not None
+def _again(
+    problem: Hereditary, path: Path, settings: Settings, largest: float, before: Closing, over: Path
+) -> Closing | None:
+    """The closing in the pieces of one found before, `over` its last piece; None where they will not do."""
     begin, steps = before.path.end if before.path else 0.0, 0
     if path.end < begin:
         span, state = (path.end, begin), path.at(path.end)
         more = follow(problem, span, state, begin - path.end, _released, settings, largest, before.path)
         path, steps = path.joined(more.path), more.steps
     earlier, nodes = _before(path, begin), -((before.end - begin**2) ** 0.5) * (1.0 - settings.table.nodes)
-    guess = problem.gravity - before.last.field(FORCE, nodes)[0]
+    guess = problem.gravity - over.field(FORCE, nodes)[0]
     last = _shut(problem, settings, path.at(begin), before.end - begin**2, guess)
     if last is None or last.error(settings) > settings.rtol * largest:
         return None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -87,12 +88,11 @@ class Path:
         values, places = self.sampled[index], self.places.tolist()
         i = int(np.argmax(values))
         # Each interval between samples lies in one piece, and the top in the one into which the curve rises.
-        for low, high in zip(places[max(i - 1, 0) : i + 1], places[i : i + 2], strict=False):
-            if low < high:
-                value, slope = self.curve(index, 0.5 * (low + high))
-                if slope(low) > 0.0 > slope(high):
-                    top = falling_zero(slope, low, high)
-                    return top, value(top)
+        for low, high in pairwise(places[max(i - 1, 0) : i + 2]):
+            value, slope = self.curve(index, 0.5 * (low + high))
+            if slope(low) > 0.0 > slope(high):
+                top = falling_zero(slope, low, high)
+                return top, value(top)
         return places[i], float(values[i])
 
     def _piece(self, places: Array | float) -> Array:

@@ -107,11 +107,7 @@ class Phase:
         fields = self.path.at(np.minimum(self.clock.place(times), self.path.end))
         return fields[[self.depth, self.depth + 1, self.depth + 3, self.edge]]
 
-    def top(self, field: int) -> float:
-        """About how high a field is at most, 0 the depth and 3 the force."""
-        return float(self.path.sampled[self.depth + field].max())
-
     def highest(self, field: int) -> tuple[float, float]:
-        """When a field is highest, and how high."""
+        """When a field is highest, 0 the depth and 3 the force, and how high."""
         place, height = self.path.highest(self.depth + field)
         return float(self.clock.time(np.array([place]))[0]), height

@@ -52,7 +52,7 @@ class Course:
 
     def highest(self, field: int) -> tuple[float, float]:
         """When a field is highest, 0 the depth and 3 the force, and how high."""
-        return max(self.phases, key=lambda phase: phase.top(field)).highest(field)
+        return max((phase.highest(field) for phase in self.phases), key=lambda found: found[1])
 
     def at(self, times: Array) -> Array:
         """Depth, velocity, force and the edge's depth, shape (4, n); a striker at rest stays so, without force."""
