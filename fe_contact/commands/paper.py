@@ -1,0 +1,80 @@
+"""``fe-contact paper``: every number of the source paper, printed and recomputed, with a verdict by rule."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fe_contact.commands import base
+
+if TYPE_CHECKING:
+    from lumped.paper import Judged, Value
+    from lumped.paper.study import Study
+
+SUMMARY = "the source paper's claims: printed, recomputed, deviation, verdict; its figures drawn again"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """[--set a.b=value ...] [--out DIR] [--json] [--quiet]."""
+    parser.add_argument(
+        "--set",
+        dest="overrides",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="change an input of the examples, as steel.density=8000",
+    )
+    base.output_arguments(parser)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Recompute, write, say the verdicts; 0."""
+    from fe_contact.report.paper import plot_paper
+    from fe_contact.validation.paper_files import write_study
+    from lumped.paper import Examples
+    from lumped.paper.study import study
+    from lumped.toml_file import parse_assignment
+
+    examples = Examples.load(dict(parse_assignment(text) for text in args.overrides))
+    where = base.folder(args, "paper", examples)
+    progress = base.progress_of(args)
+    found = study(examples, progress)
+    content = write_study(found, where)
+    progress("charts")
+    plot_paper(found, where)
+    print(json.dumps(content, allow_nan=False) if args.json else summary(found, where))
+    return base.DONE
+
+
+def summary(found: Study, where: Path) -> str:
+    """One line a claim, one an assumption, then the counts."""
+    from lumped.paper.claims import counts
+    from lumped.paper.rules import AGREES, DIFFERS, UNKNOWN
+
+    lines = [f"{'claim':14s} {'quantity':54s} {'printed':26s} {'recomputed':30s} {'deviation':>9s}  verdict"]
+    lines += [_line(one) for one in found.claims]
+    for judged in found.assumptions:
+        one = judged.assumption
+        lines.append(f"{one.id:17s} {one.assumption}: {one.criterion} {_shown(judged.values)}: {judged.verdict}")
+    number = counts(found.claims)
+    reasons = ", ".join(f"{count} {name}" for name, count in number.items() if name not in (AGREES, DIFFERS, UNKNOWN))
+    lines.append(f"{number[AGREES]} agree, {number[DIFFERS]} differ, {number[UNKNOWN]} {UNKNOWN} ({reasons})")
+    return "\n".join([*lines, f"written to {where}"])
+
+
+def _line(one: Judged) -> str:
+    """A value that is not the claimed quantity stands behind the verdict."""
+    claim, share = one.claim, "" if one.deviation is None else f"{round(100.0 * one.deviation, 2) + 0.0:+.2f} %"
+    printed = f"{claim.printed} {claim.unit}" if claim.printed and claim.unit != "1" else claim.printed
+    values, verdict = _shown(one.values), one.verdict
+    if claim.rule.kind == "none":
+        beside = f"; {claim.recomputed_as or claim.quantity}: {values}" if values else ""
+        values, verdict = "", f"{one.verdict} ({claim.rule.name}){beside}"
+    return f"{claim.id:14s} {claim.quantity:54s} {printed:26s} {values:30s} {share:>9s}  {verdict}"
+
+
+def _shown(values: Sequence[Value]) -> str:
+    return "; ".join(f"{value.value:.5g}" for value in values)
