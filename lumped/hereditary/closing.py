@@ -22,7 +22,10 @@ from lumped.hereditary.problem import Hereditary
 
 Array = NDArray[np.float64]
 SECANT_STEPS = 12
-CLOSED = 1e-12
+# The duration is found to this relative change; the first time, with few nodes, less will do.
+CLOSED, NEARLY_CLOSED = 1e-12, 1e-9
+# A piece that errs by so many times what is allowed will not do, wherever it ends.
+HOPELESS = 30.0
 # Of the force now, what decelerates in the mean until the end of an elastic contact: 0.37 F t^2 = depth.
 MEAN_FORCE = 0.37
 
@@ -31,20 +34,30 @@ MEAN_FORCE = 0.37
 class Closing:
     """The path over r before the last piece (None: there is none) and that piece over q, which ends at `end`.
 
-    Without a last piece the path has reached the end time.
+    Without a last piece the path has reached the end time. `rate`: how fast F over dF/d depth falls with the end.
     """
 
     path: Path | None
     last: Path | None
     end: float
+    rate: float
     steps: int
 
 
+class Guess(NamedTuple):
+    """A duration, the accelerations at the nodes, and how fast F over dF/d depth falls with the duration, or 0."""
+
+    duration: float
+    accelerations: Array
+    rate: float
+
+
 class Shut(NamedTuple):
-    """A last piece, its duration, and all Newton steps spent on it."""
+    """A last piece, its duration, how fast F over dF/d depth falls with that, and all Newton steps spent on it."""
 
     piece: Piece
     duration: float
+    rate: float
     steps: int
 
     def error(self, settings: Settings) -> float:
@@ -72,18 +85,16 @@ def close(
     for _ in range(MOST_PIECES):
         released = float(path.at(path.end)[FORCE]) <= 0.0
         if path.end >= limit and not released:
-            return Closing(path, None, end_time, steps)
+            return Closing(path, None, end_time, 0.0, steps)
         begin = float(path.breaks[-2]) if released else path.end
         state = path.at(begin)
         duration = _until_released(path, begin) if released else _until_flat(problem, state)
         earlier = _before(path, begin)
-        guess = np.full(settings.points, problem.gravity - state[FORCE])
-        last = _shut(problem, settings, state, duration, guess) if 0.0 < duration < math.inf else None
-        if last:
-            steps += last.steps
-            end = begin**2 + last.duration
-            if end <= end_time and last.error(settings) <= settings.rtol * largest:
-                return Closing(earlier, last.path(settings), end, steps)
+        guess = Guess(duration, np.full(settings.points, problem.gravity - state[FORCE]), 0.0)
+        hopeful = 0.0 < duration < math.inf
+        last = _shut(problem, state, guess, settings, settings.rtol * largest) if hopeful else None
+        if last and begin**2 + last.duration <= end_time:
+            return Closing(earlier, last.path(settings), begin**2 + last.duration, last.rate, steps + last.steps)
         target = min((begin**2 + min(0.5 * duration, 3.0 * begin**2)) ** 0.5, limit)
         more = follow(problem, (begin, target), state, target - begin, _released, settings, largest)
         steps += more.steps
@@ -101,11 +112,11 @@ def _again(
         more = follow(problem, span, state, begin - path.end, _released, settings, largest, before.path)
         path, steps = path.joined(more.path), more.steps
     earlier, nodes = _before(path, begin), -((before.end - begin**2) ** 0.5) * (1.0 - settings.table.nodes)
-    guess = problem.gravity - over.field(FORCE, nodes)[0]
-    last = _shut(problem, settings, path.at(begin), before.end - begin**2, guess)
-    if last is None or last.error(settings) > settings.rtol * largest:
+    guess = Guess(before.end - begin**2, problem.gravity - over.field(FORCE, nodes)[0], before.rate)
+    last = _shut(problem, path.at(begin), guess, settings, settings.rtol * largest)
+    if last is None:
         return None
-    return Closing(earlier, last.path(settings), begin**2 + last.duration, steps + last.steps)
+    return Closing(earlier, last.path(settings), begin**2 + last.duration, last.rate, steps + last.steps)
 
 
 def _released(values: Array) -> bool:
@@ -132,22 +143,32 @@ def _until_flat(problem: Hereditary, state: Array) -> float:
     return 2.0 * depth / (speed + math.sqrt(speed**2 + 4.0 * MEAN_FORCE * force * depth))
 
 
-def _shut(problem: Hereditary, settings: Settings, state: Array, duration: float, guess: Array) -> Shut | None:
-    """The piece from a state that ends with F = 0: by secants from a duration, the acceleration from a guess."""
+def _shut(problem: Hereditary, state: Array, start: Guess, settings: Settings, allowed: float) -> Shut | None:
+    """The piece from a state that ends with F = 0: the duration by secants. None where it errs by far too much."""
+    duration, a, rate = start
     before, steps = (0.0, 0.0), 0
-    for _ in range(SECANT_STEPS):
-        piece = Motion.to_end(problem, settings.table, duration).piece(state, guess)
+    for tried in range(SECANT_STEPS):
+        piece = Motion.to_end(problem, settings.table, duration).piece(state, a)
         if piece is None:
             return None
         steps += piece.steps
-        last = piece.values[:, -1]
-        # F over dF/d depth is a depth, which falls straight to zero.
-        slope = float(problem.loads(last[:1])[1][0])
-        left = float(last[FORCE]) / slope if slope else 0.0
-        rate = (left - before[1]) / (duration - before[0]) if before[0] else float(last[VELOCITY])
-        change = -left / rate if rate < 0.0 else 0.0
-        before, guess = (duration, left), problem.gravity - piece.values[FORCE, 1:]
-        if abs(change) <= CLOSED * duration:
-            return Shut(piece, duration, steps)
+        last = Shut(piece, duration, rate, steps)
+        if tried == 1 and last.error(settings) > HOPELESS * allowed:
+            return None
+        left, elastic = _left(problem, piece.values[:, -1])
+        if before[0]:
+            rate = (left - before[1]) / (duration - before[0])
+        change = -left / (rate or elastic) if (rate or elastic) < 0.0 else 0.0
+        if abs(change) <= (CLOSED if start.rate else NEARLY_CLOSED) * duration:
+            return last if last.error(settings) <= allowed else None
+        before, a = (duration, left), problem.gravity - piece.values[FORCE, 1:]
         duration = min(max(duration + change, 0.5 * duration), 2.0 * duration)
     return None
+
+
+def _left(problem: Hereditary, last: Array) -> tuple[float, float]:
+    """F over dF/d depth, a depth that falls straight to zero; and how fast it does in an elastic contact."""
+    load, slope = (float(value[0]) for value in problem.loads(last[:1]))
+    if not slope:
+        return 0.0, 0.0
+    return float(last[FORCE]) / slope, float(last[VELOCITY]) * load / (slope * float(last[DEPTH]))
