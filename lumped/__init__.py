@@ -7,6 +7,8 @@ from lumped.errors import BadInput as BadInput
 from lumped.errors import Fault as Fault
 from lumped.errors import FeContactError as FeContactError
 from lumped.errors import NotReached as NotReached
+from lumped.fit import Fit as Fit
+from lumped.fit import fit as fit
 from lumped.history import History as History
 from lumped.laws.base import simulate as simulate
 from lumped.materials import Creep as Creep

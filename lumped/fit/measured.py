@@ -1,0 +1,89 @@
+"""What a fit compares with: the points of a curve, and the silence after its end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.errors import BadInput, Fault
+from lumped.history import History
+from lumped.interpolation import peak
+from lumped.score import POINTS, Curve
+
+Array = NDArray[np.float64]
+# A curve whose last force is at most this share of its peak has ended: after it the force is zero.
+ENDED = 0.05
+# How far beyond its end a longer contact is told from it, as a share of its length.
+BEYOND = 0.5
+# Noise has no memory: residuals above the first, whose neighbours correlate by more than the second, are no noise.
+EXACT, RANDOM = 1e-5, 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Times, s, and forces, N: `points` of the curve's own, then the silence; `peak`, N."""
+
+    time: Array
+    force: Array
+    points: int
+    peak: float
+
+    @classmethod
+    def of(cls, curve: History | Curve) -> Measured:
+        """The own rows of a measured curve, or 201 rows of a computed history. Raises BadInput."""
+        rows = _spread(curve.time) if isinstance(curve, History) else slice(None)
+        time, force = curve.time[rows], curve.force[rows]
+        highest = peak(curve.time, curve.force)[1] if isinstance(curve, History) else float(force.max())
+        if not highest > 0.0 or not time[-1] > max(time[0], 0.0):
+            raise BadInput(Fault("fit", "curve", "has no force above zero after t = 0; accepted: a contact"))
+        after = _silence(time) if force[-1] <= ENDED * highest else time[:0]
+        return cls(np.append(time, after), np.append(force, 0.0 * after), time.size, highest)
+
+    @property
+    def ended(self) -> bool:
+        """Whether the force has returned to zero: else the curve is cut off, and says nothing of what follows."""
+        return self.time.size > self.points
+
+    @property
+    def duration(self) -> float:
+        """About how long the force lasts, s; of a curve cut off before its end, twice the time to its peak."""
+        own, force = self.time[: self.points], self.force[: self.points]
+        if not self.ended:
+            return float(2.0 * own[int(np.argmax(force))]) or float(own[-1])
+        pressed = own[force > ENDED * self.peak]
+        return float(pressed[-1] - pressed[0]) or float(own[-1])
+
+    @property
+    def impulse(self) -> float:
+        """int F dt over the curve, N s."""
+        return float(np.trapezoid(self.force, self.time))
+
+    def seen(self, history: History) -> Curve:
+        """What a curve like this one would have shown of a history: of one cut off nothing after its end."""
+        if self.ended:
+            return Curve(history.time, history.force)
+        own = self.time[: self.points]
+        return Curve(own, history.force_at(own))
+
+    def error_of(self, force: Array) -> Array:
+        """The residual of a force at the times, shape (n,), relative to the peak."""
+        return np.asarray((force - self.force) / self.peak)
+
+    def systematic(self, error: Array) -> bool:
+        """Whether residuals show what a law cannot follow, and not noise alone."""
+        own = error[: self.points]
+        power = float(own @ own)
+        return power > EXACT**2 * own.size and float(own[1:] @ own[:-1]) > RANDOM * power
+
+
+def _spread(time: Array) -> NDArray[np.intp]:
+    """Rows nearest to equally spaced times: between the rows even a computed history is only interpolated."""
+    return np.unique(np.searchsorted(time, np.linspace(time[0], time[-1], POINTS)))
+
+
+def _silence(time: Array) -> Array:
+    """Times after the end, as dense as those before it."""
+    step = (time[-1] - time[0]) / (time.size - 1)
+    return np.asarray(time[-1] + step * np.arange(1, int(BEYOND * time.size) + 2))

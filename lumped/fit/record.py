@@ -1,0 +1,93 @@
+"""What a fit found: parameters with their intervals, how they hang together, and what is left of the error."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.history import History
+from lumped.result import Result
+from lumped.scene import Scene
+
+Array = NDArray[np.float64]
+SCHEMA = "fe-contact/fit/1"
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A value and its 95 % confidence interval; the ends are None where the curve does not tell them."""
+
+    value: float
+    low: float | None
+    high: float | None
+    unit: str
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A law fitted to a curve.
+
+    `parameters` are the free ones, in the order of `covariance` and `correlation`, shape (p, p), of their values;
+    `held` the others that were given. `normalized_error` is "(20)", "(21)". `depth` is half of the greatest depth,
+    m, and `force_at_depth` the force there in the approach: known well even where stiffness and exponent are not.
+    `scene` holds the fitted law, `result` is its impact, `history` that on the curve's clock.
+    """
+
+    law: str
+    scene: Scene
+    result: Result
+    history: History
+    parameters: Mapping[str, Estimate]
+    held: Mapping[str, float]
+    covariance: Array
+    correlation: Array
+    normalized_error: float
+    depth: float
+    force_at_depth: Estimate
+    peak_held: bool
+    points: int
+    warnings: tuple[str, ...]
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Every parameter, free or held."""
+        return {name: estimate.value for name, estimate in self.parameters.items()} | dict(self.held)
+
+    def to_json(self) -> dict[str, Any]:
+        """The content of fit.json."""
+        return {
+            "schema": SCHEMA,
+            "law": self.law,
+            "converged": True,
+            "parameters": {name: asdict(estimate) for name, estimate in self.parameters.items()},
+            "held": dict(self.held),
+            "names": list(self.parameters),
+            "covariance": self.covariance.tolist(),
+            "correlation": self.correlation.tolist(),
+            "normalized_error": self.normalized_error,
+            "force_at_depth": {"depth": self.depth, **asdict(self.force_at_depth)},
+            "peak_held": self.peak_held,
+            "points": self.points,
+            "warnings": list(self.warnings),
+            "quantities": {name: asdict(quantity) for name, quantity in self.result.quantities.items()},
+            "scene": self.scene.to_dict(),
+        }
+
+    def write(self, directory: Path) -> None:
+        """Write fit.json, fit.csv (the fitted history) and parameters.csv into `directory`, made when not there."""
+        directory.mkdir(parents=True, exist_ok=True)
+        text = json.dumps(self.to_json(), indent=2, allow_nan=False, ensure_ascii=False)
+        (directory / "fit.json").write_text(text + "\n", encoding="utf-8")
+        self.history.write_csv(directory / "fit.csv")
+        with (directory / "parameters.csv").open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(["parameter", "value", "low", "high", "unit"])
+            writer.writerows([name, *asdict(estimate).values()] for name, estimate in self.parameters.items())
+            writer.writerows([name, value, "", "", ""] for name, value in self.held.items())

@@ -1,0 +1,124 @@
+"""The parameters of a fit: which are free, within which bounds, and the scene that they make."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped import laws
+from lumped.errors import BadInput, Fault, nearest
+from lumped.fit import network
+from lumped.keys import Number
+from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS
+from lumped.scene import LawChoice, Scene
+
+Array = NDArray[np.float64]
+Bounds = Mapping[str, tuple[float, float]]
+# The touch on the curve's clock, s: the one parameter that may be negative.
+TOUCH = "touch"
+TOUCH_KEY = Number(-1e12, 1e12, "s")
+# What nobody has bounded is sought within this factor of its first guess.
+REACH = 1e8
+UNSEEN = {"gap": "no force tells it, for time starts at touch; accepted: fixed"}
+
+
+@dataclass(frozen=True, eq=False)
+class Space:
+    """Parameters of a law and of a scene's material: free ones with their keys, held ones with their values."""
+
+    law: str
+    scene: Scene
+    free: Mapping[str, Number]
+    held: Mapping[str, float]
+    bounds: Bounds
+
+    def scene_at(self, values: Mapping[str, float]) -> Scene:
+        """The scene with these values of the free parameters. Raises BadInput."""
+        every, own = {**self.held, **values}, own_keys(self.law)
+        of_law = {name: every[name] for name in every if name in own}
+        of_network = {name: every[name] for name in every if name not in own and name != TOUCH}
+        scene = replace(self.scene, law=LawChoice(self.law, {**_said(self.scene, self.law, of_law), **of_law}))
+        if not of_network:
+            return scene
+        return replace(scene, material=network.material(self.scene.geometry.material, of_network))
+
+    def touch(self, values: Mapping[str, float]) -> float:
+        """When the bodies touch on the curve's clock, s."""
+        return {TOUCH: 0.0, **self.held, **values}[TOUCH]
+
+    def limits(self, name: str, guess: float) -> tuple[float, float]:
+        """Lowest and highest value of a free parameter."""
+        if name in self.bounds:
+            return self.bounds[name]
+        key = self.free[name]
+        if name == TOUCH:
+            return key.low, key.high
+        return max(key.low, guess / REACH), min(key.high, guess * REACH)
+
+
+def space_of(law: str, scene: Scene, free: Sequence[str] | None, fixed: Mapping[str, float], bounds: Bounds) -> Space:
+    """The parameters asked for, checked; by default those that a law is known by. Raises BadInput, every fault."""
+    scene.check_single("a fit")
+    known = {**network.keys(), **own_keys(law), TOUCH: TOUCH_KEY}
+    names = tuple(default_free(law, scene, fixed) if free is None else free)
+    faults = [_unknown(name, known) for name in dict.fromkeys((*names, *fixed, *bounds)) if name not in known]
+    faults += [Fault("fit", "free", "empty; accepted: at least one parameter")] if not names else []
+    faults += [Fault("fit", name, UNSEEN[name]) for name in names if name in UNSEEN]
+    faults += [Fault("fit", name, "both free and fixed; accepted: one of them") for name in names if name in fixed]
+    faults += [Fault("fit", name, "has bounds and is not free; accepted: free") for name in bounds if name not in names]
+    faults += [
+        Fault("fit", name, f"{ends} is empty; accepted: low < high")
+        for name, ends in bounds.items()
+        if ends[0] >= ends[1]
+    ]
+    given = [*fixed.items(), *((name, end) for name, ends in bounds.items() for end in ends)]
+    faults += [fault for name, value in given if name in known for fault in _range_faults(name, value, known[name])]
+    if faults:
+        raise BadInput(faults)
+    return Space(law, scene, {name: known[name] for name in names}, dict(fixed), dict(bounds))
+
+
+def own_keys(law: str) -> dict[str, Number]:
+    """The numbers that a law has of its own."""
+    return {name: key for name, key in laws.get(law).KEYS.items() if isinstance(key, Number)}
+
+
+def damping_names(law: str) -> tuple[str, ...]:
+    """The damper's parameters, each zero or more, one of which is given in the place of e."""
+    return tuple(name for name, key in own_keys(law).items() if key.low == 0.0 and name not in COMMON)
+
+
+def default_free(law: str, scene: Scene, fixed: Mapping[str, float]) -> tuple[str, ...]:
+    """Stiffness and damping; of a law without numbers of its own those of the material, E0 held as in "(26)"."""
+    own, dampers = own_keys(law), damping_names(law)
+    if not own:
+        names = ("R1", "R2") if scene.geometry.material.young.relaxed else ("E", "eta")
+    else:
+        springs = [name for name in own if name not in {*STIFFNESS, *EXPONENT, *RESTITUTION, *COMMON, *dampers}]
+        names = (*(springs or STIFFNESS), *(() if {"e", *dampers} & fixed.keys() else dampers[:1]))
+    return tuple(name for name in names if name not in fixed)
+
+
+def _said(scene: Scene, law: str, chosen: Mapping[str, float]) -> dict[str, Any]:
+    """What the scene's own [law] says, without another name of a damping that is chosen here."""
+    if scene.law is None or scene.law.name != law:
+        return {}
+    dampings = {"e", "damping", *damping_names(law)}
+    dropped = dampings if dampings & chosen.keys() else set()
+    return {name: value for name, value in scene.law.values.items() if name not in dropped}
+
+
+def _unknown(name: str, known: Mapping[str, Number]) -> Fault:
+    return Fault("fit", name, f"unknown parameter; accepted: {', '.join(known)}{nearest(name, tuple(known))}")
+
+
+def _range_faults(name: str, value: float, key: Number) -> list[Fault]:
+    try:
+        key.read(value)
+    except ValueError:
+        return [Fault("fit", name, f"{value!r} is not accepted; accepted: {key.accepted}")]
+    return []
