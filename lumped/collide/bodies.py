@@ -56,7 +56,7 @@ class PointLaw(Protocol):
     def tensile(self) -> bool: ...
 
     def grading(self, stage: Stage) -> int:
-        """The power p for which, in a stage, the force near depth zero is smooth in the p-th root of the time from there."""
+        """The power p for which a stage's force near depth zero is smooth in the p-th root of the time from there."""
 
     def touch(self, bodies: Bodies) -> State:
         """The state at first touch."""

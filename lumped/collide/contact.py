@@ -16,6 +16,8 @@ from lumped.errors import TooManySteps
 
 Array = NDArray[np.float64]
 MOST_TURNS = 2000
+# Of the velocity at touch: what leaves so slowly creeps back for ever, but for rounding.
+FAINTEST_EXIT = 1e-20
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,8 @@ def contact(
         if phase.event is None:
             return Contact(tuple(phases), End.TIME)
         if phase.event == "exit":
-            return Contact(tuple(phases), End.SEPARATED)
+            faint = abs(start.rate) < FAINTEST_EXIT * bodies.velocity
+            return Contact(tuple(phases), End.REST if faint else End.SEPARATED)
         if phase.event == "corner":
             corners = corners[1:]
             continue

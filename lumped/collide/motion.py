@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from lumped.collide.bodies import Bodies, PointLaw
 from lumped.collide.contact import Contact, contact
 from lumped.ending import End
@@ -31,7 +33,9 @@ def motion(
     """Up to `impacts` contacts, the first at time zero, followed until `until`, s. Raises TooManySteps."""
     state, time, contacts = law.touch(bodies), 0.0, list[Contact]()
     while len(contacts) < impacts:
-        contacts.append(contact(law, bodies, exit_rule, state, time, until, tolerance))
+        # A trial of Newton's method may go beyond all numbers: then the step is refused.
+        with np.errstate(all="ignore"):
+            contacts.append(contact(law, bodies, exit_rule, state, time, until, tolerance))
         if contacts[-1].end is not End.SEPARATED:
             break
         again = law.returned(bodies, contacts[-1].last)

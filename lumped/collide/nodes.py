@@ -87,9 +87,10 @@ def radau(count: int) -> Nodes:
     first = 0.5 * np.array([legendre.legint(row, lbnd=-1.0) for row in np.eye(count)])
     ends = np.array([2.0 * legendre.legval(1.0, legendre.legder(row)) for row in np.eye(count)])
     once = legendre.legvander(zeros, count) @ first.T @ series
-    points, pace = 0.5 * (1.0 + zeros), np.ones(count)
+    points: Array = 0.5 * (1.0 + zeros)
+    pace = np.ones(count)
     last = np.array(once[-1])
-    return Nodes(1, 0.0, False, points, pace, once, once @ once, last, series, first, ends @ series, points)
+    return Nodes(1, 0.0, False, points, pace, once, once @ once, last, series, first, np.array(ends @ series), points)
 
 
 def place_of(share: Array, power: Array, begun: Array, mirrored: NDArray[np.bool_]) -> Array:

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.collide.bodies import TINY, Bodies, Stage, State
-from lumped.collide.contact import Contact
 from lumped.collide.flight import returned
 from lumped.collide.motion import Motion, motion
 from lumped.collide.outcome import Outcome, outcome_of
 from lumped.collide.outcome import peak_of as peak_of
+from lumped.collide.phase import Phase
 from lumped.collide.step import Step
 from lumped.collide.track import Track
 from lumped.ending import End
@@ -190,14 +190,16 @@ class ForceLaw(ABC):
         last, mass = moved.contacts[-1].last, scene.reduced_mass
         given = 0.5 * mass * scene.velocity**2 + mass * scene.gravity * last.depth
         out = 0.5 * mass * last.rate**2
-        earlier = sum(self._locked(one) for one in moved.contacts[:-1])
-        stored = self._locked(moved.contacts[-1])
-        lost = last.lost + earlier
-        return {"in": given, "out": out, "stored": stored, self.loss: lost, "residual": given - out - stored - lost}
+        stored = [self._stored(one.last, one.phases[-1]) for one in moved.contacts]
+        found = [self._stored(one.first, one.phases[0]) for one in moved.contacts[1:]]
+        # What a contact leaves behind and the next one does not find is lost: the surface recovers in between.
+        lost = last.lost + sum(stored[:-1]) - sum(found)
+        residual = given - out - stored[-1] - lost
+        return {"in": given, "out": out, "stored": stored[-1], self.loss: lost, "residual": residual}
 
-    def _locked(self, one: Contact) -> float:
-        """What is still stored when a contact ends; a surface that recovers before the next one loses it."""
-        return float(self.stored(max(one.last.depth, 0.0), one.phases[-1].stage))
+    def _stored(self, state: State, phase: Phase) -> float:
+        """What is stored where a phase begins or ends, J."""
+        return float(self.stored(max(state.depth, 0.0), phase.stage))
 
 
 def bodies_of(scene: Scene) -> Bodies:

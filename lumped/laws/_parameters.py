@@ -16,6 +16,8 @@ from lumped.scene import Scene
 
 STIFFNESS: Mapping[str, Key] = {"k": Number(1e-30, 1e30, "N/m^alpha", required=False)}
 EXPONENT: Mapping[str, Key] = {"alpha": Number(0.5, 5.0, required=False)}
+# A damper with the power (alpha - 1)/2 of the depth is infinite at touch for alpha below 1.
+EXPONENT_FROM_ONE: Mapping[str, Key] = {"alpha": Number(1.0, 5.0, required=False)}
 COMMON: Mapping[str, Key] = {
     "gap": Number(0.0, 1e6, "m", required=False),
     "exit": Choice(("force", "depth"), required=False),

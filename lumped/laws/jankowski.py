@@ -13,13 +13,21 @@ from typing import Any, ClassVar
 
 from lumped.collide.bodies import Stage
 from lumped.keys import Key
-from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_keys, formula_key
+from lumped.laws._parameters import (
+    COMMON,
+    EXPONENT_FROM_ONE,
+    RESTITUTION,
+    STIFFNESS,
+    Parameters,
+    damping_keys,
+    formula_key,
+)
 from lumped.laws._power_law import PowerLaw
 from lumped.scene import Scene
 
 KEYS: Mapping[str, Key] = {
     **STIFFNESS,
-    **EXPONENT,
+    **EXPONENT_FROM_ONE,
     **RESTITUTION,
     **damping_keys("xi"),
     **formula_key("jankowski"),
