@@ -1,6 +1,14 @@
-"""Elastic indentation of the half-space in closed form, per unit contact modulus E*."""
+"""Elastic indentation per unit contact modulus E*: the half-space in closed form, and what lies beyond it."""
 
 from lumped.load_curves.base import LoadCurve as LoadCurve
+from lumped.load_curves.cone import Cone as Cone
+from lumped.load_curves.fixed_area import FixedArea as FixedArea
+from lumped.load_curves.fixed_area import Punch as Punch
+from lumped.load_curves.half_space import HalfSpaceCurve as HalfSpaceCurve
 from lumped.load_curves.hertz import Hertz as Hertz
 from lumped.load_curves.hertz import HertzImpact as HertzImpact
+from lumped.load_curves.layer import Layer as Layer
+from lumped.load_curves.layer_curve import LayerCurve as LayerCurve
+from lumped.load_curves.layer_curve import LayerPunch as LayerPunch
+from lumped.load_curves.power import Power as Power
 from lumped.load_curves.sneddon_sphere import SneddonSphere as SneddonSphere

@@ -1,4 +1,4 @@
-"""The contract of a load curve: what an elastic half-space answers to one profile."""
+"""The contract of a load curve: what an elastic body answers to one rigid profile pressed slowly into it."""
 
 from __future__ import annotations
 
@@ -14,11 +14,18 @@ GAUSS_POINTS = 48
 
 
 class LoadCurve(ABC):
-    """Frictionless indentation of the elastic half-space by one convex axisymmetric profile.
+    """Frictionless indentation of an elastic body by one convex profile.
 
-    All forces are per unit contact modulus E* = E/(1-nu^2): F/E* in m^2, pressure/E* in 1, energy/E* in m^3.
-    Depths and radii in m; arguments are scalars or arrays; a depth below zero counts as zero.
+    Everything is per unit contact modulus E* = E/(1-nu^2): an axisymmetric curve gives F/E* in m^2, pressure/E*
+    in 1 and energy/E* in m^3; a plane one gives them per unit length, F/E* in m and energy/E* in m^2, and its
+    contact radius is the half-width. Depths and radii in m; arguments are scalars or arrays; a depth below zero
+    counts as zero.
     """
+
+    @property
+    def extent(self) -> float:
+        """The contact radius that no depth reaches, m: infinite unless the profile ends."""
+        return float("inf")
 
     @abstractmethod
     def force(self, depth: ArrayLike) -> Any:
@@ -36,31 +43,29 @@ class LoadCurve(ABC):
     def depth_slope(self, contact_radius: ArrayLike) -> Any:
         """d depth / d a."""
 
+    @abstractmethod
     def dforce_ddepth(self, depth: ArrayLike) -> Any:
-        """dF/d depth = 2 a: at the edge the profile meets the surface with the stiffness of a flat punch."""
-        return 2.0 * self.contact_radius(depth)
+        """d(F/E*)/d depth: at the edge the profile meets the surface with the stiffness of a flat punch."""
+
+    @abstractmethod
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+        """Pressure p/E* at a distance from the axis while the contact has this radius, zero outside of it."""
 
     def force_and_slope(self, depth: ArrayLike) -> tuple[Any, Any]:
         """F/E* and dF/d depth at a depth, for those who need both at every step."""
         return self.force(depth), self.dforce_ddepth(depth)
 
+    def force_at(self, contact_radius: ArrayLike) -> Any:
+        """F/E* at a contact radius."""
+        return self.force(self.depth(contact_radius))
+
     def energy(self, depth: ArrayLike) -> NDArray[np.float64]:
-        """Work of indentation int_0^depth F d depth = depth (F - a depth) + int_0^a depth(x)^2 dx."""
-        d = np.maximum(np.asarray(depth, dtype=float), 0.0)
-        a = np.asarray(self.contact_radius(d))
+        """Work of indentation int_0^depth F d depth = int_0^a F(x) depth'(x) dx."""
+        a = np.asarray(self.contact_radius(np.maximum(np.asarray(depth, dtype=float), 0.0)))
         nodes, weights = gauss(GAUSS_POINTS)
-        inner = a * (np.square(self.depth(a[..., None] * nodes)) @ weights)
-        return np.asarray(d * (self.force(d) - a * d) + inner)
+        x = a[..., None] * nodes
+        return np.asarray(a * ((self.force_at(x) * self.depth_slope(x)) @ weights))
 
-    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
-        """Pressure p(r)/E* = (1/pi) int_r^a depth'(x)/sqrt(x^2-r^2) dx, zero outside the contact.
-
-        Popov and Hess 2015, ISBN 978-3-642-53876-6.
-        """
-        r = np.abs(np.asarray(radius, dtype=float))
-        reach = np.sqrt(np.maximum(contact_radius**2 - r**2, 0.0))
-        nodes, weights = gauss(GAUSS_POINTS)
-        s = reach[..., None] * nodes
-        x = np.hypot(s, r[..., None])
-        slope_over_x = np.divide(self.depth_slope(x), x, out=np.zeros_like(x), where=x > 0.0)
-        return np.asarray(reach * (slope_over_x @ weights) / np.pi)
+    def pressure_at(self, radius: ArrayLike, depth: float) -> NDArray[np.float64]:
+        """Pressure p/E* at a distance from the axis and a depth."""
+        return self.pressure(radius, float(self.contact_radius(float(depth))))

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.half_space import HalfSpaceCurve
 
 
 @dataclass(frozen=True)
-class Hertz(LoadCurve):
+class Hertz(HalfSpaceCurve):
     """F = (4/3) E* sqrt(R) depth^(3/2), a = sqrt(R depth)."""
 
     radius: float

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.half_space import HalfSpaceCurve
 
 # u - tanh u = u^3/3 - 2u^5/15 + ...: where the difference itself would lose digits.
 SERIES = (1 / 3, -2 / 15, 17 / 315, -62 / 2835, 1382 / 155925, -21844 / 6081075, 929569 / 638512875)
@@ -18,10 +18,15 @@ SERIES_BELOW = 0.15
 
 
 @dataclass(frozen=True)
-class SneddonSphere(LoadCurve):
+class SneddonSphere(HalfSpaceCurve):
     """F = E* [(R^2 + a^2) u - a R], depth = a u, with u = artanh(a/R): a stays below R at every depth."""
 
     radius: float
+
+    @property
+    def extent(self) -> float:
+        """R, m."""
+        return self.radius
 
     def force(self, depth: ArrayLike) -> Any:
         """F/E*, m^2."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lumped.load_curves import Hertz, LoadCurve, SneddonSphere
+from lumped.load_curves import Cone, Hertz, LoadCurve, Power, SneddonSphere
 from lumped.shapes import Parabola, Shape, Sphere
 from lumped.targets import HalfSpace
 
 RADIUS = 0.006
 SHAPES = [Sphere(RADIUS), Parabola(RADIUS)]
-CURVES = [Hertz(RADIUS), SneddonSphere(RADIUS)]
+CURVES = [Hertz(RADIUS), SneddonSphere(RADIUS), Cone(35.0), Power(40.0, 1.7), Power(5e4, 3.5)]
 DEPTHS = RADIUS * np.array([1e-12, 1e-6, 1e-3, 0.01, 0.1, 0.4, 1.0])
 
 
@@ -47,9 +47,14 @@ def test_pressure_integrates_to_the_force(curve: LoadCurve) -> None:
     depth = 0.1 * RADIUS
     a = float(curve.contact_radius(depth))
     nodes, weights = gauss()
-    # r = a sqrt(1 - t^2) takes the root out of the pressure at the edge
-    r = a * np.sqrt(1.0 - nodes**2)
-    force = weights @ (2.0 * np.pi * curve.pressure(r, a) * a**2 * nodes)
+    # r = a cos(angle) takes the root out of the pressure at the edge
+    angle = 0.5 * np.pi * nodes
+    force = (
+        0.5
+        * np.pi
+        * weights
+        @ (2.0 * np.pi * curve.pressure(a * np.cos(angle), a) * a**2 * np.sin(angle) * np.cos(angle))
+    )
     assert force == pytest.approx(curve.force(depth), rel=1e-8)
     assert curve.pressure(np.array([a, 2 * a]), a) == pytest.approx([0.0, 0.0])
 

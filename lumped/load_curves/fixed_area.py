@@ -1,0 +1,85 @@
+"""Contact over an area which no depth changes: the flat-ended indenter, and its half-space."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.errors import BadInput, Fault
+from lumped.load_curves.base import LoadCurve
+
+
+class FixedArea(LoadCurve):
+    """A linear curve F = S depth: the whole flat end of half-width or `radius` touches at once."""
+
+    radius: float
+
+    @property
+    @abstractmethod
+    def stiffness(self) -> float:
+        """S/E*: 2 a on the half-space."""
+
+    @property
+    def extent(self) -> float:
+        """The radius of the end, m."""
+        return self.radius
+
+    def force(self, depth: ArrayLike) -> Any:
+        """S depth."""
+        return self.stiffness * np.maximum(depth, 0.0)
+
+    def contact_radius(self, depth: ArrayLike) -> Any:
+        """The radius of the end wherever there is depth, m."""
+        return np.where(np.asarray(depth) > 0.0, self.radius, 0.0)
+
+    def depth(self, contact_radius: ArrayLike) -> Any:
+        """The least depth with this contact radius, m: 0, infinite beyond the end."""
+        return np.where(np.asarray(contact_radius) <= self.radius, 0.0, np.inf)
+
+    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+        """0, infinite beyond the end."""
+        return self.depth(contact_radius)
+
+    def dforce_ddepth(self, depth: ArrayLike) -> Any:
+        """S."""
+        return np.where(np.asarray(depth) >= 0.0, self.stiffness, 0.0)
+
+    def energy(self, depth: ArrayLike) -> NDArray[np.float64]:
+        """S depth^2/2."""
+        return np.asarray(0.5 * self.stiffness * np.maximum(depth, 0.0) ** 2)
+
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+        """Raises BadInput: the radius of this contact does not tell its depth."""
+        message = "does not determine the pressure under a flat end; ask pressure_at(radius, depth)"
+        raise BadInput(Fault("punch", "contact_radius", message))
+
+    @abstractmethod
+    def pressure_at(self, radius: ArrayLike, depth: float) -> NDArray[np.float64]:
+        """Pressure p/E* at a distance from the axis, infinite at the edge and zero beyond."""
+
+
+@dataclass(frozen=True)
+class Punch(FixedArea):
+    """The half-space under a flat-ended cylinder of this radius: F = 2 E* a depth (Boussinesq 1885)."""
+
+    radius: float
+
+    @property
+    def stiffness(self) -> float:
+        """2 a, m."""
+        return 2.0 * self.radius
+
+    def pressure_at(self, radius: ArrayLike, depth: float) -> NDArray[np.float64]:
+        """depth/(pi sqrt(a^2-r^2))."""
+        return under_flat_end(radius, self.radius, max(depth, 0.0))
+
+
+def under_flat_end(radius: ArrayLike, end: float, intensity: float) -> NDArray[np.float64]:
+    """intensity/(pi sqrt(a^2-r^2)) below a flat end of radius a, infinite at its edge and zero beyond."""
+    square = end**2 - np.asarray(radius, dtype=float) ** 2
+    with np.errstate(divide="ignore"):
+        return np.where(square < 0.0, 0.0, intensity / (np.pi * np.sqrt(np.maximum(square, 0.0))))

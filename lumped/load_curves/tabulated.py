@@ -1,0 +1,180 @@
+"""Load curves known only by solving an integral equation at each contact radius: solved at a few, certified, kept.
+
+What is kept are smooth functions of a coordinate of the contact radius, by Chebyshev polynomials on panels; they
+are found when first needed, from the smallest contact outwards.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.errors import NotReached
+from lumped.load_curves.base import LoadCurve
+
+Array = NDArray[np.float64]
+
+POINTS = 14
+ANGLES = np.pi * (np.arange(POINTS) + 0.5) / POINTS
+# A panel is certified where its polynomial has nothing to hold it, by an equation with finer quadrature.
+TESTED_AT, REFINEMENT = 0.985, 1.5
+ACCURACY = 1e-8
+NEWTON_STEPS = 6
+
+
+class State(NamedTuple):
+    """A curve at contact radii: depth, its slope over the radius, F/E* and dF/d depth, of one shape."""
+
+    depth: Any
+    depth_slope: Any
+    force: Any
+    stiffness: Any
+
+
+class TabulatedCurve(LoadCurve):
+    """A curve that is solved at single contact radii and tabulated between, to a relative accuracy of 1e-8.
+
+    Raises NotReached when two resolutions of the equation differ by more, and for depths beyond the last panel.
+    """
+
+    @property
+    @abstractmethod
+    def edges(self) -> tuple[float, ...]:
+        """Contact radii between which the panels lie, ascending, the last the largest one served, m."""
+
+    @abstractmethod
+    def sample(self, contact_radius: float, refinement: float) -> Array:
+        """The smooth functions at one contact radius, shape (3,)."""
+
+    @abstractmethod
+    def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> State:
+        """The curve from its smooth functions and their slopes over the coordinate, shapes (m,), (3, m), (3, m)."""
+
+    def coordinate(self, contact_radius: Array) -> Array:
+        """The coordinate of the tables; the contact radius itself unless a curve knows better."""
+        return contact_radius
+
+    def radius_at(self, coordinate: float) -> float:
+        """The contact radius at a coordinate, m."""
+        return coordinate
+
+    def at(self, contact_radius: ArrayLike) -> State:
+        """The curve at contact radii up to the last edge, m."""
+        a = np.asarray(contact_radius, dtype=float)
+        panels = int(np.searchsorted(self.edges, a.max(initial=0.0)))
+        if panels > len(self.edges) - 1:
+            raise NotReached(f"{self} serves contact radii up to {self.edges[-1]:g} m, not {a.max():g}")
+        flat = State(*(np.asarray(part) for part in self._at(a.ravel(), max(panels, 1))))
+        return State(*(part.reshape(a.shape) for part in flat))
+
+    def depth(self, contact_radius: ArrayLike) -> Any:
+        """Depth at a contact radius, m."""
+        return self.at(contact_radius).depth
+
+    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+        """d depth / d a."""
+        return self.at(contact_radius).depth_slope
+
+    def force_at(self, contact_radius: ArrayLike) -> Any:
+        """F/E* at a contact radius."""
+        return self.at(contact_radius).force
+
+    def force(self, depth: ArrayLike) -> Any:
+        """F/E* at a depth."""
+        return self.force_at(self.contact_radius(depth))
+
+    def dforce_ddepth(self, depth: ArrayLike) -> Any:
+        """That of a flat punch with the contact radius at this depth."""
+        return self.at(self.contact_radius(depth)).stiffness
+
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Any, Any]:
+        """F/E* and dF/d depth at a depth."""
+        here = self.at(self.contact_radius(depth))
+        return here.force, here.stiffness
+
+    def contact_radius(self, depth: ArrayLike) -> Any:
+        """Contact radius at a depth, m, by Newton's method in logarithms from a table."""
+        asked = np.maximum(np.asarray(depth, dtype=float), 0.0)
+        wanted = asked.ravel()[asked.ravel() > 0.0]
+        if not wanted.size:
+            return np.zeros_like(asked)
+        panels = self._panels_down_to(float(wanted.max()))
+        start = _start(self, panels)
+        radius = np.zeros(asked.size)
+        radius[asked.ravel() > 0.0] = self._invert(wanted, np.exp(_extended(np.log(wanted), *start)), panels)
+        return radius.reshape(asked.shape)
+
+    def _invert(self, depth: Array, radius: Array, panels: int) -> Array:
+        for _ in range(NEWTON_STEPS):
+            here = self._at(radius, panels)
+            step = np.log(here.depth / depth) * here.depth / (radius * here.depth_slope)
+            radius = np.minimum(radius * np.exp(-step), self.edges[panels])
+            if np.abs(step).max() < 1e-9:
+                return radius
+        raise NotReached(f"the contact radius of {self} at a depth of {depth.max():g} m was not found")
+
+    def _panels_down_to(self, depth: float) -> int:
+        for panels in range(1, len(self.edges)):
+            if float(self._at(np.array([self.edges[panels]]), panels).depth[0]) >= depth:
+                return panels
+        raise NotReached(f"{self} at a depth of {depth:g} m: the contact grows beyond {self.edges[-1]:g} m")
+
+    def _at(self, radius: Array, panels: int) -> State:
+        edges = self.coordinate(np.array(self.edges[: panels + 1]))
+        place = self.coordinate(radius)
+        panel = np.clip(np.searchsorted(edges, place) - 1, 0, panels - 1)
+        tables = _tables(self, panels)[panel]
+        scale = 2.0 / (edges[panel + 1] - edges[panel])
+        local = np.moveaxis(tables, 0, -1)
+        z = (place - edges[panel]) * scale - 1.0
+        both = np.asarray(chebyshev.chebval(z, local, tensor=False), dtype=float)
+        return self.state(radius, both[0], both[1] * scale)
+
+
+def _extended(x: Array, known_x: Array, known_y: Array) -> Array:
+    """Linear interpolation, and beyond the first known place the straight line through the first two."""
+    slope = (known_y[1] - known_y[0]) / (known_x[1] - known_x[0])
+    return np.where(x < known_x[0], known_y[0] + slope * (x - known_x[0]), np.interp(x, known_x, known_y))
+
+
+@lru_cache(maxsize=256)
+def _start(curve: TabulatedCurve, panels: int) -> tuple[Array, Array]:
+    """Logarithms of depth and contact radius, ascending: from them the inversion starts."""
+    shares = np.linspace(0.0, 1.0, 4 * POINTS + 1)[1:]
+    edges = np.array(curve.edges[: panels + 1])
+    radius = (edges[:-1, None] + np.diff(edges)[:, None] * shares).ravel()
+    return np.log(curve._at(radius, panels).depth), np.log(radius)
+
+
+@lru_cache(maxsize=256)
+def _tables(curve: TabulatedCurve, panels: int) -> Array:
+    """Chebyshev coefficients of functions and slopes, shape (panels, POINTS, 2, 3)."""
+    return np.stack([_panel(curve, panel) for panel in range(panels)])
+
+
+@lru_cache(maxsize=1024)
+def _panel(curve: TabulatedCurve, panel: int) -> Array:
+    """Coefficients on one panel, shape (POINTS, 2, 3), certified."""
+    low, high = curve.coordinate(np.array(curve.edges[panel : panel + 2]))
+    places = 0.5 * (low + high) + 0.5 * (high - low) * np.cos(ANGLES)
+    samples = np.array([curve.sample(curve.radius_at(place), 1.0) for place in places])
+    coefficients = chebyshev.chebfit(np.cos(ANGLES), samples, POINTS - 1)
+    slopes = np.concatenate([chebyshev.chebder(coefficients), np.zeros((1, samples.shape[1]))])
+    _certify(curve, 0.5 * (low + high) + 0.5 * (high - low) * TESTED_AT, coefficients)
+    return np.stack([coefficients, slopes], axis=1)
+
+
+def _certify(curve: TabulatedCurve, place: float, coefficients: Array) -> None:
+    radius = np.array([curve.radius_at(place)])
+    flat = np.zeros((coefficients.shape[1], 1))
+    kept = curve.state(radius, np.array([chebyshev.chebval(TESTED_AT, coefficients)]).T, flat)
+    fresh = curve.state(radius, curve.sample(float(radius[0]), REFINEMENT)[:, None], flat)
+    ratios = (kept.depth / fresh.depth, kept.force / fresh.force, kept.stiffness / fresh.stiffness)
+    error = max(abs(float(ratio[0]) - 1.0) for ratio in ratios)
+    if not error <= ACCURACY:
+        raise NotReached(f"{curve} at a contact radius of {radius[0]:g} m: two resolutions differ by {error:.1e}")
