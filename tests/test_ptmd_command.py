@@ -14,7 +14,7 @@ from fe_contact.cli import main
 from fe_contact.report.ptmd import plot_study
 from lumped.errors import BadInput
 from lumped.history import read_columns
-from lumped.pounding_tmd import Memory
+from lumped.pounding_tmd import Memory, march
 from lumped.pounding_tmd import study as studies
 from lumped.pounding_tmd.case_file import load, names, read
 from lumped.pounding_tmd.result import COLUMNS
@@ -104,6 +104,17 @@ def test_what_does_not_converge_is_written_and_said(
     assert main(["ptmd", *SHORT, "--out", str(tmp_path)]) == 3
     assert "energy balance" in capsys.readouterr().err
     assert not json.loads((tmp_path / "ptmd.json").read_text(encoding="utf-8"))["converged"]
+
+
+def test_a_motion_that_cannot_be_followed_leaves_what_is_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(march, "MOST_SWITCHES", 2)
+    assert main(["ptmd", *SHORT, "--out", str(tmp_path)]) == 3
+    assert "switches of contact" in capsys.readouterr().err
+    known = json.loads((tmp_path / "ptmd.json").read_text(encoding="utf-8"))
+    assert not known["converged"]
+    assert known["case"]["ring"]["gap"] == 0.02
 
 
 def test_the_chart_is_reproducible(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
+from lumped.errors import NotReached
 
 if TYPE_CHECKING:
     from lumped.pounding_tmd.study import Study
@@ -33,14 +34,18 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Simulate, write, report; 0 or 3."""
     from fe_contact.report.ptmd import plot_study
-    from fe_contact.validation.ptmd_files import write_study
+    from fe_contact.validation.ptmd_files import write_failure, write_study
     from lumped.pounding_tmd.case_file import load
     from lumped.pounding_tmd.study import study
     from lumped.toml_file import parse_assignment
 
     case = load(args.file, dict(parse_assignment(text) for text in args.overrides))
     where = base.folder(args, "ptmd", case)
-    found = study(case, base.progress_of(args))
+    try:
+        found = study(case, base.progress_of(args))
+    except NotReached as failure:
+        write_failure(case, str(failure), where)
+        raise
     content = write_study(found, where)
     plot_study(found, where)
     print(json.dumps(content, allow_nan=False) if args.json else summary(found, where))

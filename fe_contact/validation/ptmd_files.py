@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from fe_contact.validation.tables import plain, write_csv, write_json
+from lumped.pounding_tmd.case import Case
 from lumped.pounding_tmd.result import COLUMNS
 from lumped.pounding_tmd.study import Study
 from lumped.result import provenance
@@ -36,6 +37,13 @@ def write_study(study: Study, where: Path) -> dict[str, Any]:
     content = study_content(study)
     write_json(where / "ptmd.json", content)
     return content
+
+
+def write_failure(case: Case, message: str, where: Path) -> None:
+    """Write the ``ptmd.json`` of a motion that was not followed to its end: what is known."""
+    where.mkdir(parents=True, exist_ok=True)
+    content = {"schema": SCHEMA, "name": case.name, "converged": False, "model_sufficient": None, "message": message}
+    write_json(where / "ptmd.json", plain(content | {"case": case.to_dict(), "provenance": provenance()}))
 
 
 def study_content(study: Study) -> dict[str, Any]:

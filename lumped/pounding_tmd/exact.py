@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.pounding_tmd.crossing import first_fall
-from lumped.pounding_tmd.equations import Equations, Stages
+from lumped.pounding_tmd.equations import SURFACES, Equations, Stages
+from lumped.pounding_tmd.exponential import exponential
 from lumped.pounding_tmd.phase import Follow, Phase
 from lumped.pounding_tmd.switches import Switch, switches
 
@@ -57,9 +58,20 @@ class Flow:
 
     def propagator(self, time: float | Array) -> Array:
         """exp(matrix t), shape (..., size, size)."""
-        from scipy.linalg import expm
+        scales, balanced = self.scales, self.balanced
+        return exponential(balanced * np.asarray(time)[..., None, None]) / scales * scales[:, None]
 
-        return np.asarray(expm(self.matrix * np.asarray(time)[..., None, None]))
+    @cached_property
+    def scales(self) -> Array:
+        """Units of the numbers of a state in which velocities are per row, not per second."""
+        scales = np.ones(self.equations.size)
+        scales[1:SURFACES:2] = 1.0 / self.spacing
+        return scales
+
+    @cached_property
+    def balanced(self) -> Array:
+        """The matrix in these units: no entry is large only because of its unit."""
+        return self.matrix * self.scales / self.scales[:, None]
 
     @cached_property
     def powers(self) -> Array:
@@ -76,19 +88,20 @@ class Flow:
 
         A power series over t/2^k, then W(2t) = W(t) + P(t)^T W(t) P(t).
         """
-        reach = float(np.linalg.norm(self.matrix, np.inf)) * time
+        matrix, forms = self.balanced, self.forms * self.scales * self.scales[:, None]
+        reach = float(np.abs(matrix).sum(axis=1).max()) * time
         doublings = max(0, ceil(log2(reach / SERIES_REACH))) if reach > 0.0 else 0
         step = time * 0.5**doublings
-        term = step * self.forms
+        term = step * forms
         total = term
         for order in range(2, SERIES_TERMS):
-            left = self.matrix.T @ term
+            left = matrix.T @ term
             term = (left + np.swapaxes(left, 1, 2)) * step / order
             total = total + term
-        for level in range(doublings):
-            over = self.propagator(step * 2.0**level)
-            total = total + over.T @ total @ over
-        return np.asarray(total)
+        over = exponential(matrix * step)
+        for _ in range(doublings):
+            total, over = total + over.T @ total @ over, over @ over
+        return np.asarray(total / self.scales / self.scales[:, None])
 
     def integrals(self, times: Array, states: Array) -> Array:
         """Integrals from the first to the last of rows of which all but the outermost lie `spacing` apart, (6,)."""
@@ -99,7 +112,7 @@ class Flow:
 
 def _squares(forms: Array, states: Array) -> Array:
     """Sum over the columns y of y W y, shape (6,)."""
-    return np.asarray(np.einsum("mij,ik,jk->m", forms, states, states, optimize=True))
+    return np.tensordot(forms, states @ states.T, 2)
 
 
 def route(equations: Equations, spacing: float, end_time: float) -> Follow:

@@ -40,14 +40,17 @@ class Track:
         """States of all rows, shape (size, k)."""
         return np.concatenate([phase.states for phase in self.phases], axis=1)
 
+    @cached_property
+    def _starts(self) -> Array:
+        return np.array([phase.start for phase in self.phases])
+
     def rows(self, reading: Callable[[Phase, Array], Array]) -> Array:
         """A reading of every row: `reading` maps a phase and its states (size, ...) to (...)."""
         return np.concatenate([reading(phase, phase.states) for phase in self.phases])
 
     def at(self, time: float) -> Array:
         """The state at a time, s, shape (size,)."""
-        starts = [phase.start for phase in self.phases]
-        return self.phases[max(int(np.searchsorted(starts, time, side="right")) - 1, 0)].at(time)
+        return self.phases[max(int(np.searchsorted(self._starts, time, side="right")) - 1, 0)].at(time)
 
     def integrals(self, time: float) -> Array:
         """Integrals of the equations' integrands from 0 to a time, s, shape (6,)."""
