@@ -22,8 +22,8 @@ from lumped.hereditary.problem import Hereditary
 
 Array = NDArray[np.float64]
 SECANT_STEPS = 12
-# The duration is found to this relative change; the first time, with few nodes, less will do.
-CLOSED, NEARLY_CLOSED = 1e-12, 1e-9
+# The duration is found to this relative change; the first time, with few nodes, this share of the accuracy will do.
+CLOSED, NEARLY_CLOSED = 1e-12, 1e-2
 # A piece that errs by so many times what is allowed will not do, wherever it ends.
 HOPELESS = 30.0
 # Of the force now, what decelerates in the mean until the end of an elastic contact: 0.37 F t^2 = depth.
@@ -159,7 +159,7 @@ def _shut(problem: Hereditary, state: Array, start: Guess, settings: Settings, a
         if before[0]:
             rate = (left - before[1]) / (duration - before[0])
         change = -left / (rate or elastic) if (rate or elastic) < 0.0 else 0.0
-        if abs(change) <= (CLOSED if start.rate else NEARLY_CLOSED) * duration:
+        if abs(change) <= (CLOSED if start.rate else NEARLY_CLOSED * settings.rtol) * duration:
             return last if last.error(settings) <= allowed else None
         before, a = (duration, left), problem.gravity - piece.values[FORCE, 1:]
         duration = min(max(duration + change, 0.5 * duration), 2.0 * duration)

@@ -6,6 +6,7 @@ memory solves z = z0 + y - y0 - (1/tau) int z dt, which is linear: z = (1 + W/ta
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +19,7 @@ from lumped.hereditary.radau import Radau
 Array = NDArray[np.float64]
 NEWTON_STEPS = 14
 # Newton's last correction, relative: what is left after it is its square.
-CONVERGED = 1e-8
+CONVERGED, DIVERGED = 1e-6, 1e100
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,10 +65,10 @@ class Motion:
                 matrix += modulus.viscosity * (slope[:, None] * weights + (bend * velocity)[:, None] * twice)
             change = np.linalg.solve(matrix + eye, problem.gravity - force - a)
             a += change
-            size, scale = float(np.abs(change).max()), float(np.abs(a).max())
-            if not size < 1e100:
+            size = math.sqrt(change @ change)
+            if not size < DIVERGED:
                 return None
-            if size <= CONVERGED * scale:
+            if size <= CONVERGED * math.sqrt(a @ a):
                 return Piece(self._values(state, a, load - first + slope * (twice @ change), answers), step)
         return None
 

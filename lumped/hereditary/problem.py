@@ -94,7 +94,7 @@ class Hereditary:
         """y and dy/d depth at a depth; y is odd: below zero it pulls, so that a force ends by crossing zero."""
         force, slope = self.curve.force_and_slope(np.abs(depth) * self.scales.depth)
         unit = self.scales.load
-        return np.asarray(np.sign(depth) * force / unit), np.asarray(slope * (self.scales.depth / unit))
+        return np.copysign(force / unit, depth), np.asarray(slope * (self.scales.depth / unit))
 
     def bend(self, depth: Array, slope: Array) -> Array:
         """d2y/d depth2 by a difference, good for Newton's steps."""
