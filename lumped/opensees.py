@@ -34,11 +34,16 @@ class UniaxialMaterial:
     differences: tuple[str, ...]
 
 
-def material(law: Any, scene: Scene) -> UniaxialMaterial:
-    """The OpenSees material of a law made for a scene. Raises BadInput for a law which OpenSees does not have."""
-    if law.name not in MATERIALS:
-        reason = f"{law.name} has no OpenSees material; those that have one: {', '.join(sorted(MATERIALS))}"
+def check(name: str) -> None:
+    """Raise BadInput for a law which OpenSees does not have."""
+    if name not in MATERIALS:
+        reason = f"{name} has no OpenSees material; those that have one: {', '.join(sorted(MATERIALS))}"
         raise BadInput(Fault("opensees", "law", reason))
+
+
+def material(law: Any, scene: Scene) -> UniaxialMaterial:
+    """The OpenSees material of a law made for a scene. Raises BadInput."""
+    check(law.name)
     return MATERIALS[law.name](law, scene)
 
 

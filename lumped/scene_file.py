@@ -52,6 +52,12 @@ def load(source: str | Path, overrides: Mapping[str, object] | None = None) -> t
     return read(parsed(path), path.name, overrides)
 
 
+def load_for_fit(source: str | Path, overrides: Mapping[str, object] | None = None) -> tuple[Scene, Table]:
+    """A scene whose law is yet to be found: mass and velocity are enough. Raises BadInput with every fault."""
+    path = resolved(source)
+    return _Reader(path.name, overridden(parsed(path), overrides or {}, path.name)).scene(law_known=False)
+
+
 def load_indenter(source: str | Path, overrides: Mapping[str, object] | None = None) -> tuple[Indenter, Table]:
     """What a slow indentation needs of a file, and its raw `[numerics]`. Raises BadInput with every fault."""
     path = resolved(source)
@@ -81,10 +87,14 @@ class _Reader:
         self.raw = raw
         self.faults: list[Fault] = []
 
-    def scene(self) -> tuple[Scene, Table]:
-        """The scene and the raw numerics; raises BadInput when anything is wrong."""
+    def scene(self, law_known: bool = True) -> tuple[Scene, Table]:
+        """The scene and the raw numerics; raises BadInput when anything is wrong.
+
+        Without geometry a law has to be known, unless it is yet to be found.
+        """
         name, law = self.name(), self.law()
-        alone = "law" in self.raw and "shape" not in self.table("striker", required=False, quiet=True)
+        lawful = "law" in self.raw or not law_known
+        alone = lawful and "shape" not in self.table("striker", required=False, quiet=True)
         bodies = self.masses_alone() if alone else self.bodies()
         model = self.checked("model", self.table("model", required=False), MODEL_KEYS)
         motion = self.checked("motion", self.table("motion", required=False), MOTION_KEYS)
@@ -94,7 +104,7 @@ class _Reader:
         if self.faults:
             raise BadInput(self.faults)
         built = Scene(**bodies, law=law, model=Model(**model), motion=Motion(**motion), name=name, source=self.source)
-        if law is not None:
+        if law is not None and law_known:
             get(LAWS, law.name).of(built)
         return built, numerics
 

@@ -16,7 +16,7 @@ from lumped.errors import BadInput, Fault
 from lumped.indenter import Indenter
 from lumped.result import Result
 from lumped.scene import Scene
-from lumped.scene_file import load, load_indenter, resolved
+from lumped.scene_file import load, load_for_fit, load_indenter, resolved
 from lumped.toml_file import overridden, parse_assignment, parsed
 
 DONE, NOT_REACHED = 0, 3
@@ -47,6 +47,11 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
 def read_scene(args: argparse.Namespace) -> tuple[Scene, dict[str, Any]]:
     """Scene and raw settings of a command line; raises BadInput with every fault of both."""
     return _read(args, load)
+
+
+def read_scene_for_fit(args: argparse.Namespace) -> Scene:
+    """The scene of a law that is yet to be found; raises BadInput with every fault."""
+    return _read(args, load_for_fit)[0]
 
 
 def read_indenter(args: argparse.Namespace) -> tuple[Indenter, dict[str, Any]]:

@@ -2,4 +2,5 @@
 
 from lumped.fit.record import Estimate as Estimate
 from lumped.fit.record import Fit as Fit
+from lumped.fit.record import write_failure as write_failure
 from lumped.fit.search import fit as fit

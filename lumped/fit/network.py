@@ -59,7 +59,7 @@ def _network(young: Relaxation, names: Iterable[str]) -> tuple[str, tuple[str, .
     found = [(family, tuple(kind)) for family in _open_to(young) for kind in _sets(family) if set(names) <= set(kind)]
     if not found:
         sets = [", ".join(kind) for family in _open_to(young) for kind in _sets(family)]
-        reason = f"{', '.join(names)} are no parameters of one network; accepted, of one set: {'; '.join(sets)}"
+        reason = f"no network of the material has {', '.join(names)}; accepted, of one set: {'; '.join(sets)}"
         raise BadInput(Fault(SOURCE, "free", reason))
     return min(found, key=lambda kind: len(kind[1]))
 

@@ -91,3 +91,10 @@ class Fit:
             writer.writerow(["parameter", "value", "low", "high", "unit"])
             writer.writerows([name, *asdict(estimate).values()] for name, estimate in self.parameters.items())
             writer.writerows([name, value, "", "", ""] for name, value in self.held.items())
+
+
+def write_failure(directory: Path, law: str, message: str) -> None:
+    """Write the fit.json of a search that did not converge."""
+    directory.mkdir(parents=True, exist_ok=True)
+    content = {"schema": SCHEMA, "law": law, "converged": False, "message": message, "parameters": None}
+    (directory / "fit.json").write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")

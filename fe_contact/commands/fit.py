@@ -1,0 +1,124 @@
+"""``fe-contact fit CURVE.csv --law NAME --scene SCENE``: the parameters of a law from a force history."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fe_contact.commands import base
+from lumped.errors import BadInput, Fault, NotReached
+
+if TYPE_CHECKING:
+    from lumped.fit import Estimate, Fit
+
+SUMMARY = "parameters of a law from a force history, with 95 % confidence intervals"
+WIDTH = 12  # of a parameter's name
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """CURVE.csv --law NAME --scene SCENE [--free a,b] [--fix a=v] [--bounds a=low:high] [--peak] [--opensees]."""
+    parser.add_argument("curve", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N")
+    parser.add_argument("--law", required=True, help="name of the lumped law")
+    parser.add_argument("--scene", required=True, help="scene (file or packaged name) with mass, velocity, geometry")
+    parser.add_argument("--free", help="parameters to find, separated by commas; default: stiffness and damping")
+    parser.add_argument("--fix", default="", metavar="a=v,...", help="parameters held at a value")
+    parser.add_argument("--bounds", default="", metavar="a=low:high,...", help="bounds of free parameters")
+    parser.add_argument("--peak", action="store_true", help="least error at equal peak force, (26)")
+    parser.add_argument("--opensees", nargs="?", const="tcl", metavar="tcl|python", help="print the law for OpenSees")
+    parser.add_argument(
+        "--set",
+        dest="overrides",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="override a scene key",
+    )
+    base.output_arguments(parser)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Fit, write, report; 0 or 3."""
+    from fe_contact.report.fit import plot_fit
+    from lumped.fit import fit, write_failure
+    from lumped.score import read_curve
+
+    _check_opensees(args)
+    scene, curve = base.read_scene_for_fit(args), read_curve(args.curve)
+    free = None if args.free is None else tuple(name.strip() for name in args.free.split(","))
+    fixed = {name: base.number(value, "--fix") for name, value in _pairs(args.fix, "--fix")}
+    bounds = dict(_bounds(args.bounds))
+    where = base.folder(args, "fit", scene)
+    base.progress_of(args)(f"fit of {args.law}")
+    try:
+        found = fit(curve, args.law, scene, free, fixed, bounds, args.peak)
+    except NotReached as failure:
+        write_failure(where, args.law, str(failure))
+        raise
+    found.write(where)
+    plot_fit(curve, found, where)
+    _report(args, found, where)
+    return base.DONE if found.result.converged else base.NOT_REACHED
+
+
+def _report(args: argparse.Namespace, found: Fit, where: Path) -> None:
+    """Parameters; for OpenSees the law, with the parameters as comments; warnings on stderr."""
+    from lumped import laws, opensees
+
+    text, content = summary(found, where), found.to_json()
+    if args.opensees:
+        lines = opensees.lines(laws.get(found.law).of(found.scene), found.scene, language=args.opensees)
+        text = "\n".join([*(f"# {line}" for line in text.splitlines()), lines])
+        content["opensees"] = lines.splitlines()
+    print(json.dumps(content, allow_nan=False) if args.json else text)
+    for warning in found.warnings:
+        print(f"fe-contact: {warning}", file=sys.stderr)
+
+
+def summary(found: Fit, where: Path) -> str:
+    """Every parameter with its interval, one a line."""
+    held = ", peak held" if found.peak_held else ""
+    lines = [f"{found.law}: normalized error {100.0 * found.normalized_error:.3g} % on {found.points} points{held}"]
+    lines += [f"{name:{WIDTH}s} {_shown(estimate)}" for name, estimate in found.parameters.items()]
+    lines += [f"{name:{WIDTH}s} {value:.6g} held" for name, value in found.held.items()]
+    lines.append(f"force at {found.depth:.4g} m {_shown(found.force_at_depth)}")
+    return "\n  ".join([*lines, f"written to {where}"])
+
+
+def _shown(estimate: Estimate) -> str:
+    if estimate.low is None or estimate.high is None:
+        return f"{estimate.value:.6g} {estimate.unit}, interval unknown".replace(" ,", ",")
+    return f"{estimate.value:.6g} ({estimate.low:.6g} to {estimate.high:.6g}) {estimate.unit}".rstrip()
+
+
+def _check_opensees(args: argparse.Namespace) -> None:
+    """Refuse, before anything is computed, what OpenSees does not have; raises BadInput."""
+    from lumped import opensees
+
+    if args.opensees is None:
+        return
+    opensees.check(args.law)
+    if args.opensees not in opensees.LANGUAGES:
+        reason = f"{args.opensees!r}: accepted {', '.join(opensees.LANGUAGES)}"
+        raise BadInput(Fault("--opensees", "", reason))
+
+
+def _pairs(text: str, option: str) -> Iterator[tuple[str, str]]:
+    """`a=1,b=2` as pairs. Raises BadInput."""
+    for part in filter(None, (part.strip() for part in text.split(","))):
+        name, sign, value = (side.strip() for side in part.partition("="))
+        if not sign or not name:
+            raise BadInput(Fault(option, part, "accepted: name=value, separated by commas"))
+        yield name, value
+
+
+def _bounds(text: str) -> Iterator[tuple[str, tuple[float, float]]]:
+    """`a=1:2` as name and ends. Raises BadInput."""
+    for name, ends in _pairs(text, "--bounds"):
+        low, sign, high = ends.partition(":")
+        if not sign:
+            raise BadInput(Fault("--bounds", name, f"{ends!r}: accepted low:high"))
+        yield name, (base.number(low, "--bounds"), base.number(high, "--bounds"))

@@ -1,0 +1,145 @@
+"""``fe-contact fit``: files that say what is printed, OpenSees lines, exit codes, one line a fault."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fe_contact.cli import main
+from fe_contact.report.fit import plot_fit
+from lumped import History, Scene, fit, laws, simulate
+from lumped.score import normalized_error, read_curve
+
+BODY = "[striker]\nmass = 0.001\nvelocity = 1.0\n"
+LAW = '[law]\nname = "jankowski"\nk = 1e7\nxi = 0.2\n'
+TRUTH = {"k": 1e7, "xi": 0.2}
+
+
+@pytest.fixture
+def body(tmp_path: Path) -> Path:
+    """A scene without a law and without geometry."""
+    path = tmp_path / "body.toml"
+    path.write_text(BODY, encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def curve(tmp_path: Path) -> Path:
+    """401 rows of a known law."""
+    path = tmp_path / "truth.toml"
+    path.write_text(BODY + LAW, encoding="utf-8")
+    scene = Scene.load(path)
+    history = simulate(laws.get("jankowski").of(scene), scene, 1e-8).history
+    time = np.linspace(0.0, 1.1 * history.time[-1], 401)
+    table = np.column_stack([time, history.force_at(time)])
+    np.savetxt(tmp_path / "curve.csv", table, delimiter=",", header="time_s,force_N", comments="", fmt="%.17g")
+    return tmp_path / "curve.csv"
+
+
+def test_the_files_say_what_is_printed(
+    body: Path, curve: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    where = tmp_path / "out"
+    command = ["fit", str(curve), "--law", "jankowski", "--scene", str(body), "--out", str(where), "--json", "--quiet"]
+    assert main(command) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed == json.loads((where / "fit.json").read_text(encoding="utf-8"))
+    assert {name: one["value"] for name, one in printed["parameters"].items()} == pytest.approx(TRUTH, rel=1e-5)
+    with (where / "parameters.csv").open(encoding="utf-8", newline="") as file:
+        rows = {row["parameter"]: row for row in csv.DictReader(file)}
+    assert {name: float(row["value"]) for name, row in rows.items()} == pytest.approx(TRUTH, rel=1e-5)
+    assert rows["k"]["unit"] == "N/m^alpha"
+    assert normalized_error(read_curve(curve), History.read_csv(where / "fit.csv")) == printed["normalized_error"]
+    assert {path.name for path in where.iterdir()} == {"fit.json", "fit.csv", "parameters.csv", "fit.svg", "fit.png"}
+    assert Scene.from_dict(printed["scene"]).law is not None
+
+
+def test_a_person_reads_intervals(body: Path, curve: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["fit", str(curve), "--law", "jankowski", "--scene", str(body), "--out", str(tmp_path / "out")]
+    assert main([*command, "--free", "k,alpha", "--fix", "xi=0.2", "--bounds", "alpha=1:2"]) == 0
+    said = capsys.readouterr()
+    lines = [line.split() for line in said.out.splitlines()]
+    assert [line[0] for line in lines[1:4]] == ["k", "alpha", "xi"]
+    assert float(lines[2][1]) == pytest.approx(1.5, rel=1e-5)
+    assert lines[3][1:] == ["0.2", "held"]
+    assert "correlated" in said.err
+
+
+def test_opensees_lines_are_a_file_of_their_own(
+    body: Path, curve: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Nothing but comments and the command, so that it can be redirected into one."""
+    command = ["fit", str(curve), "--law", "jankowski", "--scene", str(body), "--out", str(tmp_path / "out")]
+    assert main([*command, "--opensees"]) == 0
+    *said, last = capsys.readouterr().out.splitlines()
+    assert all(line.startswith("#") for line in said)
+    name, tag, *values = last.split()[1:]
+    assert (name, tag) == ("JankowskiImpact", "1")
+    assert [float(value) for value in values] == pytest.approx([1e7, 0.2, 0.001, -1e-12, 1.5], rel=1e-5)
+    assert main([*command, "--opensees", "python", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["opensees"][-1].startswith('ops.uniaxialMaterial("JankowskiImpact", 1')
+
+
+def test_the_peak_is_held(body: Path, curve: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    command = ["fit", str(curve), "--law", "kelvin", "--scene", str(body), "--out", str(tmp_path / "out"), "--json"]
+    assert main([*command, "--peak"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["quantities"]["peak_force"]["value"] == pytest.approx(read_curve(curve).force.max(), rel=1e-6)
+
+
+def test_the_chart_is_reproducible(body: Path, curve: Path, tmp_path: Path) -> None:
+    measured = read_curve(curve)
+    found = fit(measured, "jankowski", Scene(None, mass=0.001, velocity=1.0))
+    first, again = (plot_fit(measured, found, tmp_path / name) for name in ("first", "again"))
+    assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--law", "jankowsky"], "did you mean jankowski?"),
+        (["--law", "tsuji", "--opensees"], "tsuji has no OpenSees material"),
+        (["--law", "jankowski", "--opensees", "apdl"], "--opensees: 'apdl': accepted tcl, python"),
+        (["--law", "jankowski", "--free", "k,xo"], "xo: unknown parameter"),
+        (["--law", "jankowski", "--fix", "xi"], "--fix: xi: accepted: name=value"),
+        (["--law", "jankowski", "--fix", "xi=much"], "--fix: 'much': accepted a number"),
+        (["--law", "jankowski", "--bounds", "xi=1"], "--bounds: xi: '1': accepted low:high"),
+        (["--law", "ting"], "striker.shape: missing"),
+    ],
+)
+def test_bad_options_write_nothing(
+    options: list[str], message: str, body: Path, curve: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    where = tmp_path / "none"
+    assert main(["fit", str(curve), "--scene", str(body), "--out", str(where), *options]) == 2
+    assert message in capsys.readouterr().err
+    assert not where.exists()
+
+
+def test_bad_scenes_and_curves_write_nothing(
+    body: Path, curve: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    where, heavy = tmp_path / "none", tmp_path / "heavy.toml"
+    heavy.write_text("[striker]\nmass = -1.0\nvelocity = 1.0\n", encoding="utf-8")
+    rest = ["--law", "hertz", "--out", str(where)]
+    assert main(["fit", str(curve), "--scene", str(heavy), *rest]) == 2
+    assert "striker.mass: -1.0 is not accepted" in capsys.readouterr().err
+    assert main(["fit", str(tmp_path / "no.csv"), "--scene", str(body), *rest]) == 2
+    assert "cannot be read" in capsys.readouterr().err
+    assert not where.exists()
+
+
+def test_what_is_not_reached_is_written_as_such(
+    curve: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Relaxed steel alone peaks above the curve, and no ratio makes it softer."""
+    where = tmp_path / "out"
+    options = ["--scene", "steel-ball", "--free", "R1", "--fix", "R2=0.02", "--peak", "--out", str(where)]
+    assert main(["fit", str(curve), "--law", "correspondence", *options]) == 3
+    assert "no R1 gives the measured peak" in capsys.readouterr().err
+    written = json.loads((where / "fit.json").read_text(encoding="utf-8"))
+    assert (written["converged"], written["parameters"]) == (False, None)
