@@ -52,7 +52,7 @@ def execute(args: argparse.Namespace) -> int:
 def summary(found: Study, where: Path) -> str:
     """One line a claim, one an assumption, then the counts."""
     from lumped.paper.claims import counts
-    from lumped.paper.rules import AGREES, DIFFERS, UNKNOWN
+    from lumped.paper.rules import AGREES, DIFFERS, UNKNOWN, UNPRINTED, VERDICTS
 
     lines = [f"{'claim':14s} {'quantity':54s} {'printed':26s} {'recomputed':30s} {'deviation':>9s}  verdict"]
     lines += [_line(one) for one in found.claims]
@@ -60,19 +60,22 @@ def summary(found: Study, where: Path) -> str:
         one = judged.assumption
         lines.append(f"{one.id:17s} {one.assumption}: {one.criterion} {_shown(judged.values)}: {judged.verdict}")
     number = counts(found.claims)
-    reasons = ", ".join(f"{count} {name}" for name, count in number.items() if name not in (AGREES, DIFFERS, UNKNOWN))
+    reasons = ", ".join(f"{count} {name}" for name, count in number.items() if name not in VERDICTS)
     lines.append(f"{number[AGREES]} agree, {number[DIFFERS]} differ, {number[UNKNOWN]} {UNKNOWN} ({reasons})")
+    lines.append(f"{number[UNPRINTED]} numbers beside them with {UNPRINTED}")
     return "\n".join([*lines, f"written to {where}"])
 
 
 def _line(one: Judged) -> str:
-    """A value that is not the claimed quantity stands behind the verdict."""
+    from lumped.paper.rules import UNJUDGED, UNKNOWN
+
     claim, share = one.claim, "" if one.deviation is None else f"{round(100.0 * one.deviation, 2) + 0.0:+.2f} %"
     printed = f"{claim.printed} {claim.unit}" if claim.printed and claim.unit != "1" else claim.printed
     values, verdict = _shown(one.values), one.verdict
-    if claim.rule.kind == "none":
-        beside = f"; {claim.recomputed_as or claim.quantity}: {values}" if values else ""
-        values, verdict = "", f"{one.verdict} ({claim.rule.name}){beside}"
+    if claim.rule.kind in UNJUDGED:  # the value is not the claimed quantity
+        reason = f" ({claim.rule.name})" if verdict == UNKNOWN else ""
+        beside = ": ".join(part for part in (claim.recomputed_as, values) if part)
+        values, verdict = "", "; ".join(part for part in (verdict + reason, beside) if part)
     return f"{claim.id:14s} {claim.quantity:54s} {printed:26s} {values:30s} {share:>9s}  {verdict}"
 
 

@@ -64,7 +64,7 @@ def judge(claim: Claim, examples: Examples) -> Judged:
 
 
 def counts(judged: Sequence[Judged]) -> dict[str, int]:
-    """How many claims have each verdict, and of those that have no other, how many by which rule."""
+    """How many claims have each verdict, and how many cannot be computed by which rule."""
     found = Counter(one.verdict for one in judged)
     by_rule = Counter(one.claim.rule.name for one in judged if one.verdict == rules.UNKNOWN)
-    return {verdict: found[verdict] for verdict in (rules.AGREES, rules.DIFFERS, rules.UNKNOWN)} | by_rule
+    return {verdict: found[verdict] for verdict in rules.VERDICTS} | by_rule

@@ -9,8 +9,9 @@ from lumped.load_curves.hertz import Hertz
 from lumped.materials import Material
 from lumped.materials.networks import sls
 from lumped.paper.examples import Concrete
+from lumped.paper.plateau import PlateauCut, plateau_cut
 from lumped.paper.struck_bar import StruckBar, bar_impedance
-from lumped.paper.value import Value
+from lumped.paper.value import Value, read
 from lumped.result import Result
 from lumped.scene import Model, Scene
 from lumped.shapes import Sphere
@@ -27,6 +28,16 @@ def proposed(concrete: Concrete, radius: float, velocity: float) -> Result:
     parabola = Model(profile="parabola")
     scene = Scene(Sphere(radius), concrete.mass, velocity, material, model=parabola, name="concrete striker")
     return correspondence.of(scene).simulate(scene, TOLERANCE)
+
+
+@cache
+def cut_at_measured_peak(concrete: Concrete) -> PlateauCut:
+    """The force at the higher velocity cut at the experiment's peak, which its printed error tells.
+
+    Over the uncut force and its duration no radius enters; the smallest assumed one is taken.
+    """
+    impact = proposed(concrete, min(concrete.radii), max(concrete.velocities))
+    return plateau_cut(impact.history, read(impact, "peak_force").value / (1.0 + concrete.peak_error))
 
 
 @cache

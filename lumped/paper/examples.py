@@ -20,7 +20,8 @@ STIFFNESS, DAMPING = Number(1e-9, 1e18, "N/m"), Number(1e-15, 1e15, "N s/m")
 KEYS: Mapping[str, Mapping[str, Key]] = {
     "steel": {
         "diameter": LENGTH, "drop": LENGTH, "young": MODULUS, "nu": NU, "contact_modulus": MODULUS, "R1": RATIO,
-        "R2": TIME, "measured_peak": FORCE, "theoretical_peak": FORCE, "density": DENSITY,
+        "R2": TIME, "measured_peak": FORCE, "theoretical_peak": FORCE,
+        "pulse_peaks": Numbers(FORCE), "pulse_durations": Numbers(TIME), "density": DENSITY,
         "gravity": Number(1e-3, 1e6, "m/s2"), "restitutions": Numbers(Number(1e-3, 1.0)),
         "yield_strength": Numbers(MODULUS),
     },
@@ -58,6 +59,8 @@ class Steel:
     R2: float
     measured_peak: float
     theoretical_peak: float
+    pulse_peaks: tuple[float, ...]
+    pulse_durations: tuple[float, ...]
     density: float
     gravity: float
     restitutions: tuple[float, ...]

@@ -13,6 +13,9 @@ from lumped.paper.value import Value
 from lumped.toml_file import parsed
 
 AGREES, DIFFERS, UNKNOWN = "agrees", "differs", "cannot be computed from the text"
+UNPRINTED = "nothing printed"
+VERDICTS = (AGREES, DIFFERS, UNKNOWN, UNPRINTED)
+UNJUDGED = {"none": UNKNOWN, "unprinted": UNPRINTED}
 SEPARATOR = ";"
 
 
@@ -31,9 +34,9 @@ class Rule:
         return self.kind in ("digits", "relative")
 
     def verdict(self, printed: str, values: Sequence[Value]) -> str:
-        """AGREES when every value keeps the rule over the whole of its bar, UNKNOWN when nothing is to be compared."""
-        if self.kind == "none":
-            return UNKNOWN
+        """AGREES when every value keeps the rule over the whole of its bar, else DIFFERS; or that nothing compares."""
+        if self.kind in UNJUDGED:
+            return UNJUDGED[self.kind]
         margins = MARGINS[self.kind](printed, values, self.width)
         kept = all(margin >= value.error for margin, value in zip(margins, values, strict=True))
         return AGREES if kept else DIFFERS
@@ -56,7 +59,7 @@ def load() -> dict[str, Rule]:
     """The packaged rules by name. Raises BadInput."""
     path = directory() / "paper" / "rules.toml"
     keys: Mapping[str, Key] = {
-        "kind": Choice((*MARGINS, "none")), "says": Text(), "width": Number(-1.0, 1.0, required=False),
+        "kind": Choice((*MARGINS, *UNJUDGED)), "says": Text(), "width": Number(-1.0, 1.0, required=False),
     }  # fmt: skip
     found, faults = {}, []
     for name, table in parsed(path).items():

@@ -22,6 +22,11 @@ class Value(NamedTuple):
         """In another unit."""
         return Value(self.value * factor, self.error * abs(factor))
 
+    def by(self, other: Value) -> Value:
+        """The product self other; the bars add relatively."""
+        error = abs(self.error * other.value) + abs(self.value * other.error)
+        return Value(self.value * other.value, error)
+
     def over(self, other: Value) -> Value:
         """The ratio self/other; the bars add relatively."""
         ratio = self.value / other.value

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from lumped.paper.concrete_impacts import proposed
+from lumped.paper.concrete_impacts import TOLERANCE, cut_at_measured_peak, proposed
 from lumped.paper.examples import Examples
-from lumped.paper.plateau import plateau_cut
 from lumped.paper.value import Value, Values, closed, read
 
 KILO = 1e-3
@@ -47,16 +46,10 @@ def peak_ratios(examples: Examples) -> Values:
 
 
 def plateau(examples: Examples) -> Values:
-    """The force at the higher velocity cut at the experiment's peak: duration, impulse over those of the uncut one.
-
-    The experiment's peak follows from the printed error of the peak; no radius enters the ratios.
-    """
-    concrete = examples.concrete
-    impact = proposed(concrete, min(concrete.radii), max(concrete.velocities))
-    peak = read(impact, "peak_force").value
-    cut = plateau_cut(impact.history, peak / (1.0 + concrete.peak_error))
+    """The force at the higher velocity cut at the experiment's peak: duration, impulse over those of the uncut one."""
+    cut = cut_at_measured_peak(examples.concrete)
     # rows of the history are linear to its tolerance, and so are areas below them
-    error = 2.0 * impact.tolerance
+    error = 2.0 * TOLERANCE
     return tuple(Value(after / before, error * after / before) for before, after in (cut.duration, cut.impulse))
 
 

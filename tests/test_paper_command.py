@@ -1,0 +1,119 @@
+"""`fe-contact paper`: a line a claim, files without NaN, figures, inputs that can be changed."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fe_contact.cli import main
+from lumped.paper import assumptions, claims, misprints
+from lumped.paper.rules import AGREES, DIFFERS, UNKNOWN, VERDICTS
+
+TABLES = {"paper", "assumptions", "misprints", "grid"}
+FIGURES = {f"fig{number}.{kind}" for number in (6, 7, 8, 10) for kind in ("svg", "png")}
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """The folder of one run, and what it printed."""
+    where = tmp_path_factory.mktemp("paper") / "out"
+    with pytest.MonkeyPatch.context() as patch:
+        printed: list[str] = []
+        patch.setattr("builtins.print", lambda *words, **_: printed.append(" ".join(map(str, words))))
+        assert main(["paper", "--out", str(where)]) == 0
+    return where, "\n".join(printed)
+
+
+def content(where: Path) -> dict[str, Any]:
+    def refuse(word: str) -> None:
+        raise ValueError(word)
+
+    found: dict[str, Any] = json.loads((where / "paper.json").read_text(encoding="utf-8"), parse_constant=refuse)
+    return found
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_a_run_writes_tables_and_figures(written: tuple[Path, str]) -> None:
+    names = {path.name for path in written[0].iterdir()}
+    assert names == {f"{name}.csv" for name in TABLES} | {"paper.json"} | FIGURES
+
+
+def test_every_claim_has_its_line_and_its_row(written: tuple[Path, str]) -> None:
+    where, text = written
+    lines = {line.split()[0]: line for line in text.splitlines() if line.strip()}
+    table = {row["id"]: row for row in rows(where / "paper.csv")}
+    for claim in claims.load():
+        assert claim.quantity in lines[claim.id]
+        assert table[claim.id]["verdict"] in lines[claim.id]
+        assert claim.printed in lines[claim.id]
+    assert list(table) == [claim.id for claim in claims.load()]
+    assert len(rows(where / "assumptions.csv")) == len(assumptions.load())
+    assert len(rows(where / "misprints.csv")) == len(misprints.load())
+
+
+def test_the_counts_are_those_of_the_rows(written: tuple[Path, str]) -> None:
+    where, text = written
+    verdicts = [row["verdict"] for row in rows(where / "paper.csv")]
+    known = content(where)["counts"]
+    assert {verdict: verdicts.count(verdict) for verdict in VERDICTS}.items() <= known.items()
+    assert sum(verdicts.count(verdict) for verdict in VERDICTS) == len(verdicts)
+    assert f"{known[AGREES]} agree, {known[DIFFERS]} differ, {known[UNKNOWN]} {UNKNOWN}" in text
+
+
+def test_a_row_says_printed_recomputed_and_deviation(written: tuple[Path, str]) -> None:
+    row = next(row for row in rows(written[0] / "paper.csv") if row["id"] == "D10")
+    assert (row["printed"], row["unit"], row["rule"], row["verdict"]) == ("80.3", "N", "digits", DIFFERS)
+    assert float(row["recomputed"]) == pytest.approx(77.068, abs=5e-4)
+    assert float(row["deviation"]) == pytest.approx(float(row["recomputed"]) / 80.3 - 1.0, rel=1e-12)
+    assert 0.0 < float(row["error"]) < 1e-4
+
+
+def test_the_grid_holds_both_laws(written: tuple[Path, str]) -> None:
+    found = rows(written[0] / "grid.csv")
+    assert [(row["figure"], row["panel"]) for row in found].count(("7", "a")) == 5
+    assert len(found) == 40
+    worst = next(row for row in found if (row["figure"], row["R1"], row["R2_s"]) == ("8", "5.0", "5e-06"))
+    assert float(worst["correspondence_duration_s"]) == pytest.approx(9.917e-6, abs=5e-10)
+    assert float(worst["ting_duration_s"]) == pytest.approx(11.459e-6, abs=5e-10)
+    for row in found:
+        assert float(row["ting_peak_force_N"]) == pytest.approx(float(row["correspondence_peak_force_N"]), rel=1e-5)
+        assert float(row["ting_duration_s"]) > float(row["correspondence_duration_s"])
+
+
+def test_a_changed_input_changes_what_depends_on_it(
+    written: tuple[Path, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert main(["paper", "--set", "steel.density=8000", "--json", "--out", str(out)]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed == content(out)
+    before, after = ({row["id"]: row for row in one["claims"]} for one in (content(written[0]), printed))
+    moved = {name for name in before if before[name]["recomputed"] != after[name]["recomputed"]}
+    assert {"D1", "D7", "D10", "E4"} <= moved
+    assert moved.isdisjoint({"D5", "D9", "G1", "H4", "H12"})
+    assert after["D10"]["recomputed"][0] == pytest.approx(77.068 * (8000 / 7850) ** 0.6, rel=1e-4)
+
+
+@pytest.mark.parametrize("change", ["steel.density=heavy", "steel.weight=3", "density"])
+def test_a_bad_change_is_refused_and_nothing_is_written(
+    change: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert main(["paper", "--set", change, "--out", str(out)]) == 2
+    assert "accepted" in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_a_fit_that_has_no_answer_is_a_named_failure(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    assert main(["paper", "--set", "steel.measured_peak=50", "--out", str(out)]) == 3
+    assert "above the elastic peak" in capsys.readouterr().err
+    assert not out.exists()
