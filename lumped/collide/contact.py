@@ -105,8 +105,8 @@ def _corner(stage: Stage, corners: tuple[float, ...]) -> dict[str, Event]:
 
 
 def _force_left(step: Step) -> Array:
-    """The force as long as there is depth."""
-    return np.asarray(np.where(step.depth > 0.0, step.force, -np.abs(step.force)))
+    """The force as long as there is depth; above the surface its mean stiffness times the depth goes on."""
+    return np.asarray(np.where(step.depth > 0.0, step.force, step.depth * (step.force.max() / step.depth.max())))
 
 
 TURN = Event(lambda step: step.rate, lambda step: step.last_acceleration)

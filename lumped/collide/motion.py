@@ -27,9 +27,7 @@ class Motion:
         return self.contacts[-1].end
 
 
-def motion(
-    law: PointLaw, bodies: Bodies, exit_rule: str, impacts: int, until: float, tolerance: float
-) -> Motion:
+def motion(law: PointLaw, bodies: Bodies, exit_rule: str, impacts: int, until: float, tolerance: float) -> Motion:
     """Up to `impacts` contacts, the first at time zero, followed until `until`, s. Raises TooManySteps."""
     state, time, contacts = law.touch(bodies), 0.0, list[Contact]()
     while len(contacts) < impacts:

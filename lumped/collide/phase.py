@@ -77,6 +77,9 @@ class March:
             event = None if step is None else self._first(step)
             if step is not None and event is not None:
                 step = self._located(step, event, now)
+                before = None if step is None else self._first(step, event)
+                if step is not None and before is not None:
+                    step, event = self._located(step, before, now), before
             rough = 0.0 if step is None else roughness(step) / self.allowed
             if step is None:
                 length *= SHORTEST
@@ -98,9 +101,10 @@ class March:
     def _solved(self, state: State, length: float, guess: Array, nodes: Nodes) -> Step | None:
         return solved(self.law, self.stage, self.bodies, state, length, guess, nodes)
 
-    def _first(self, step: Step) -> str | None:
-        """The event that happens first within a step."""
-        places = {name: np.flatnonzero(event.value(step) <= 0.0) for name, event in self.events.items()}
+    def _first(self, step: Step, beside: str = "") -> str | None:
+        """The event that happens first within a step, `beside` one that is known."""
+        others = {name: event for name, event in self.events.items() if name != beside}
+        places = {name: np.flatnonzero(event.value(step) <= 0.0) for name, event in others.items()}
         found = {name: int(place[0]) for name, place in places.items() if place.size}
         return min(found, key=lambda name: found[name]) if found else None
 

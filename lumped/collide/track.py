@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -15,10 +16,12 @@ from lumped.collide.motion import Motion
 from lumped.collide.nodes import STAGES, place_of
 from lumped.collide.phase import Phase
 from lumped.collide.step import Step
+from lumped.ending import End
 
 Array = NDArray[np.float64]
 # How near to a touch the rows begin, as a power of 1/2, in the length of its step.
 NEAREST = 48.0
+IN_FLIGHT = 17
 
 
 class Row(NamedTuple):
@@ -55,17 +58,19 @@ class Track:
     @cached_property
     def times(self) -> Array:
         """Where its steps begin and end, s, ascending; the force may jump at touch, so the instant before is there."""
-        ends = [np.cumsum([phase.start_time, *(s.length for s in phase.steps)]) for phase in self._phases]
+        ends = [phase.start_time + np.cumsum([0.0, *(s.length for s in phase.steps)]) for phase in self._phases]
         touches = np.array([contact.start_time for contact in self.motion.contacts[1:]])
         parted = np.array([contact.end_time for contact in self.motion.contacts[:-1]])
         return np.unique(np.concatenate([*ends, np.nextafter(touches, 0.0), np.nextafter(parted, np.inf)]))
 
     @cached_property
     def rows(self) -> Array:
-        """Its times, and between them towards a touch or an end of depth ever more, where the force may be steep."""
+        """Its times, some of each flight, and ever more towards a touch or an end of depth, where forces are steep."""
         close = [self.times]
+        for one, following in pairwise(self.motion.contacts):
+            close.append(np.linspace(one.end_time, following.start_time, IN_FLIGHT))
         for phase in self._phases:
-            starts = phase.start_time + np.concatenate([[0.0], np.cumsum([step.length for step in phase.steps])])
+            starts = phase.start_time + np.cumsum([0.0, *(step.length for step in phase.steps)])
             for start, step in zip(starts, phase.steps, strict=False):
                 power, begun, mirrored = step.nodes.power, step.nodes.begun, step.nodes.mirrored
                 if power > 1 and begun == 0.0:
@@ -96,12 +101,15 @@ class Track:
         return [Row.of(phase) for phase in self._phases]
 
     def _fly(self, found: Array, times: Array, contact: Contact) -> None:
-        """Free flight from the end of a contact on, until a later one overwrites it."""
+        """Free flight, or rest, from the end of a contact on, until a later one overwrites it."""
         after = times > contact.end_time
         if not after.any():
             return
         elapsed = times[after] - contact.end_time
         last, gravity = contact.last, self.motion.gravity
+        if contact.end is End.REST:
+            found[:, after] = np.array([[last.depth], [0.0], [contact.phases[-1].last.force[-1]]])
+            return
         found[0, after] = last.depth + elapsed * (last.rate + 0.5 * gravity * elapsed)
         found[1, after] = last.rate + gravity * elapsed
         found[2, after] = 0.0
