@@ -127,6 +127,6 @@ def _fig10(study: Study, where: Path) -> tuple[Path, Path]:
         axes.plot(curve.time / whole.time[-1], curve.force / whole.force.max(), label=name, **look)
     axes.set(xlabel="time / contact time", ylabel="force / peak", xlim=(0.0, None), ylim=(0.0, 1.05))
     axes.legend(loc="upper right")
-    lines = ["Cut at the measured peak, flat until the impulse is that of the uncut pulse: the striker loses nothing."]
+    lines = ["Cut at the measured peak until the impulse is the uncut one:", "the striker then loses no velocity."]
     style.heading(figure, "Fig. 10 drawn again: concrete", lines, TITLE_WIDTH // 2)
     return style.save(figure, where, "fig10")

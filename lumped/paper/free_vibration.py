@@ -7,6 +7,7 @@ from functools import cache
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.paper.examples import Ptmd, RingLining
 from lumped.paper.ring_impact import stiffness
+from lumped.paper.value import Value
 from lumped.pounding_tmd import Measures, Oscillator, PoundingDamper, Ring, Start, simulate
 
 # The damper's path is exact to rounding, which some fifty contacts carry on.
@@ -32,6 +33,14 @@ def without_ring(ptmd: Ptmd, start: str) -> Measures:
 def without_damper(ptmd: Ptmd) -> Measures:
     """The structure alone."""
     return _measures(ptmd, PoundingDamper(_structure(ptmd)), "structure")
+
+
+def measure(measures: Measures, name: str) -> Value:
+    """One of the measures, SI. Raises NotReached where it is undefined."""
+    number = measures.to_dict()[name]
+    if number is None:
+        raise NotReached(f"free vibration: {name} is undefined; a longer ptmd.end_time may define it")
+    return Value(float(number), ROUNDING * abs(float(number)))
 
 
 def _measures(ptmd: Ptmd, system: PoundingDamper, start: str) -> Measures:

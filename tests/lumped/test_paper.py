@@ -62,6 +62,7 @@ AUDIT = {
     "steel_grids.peak_places_7c": "0.497 0.392",
     "steel_grids.spread_at_small_R1": "0.096",
     "steel_grids.peaks_8a": "126.99 83.35 64.98 57.71 65.00",
+    "steel_grids.lowest_8a": "55.38 2.03",
     "steel_grids.spread_8_soft": "0.015",
     "concrete_pole.peaks": "237.08 272.35 327.14",
     "concrete_pole.velocity_ratios": "1.8459 0.9029 1.6667",

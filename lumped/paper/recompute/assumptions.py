@@ -8,9 +8,9 @@ from collections.abc import Iterable
 from lumped.model_ledger import FIRST_YIELD
 from lumped.paper.concrete_impacts import on_bar, proposed
 from lumped.paper.examples import Examples
-from lumped.paper.free_vibration import ROUNDING, with_ring
+from lumped.paper.free_vibration import measure, with_ring
 from lumped.paper.steel_impacts import hertz, solid
-from lumped.paper.value import Value, Values, closed, read
+from lumped.paper.value import Value, Values, read
 from lumped.radiation import pulse_energy
 from lumped.result import Result
 
@@ -68,23 +68,26 @@ def concrete_yield(examples: Examples) -> Values:
 
 def ring_depth(examples: Examples) -> Values:
     """Deepest penetration over the lining's thickness, both masses displaced, over the assumed range."""
-    depth = with_ring(examples.ptmd, examples.ring, "both", examples.ring.nu).peak_depth
-    return tuple(Value(depth / h, ROUNDING * depth / h) for h in examples.ring.thickness)
+    depth = _vibration(examples, "peak_depth")
+    return tuple(depth.times(1.0 / thickness) for thickness in examples.ring.thickness)
 
 
 def ring_depth_over_rod(examples: Examples) -> Values:
     """The same over the radius of the rod."""
-    depth = with_ring(examples.ptmd, examples.ring, "both", examples.ring.nu).peak_depth
-    share = depth / (0.5 * examples.ring.rod_diameter)
-    return (Value(share, ROUNDING * share),)
+    return (_vibration(examples, "peak_depth").times(2.0 / examples.ring.rod_diameter),)
 
 
 def ring_transit(examples: Examples) -> Values:
     """Time of the slowest axial wave through the lining over the first contact's, over the assumed ranges."""
     ring = examples.ring
-    contact = with_ring(examples.ptmd, ring, "both", ring.nu).first_contact_duration or math.inf
-    glassy = ring.E0 * (1.0 + ring.R1)
-    return closed(*(h * math.sqrt(rho / glassy) / contact for h in ring.thickness for rho in ring.density))
+    contact, glassy = _vibration(examples, "first_contact_duration"), ring.E0 * (1.0 + ring.R1)
+    transits = (h * math.sqrt(rho / glassy) for h in ring.thickness for rho in ring.density)
+    return tuple(Value(transit).over(contact) for transit in transits)
+
+
+def _vibration(examples: Examples, name: str) -> Value:
+    """A measure of the pounding damper, both masses displaced."""
+    return measure(with_ring(examples.ptmd, examples.ring, "both", examples.ring.nu), name)
 
 
 def _steel(examples: Examples) -> Result:

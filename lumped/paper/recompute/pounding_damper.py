@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from lumped.errors import NotReached
 from lumped.paper.examples import Examples
-from lumped.paper.free_vibration import ROUNDING, with_ring, without_damper, without_ring
+from lumped.paper.free_vibration import measure, with_ring, without_damper, without_ring
 from lumped.paper.value import Value, Values, closed
 from lumped.pounding_tmd import Measures
 
@@ -78,8 +77,8 @@ def decay(examples: Examples) -> Values:
 
 def pounding_against_plain(examples: Examples) -> Values:
     """RMS displacement of the plain tuned mass damper, mm, and change from it to the pounding one."""
-    plain = _measure(without_ring(examples.ptmd, "both"), "rms_displacement")
-    change = _measure(_pounding(examples, "both"), "rms_displacement").change_from(plain)
+    plain = measure(without_ring(examples.ptmd, "both"), "rms_displacement")
+    change = measure(_pounding(examples, "both"), "rms_displacement").change_from(plain)
     return plain.times(MILLI), change
 
 
@@ -96,20 +95,20 @@ def acceleration_change_structure(examples: Examples) -> Values:
 def largest_accelerations(examples: Examples) -> Values:
     """Largest acceleration, m/s2: without a damper, with the pounding one by both starts."""
     measured = (without_damper(examples.ptmd), _pounding(examples, "both"), _pounding(examples, "structure"))
-    return tuple(_measure(measures, "max_acceleration") for measures in measured)
+    return tuple(measure(measures, "max_acceleration") for measures in measured)
 
 
 def quiet_share(examples: Examples) -> Values:
     """The share of the vibration after the last contact."""
-    last = _measure(_pounding(examples, "both"), "last_contact")
+    last = measure(_pounding(examples, "both"), "last_contact")
     return (Value(1.0).minus(last.times(1.0 / examples.ptmd.end_time)),)
 
 
 def contacts(examples: Examples) -> Values:
     """Number of contacts, end of the last, s, largest force, N, and penetration, mm; both masses displaced."""
     found = _pounding(examples, "both")
-    depth = _measure(found, "peak_depth").times(MILLI)
-    return Value(float(found.contacts)), _measure(found, "last_contact"), _measure(found, "peak_force"), depth
+    depth = measure(found, "peak_depth").times(MILLI)
+    return Value(float(found.contacts)), measure(found, "last_contact"), measure(found, "peak_force"), depth
 
 
 def _pounding(examples: Examples, start: str) -> Measures:
@@ -117,20 +116,12 @@ def _pounding(examples: Examples, start: str) -> Measures:
 
 
 def _decay(measures: Measures) -> Values:
-    return _measure(measures, "t50"), _measure(measures, "t10"), _measure(measures, "rms_displacement").times(MILLI)
+    return measure(measures, "t50"), measure(measures, "t10"), measure(measures, "rms_displacement").times(MILLI)
 
 
 def _acceleration_change(examples: Examples, start: str) -> Value:
-    before = _measure(without_damper(examples.ptmd), "max_acceleration")
-    return _measure(_pounding(examples, start), "max_acceleration").change_from(before)
-
-
-def _measure(measures: Measures, name: str) -> Value:
-    """One of the measures. Raises NotReached where it is undefined."""
-    number = measures.to_dict()[name]
-    if number is None:
-        raise NotReached(f"free vibration: {name} is undefined; a longer ptmd.end_time may define it")
-    return Value(float(number), ROUNDING * abs(float(number)))
+    before = measure(without_damper(examples.ptmd), "max_acceleration")
+    return measure(_pounding(examples, start), "max_acceleration").change_from(before)
 
 
 def _frequency(stiffness: float, mass: float) -> float:
