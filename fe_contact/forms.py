@@ -43,6 +43,46 @@ def axisymmetric_strain(basis: Any) -> Array:
     return strain
 
 
+def plane_strain(basis: Any) -> Array:
+    """Strain of every vector shape function in plane strain, shape (elements, points, 4, 2 x scalar functions).
+
+    Rows as in :func:`axisymmetric_strain`, the hoop's now that out of the plane: zero.
+    """
+    gradient = np.stack([shape[0].grad for shape in basis.basis], axis=-1)
+    strain = np.zeros((*gradient.shape[1:3], 4, 2 * gradient.shape[-1]))
+    strain[:, :, 0, 0::2] = gradient[0]
+    strain[:, :, 1, 1::2] = gradient[1]
+    strain[:, :, 3, 0::2] = gradient[1]
+    strain[:, :, 3, 1::2] = gradient[0]
+    return strain
+
+
+def polar_strain(basis: Any, inner_radius: float) -> Array:
+    """Plane strain of a ring laid flat: x is arc length on its inner surface, z = inner_radius - r out of the body.
+
+    The rectangle's straight elements then have the ring's exact arcs. Rows as in :func:`plane_strain`.
+    """
+    place = np.asarray(basis.global_coordinates())
+    radius = inner_radius - place[1]
+    value = np.stack([np.broadcast_to(np.asarray(shape[0]), radius.shape) for shape in basis.basis], axis=-1)
+    gradient = np.stack([shape[0].grad for shape in basis.basis], axis=-1)
+    along = gradient[0] * (inner_radius / radius)[:, :, None]
+    strain = np.zeros((*radius.shape, 4, 2 * value.shape[-1]))
+    strain[:, :, 0, 0::2] = along
+    strain[:, :, 0, 1::2] = -value / radius[:, :, None]
+    strain[:, :, 1, 1::2] = gradient[1]
+    strain[:, :, 3, 0::2] = gradient[1] + value / radius[:, :, None]
+    strain[:, :, 3, 1::2] = along
+    return strain
+
+
+def polar_stiffness(basis: Any, law: Array, inner_radius: float) -> sparse.coo_matrix:
+    """Stiffness matrix per unit length of both halves of a ring laid flat, see :func:`polar_strain`."""
+    radius = inner_radius - np.asarray(basis.global_coordinates())[1]
+    weight = 2.0 * np.asarray(basis.dx) * radius / inner_radius
+    return _assembled(basis, law, polar_strain(basis, inner_radius), weight)
+
+
 def stiffness(basis: Any, law: Array) -> sparse.coo_matrix:
     """Stiffness matrix of an axisymmetric body, shape (2 N, 2 N), N/m.
 
@@ -51,10 +91,18 @@ def stiffness(basis: Any, law: Array) -> sparse.coo_matrix:
     basis : scalar scikit-fem basis with N degrees of freedom.
     law : stress over strain, shape (4, 4), see :func:`isotropic`.
     """
-    strain = axisymmetric_strain(basis)
-    elements, points, _, functions = strain.shape
     radius = np.asarray(basis.global_coordinates())[0]
-    weight = 2 * np.pi * radius * basis.dx
+    return _assembled(basis, law, axisymmetric_strain(basis), 2 * np.pi * radius * basis.dx)
+
+
+def plane_stiffness(basis: Any, law: Array) -> sparse.coo_matrix:
+    """Stiffness matrix per unit length of both halves of a body in plane strain; as :func:`stiffness`."""
+    return _assembled(basis, law, plane_strain(basis), 2.0 * np.asarray(basis.dx))
+
+
+def _assembled(basis: Any, law: Array, strain: Array, weight: Array) -> sparse.coo_matrix:
+    """``int sigma(u):eps(v)`` with strains (elements, points, 4, functions) and weights (elements, points)."""
+    elements, points, _, functions = strain.shape
     stress = np.matmul(law, strain) * weight[:, :, None, None]
     flat = (elements, 4 * points, functions)
     local = np.matmul(strain.reshape(flat).transpose(0, 2, 1), stress.reshape(flat))

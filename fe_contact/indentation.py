@@ -21,11 +21,11 @@ from fe_contact.progress import Progress, silent
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
 from lumped.members import get
-from lumped.shapes import Shape
 
 TARGETS = "fe_contact.targets"
 CAUSES = ("mesh", "penalty", "far_field")
 BISECTIONS = 60
+SMALL = 1e-3
 ROUNDS = 5  # refinements before giving up
 DOMINANT = 0.5  # causes above this share of the largest one are refined together
 
@@ -64,7 +64,7 @@ def indent(
             break
         numerics = finer
     error = np.sum([budget[cause] for cause in CAUSES], axis=0)
-    force = modulus * base.force
+    force = modulus * getattr(indenter.shape, "length", 1.0) * base.force
     kept = ("tolerance", "elements_per_contact", "order", "penalty", "enforcement", "far_radius")
     return Indentation(
         indenter=indenter,
@@ -92,7 +92,7 @@ def settings(given: Mapping[str, Any]) -> Numerics:
 
 def press(indenter: Indenter, depth: Array, numerics: Numerics) -> Pressing:
     """Every depth, m, with one setting of everything; from the largest to the smallest, each guessing the next."""
-    overlapping = _overlapping(indenter.profile, depth)
+    overlapping = _overlapping(indenter, depth)
     body: Still = get(TARGETS, indenter.target.name).still(indenter, overlapping, numerics)
     force, radius = np.empty_like(depth), np.empty_like(depth)
     growth, problems, iterations = 1.0, 0, 0
@@ -135,19 +135,23 @@ def _refined(numerics: Numerics, budget: Mapping[str, Array], pinned: set[str]) 
     return finer
 
 
-def _overlapping(profile: Shape, depth: Array) -> Array:
-    """Radius at which the undeformed profile lies ``depth``, m, above its tip; shape (n,), m."""
-    if profile.fixed_radius is not None:
-        return np.full_like(depth, profile.fixed_radius)
-    return np.array([_overlap_radius(profile, float(one)) for one in depth])
+def _overlapping(indenter: Indenter, depth: Array) -> Array:
+    """Place on the target up to which the undeformed surfaces overlap at each depth, m; shape (n,)."""
+    fixed = indenter.shape.fixed_radius
+    return np.array([fixed if fixed is not None else _overlap_end(indenter, float(one)) for one in depth])
 
 
-def _overlap_radius(profile: Shape, depth: float) -> float:
+def _overlap_end(indenter: Indenter, depth: float) -> float:
     """By bisection; where the profile ends before, its end."""
-    low, high = 0.0, depth
-    while float(profile.height(np.array([high]))[0]) < depth:
+    profile = indenter.profile
+
+    def overlaps(place: float) -> bool:
+        return bool(indenter.target.overlap(profile, np.array([place]), depth)[0] > 0.0)
+
+    low, high = 0.0, depth / (profile.tip_radius or 1.0) * SMALL
+    while overlaps(high):
         high *= 2.0
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if float(profile.height(np.array([middle]))[0]) < depth else (low, middle)
+        low, high = (middle, high) if overlaps(middle) else (low, middle)
     return high

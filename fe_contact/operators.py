@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse as sparse
 import scipy.sparse.linalg as linalg
 from skfem import (
     Basis,
@@ -26,9 +27,9 @@ from skfem import (
 
 from fe_contact.far_field import static
 from fe_contact.forms import Array, isotropic, stiffness
+from fe_contact.surface import Surface, flat
 
 ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
-CONTACT_ZONE = 1.1  # contact is sought up to this multiple of the predicted contact radius
 FACET_POINTS = 4  # quadrature points a facet beyond the element order: the contact edge is a kink
 
 
@@ -36,13 +37,14 @@ FACET_POINTS = 4  # quadrature points a facet beyond the element order: the cont
 class SurfaceOperator:
     """A body seen through its surface, in units of contact radius and contact modulus.
 
-    ``nodes`` (n_s,) radii of all surface nodes, sorted, ``order`` of them a facet plus one;
+    ``nodes`` (n_s,) radii, or coordinates, of all surface nodes, sorted, ``order`` of them a facet plus one;
     ``stiffness`` (n, n) condensed normal stiffness of the n first nodes, those in the contact zone;
     ``response`` (n_s, n) normal displacement of all surface nodes under unit nodal forces there;
-    ``points``, ``weights`` (q,) quadrature of the contact zone, weights including 2 pi r;
+    ``points``, ``weights`` (q,) quadrature of the contact zone, weights including 2 pi r; ``pull`` (q,) of them
+    what counts for the force along the motion;
     ``trace`` (q, n) displacement at the points from that of the nodes;
     ``solve`` maps nodal forces (n,) on the zone to the displacement of the whole mesh (2 N,);
-    ``basis`` the scalar scikit-fem basis, ``poisson`` its Poisson's ratio.
+    ``basis`` the scalar scikit-fem basis, ``poisson`` its Poisson's ratio; ``dimension`` as of :class:`Surface`.
     """
 
     nodes: Array
@@ -51,15 +53,21 @@ class SurfaceOperator:
     response: Array
     points: Array
     weights: Array
+    pull: Array
     trace: Array
     solve: Callable[[Array], Array]
     basis: Any
     poisson: float
+    dimension: int
 
     @property
     def degrees_of_freedom(self) -> int:
         """Unknowns of the finite-element system behind the surface."""
         return 2 * int(self.basis.N)
+
+    def force(self, scale: float, pressure: Array) -> float:
+        """Force along the motion of a unit-mesh pressure (q,) on the mesh scaled by ``scale``."""
+        return float(scale ** (self.dimension - 2) * (self.pull @ pressure))
 
 
 def surface_operator(mesh: MeshTri, order: int, poisson: float) -> SurfaceOperator:
@@ -72,25 +80,28 @@ def surface_operator(mesh: MeshTri, order: int, poisson: float) -> SurfaceOperat
     poisson : Poisson's ratio.
     """
     basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
-    return condensed(basis, system_matrix(basis, poisson), 2 * basis.get_dofs("axis").flatten(), poisson)
+    fixed = 2 * basis.get_dofs("axis").flatten()
+    return condensed(basis, system_matrix(basis, poisson), fixed, poisson, flat(basis))
 
 
-def condensed(basis: Any, matrix: Any, fixed: npt.NDArray[np.integer[Any]], poisson: float) -> SurfaceOperator:
+def condensed(
+    basis: Any, matrix: Any, fixed: npt.NDArray[np.integer[Any]], poisson: float, surface: Surface
+) -> SurfaceOperator:
     """Factorise the stiffness of a body once and condense it to its contact zone.
 
     Parameters
     ----------
-    basis : scalar scikit-fem basis with N functions, its mesh with the boundary ``surface``; contact radius 1.
+    basis : scalar scikit-fem basis with N functions.
     matrix : stiffness for E* = 1, sparse (2 N, 2 N).
     fixed : degrees of freedom held at zero.
     poisson : Poisson's ratio.
+    surface : where contact may happen, in units of the mesh.
     """
     order = basis.elem.maxdeg
-    surface = _surface_dofs(basis)
-    nodes = basis.doflocs[0, surface]
-    corners = nodes[::order]
-    zone = corners[: np.searchsorted(corners, CONTACT_ZONE) + 1]  # whole facets only
-    in_zone = surface[: (len(zone) - 1) * order + 1]
+    corners = surface.coordinate[::order]
+    zone = corners[: np.searchsorted(corners, surface.zone) + 1]  # whole facets only
+    loaded = (len(zone) - 1) * order + 1
+    normal = _normals(surface, matrix.shape[0])
     free = np.setdiff1d(np.arange(matrix.shape[0]), fixed)
     factor = linalg.splu(
         matrix[free][:, free],
@@ -100,28 +111,38 @@ def condensed(basis: Any, matrix: Any, fixed: npt.NDArray[np.integer[Any]], pois
     )
 
     def displacement(forces: Array) -> Array:
-        load = np.zeros((matrix.shape[0], *forces.shape[1:]))
-        load[2 * in_zone + 1] = -forces  # pressure pushes along -z
+        load = -(normal[:, :loaded] @ forces)  # pressure pushes into the body
         answer = np.zeros_like(load)
         answer[free] = factor.solve(load[free])
         return answer
 
-    response = -displacement(np.eye(len(in_zone)))[2 * surface + 1]
-    compliance = response[: len(in_zone)]
+    response = -(normal.T @ displacement(np.eye(loaded)))
+    compliance = response[:loaded]
     condensed = np.linalg.inv((compliance + compliance.T) / 2)
-    points, weights, trace = _contact_quadrature(zone, order)
+    points, lengths, trace = _contact_quadrature(zone, order)
+    weights = lengths * surface.measure(points)
     return SurfaceOperator(
-        nodes=nodes,
+        nodes=surface.coordinate,
         order=order,
         stiffness=(condensed + condensed.T) / 2,
         response=response,
         points=points,
         weights=weights,
+        pull=weights * surface.motion(points),
         trace=trace,
         solve=displacement,
         basis=basis,
         poisson=poisson,
+        dimension=surface.dimension,
     )
+
+
+def _normals(surface: Surface, size: int) -> sparse.csc_matrix:
+    """Unit normals of the surface nodes as columns, sparse (2 N, n_s)."""
+    columns = np.arange(surface.dofs.size)
+    rows = np.concatenate([2 * surface.dofs, 2 * surface.dofs + 1])
+    entries = (surface.normal.T.ravel(), (rows, np.tile(columns, 2)))
+    return sparse.csc_matrix(entries, shape=(size, columns.size))
 
 
 def system_matrix(basis: Any, poisson: float) -> Any:
@@ -132,18 +153,12 @@ def system_matrix(basis: Any, poisson: float) -> Any:
     return (body + static.robin(far, poisson)).tocsc()
 
 
-def _surface_dofs(basis: Any) -> Any:
-    """Scalar degrees of freedom on the surface, from the axis outwards."""
-    dofs = basis.get_dofs("surface").flatten()
-    return dofs[np.argsort(basis.doflocs[0, dofs])]
-
-
 def _contact_quadrature(corners: Array, order: int) -> tuple[Array, Array, Array]:
-    """Gauss points, weights (with 2 pi r) and Lagrange trace on the facets between ``corners``."""
+    """Gauss points, weights in the coordinate, and Lagrange trace on the facets between ``corners``."""
     gauss, weight = np.polynomial.legendre.leggauss(order + FACET_POINTS)
     left, length = corners[:-1, None], np.diff(corners)[:, None]
     points = (left + length * (gauss + 1) / 2).ravel()
-    weights = 2 * np.pi * points * (length * weight / 2).ravel()
+    weights = (length * weight / 2).ravel()
     local = lagrange((gauss + 1) / 2, order)
     trace = np.zeros((len(points), (len(corners) - 1) * order + 1))
     for facet in range(len(corners) - 1):

@@ -13,8 +13,8 @@ from fe_contact.contact import ContactSolution
 from fe_contact.errors import IndentationNotSettled
 from fe_contact.forms import Array
 from fe_contact.numerics import ENFORCEMENTS, Numerics
+from lumped.indenter import Indenter
 from lumped.members import get
-from lumped.shapes import Shape
 
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
 RESCALINGS = 60
@@ -49,7 +49,7 @@ class ScaledStill:
     """A body without a length of its own: the mesh is scaled until the contact edge lies in its finest elements."""
 
     surface: ScaledSurface
-    profile: Shape
+    indenter: Indenter
     numerics: Numerics
 
     @property
@@ -59,29 +59,34 @@ class ScaledStill:
 
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m. Raises IndentationNotSettled."""
-        points, scale, iterations = self.surface.operator.points, guess, 0
+        operator, profile, fixed = self.surface.operator, self.indenter.profile, self.indenter.profile.fixed_radius
+        scale, iterations = guess, 0
         for attempt in range(1, RESCALINGS + 1):
-            solution, solves = _enforced(self.surface, self.profile, depth, scale, self.numerics, points < 1.0)
+            overlap = self.indenter.target.overlap(profile, scale * operator.points, depth)
+            solution, solves = _enforced(self.surface, overlap, scale, self.numerics, operator.points < 1.0)
             iterations += solution.iterations
             if not solution.converged:
                 break
-            edge = solution.edge(points)
+            edge = solution.edge(operator.points)
             if abs(edge - 1.0) <= EDGE_WINDOW:
-                force = scale * float(self.surface.operator.weights @ solution.pressure)
-                radius = self.profile.fixed_radius or scale * edge
-                return Pressed(force, radius, attempt * solves, iterations)
-            scale *= min(max(edge, 0.3), points[-1])
+                force = operator.force(scale, solution.pressure)
+                return Pressed(force, fixed or scale * edge, attempt * solves, iterations)
+            scale *= min(max(edge, 0.3), operator.points[-1])
         raise IndentationNotSettled(depth)
 
 
 @dataclass(frozen=True)
 class FixedStill:
-    """A body with lengths of its own, on one mesh in units of ``reference``, m: the contact may end anywhere in it."""
+    """A body with lengths of its own, on one mesh in units of ``reference``, m: the contact may end anywhere in it.
+
+    ``stretch``: the target's place on the surface over the mesh's coordinate.
+    """
 
     surface: ScaledSurface
-    profile: Shape
+    indenter: Indenter
     numerics: Numerics
     reference: float
+    stretch: float
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -89,25 +94,30 @@ class FixedStill:
         return self.surface.operator.degrees_of_freedom
 
     def press(self, depth: float, guess: float) -> Pressed:
-        """Press to a depth, m. Raises IndentationNotSettled, also where the contact leaves the fine mesh."""
-        points, expected = self.surface.operator.points, guess / self.reference
-        numerics = replace(self.numerics, penalty=self.numerics.penalty / expected)
-        solution, solves = _enforced(self.surface, self.profile, depth, self.reference, numerics, points < expected)
-        edge = solution.edge(points)
+        """Press to a depth, m; raises IndentationNotSettled, also where the contact leaves the fine mesh."""
+        solution, solves = self.solved(depth, guess)
+        operator, shape = self.surface.operator, self.indenter.shape
+        edge = solution.edge(operator.points)
         if not solution.converged or not np.isfinite(edge):
             raise IndentationNotSettled(depth)
-        radius = self.profile.fixed_radius or self.reference * _ending(points, solution.pressure, edge)
-        force = self.reference * float(self.surface.operator.weights @ solution.pressure)
+        radius = shape.fixed_radius or self.reference * _ending(operator.points, solution.pressure, edge)
+        force = operator.force(self.reference, solution.pressure)
         return Pressed(force, radius, solves, solution.iterations)
+
+    def solved(self, depth: float, guess: float) -> tuple[ContactSolution, int]:
+        """The contact problem at a depth, m, and how many solves it took."""
+        operator, expected = self.surface.operator, guess / self.reference
+        overlap = self.indenter.target.overlap(self.indenter.profile, self.stretch * operator.points, depth)
+        numerics = replace(self.numerics, penalty=self.numerics.penalty / expected)
+        return _enforced(self.surface, overlap, self.reference, numerics, operator.points < expected)
 
 
 def _enforced(
-    surface: ScaledSurface, profile: Shape, depth: float, scale: float, numerics: Numerics, touching: Array
+    surface: ScaledSurface, overlap: Array, scale: float, numerics: Numerics, touching: Array
 ) -> tuple[ContactSolution, int]:
     """The contact problem on the mesh scaled by ``scale``, m; and how many solves it took."""
     enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
-    height = np.minimum(profile.height(scale * surface.operator.points), BEYOND * scale)
-    problem = surface.problem(depth - height, numerics.penalty, 0.0)
+    problem = surface.problem(np.maximum(overlap, -BEYOND * scale), numerics.penalty, 0.0)
     return enforcement.enforce(problem, touching), enforcement.SOLVES
 
 

@@ -29,6 +29,9 @@ class Indenter:
     name: str = "scene"
     source: str = "scene"
 
+    def __post_init__(self) -> None:
+        self.target.check_striker(self.source, self.shape)
+
     @classmethod
     def load(cls, source: str | Path, overrides: Mapping[str, object] | None = None) -> Indenter:
         """Of a scene file or a packaged scene's name; mass and velocity may be missing. Raises BadInput."""
@@ -55,10 +58,8 @@ class Indenter:
         if not 1 <= len(depths) <= MOST_DEPTHS:
             raise BadInput(Fault("--depths", "", f"{len(depths)} depths; accepted: 1 to {MOST_DEPTHS}"))
         faults = [Fault("--depths", "", f"{d:g}: accepted {DEPTH.accepted}") for d in depths if not _accepted(d)]
-        radius = self.shape.tip_radius
-        if radius is not None:
-            reason = f"accepted below the striker's radius {radius:g} m"
-            faults += [Fault("--depths", "", f"{d:g}: {reason}") for d in depths if _accepted(d) and d >= radius]
+        wrong = [(d, self.target.check_depth(self.shape, d)) for d in depths if _accepted(d)]
+        faults += [Fault("--depths", "", f"{d:g}: {reason}") for d, reason in wrong if reason]
         if faults:
             raise BadInput(faults)
         return depths

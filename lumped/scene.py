@@ -107,6 +107,8 @@ class Scene:
         if (self.shape is None) != (self.material is None):
             missing = "striker.shape" if self.shape is None else "target.material"
             raise BadInput(Fault(self.source, missing, "missing; shape and material come together"))
+        if self.shape is not None:
+            self.target.check_striker(self.source, self.shape)
         density = None if self.material is None else self.material.density
         target = self.target if self.has_geometry else None
         faults = inertia_faults(self.source, self.model.inertia, density, target)

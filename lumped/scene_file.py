@@ -163,7 +163,7 @@ class _Reader:
         values = self.checked(part, rest, {"shape": Member(package), **common, **own})
         kind: ModuleType | None = values.pop("shape", None)
         shared = {key: values.pop(key) for key in common if key in values}
-        complete = kind is not None and values.keys() == own.keys()
+        complete = kind is not None and values.keys() >= {key for key in own if own[key].required}
         return shared, kind.of(**values) if kind is not None and complete else None
 
     def material(self) -> Material | None:

@@ -7,5 +7,6 @@ raises :class:`meshes.errors.MeshError`; nothing here knows a material or a load
 from meshes.errors import GmshMissing, MeshError
 from meshes.half_space import half_space
 from meshes.layer import layer
+from meshes.ring import ring
 
-__all__ = ["GmshMissing", "MeshError", "half_space", "layer"]
+__all__ = ["GmshMissing", "MeshError", "half_space", "layer", "ring"]

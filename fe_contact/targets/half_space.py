@@ -10,6 +10,7 @@ from fe_contact.forms import Array
 from fe_contact.numerics import Numerics
 from fe_contact.operators import surface_operator
 from fe_contact.pressing import ScaledStill, Still
+from fe_contact.targets import _half_plane as half_plane
 from lumped.indenter import Indenter
 
 
@@ -19,8 +20,10 @@ def surface(poisson: float, numerics: Numerics) -> ScaledSurface:
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
-    """The half-space at rest; ``radii``, m, of the contacts to come need not be known."""
-    return ScaledStill(surface(indenter.material.nu, numerics), indenter.profile, numerics)
+    """The half-space at rest, or the half-plane relative to its datum; ``radii``: where the surfaces overlap, m."""
+    if indenter.shape.plane:
+        return half_plane.still(indenter, radii, numerics)
+    return ScaledStill(surface(indenter.material.nu, numerics), indenter, numerics)
 
 
 @lru_cache(maxsize=32)

@@ -17,11 +17,13 @@ from lumped.load_curves.hertz import HertzImpact
 class Shape(ABC):
     """An axisymmetric convex profile: height above its lowest point over the distance r from the axis.
 
-    `name` and `keys` are those of the scene file. Lengths in m; radii are scalars or arrays.
+    `name` and `keys` are those of the scene file. Lengths in m; radii are scalars or arrays. `plane`: in plane
+    strain instead, r the distance from the plane of symmetry; forces are totals over its `length`.
     """
 
     name: ClassVar[str]
     keys: ClassVar[Mapping[str, Key]]
+    plane: ClassVar[bool] = False
 
     @abstractmethod
     def height(self, r: ArrayLike) -> NDArray[np.float64]:

@@ -22,7 +22,19 @@ class Target(ABC):
 
     @abstractmethod
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
-        """Interpenetration of the undeformed surfaces, m, positive inside; broadcasts over r and depth, m."""
+        """Interpenetration of the undeformed surfaces, m, positive inside; broadcasts over r and depth, m.
+
+        `r` is the place on the surface, zero at first touch: a radius, m, or what else the target counts in.
+        """
+
+    def check_striker(self, source: str, shape: Shape) -> None:
+        """Raise BadInput, naming the key, for a striker which this target is not for; here any will do."""
+        return
+
+    def check_depth(self, shape: Shape, depth: float) -> str:
+        """What is wrong with a depth, m, of this shape; empty where nothing is."""
+        radius = shape.tip_radius
+        return f"accepted below the striker's radius {radius:g} m" if radius is not None and depth >= radius else ""
 
     def to_dict(self) -> dict[str, Any]:
         """The geometry's part of the target's table."""

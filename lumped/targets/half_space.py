@@ -4,22 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.keys import Key
+from lumped.errors import BadInput, Fault
+from lumped.keys import Key, Number
 from lumped.shapes.base import Shape
 from lumped.targets.base import Target
 
-KEYS: Mapping[str, Key] = {}
+KEYS: Mapping[str, Key] = {"datum_depth": Number(1e-9, 1e9, "m", required=False)}
 
 
 @dataclass(frozen=True)
 class HalfSpace(Target):
-    """Everything below a plane; values are those of the infinite body. Its inertia is not available yet."""
+    """Everything below a plane; values are those of the infinite body. Its inertia is not available yet.
 
+    `datum_depth`, m: in plane strain depth is measured relative to the point so far below; None otherwise.
+    """
+
+    datum_depth: float | None = None
     name: ClassVar[str] = "half_space"
     keys: ClassVar[Mapping[str, Key]] = KEYS
     has_inertia: ClassVar[bool] = False
@@ -28,7 +33,22 @@ class HalfSpace(Target):
         """depth - height(r)."""
         return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
 
+    def check_striker(self, source: str, shape: Shape) -> None:
+        """A half-plane has no finite compliance of its own: plane strain needs a datum, and only that."""
+        if shape.plane and self.datum_depth is None:
+            reason = (
+                "missing; in plane strain the half-plane has no finite compliance; accepted: a depth, m, relative to "
+                'which the indentation is measured, or target.shape = "layer"'
+            )
+            raise BadInput(Fault(source, "target.datum_depth", reason))
+        if not shape.plane and self.datum_depth is not None:
+            raise BadInput(Fault(source, "target.datum_depth", "only for a cylinder; accepted: leave it out"))
 
-def of() -> HalfSpace:
-    """The half-space has no dimensions."""
-    return HalfSpace()
+    def to_dict(self) -> dict[str, Any]:
+        """Its part of the target's table."""
+        return {"shape": self.name} | ({} if self.datum_depth is None else {"datum_depth": self.datum_depth})
+
+
+def of(datum_depth: float | None = None) -> HalfSpace:
+    """The half-space, or the half-plane with a datum, m."""
+    return HalfSpace(datum_depth)

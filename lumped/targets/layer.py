@@ -36,6 +36,12 @@ class Layer(Target):
         """depth - height(r)."""
         return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
 
+    def check_depth(self, shape: Shape, depth: float) -> str:
+        """Neither through the layer nor past the equator."""
+        if depth >= self.thickness:
+            return f"accepted below the layer's thickness {self.thickness:g} m"
+        return super().check_depth(shape, depth)
+
 
 def of(thickness: float, base: str) -> Layer:
     """A layer of `thickness`, m, on a `base`."""

@@ -1,0 +1,55 @@
+"""The ring, held outside, struck from inside: half of it laid flat, with its exact arcs in the strain."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from skfem import Basis
+
+import meshes
+from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.forms import Array, isotropic, polar_stiffness
+from fe_contact.numerics import Numerics
+from fe_contact.operators import ELEMENTS, condensed
+from fe_contact.pressing import FixedStill, Still
+from fe_contact.surface import flat
+from fe_contact.targets._zone import REFINEMENT, Zone, held
+from lumped.indenter import Indenter
+from lumped.targets.ring import Ring
+
+WIDEST = 2.7  # rad: the contact zone ends before the far side of the ring
+
+
+def still(indenter: Indenter, angles: Array, numerics: Numerics) -> Still:
+    """The ring at rest; ``angles``, rad: where the undeformed surfaces overlap at the depths to come.
+
+    The whole ring is meshed, so that there is no far field.
+    """
+    target = indenter.target
+    assert isinstance(target, Ring)
+    zone = Zone.of(indenter.shape, np.minimum(angles, WIDEST))
+    angle = min(zone.reference, WIDEST)
+    surface = _surface(
+        indenter.material.nu,
+        REFINEMENT * numerics.elements_per_contact,
+        numerics.order,
+        min(zone.smallest * zone.reference / angle, 1.0),
+        target.thickness / (target.inner_radius * angle),
+        angle,
+    )
+    return FixedStill(surface, indenter, numerics, target.inner_radius * angle, angle)
+
+
+@lru_cache(maxsize=32)
+def _surface(
+    poisson: float, elements: float, order: int, smallest: float, thickness: float, angle: float
+) -> ScaledSurface:
+    """Condensed for a contact zone of unit arc length, which spans ``angle``, rad; ``thickness`` in its units."""
+    mesh = meshes.ring(elements, smallest, thickness, math.pi / angle)
+    basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
+    matrix = polar_stiffness(basis, isotropic(1.0 - poisson**2, poisson), 1.0 / angle).tocsc()
+    fixed = held(basis, along=("axis", "side", "base"), across=("base",))
+    surface = flat(basis, 2, lambda place: np.cos(angle * place))
+    return ScaledSurface(condensed(basis, matrix, fixed, poisson, surface))

@@ -1,0 +1,30 @@
+"""The parabolic cylinder which stands for a round one when `model.profile = "parabola"`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.shapes.cylinder import Cylinder
+
+
+@dataclass(frozen=True)
+class ParabolicCylinder(Cylinder):
+    """h(r) = r^2/(2R), R in m: no shape of a scene file, but what its cylinder may resolve to."""
+
+    name: ClassVar[str] = "parabolic_cylinder"
+
+    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+        """r^2/(2R)."""
+        return np.asarray(np.asarray(r, dtype=float) ** 2 / (2.0 * self.radius))
+
+    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+        """r/R."""
+        return np.asarray(np.abs(np.asarray(r, dtype=float)) / self.radius)
+
+    def resolved(self, profile: str) -> Cylinder:
+        """Itself."""
+        return self

@@ -1,0 +1,84 @@
+"""The cylinder whose axis lies parallel to the surface: plane strain, totals over its length."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.errors import BadInput, Fault
+from lumped.keys import Key, Number, check_fields
+from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.hertz import HertzImpact
+from lumped.shapes.base import Shape
+
+KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "length": Number(1e-9, 1e6, "m")}
+
+
+@dataclass(frozen=True)
+class Cylinder(Shape):
+    """A cylinder of this radius and length, m; r is the distance from the plane through its axis. Raises BadInput."""
+
+    radius: float
+    length: float
+    name: ClassVar[str] = "cylinder"
+    keys: ClassVar[Mapping[str, Key]] = KEYS
+    plane: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        check_fields("cylinder", self, KEYS)
+
+    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+        """R - sqrt(R^2 - r^2), which cancels no digit; infinite beyond R."""
+        ratio = np.abs(np.asarray(r, dtype=float)) / self.radius
+        rise = self.radius * ratio**2 / (1.0 + np.sqrt(np.maximum(1.0 - ratio**2, 0.0)))
+        return np.where(ratio <= 1.0, rise, np.inf)
+
+    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+        """r/sqrt(R^2 - r^2), infinite from R on."""
+        ratio = np.abs(np.asarray(r, dtype=float)) / self.radius
+        with np.errstate(divide="ignore"):
+            return np.where(ratio < 1.0, ratio / np.sqrt(np.maximum(1.0 - ratio**2, 0.0)), np.inf)
+
+    def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
+        """None: dimensionality reduction is for axisymmetric contact. Raises BadInput."""
+        reason = "no dimensionality reduction in plane strain; accepted: an axisymmetric shape"
+        raise BadInput(Fault("cylinder", "striker.shape", reason))
+
+    @property
+    def exponent_of_force(self) -> float:
+        """1, as Table 1 has it: F = (pi/4) E* l depth."""
+        return 1.0
+
+    @property
+    def tip_radius(self) -> float:
+        """Its radius, m."""
+        return self.radius
+
+    @property
+    def load_curve(self) -> LoadCurve:
+        """None: the half-plane has no finite compliance, a layer's depends on its thickness. Raises BadInput."""
+        reason = "no load curve of a half-space in plane strain; accepted: layer"
+        raise BadInput(Fault("cylinder", "target.shape", reason))
+
+    def resolved(self, profile: str) -> Shape:
+        """Itself, or the parabola with the same curvature."""
+        from lumped.shapes._parabolic_cylinder import ParabolicCylinder
+
+        return ParabolicCylinder(self.radius, self.length) if profile == "parabola" else self
+
+    def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
+        """Scales of the elastic impact, after Popov's F = (pi/4) E* l depth."""
+        stiffness = 0.25 * math.pi * modulus * self.length
+        period = math.sqrt(mass / stiffness)
+        depth = velocity * period
+        return HertzImpact(math.pi * period, depth, stiffness * depth, math.sqrt(self.radius * depth))
+
+
+def of(radius: float, length: float) -> Cylinder:
+    """A cylinder of `radius` and `length`, m."""
+    return Cylinder(radius, length)

@@ -1,0 +1,58 @@
+"""A ring whose outer surface is held, struck from inside by a cylinder."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.errors import BadInput, Fault
+from lumped.keys import Key, Number, check_fields
+from lumped.shapes.base import Shape
+from lumped.targets.base import Target
+
+KEYS: Mapping[str, Key] = {"inner_radius": Number(1e-9, 1e4, "m"), "thickness": Number(1e-9, 1e4, "m")}
+
+
+@dataclass(frozen=True)
+class Ring(Target):
+    """A ring of these dimensions, m; its places are angles from the line of motion, rad. Raises BadInput."""
+
+    inner_radius: float
+    thickness: float
+    name: ClassVar[str] = "ring"
+    keys: ClassVar[Mapping[str, Key]] = KEYS
+    has_inertia: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        check_fields("ring", self, KEYS)
+
+    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
+        """D cos(theta) + sqrt(R^2 - D^2 sin^2(theta)) - inner_radius, D = clearance + depth; `r` is theta."""
+        radius, angle = shape.tip_radius or 0.0, np.asarray(r, dtype=float)
+        clearance = self.inner_radius - radius
+        offset = clearance + np.asarray(depth, dtype=float)
+        # sqrt(R^2 - s^2) - R without losing digits, s = D sin(theta); D cos(theta) - clearance likewise
+        across = offset * np.sin(angle)
+        sagitta = across**2 / (radius + np.sqrt(np.maximum(radius**2 - across**2, 0.0)))
+        return np.asarray(np.asarray(depth) - 2.0 * offset * np.sin(0.5 * angle) ** 2 - sagitta)
+
+    def check_striker(self, source: str, shape: Shape) -> None:
+        """Raise BadInput for a striker that is no cylinder, or does not fit in."""
+        if shape.name not in ("cylinder", "parabolic_cylinder"):
+            raise BadInput(Fault(source, "striker.shape", f"{shape.name}: a ring is struck by a cylinder"))
+        if (shape.tip_radius or 0.0) >= self.inner_radius:
+            reason = f"{shape.tip_radius:g}: accepted below the ring's inner radius {self.inner_radius:g} m"
+            raise BadInput(Fault(source, "striker.radius", reason))
+
+    def check_depth(self, shape: Shape, depth: float) -> str:
+        """Not through the ring."""
+        return f"accepted below the ring's thickness {self.thickness:g} m" if depth >= self.thickness else ""
+
+
+def of(inner_radius: float, thickness: float) -> Ring:
+    """A ring of `inner_radius` and `thickness`, m."""
+    return Ring(inner_radius, thickness)
