@@ -34,11 +34,15 @@ Touching = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True, eq=False)
 class PressedSurface:
-    """What contact knows of a body: condensed stiffness (n, n), trace (q, n), weights (q,)."""
+    """What contact knows of a body: condensed stiffness (n, n), trace (q, n), weights (q,).
+
+    ``recurring``: whether the same sets of points touch again and again, so that their answers are worth keeping.
+    """
 
     stiffness: Array
     trace: Array
     weights: Array
+    recurring: bool = True
 
 
 @dataclass(frozen=True)
@@ -85,7 +89,7 @@ def solve(problem: ContactProblem, touching: Touching) -> ContactSolution:
     before: _Point | None = None
     held = touching.tobytes()
     for iteration in range(1, MAX_ITERATIONS + 1):
-        answer = _answer(problem.surface, problem.penalty, held)
+        answer = _answer(problem.surface, problem.penalty, held) if problem.surface.recurring else _once(problem, held)
         gap, retreat = answer.gap(problem)
         found = (gap > 0.0).tobytes()
         if found == held:
@@ -129,6 +133,32 @@ class _Answer:
         retreat = problem.yielding * force
         gap -= retreat * self.lifted
         return gap, retreat
+
+
+@dataclass(frozen=True, eq=False)
+class _Once:
+    """The same for one overlap: gap (q,) and retreat."""
+
+    left: Array
+    retreat: float
+    springs: Array
+
+    def gap(self, problem: ContactProblem) -> tuple[Array, float]:
+        """Gap (q,) and the striker's retreat."""
+        return self.left, self.retreat
+
+
+def _once(problem: ContactProblem, touching: bytes) -> _Once:
+    held = np.frombuffer(touching, bool)
+    trace, springs = problem.surface.trace[held], problem.penalty * problem.surface.weights * held
+    weighted = trace.T * springs[held]
+    overlaps = np.column_stack([problem.overlap, np.ones_like(problem.overlap)])
+    _, displacement, failure = dposv(problem.surface.stiffness + weighted @ trace, weighted @ overlaps[held])
+    if failure:
+        raise FloatingPointError("the condensed stiffness lost its positive definiteness")
+    gap, lifted = (overlaps - problem.surface.trace @ displacement).T
+    retreat = problem.yielding * float(springs @ gap) / (1.0 + problem.yielding * float(springs @ lifted))
+    return _Once(gap - retreat * lifted, retreat, springs)
 
 
 @lru_cache(maxsize=SETS_KEPT)

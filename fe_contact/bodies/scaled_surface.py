@@ -23,14 +23,19 @@ from fe_contact.operators import SurfaceOperator, monomials
 
 @dataclass(frozen=True)
 class ScaledSurface:
-    """Contact surface of the half-space; ``operator`` is condensed for contact radius 1 and E* = 1."""
+    """Contact surface of the half-space; ``operator`` is condensed for contact radius 1 and E* = 1.
+
+    ``breathes``: whether the mesh follows the contact; where it stays, the same points seldom touch twice.
+    """
 
     operator: SurfaceOperator
+    breathes: bool = True
 
     @cached_property
     def _pressed(self) -> PressedSurface:
         """What contact knows of it: one object, since the answers to a surface are kept by its identity."""
-        return PressedSurface(self.operator.stiffness, self.operator.trace, self.operator.weights)
+        operator = self.operator
+        return PressedSurface(operator.stiffness, operator.trace, operator.weights, self.breathes)
 
     def problem(self, overlap: Array, penalty: float, yielding: float) -> ContactProblem:
         """Contact problem on the unit mesh.

@@ -85,7 +85,7 @@ def _surface(poisson: float, elements: float, order: int, smallest: float, size:
     basis = Basis(meshes.layer(elements, smallest, size, size), ELEMENTS[order](), intorder=2 * order)
     matrix = plane_stiffness(basis, isotropic(1.0 - poisson**2, poisson)).tocsc()
     fixed = held(basis, along=("axis", "base"), across=("base",))
-    return ScaledSurface(condensed(basis, matrix, fixed, poisson, flat(basis, 2)))
+    return ScaledSurface(condensed(basis, matrix, fixed, poisson, flat(basis, 2)), breathes=False)
 
 
 @lru_cache(maxsize=32)

@@ -54,4 +54,5 @@ def _surface(
     law = isotropic(1.0 - poisson**2, poisson)
     matrix = plane_stiffness(basis, law) if plane else stiffness(basis, law)
     fixed = held(basis, along=("axis", "side", "base") if bonded else ("axis", "side"), across=("base",))
-    return ScaledSurface(condensed(basis, matrix.tocsc(), fixed, poisson, flat(basis, 2 if plane else 3)))
+    operator = condensed(basis, matrix.tocsc(), fixed, poisson, flat(basis, 2 if plane else 3))
+    return ScaledSurface(operator, breathes=False)

@@ -52,4 +52,4 @@ def _surface(
     matrix = polar_stiffness(basis, isotropic(1.0 - poisson**2, poisson), 1.0 / angle).tocsc()
     fixed = held(basis, along=("axis", "side", "base"), across=("base",))
     surface = flat(basis, 2, lambda place: np.cos(angle * place))
-    return ScaledSurface(condensed(basis, matrix, fixed, poisson, surface))
+    return ScaledSurface(condensed(basis, matrix, fixed, poisson, surface), breathes=False)

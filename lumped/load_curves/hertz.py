@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -57,3 +58,15 @@ def hertz_impact(radius: float, modulus: float, mass: float, velocity: float) ->
     duration = 2.868265642 * (inertia**2 / (radius * velocity)) ** 0.2
     force = 4.0 / 3.0 * modulus * (radius * depth) ** 0.5 * depth
     return HertzImpact(duration, depth, force, (radius * depth) ** 0.5)
+
+
+def power_impact(curve: LoadCurve, alpha: float, modulus: float, mass: float, velocity: float) -> HertzImpact:
+    """Scales of the elastic impact on a curve F = E* D depth^alpha, modulus in Pa.
+
+    It lasts 2 (d_m/v) int_0^1 dx/sqrt(1 - x^(alpha + 1)), d_m the depth at which nothing moves.
+    """
+    factor, power = float(curve.force(1.0)), alpha + 1.0
+    depth = math.pow(0.5 * power * (mass / modulus / factor) * velocity**2, 1.0 / power)
+    integral = math.sqrt(math.pi) * math.gamma(1.0 + 1.0 / power) / math.gamma(0.5 + 1.0 / power)
+    force = modulus * factor * math.pow(depth, alpha)
+    return HertzImpact(2.0 * depth / velocity * integral, depth, force, float(curve.contact_radius(depth)))

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.keys import Key, Number, check_fields
-from lumped.load_curves.hertz import HertzImpact
-from lumped.load_curves.power import Power
+from lumped.load_curves import cone
+from lumped.load_curves.hertz import HertzImpact, power_impact
 from lumped.shapes.base import Shape
 
 KEYS: Mapping[str, Key] = {"angle": Number(0.01, 80.0, "degrees, between face and undeformed surface")}
@@ -47,9 +47,9 @@ class Cone(Shape):
         return 2.0
 
     @property
-    def load_curve(self) -> Power:
-        """Love's and Sneddon's closed form, F = (2/pi) E* depth^2/tan(angle)."""
-        return Power(self._tangent, 1.0)
+    def load_curve(self) -> cone.Cone:
+        """Sneddon's closed form, F = (2/pi) E* depth^2/tan(angle)."""
+        return cone.Cone(self.angle)
 
     def resolved(self, profile: str) -> Shape:
         """Itself: it has no other profile."""
@@ -57,7 +57,7 @@ class Cone(Shape):
 
     def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
         """Scales of the elastic impact, exact."""
-        return self.load_curve.impact(modulus, mass, velocity)
+        return power_impact(self.load_curve, self.exponent_of_force, modulus, mass, velocity)
 
     @property
     def _tangent(self) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.keys import Key, Number, check_fields
-from lumped.load_curves.hertz import HertzImpact
+from lumped.load_curves.hertz import HertzImpact, power_impact
 from lumped.load_curves.power import Power
 from lumped.shapes.base import Shape
 
@@ -48,7 +48,7 @@ class PowerProfile(Shape):
     @property
     def exponent_of_force(self) -> float:
         """1 + 1/n."""
-        return self.load_curve.alpha
+        return 1.0 + 1.0 / self.exponent
 
     @property
     def load_curve(self) -> Power:
@@ -61,7 +61,7 @@ class PowerProfile(Shape):
 
     def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
         """Scales of the elastic impact, exact."""
-        return self.load_curve.impact(modulus, mass, velocity)
+        return power_impact(self.load_curve, self.exponent_of_force, modulus, mass, velocity)
 
 
 def of(coefficient: float, exponent: float) -> PowerProfile:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.keys import Key, Number, check_fields
-from lumped.load_curves.flat_punch import FlatPunch
-from lumped.load_curves.hertz import HertzImpact
+from lumped.load_curves import fixed_area
+from lumped.load_curves.hertz import HertzImpact, power_impact
 from lumped.shapes.base import Shape
 
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}
@@ -51,9 +51,9 @@ class Punch(Shape):
         return self.radius
 
     @property
-    def load_curve(self) -> FlatPunch:
+    def load_curve(self) -> fixed_area.Punch:
         """Boussinesq's closed form."""
-        return FlatPunch(self.radius)
+        return fixed_area.Punch(self.radius)
 
     def resolved(self, profile: str) -> Shape:
         """Itself: it has no other profile."""
@@ -61,7 +61,7 @@ class Punch(Shape):
 
     def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
         """Scales of the elastic impact, exact."""
-        return self.load_curve.impact(modulus, mass, velocity)
+        return power_impact(self.load_curve, self.exponent_of_force, modulus, mass, velocity)
 
 
 def of(radius: float) -> Punch:
