@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from fe_contact.bodies.scaled_surface import ScaledSurface
-from fe_contact.contact import ContactSolution
+from fe_contact.contact import ContactSolution, Touching
 from fe_contact.errors import IndentationNotSettled
 from fe_contact.forms import Array
 from fe_contact.numerics import ENFORCEMENTS, Numerics
@@ -113,7 +113,7 @@ class FixedStill:
 
 
 def _enforced(
-    surface: ScaledSurface, overlap: Array, scale: float, numerics: Numerics, touching: Array
+    surface: ScaledSurface, overlap: Array, scale: float, numerics: Numerics, touching: Touching
 ) -> tuple[ContactSolution, int]:
     """The contact problem on the mesh scaled by ``scale``, m; and how many solves it took."""
     enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)

@@ -65,7 +65,7 @@ class DatumStill:
         """How far the datum sinks under the pressure, m."""
         operator = self.block.surface.operator
         displacement = operator.solve(operator.trace.T @ (operator.weights * solution.pressure))
-        return -(_at(operator.basis, self.datum) @ displacement[1::2]).item()
+        return -float((_at(operator.basis, self.datum) @ displacement[1::2])[0])
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:

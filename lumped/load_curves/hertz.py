@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.half_space import HalfSpaceCurve
 
 

@@ -28,8 +28,13 @@ SHAPES = {
     "cone": {"angle": 10.0},
     "power": {"coefficient": 100.0, "exponent": 3.0},
     "punch": {"radius": 0.01},
+    "cylinder": {"radius": 0.01, "length": 0.02},
 }
-TARGETS: dict[str, dict[str, object]] = {"half_space": {}, "layer": {"thickness": 0.01, "base": "bonded"}}
+TARGETS: dict[str, dict[str, object]] = {
+    "half_space": {},
+    "layer": {"thickness": 0.01, "base": "bonded"},
+    "ring": {"inner_radius": 0.02, "thickness": 0.005},
+}
 
 
 def test_samples_cover_every_member() -> None:
