@@ -1,0 +1,48 @@
+"""``fe-contact restitution``: restitution asked for against obtained, for every law and damping formula."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import TYPE_CHECKING, NamedTuple
+
+from fe_contact.commands import base
+
+if TYPE_CHECKING:
+    from lumped.restitution_table import Line
+
+SUMMARY = "restitution asked for against obtained: every law, exact and published dampings, both exits"
+
+
+class Laws(NamedTuple):
+    """What the folder of results is called after."""
+
+    name: str = "laws"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """[--out DIR] [--json] [--quiet]."""
+    base.output_arguments(parser)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Simulate, write, say how far each formula is off; 0."""
+    from fe_contact.report.restitution import plot_restitution
+    from fe_contact.validation.restitution_files import write_restitution
+    from lumped.restitution_table import table
+
+    where = base.folder(args, "restitution", Laws())
+    progress = base.progress_of(args)
+    progress("impacts")
+    lines = table()
+    content = write_restitution(lines, where)
+    progress("chart")
+    plot_restitution(lines, where)
+    print(json.dumps(content, allow_nan=False) if args.json else "\n".join([*map(_said, lines), f"written to {where}"]))
+    return base.DONE
+
+
+def _said(line: Line) -> str:
+    worst = line.worst
+    off = "nothing obtained" if worst is None else f"{worst[0]:+.1e} at most, at e = {worst[1]:g}"
+    return f"{line.law:16s} {line.damping:20s} exit {line.exit:6s} {off}"
