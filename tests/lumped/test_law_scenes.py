@@ -1,0 +1,144 @@
+"""Scene files with a law of their own: every key, every fault with its cure, and scenes with geometry beside it."""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from lumped import BadInput, Scene, laws, simulate
+from lumped.scene_file import read
+
+BARE: dict[str, Any] = {
+    "striker": {"mass": 1.0, "velocity": 1.0},
+    "law": {"name": "jankowski", "k": 1e6, "e": 0.6, "alpha": 1.4, "gap": 1e-12, "exit": "force"},
+}
+FORCE_LAWS = sorted(set(laws.available()) - {"correspondence", "ting", "mdr"})
+
+
+def changed(**law: Any) -> dict[str, Any]:
+    table = copy.deepcopy(BARE)
+    table["law"] = {key: value for key, value in {**table["law"], **law}.items() if value is not None}
+    return table
+
+
+def of_law(name: str, **values: Any) -> dict[str, Any]:
+    return {"striker": dict(BARE["striker"]), "law": {"name": name, **values}}
+
+
+def faults(table: dict[str, Any]) -> str:
+    with pytest.raises(BadInput) as caught:
+        read(table, "scene.toml")
+    return str(caught.value)
+
+
+def test_a_law_alone_is_a_scene_and_comes_back_from_its_tables() -> None:
+    scene, _ = read({**BARE, "target": {"mass": 3.0}}, "scene.toml")
+    assert scene.reduced_mass == pytest.approx(0.75, rel=1e-15)
+    assert not scene.has_geometry
+    again = Scene.from_dict(scene.to_dict())
+    assert again.law == scene.law
+    assert again.to_dict() == scene.to_dict()
+
+
+@pytest.mark.parametrize("name", FORCE_LAWS)
+def test_every_key_of_a_law_is_read(name: str) -> None:
+    """Each value reaches the law, or something that it has computed from it."""
+    keys, k = laws.get(name).KEYS, {"k": 1e6}
+    bare = read(of_law(name, **k, **({"e": 0.5} if "e" in keys else {})), "scene.toml")[0]
+    before = laws.get(name).of(bare).parameters
+    values = {"k": 2e6, "alpha": 1.7, "gap": 1e-3, "exit": "depth", "e": 0.7}
+    for key, value in values.items():
+        if key in keys:
+            table = of_law(name, **{**k, **({"e": 0.5} if "e" in keys else {}), key: value})
+            assert laws.get(name).of(read(table, "scene.toml")[0]).parameters != before, key
+
+
+@pytest.mark.parametrize("name", [name for name in FORCE_LAWS if "damping" in laws.get(name).KEYS])
+def test_a_formula_is_for_e_and_no_other_damping(name: str) -> None:
+    formula = laws.get(name).KEYS["damping"].options[-1]
+    read(of_law(name, k=1e6, e=0.9, damping=formula), "scene.toml")
+    assert "law.damping" in faults(of_law(name, k=1e6, e=0.9, damping="guess"))
+    own = set(laws.get(name).KEYS) & {"xi", "c", "chi", "A", "alpha_t"}
+    for key in own:
+        assert "accepted: e with it" in faults(of_law(name, k=1e6, damping=formula, **{key: 0.1}))
+
+
+def test_two_dampings_are_one_too_many() -> None:
+    assert "law.xi: e, xi are given; accepted: one of e or xi" in faults(changed(xi=0.3))
+
+
+def test_a_damped_law_without_damping_says_what_it_takes() -> None:
+    assert "law.xi: missing; accepted: the damping: one of e or xi" in faults(changed(e=None))
+
+
+def test_a_law_without_stiffness_and_geometry_says_what_it_takes() -> None:
+    said = faults(changed(k=None))
+    assert "law.k: missing" in said
+    assert "a scene with shape and material" in said
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("k", -1.0), ("k", 0.0), ("k", math.nan), ("e", 0.0), ("e", 1.2), ("alpha", 0.7), ("alpha", 6.0), ("gap", -1e-3)],
+)
+def test_numbers_out_of_range_name_their_key(key: str, value: float) -> None:
+    assert f"law.{key}: " in faults(changed(**{key: value}))
+
+
+def test_an_unknown_key_names_the_nearest() -> None:
+    assert "did you mean alpha?" in faults(changed(alfa=1.5))
+
+
+def test_an_unknown_law_names_the_nearest() -> None:
+    assert "did you mean jankowski?" in faults(changed(name="jankovski"))
+
+
+def test_a_law_alone_has_no_inertia_of_bodies() -> None:
+    assert "model.inertia" in faults({**BARE, "model": {"inertia": True}})
+
+
+@pytest.mark.parametrize("name", ["ting", "mdr", "correspondence"])
+def test_a_law_of_the_half_space_needs_one(name: str) -> None:
+    assert "shape" in faults(of_law(name))
+
+
+@pytest.mark.parametrize("name", ["ting", "mdr"])
+def test_a_law_of_one_impact_follows_no_more(name: str, impact: Callable[..., Scene]) -> None:
+    table = impact(0.5, (0.5,), (1.0,)).to_dict()
+    table["motion"]["impacts"] = 2
+    table["law"] = {"name": name}
+    with pytest.raises(BadInput, match=r"motion\.impacts"):
+        simulate(laws.get(name).of(read(table)[0]), read(table)[0], 1e-3)
+
+
+def test_the_bilinear_loop_takes_its_three_numbers_together() -> None:
+    loop = {"k1": 3e6, "k2": 1e6, "yield_depth": 1e-3}
+    read(of_law("impact_bilinear", **loop), "scene.toml")
+    assert "law.yield_depth: missing" in faults(of_law("impact_bilinear", k1=3e6, k2=1e6))
+    assert "law.k2" in faults(of_law("impact_bilinear", **{**loop, "k2": 4e6}))
+    assert "either, not both" in faults(of_law("impact_bilinear", **loop, e=0.5))
+
+
+@pytest.mark.parametrize("name", FORCE_LAWS)
+def test_a_law_takes_what_it_needs_from_geometry_and_material(name: str, impact: Callable[..., Scene]) -> None:
+    """Its stiffness from Hertz' impact with the relaxed modulus, its restitution from the exact law."""
+    scene = impact(0.5, (0.5,), (1.0,))
+    exact = simulate(laws.get("mdr").of(scene), scene, 1e-4).quantities["restitution"].value
+    found = simulate(laws.get(name).of(scene), scene, 1e-6)
+    damped = "e" in laws.get(name).KEYS
+    assert found.quantities["restitution"].value == pytest.approx(exact if damped else 1.0, abs=1e-6)
+    assert found.history.contact_radius.max() > 0.0
+    assert "Hertz" in found.message
+
+
+@pytest.mark.parametrize("name", [name for name in FORCE_LAWS if name != "impact_bilinear"])
+def test_undamped_and_of_geometry_every_law_peaks_as_hertz_does(name: str, impact: Callable[..., Scene]) -> None:
+    scene = impact(1.0)
+    hertz = scene.geometry.shape.hertz_impact(scene.contact_modulus.relaxed, scene.mass, scene.velocity)
+    found = simulate(laws.get(name).of(scene), scene, 1e-6).quantities
+    assert found["peak_force"].value == pytest.approx(hertz.force, rel=1e-9)
+    assert found["restitution"].value == pytest.approx(1.0, abs=1e-9)
