@@ -34,7 +34,7 @@ from lumped.members import get
 SAFETY = 1.25
 LEAST_ORDER = {"penalty": 1, "far_field": 2}
 MESH_ORDER = {1: 0.5, 2: 1, 3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
-LEAST_HALVED = 48  # steps below which halving them twice would leave too few to tell anything
+LEAST_HALVED = 40  # steps below which halving them twice would leave too few to tell anything
 LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 20.0, "far_radius": 5.0}
 AS_EXPECTED = (0.6, 2.5)  # shares of the expected ratio of changes that show the order; faster does no harm
 CAUSES = ("mesh", "penalty", "time_step", "far_field")

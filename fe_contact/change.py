@@ -6,13 +6,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
-from fe_contact.curve import DENSE, Curve, Reading
+from fe_contact.curve import DENSE, PEAK_SHARE, Curve, Reading
 from fe_contact.forms import Array
 
-PEAK_SHARE = 0.98  # the force's own error is the largest one while the force exceeds this share of its peak
-SMOOTHING = 0.04  # share of the contact over which a pointwise change counts as the error of its neighbours
+SMOOTHING = 0.06  # share of the contact over which a pointwise change counts as the error of its neighbours
 LATE = int(np.searchsorted(DENSE, 0.75))  # from here on path and speed count for those at separation
 
 
@@ -34,7 +32,7 @@ class Change:
         first, depth = self.first, self._depth_change
         speed = abs(first.leaving_speed) if first.separated else np.inf
         around = {
-            "peak_force": float(self._force_change[self._near_peak].max()),
+            "peak_force": float(self._force_change[first.near_peak].max()),
             "peak_time": self._peak_time,
             "peak_depth": float(depth[first.dense.depth > PEAK_SHARE * first.dense.depth.max()].max()),
             "duration": float(depth[LATE:].max()) / speed,
@@ -85,16 +83,11 @@ class Change:
     @property
     def _peak_time(self) -> float:
         """How far a change of the force's slope moves its peak: slope over curvature, s."""
-        time, force, near = self.first.dense_time, self.first.dense_force, np.flatnonzero(self._near_peak)
+        time, force, near = self.first.dense_time, self.first.dense_force, self.first.near_peak
         top = min(max(int(force.argmax()), 1), len(force) - 2)
-        left, right = min(int(near[0]), top - 1), max(int(near[-1]), top + 1)
+        left, right = min(near.start, top - 1), max(near.stop - 1, top + 1)
         slope = np.abs(np.gradient(self._second.force - force, time)[left : right + 1]).max()
         falling = (force[top] - force[right]) / (time[right] - time[top])
         rising = (force[top] - force[left]) / (time[top] - time[left])
         curvature = 2 * (falling + rising) / (time[right] - time[left])
         return float(min(slope / abs(curvature), self.first.duration)) if curvature else self.first.duration
-
-    @cached_property
-    def _near_peak(self) -> npt.NDArray[np.bool_]:
-        force = self.first.dense_force
-        return np.asarray(force > PEAK_SHARE * force.max())

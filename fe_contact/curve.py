@@ -13,10 +13,12 @@ from functools import cached_property
 
 import numpy as np
 
+from fe_contact.contact_radius import squared_radius
 from fe_contact.forms import Array
-from fe_contact.local_polynomial import LocalPolynomials, peak
+from fe_contact.local_polynomial import PLACES, LocalPolynomials, fitted_peak, peak
 from fe_contact.march import March, Strike
 
+PEAK_SHARE = 0.98  # of its peak above which a force is near it
 SHARES = np.linspace(0.0, 1.0, 601)
 DENSE = SHARES**2 * (3 - 2 * SHARES)  # shares of the contact, crowded at its ends, for peaks and norms
 
@@ -50,7 +52,7 @@ class Curve:
     def of(cls, march: March, strike: Strike) -> Curve:
         """The curve through the steps of a march."""
         duration = float(march.time[-1])
-        shares, squares = _radius_through(march)
+        shares, squares = squared_radius(march)
         return cls(
             strike=strike,
             duration=duration,
@@ -126,9 +128,20 @@ class Curve:
         return -float(self.dense_velocity[-1])
 
     @cached_property
+    def near_peak(self) -> slice:
+        """Dense times from the first to the last at which the force is nearly as large as ever."""
+        near = np.flatnonzero(self.dense_force > PEAK_SHARE * self.dense_force.max())
+        return slice(int(near[0]), int(near[-1]) + 1)
+
+    @property
+    def _force_peak(self) -> tuple[float, float]:
+        near = self.dense_time[self.near_peak]
+        return fitted_peak(float(near[0]), float(near[-1]), self.force(np.linspace(near[0], near[-1], PLACES)))
+
+    @cached_property
     def quantities(self) -> dict[str, float | None]:
         """The numbers of ``result.json`` but the history's own error."""
-        peak_time, peak_force = peak(self.dense_time, self.dense_force)
+        peak_time, peak_force = self._force_peak
         _, peak_depth = peak(self.dense_time, self.dense.depth)
         impulse = float(self.mean_force[-1]) * self.duration
         return {
@@ -139,25 +152,6 @@ class Curve:
             "restitution": self.leaving_speed / self.strike.velocity if self.separated else None,
             "impulse": impulse,
         }
-
-
-def _radius_through(march: March) -> tuple[Array, Array]:
-    """Share of the contact and squared radius, from touch to the end, with the turn at the greatest depth.
-
-    The radius grows until then and shrinks after it with another slope: a line drawn from the last sample
-    before to the first one after would cut the corner.
-    """
-    duration = float(march.time[-1])
-    keep = march.radius_time < duration * (1 - 1e-9)
-    time, square = march.radius_time[keep], march.radius[keep] ** 2
-    last = 0.0 if march.separated else float(march.radius[-1] ** 2)
-    turn, _ = peak(march.time, march.depth)
-    growing = int(np.searchsorted(time, turn))
-    if 3 <= growing < len(time):
-        before = slice(growing - 3, growing)
-        (at_turn,), _ = LocalPolynomials.through(time[before], square[None, before]).at(np.array([turn]))
-        time, square = np.insert(time, growing, turn), np.insert(square, growing, at_turn[0])
-    return np.concatenate([[0.0], time / duration, [1.0]]), np.concatenate([[0.0], square, [last]])
 
 
 def extrapolated(fine: Curve, coarse: Curve, order: int) -> Curve:

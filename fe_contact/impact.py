@@ -18,7 +18,7 @@ from fe_contact.steps import State, Step
 from fe_contact.time_grid import share_of_rest, step_length
 
 END_REACHED = 1e-3  # time left over contact time at which separation is read off the trend
-PREDICTIONS = 3  # of the separation: how far they lie apart tells how well its time can be read
+PREDICTIONS = 2  # of the separation: how far they lie apart tells how well its time can be read
 NOISE = 1e-4  # share of the peak force below which a contact problem may drown in the mesh's error
 AT_REST = 1e-4  # share of the velocity at touch below which a fluid has stopped the striker
 REST_ROWS = 12

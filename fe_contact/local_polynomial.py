@@ -9,6 +9,8 @@ import numpy as np
 from fe_contact.forms import Array
 
 STENCIL = 6  # nodes of a polynomial
+PLACES = 17  # equidistant, from which a quartic is fitted
+NEAREST_QUARTIC = np.linalg.pinv(np.vander(np.linspace(-1.0, 1.0, PLACES), 5))
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,13 +51,26 @@ def peak(time: Array, values: Array) -> tuple[float, float]:
     top = min(max(int(np.argmax(values)), 2), len(values) - 3)
     around = slice(top - 2, top + 3)
     span = time[top + 2] - time[top - 2]
-    x: Array = (time[around] - time[top]) / span
-    quartic = np.asarray(np.linalg.solve(np.vander(x), values[around]), dtype=np.float64)
-    fine = np.linspace(x[0], x[-1], 201)
-    best = float(fine[int(np.argmax(np.polyval(quartic, fine)))])
-    best = _stationary(quartic, best, best - fine[1] + fine[0], best + fine[1] - fine[0])
-    best = min(max(best, float(x[0])), float(x[-1]))
-    return float(time[top] + best * span), float(np.polyval(quartic, best))
+    x = np.asarray((time[around] - time[top]) / span, dtype=np.float64)
+    best, height = _top(np.linalg.solve(np.vander(x), values[around]), float(x[0]), float(x[-1]))
+    return float(time[top] + best * span), height
+
+
+def fitted_peak(first: float, last: float, values: Array) -> tuple[float, float]:
+    """Place between ``first`` and ``last`` and height of the maximum, by the quartic nearest to ``PLACES`` values.
+
+    Their neighbours' mean keeps a small jitter of the values from moving the place.
+    """
+    best, height = _top(NEAREST_QUARTIC @ values, -1.0, 1.0)
+    return first + 0.5 * (best + 1.0) * (last - first), height
+
+
+def _top(quartic: Array, low: float, high: float) -> tuple[float, float]:
+    """Place and height of a quartic's maximum in an interval."""
+    fine = np.linspace(low, high, 201)
+    best, spacing = float(fine[int(np.argmax(np.polyval(quartic, fine)))]), (high - low) / 200
+    best = _stationary(quartic, best, max(best - spacing, low), min(best + spacing, high))
+    return best, float(np.polyval(quartic, best))
 
 
 def _stationary(quartic: Array, place: float, low: float, high: float) -> float:

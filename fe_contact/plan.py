@@ -21,13 +21,13 @@ DEFAULT_TOLERANCE = 1e-3
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-3 and 1e-4: see `fe-contact tradeoff`
 SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
 VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
-STEPS_AT_DEFAULT = 48
-STEPS_ORDER = 0.096  # steps grow with tolerance to this power: 60 at 1e-4
+STEPS_AT_DEFAULT = 40
+STEPS_ORDER = 0.176  # steps grow with tolerance to this power: 60 at 1e-4
 SOONEST_PEAK = 1e-6  # share of the contact below which the time grid would lose its digits
 EARLY_PEAK = 0.28  # a force that peaks before this share of the contact needs more steps in proportion
 DEFAULTS: Mapping[str, Any] = {
     "order": 4,
-    "penalty": 500.0,
+    "penalty": 1000.0,
     "enforcement": "corrected",
     "scheme": "galerkin",
     "far_radius": 20.0,
