@@ -24,6 +24,8 @@ IMPORTS = "import numpy, scipy.sparse.linalg, scipy.linalg, skfem, gmsh, meshio"
 TOLERANCES = ("1e-3", "1e-4")
 BOUNDS = {"1e-3": 3.0, "1e-4": 4.0}
 MEGABYTE = 1024  # ru_maxrss counts kilobytes
+# One impact between two masses: 5 ms where bare imports take 0.4 s; a study of many.
+FORCE_BOUND, FORCE_TOLERANCE, FORCE_SAMPLES, FORCE_STUDY = 5e-3 / 0.4, 1e-3, 21, 10_000
 
 
 def child(arguments: list[str]) -> tuple[float, float]:
@@ -106,6 +108,36 @@ def marginal() -> None:
     say(f"this process            {peak:.0f} MB")
 
 
+def force_laws() -> None:
+    """Every law between two masses: one impact by one march, and as a Result with bars, rows and ledgers."""
+    from lumped import Scene, laws
+
+    rng = random.SystemRandom()
+    imports = statistics.median(child(["-c", IMPORTS])[0] for _ in range(REPEATS))
+    slowest = 0.0
+    for name in laws.available():
+        module = laws.get(name)
+        if "k" not in module.KEYS:
+            continue
+        law = {"name": name, "k": 1e8, **({"e": 0.6} if "e" in module.KEYS else {})}
+        lean, whole = [], []
+        for _ in range(FORCE_SAMPLES):
+            striker = {"mass": rng.uniform(500.0, 2000.0), "velocity": rng.uniform(0.1, 2.0)}
+            scene = Scene.from_dict({"striker": striker, "law": law})
+            model, start = module.of(scene), time.process_time()
+            model.outcome(scene, FORCE_TOLERANCE)
+            middle = time.process_time()
+            model.simulate(scene, FORCE_TOLERANCE)
+            lean.append(middle - start)
+            whole.append(time.process_time() - middle)
+        one, all_of_it = statistics.median(lean), statistics.median(whole)
+        slowest = max(slowest, one)
+        ratio = f"{one / imports:.4f} x imports (bound {FORCE_BOUND:.4f})"
+        say(f"{name:15} {1e3 * one:5.1f} ms = {ratio}, as a Result {1e3 * all_of_it:5.1f} ms = {all_of_it / imports:.4f}")
+    say(f"{FORCE_STUDY} impacts of the slowest on two cores: {FORCE_STUDY * slowest / 2.0:.0f} s (bound 60 s)")
+
+
 if __name__ == "__main__":
     cold()
     marginal()
+    force_laws()

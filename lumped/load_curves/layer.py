@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import inf
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault, nearest
 from lumped.quadrature import gauss
@@ -41,6 +41,13 @@ class Layer:
             faults.append(Fault("layer", "base", message))
         if faults:
             raise BadInput(faults)
+
+    def check_depth(self, depth: ArrayLike) -> None:
+        """Raises BadInput where a depth reaches the thickness."""
+        deepest = np.max(depth, initial=0.0)
+        if deepest >= self.thickness:
+            message = f"must stay below the thickness of {self.thickness:g} m, is {deepest:g}"
+            raise BadInput(Fault("layer", "depth", message))
 
 
 def deficit(nu: float, base: str, u: Array) -> Array:

@@ -13,13 +13,8 @@ from lumped.load_curves.dual_equation import DualEquation, dual_equation
 from lumped.load_curves.fixed_area import FixedArea, under_flat_end
 from lumped.load_curves.half_space import HalfSpaceCurve
 from lumped.load_curves.layer import Array, Layer
-from lumped.load_curves.tabulated import State, TabulatedCurve
+from lumped.load_curves.tabulated import REACH, State, TabulatedCurve, growing_edges
 from lumped.quadrature import gauss
-
-# The largest contact radius served, in thicknesses, and in radii of a profile that ends.
-REACH, SHARE_OF_EXTENT = 20.0, 0.85
-# Panels grow outwards by this factor from the first, whose end is the lesser of these shares of thickness and extent.
-FIRST_PANEL, FIRST_OF_EXTENT, GROWTH = 0.3, 0.3, 1.6
 
 
 @dataclass(frozen=True)
@@ -36,11 +31,7 @@ class LayerCurve(TabulatedCurve):
     @cached_property
     def edges(self) -> tuple[float, ...]:
         """Panels grow with the distance from the axis."""
-        thickness, extent = self.layer.thickness, self.half_space.extent
-        reach = min(REACH * thickness, SHARE_OF_EXTENT * extent)
-        first = min(FIRST_PANEL * thickness, FIRST_OF_EXTENT * extent)
-        growths = int(np.ceil(np.log(reach / first) / np.log(GROWTH)))
-        return (0.0, *(float(edge) for edge in np.geomspace(first, reach, growths + 1)))
+        return growing_edges(self.layer.thickness, self.half_space.extent)
 
     def sample(self, contact_radius: float, refinement: float) -> Array:
         """Depth, force and stiffness over those of the half-space at this contact radius."""
@@ -61,10 +52,7 @@ class LayerCurve(TabulatedCurve):
 
     def contact_radius(self, depth: ArrayLike) -> NDArray[np.float64]:
         """Contact radius a at a depth below the thickness, m; raises BadInput for deeper ones."""
-        deepest = np.max(depth, initial=0.0)
-        if deepest >= self.layer.thickness:
-            message = f"must stay below the thickness of {self.layer.thickness:g} m, is {deepest:g}"
-            raise BadInput(Fault("layer", "depth", message))
+        self.layer.check_depth(depth)
         return np.asarray(super().contact_radius(depth))
 
     def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:

@@ -24,7 +24,11 @@ ANGLES = np.pi * (np.arange(POINTS) + 0.5) / POINTS
 # A panel is certified where its polynomial has nothing to hold it, by an equation with finer quadrature.
 TESTED_AT, REFINEMENT = 0.985, 1.5
 ACCURACY = 1e-8
-NEWTON_STEPS = 6
+NEWTON_STEPS = 10
+# The largest contact radius served, in lengths of the body and in radii of a profile that ends; panels grow outwards
+# by this factor from the first, whose end is the lesser of two shares of the same.
+REACH, SHARE_OF_EXTENT = 20.0, 0.85
+FIRST_PANEL, FIRST_OF_EXTENT, GROWTH = 0.3, 0.3, 1.6
 
 
 class State(NamedTuple):
@@ -134,6 +138,14 @@ class TabulatedCurve(LoadCurve):
         z = (place - edges[panel]) * scale - 1.0
         both = np.asarray(chebyshev.chebval(z, local, tensor=False), dtype=float)
         return self.state(radius, both[0], both[1] * scale)
+
+
+def growing_edges(length: float, extent: float) -> tuple[float, ...]:
+    """Edges of panels from 0 for a body with one length, m, under a profile that ends at `extent`, m."""
+    first = min(FIRST_PANEL * length, FIRST_OF_EXTENT * extent)
+    reach = min(REACH * length, SHARE_OF_EXTENT * extent)
+    growths = int(np.ceil(np.log(reach / first) / np.log(GROWTH)))
+    return (0.0, *(float(edge) for edge in np.geomspace(first, reach, growths + 1)))
 
 
 def _extended(x: Array, known_x: Array, known_y: Array) -> Array:

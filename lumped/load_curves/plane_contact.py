@@ -1,0 +1,111 @@
+"""Symmetric frictionless contact in plane strain, by collocation at Chebyshev's nodes.
+
+With y = x/b on the contact |x| <= b the pressure is E* Q(y)/sqrt(1-y^2) with an even Q, and Q(1) = 0 where the
+profile leaves the surface smoothly. Kernels -ln|y-y'| and |y-y'|, times smooth functions, are integrated exactly for
+polynomials Q; on kernels that are smooth besides, convergence is spectral.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Collocation:
+    """Even functions on (-1, 1) by their values at the m positive ones of 2m nodes.
+
+    `nodes`, shape (m,); `logarithm` and `distance`, shape (m, 2m): the integrals of -ln|y-y'| and |y-y'| times
+    Q(y')/sqrt(1-y'^2) over all nodes, negative ones last and mirrored; `weight` of one node in the integral of
+    Q/sqrt(1-y^2); `edge`, shape (m,): gives Q(1).
+    """
+
+    nodes: Array
+    logarithm: Array
+    distance: Array
+    weight: float
+    edge: Array
+
+    def total(self, q: Array) -> Array:
+        """The integral of Q/sqrt(1-y^2) from -1 to 1, of the last axis."""
+        return np.asarray(2.0 * self.weight * q.sum(axis=-1))
+
+    def at(self, q: Array, y: ArrayLike) -> Array:
+        """Q/sqrt(1-y^2) at any y, zero outside the contact."""
+        place = np.clip(np.abs(np.asarray(y, dtype=float)), 0.0, 1.0)
+        angle, own = np.arccos(place), np.arccos(self.nodes)
+        orders = np.arange(0, 2 * self.nodes.size, 2)
+        halved = np.where(orders == 0, 0.5, 1.0) * (2.0 / self.nodes.size)
+        waves = np.cos(np.multiply.outer(angle, orders)) * halved
+        even = waves @ (np.cos(np.outer(orders, own)) @ q)
+        return np.asarray(np.divide(even, np.sin(angle), out=np.zeros_like(even), where=place < 1.0))
+
+
+@dataclass(frozen=True)
+class Grown:
+    """A contact whose edge pressure vanishes: Q at the nodes, depth, F/E* per unit length, d depth/d(F/E*)."""
+
+    collocation: Collocation
+    half_width: float
+    q: Array
+    depth: float
+    force: float
+    compliance: float
+
+
+@cache
+def collocation(points: int) -> Collocation:
+    """The rule with `points` positive nodes."""
+    angles = np.pi * (np.arange(2 * points) + 0.5) / (2 * points)
+    orders = np.arange(2 * points, dtype=float)
+    coefficients = np.cos(np.outer(orders, angles)) / points
+    coefficients[0] *= 0.5
+    own = angles[:points, None]
+    even = coefficients[::2].sum(axis=0)
+    return Collocation(
+        nodes=np.cos(angles[:points]),
+        logarithm=_mirrored(_logarithms(orders, own) @ coefficients),
+        distance=_mirrored(_distances(orders, own) @ coefficients),
+        weight=np.pi / (2 * points),
+        edge=2.0 * even[:points],
+    )
+
+
+def folded(matrix: Array) -> Array:
+    """What a matrix over all nodes, shape (m, 2m), does to an even function, shape (m, m)."""
+    points = matrix.shape[0]
+    return np.asarray(matrix[:, :points] + matrix[:, points:])
+
+
+def grown(rule: Collocation, half_width: float, matrix: Array, height: Array) -> Grown:
+    """Solves matrix Q = depth - height for the depth at which Q(1) = 0; shapes (m, m) and (m,)."""
+    flat, bent = np.linalg.solve(matrix, np.stack([np.ones_like(height), height], axis=1)).T
+    depth = float((rule.edge @ bent) / (rule.edge @ flat))
+    q = depth * flat - bent
+    force, stiffness = half_width * rule.total(np.stack([q, flat]))
+    return Grown(rule, half_width, q, depth, float(force), 1.0 / float(stiffness))
+
+
+def _mirrored(matrix: Array) -> Array:
+    points = matrix.shape[0]
+    return np.concatenate([matrix[:, :points], matrix[:, : points - 1 : -1]], axis=1)
+
+
+def _logarithms(orders: Array, angle: Array) -> Array:
+    """Integrals of -ln|y-y'| T_n(y')/sqrt(1-y'^2), y = cos(angle): pi T_n(y)/n, pi ln 2 for n = 0."""
+    n = np.maximum(orders, 1)
+    return np.where(orders == 0, np.pi * np.log(2.0), np.pi / n * np.cos(orders * angle))
+
+
+def _distances(orders: Array, angle: Array) -> Array:
+    """Integrals of |y-y'| T_n(y')/sqrt(1-y'^2): their second derivative is 2 T_n/sqrt(1-y^2)."""
+    n = np.maximum(orders, 2)
+    wave = (np.sin((n - 1) * angle) / (n - 1) - np.sin((n + 1) * angle) / (n + 1)) / n
+    zeroth = (np.pi - 2.0 * angle) * np.cos(angle) + 2.0 * np.sin(angle)
+    first = angle - 0.5 * np.sin(2.0 * angle) - 0.5 * np.pi
+    return np.where(orders == 0, zeroth, np.where(orders == 1, first, wave))
