@@ -100,7 +100,7 @@ class FixedStill:
         edge = solution.edge(operator.points)
         if not solution.converged or not np.isfinite(edge):
             raise IndentationNotSettled(depth)
-        radius = shape.fixed_radius or self.reference * _ending(operator.points, solution.pressure, edge)
+        radius = shape.fixed_radius or self.reference * contact_end(operator.points, solution)
         force = operator.force(self.reference, solution.pressure)
         return Pressed(force, radius, solves, solution.iterations)
 
@@ -121,11 +121,12 @@ def _enforced(
     return enforcement.enforce(problem, touching), enforcement.SOLVES
 
 
-def _ending(points: Array, pressure: Array, edge: float) -> float:
+def contact_end(points: Array, solution: ContactSolution) -> float:
     """Where the pressure ends, from its inside: its square is smooth and falls to zero like a straight line.
 
     At the edge itself, anywhere in an element, the pressure rings.
     """
+    edge, pressure = solution.edge(points), solution.pressure
     inside = (points > EDGE_FIT[0] * edge) & (points < EDGE_FIT[1] * edge)
     if np.count_nonzero(inside) <= 2 * EDGE_DEGREE:
         return edge

@@ -10,7 +10,7 @@ from types import ModuleType
 
 import numpy as np
 
-from fe_contact.bodies.memory import StepLaw, SurfaceMemory, interpolate, step_law
+from fe_contact.bodies.memory import StepLaw, SurfaceMemory, area_weights, interpolate, step_law
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.contact import ContactSolution
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
@@ -46,7 +46,8 @@ class Stepper:
 
     def touch(self) -> State:
         """The striker at the surface at rest."""
-        memory = SurfaceMemory.at_rest(self.radii, self.strike.relaxation, fields=2 if self.accounted else 1)
+        fields = 2 if self.accounted else 1
+        memory = SurfaceMemory.at_rest(area_weights(self.radii), self.strike.relaxation, fields)
         return State(0.0, 0.0, self.strike.velocity, 0.0, memory)
 
     def step(self, state: State, steps: Sequence[Step], length: float) -> Step:

@@ -43,11 +43,11 @@ def layer(elements_per_radius: float, smallest: float, thickness: float, width: 
     ):
         if not low <= value <= high:
             raise MeshError(f"{name} = {value:g}: accepted {low:g} to {high:g}")
-    side = ZONE + width
+    smallest, thickness, side = float(smallest), float(thickness), ZONE + float(width)  # gmsh reads their digits
     within = f"(x+{smallest!r}+Fabs(x-{smallest!r}))/2"  # the larger of the two
     within = f"({within}+{ZONE!r}-Fabs({within}-{ZONE!r}))/2"
     beyond = f"(x-{ZONE!r}+Fabs(x-{ZONE!r}))/2"
-    growing = f"(({within})/{elements_per_radius!r}+{GROWTH!r}*(Fabs(y)+{beyond}))"
+    growing = f"(({within})/{float(elements_per_radius)!r}+{GROWTH!r}*(Fabs(y)+{beyond}))"
     size = f"({growing}+{LARGEST * thickness!r}-Fabs({growing}-{LARGEST * thickness!r}))/2"
     with session("layer") as gmsh:
         geometry = gmsh.model.geo

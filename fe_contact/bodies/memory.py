@@ -56,19 +56,19 @@ def step_law(relaxation: Relaxation, scheme: ModuleType, step: float) -> StepLaw
 class SurfaceMemory:
     """Displacement and, for its energies, its elastic pressure on fixed radii.
 
-    ``radii`` (r,) m; ``strain`` (f, r): displacement u, m, and, where f = 2, the pressure that holds it
-    elastically with unit modulus, 1; ``branches`` (k, f, r): the same of every branch.
+    ``areas`` (r,) m^2 that belong to the radii; ``strain`` (f, r): displacement u, m, and, where f = 2, the
+    pressure that holds it elastically with unit modulus, 1; ``branches`` (k, f, r): the same of every branch.
     """
 
-    radii: Array
+    areas: Array
     strain: Array
     branches: Array
 
     @classmethod
-    def at_rest(cls, radii: Array, relaxation: Relaxation, fields: int) -> SurfaceMemory:
+    def at_rest(cls, areas: Array, relaxation: Relaxation, fields: int) -> SurfaceMemory:
         """A relaxed, undeformed surface that keeps its displacement, or with two fields its pressure too."""
-        shape = (fields, radii.size)
-        return cls(radii, np.zeros(shape), np.zeros((len(relaxation.moduli), *shape)))
+        shape = (fields, areas.size)
+        return cls(areas, np.zeros(shape), np.zeros((len(relaxation.moduli), *shape)))
 
     def carried(self, law: StepLaw) -> Array:
         """Part of the step's stress that the past fixes: modulus x displacement and pressure, (f, r)."""
@@ -78,18 +78,18 @@ class SurfaceMemory:
     def advanced(self, law: StepLaw, strain: Array) -> SurfaceMemory:
         """State after a step that leads to a strain, (f, r)."""
         branches = law.decay[:, None, None] * self.branches + law.gain[:, None, None] * (strain - self.strain)
-        return SurfaceMemory(self.radii, strain, branches)
+        return SurfaceMemory(self.areas, strain, branches)
 
     def stored(self, relaxation: Relaxation) -> float:
         """Elastic energy in equilibrium spring and branches, J."""
-        area = area_weights(self.radii)
+        area = self.areas
         energies = [product(area, b, b) for b in self.branches]
         equilibrium = relaxation.equilibrium * product(area, self.strain, self.strain)
         return 0.5 * float(equilibrium + np.dot(relaxation.moduli, energies))
 
     def dissipated(self, later: SurfaceMemory, relaxation: Relaxation, step: float) -> float:
         """Heat of the dashpots over a step in which the displacement changes linearly, J."""
-        area = area_weights(self.radii)
+        area = self.areas
         change = later.strain - self.strain
         heat = relaxation.viscosity * product(area, change, change) / step
         for modulus, tau, branch in zip(relaxation.moduli, relaxation.times, self.branches, strict=True):

@@ -62,7 +62,7 @@ def recursion(
     relaxation: Relaxation, scheme: ModuleType, steps: np.ndarray, strains: np.ndarray
 ) -> tuple[np.ndarray, list[SurfaceMemory]]:
     """Stress of every step as the march finds it, and the states between the steps."""
-    states, stresses = [SurfaceMemory.at_rest(RADII, relaxation, fields=2)], []
+    states, stresses = [SurfaceMemory.at_rest(AREA, relaxation, fields=2)], []
     for step, strain in zip(steps, strains, strict=True):
         law = step_law(relaxation, scheme, step)
         stresses.append(law.now * strain + states[-1].carried(law))
@@ -85,8 +85,8 @@ def test_the_recursion_equals_the_hereditary_integral(scheme: ModuleType, seed: 
 def test_a_memory_without_energies_remembers_the_same_displacement(seed: int) -> None:
     rng = np.random.default_rng(seed)
     relaxation, (steps, strains) = random_relaxation(rng), random_path(rng)
-    full = SurfaceMemory.at_rest(RADII, relaxation, fields=2)
-    lean = SurfaceMemory.at_rest(RADII, relaxation, fields=1)
+    full = SurfaceMemory.at_rest(AREA, relaxation, fields=2)
+    lean = SurfaceMemory.at_rest(AREA, relaxation, fields=1)
     for step, strain in zip(steps, strains, strict=True):
         law = step_law(relaxation, galerkin, step)
         carried = full.carried(law)[0]

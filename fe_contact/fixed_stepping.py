@@ -1,0 +1,94 @@
+"""One time step of an impact on a body with lengths of its own: the mesh stays, the contact moves over it.
+
+The memory is that of the contact zone's nodes: displacement u and the nodal forces f that hold it elastically with
+unit modulus, so that energies are sums of f u.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import ModuleType
+
+import numpy as np
+
+from fe_contact.bodies.memory import SurfaceMemory, step_law
+from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.contact import ContactSolution, Touching
+from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
+from fe_contact.forms import Array
+from fe_contact.march import Strike, Work
+from fe_contact.numerics import ENFORCEMENTS, SCHEMES, Numerics
+from fe_contact.pressing import contact_end
+from fe_contact.steps import State, Step
+from lumped.members import get
+
+BEYOND = 1e3  # overlap, in reference radii, that radii past the striker's rim lack
+FIRST = 0.1  # share of the contact zone that is guessed to touch first
+
+
+class FixedStepper:
+    """Takes steps on one mesh: the interface of :class:`fe_contact.stepping.Stepper`."""
+
+    def __init__(self, strike: Strike, surface: ScaledSurface, numerics: Numerics, accounted: bool) -> None:
+        self.strike, self.surface, self.numerics = strike, surface, numerics
+        self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
+        self.enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
+        self.scale = numerics.contact_radius
+        self.heights = np.minimum(strike.height(self.scale * surface.operator.points), BEYOND * self.scale)
+        self.accounted = accounted
+
+    def touch(self) -> State:
+        """The striker at the surface at rest."""
+        nodes = np.ones(len(self.surface.operator.stiffness))
+        memory = SurfaceMemory.at_rest(nodes, self.strike.relaxation, fields=2)
+        return State(0.0, 0.0, self.strike.velocity, 0.0, memory)
+
+    def step(self, state: State, steps: Sequence[Step], length: float) -> Step:
+        """The step of a length, s, from a state reached by ``steps``.
+
+        Raises ContactLost, ContactNotSettled, or MemoryTooSmall where the contact leaves the fine mesh.
+        """
+        strike, operator = self.strike, self.surface.operator
+        law = step_law(strike.relaxation, self.scheme, length)
+        carried = state.memory.carried(law)
+        lever = self.scheme.LEVER * length**2
+        free_depth = state.depth + length * state.velocity + lever * strike.gravity
+        overlap = law.now * (free_depth - self.heights) + operator.trace @ carried[0]
+        yielding = law.now * lever / strike.mass * self.scale ** (operator.dimension - 2)
+        solution = self._solved(overlap, yielding, steps, state.time)
+        edge = contact_end(operator.points, solution)
+        force = operator.force(self.scale, solution.pressure)
+        strain = self._strain(law.now, carried, solution.pressure)
+        moved = State(
+            time=strike.end_time if length >= strike.end_time - state.time else state.time + length,
+            depth=free_depth - lever * force / strike.mass,
+            velocity=state.velocity + length * (strike.gravity - force / strike.mass),
+            impulse=state.impulse + length * force,
+            memory=state.memory.advanced(law, strain),
+        )
+        axis = float(law.now * strain[0, 0] + carried[0, 0])
+        found_at = state.time + length * (1.0 if moved.velocity > 0 else self.scheme.SAMPLE)
+        work = Work(1, self.enforcement.SOLVES, solution.iterations)
+        return Step(length, moved, force, self.scale * edge, found_at, axis, solution, self.scale, work)
+
+    def _solved(self, overlap: Array, yielding: float, steps: Sequence[Step], time: float) -> ContactSolution:
+        points = self.surface.operator.points
+        guesses: tuple[Touching, ...] = steps[-1].solution.sets if steps else (points < FIRST * points[-1],)
+        radius = steps[-1].radius / self.scale if steps and steps[-1].radius > 0.0 else FIRST
+        problem = self.surface.problem(overlap, self.numerics.penalty / radius, yielding)
+        solution: ContactSolution = self.enforcement.enforce(problem, *guesses)
+        if not solution.converged:
+            raise ContactNotSettled(time)
+        edge = solution.edge(points)
+        if edge == 0.0:
+            raise ContactLost(time)
+        if not np.isfinite(edge):
+            raise MemoryTooSmall(self.scale * points[-1])
+        return solution
+
+    def _strain(self, now: float, carried: Array, pressure: Array) -> Array:
+        """Displacement of the zone's nodes after the step, m, and the forces that hold it elastically; (2, n)."""
+        operator = self.surface.operator
+        load = operator.trace.T @ (operator.weights * pressure)
+        displacement = operator.response[: len(load)] @ load
+        return np.asarray((np.array([displacement, load * self.scale]) - carried) / now)
