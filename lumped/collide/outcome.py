@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.collide.contact import Contact
+from lumped.collide.phase import Phase
 from lumped.collide.track import Track
 from lumped.ending import End
 
@@ -45,25 +46,28 @@ def outcome_of(track: Track, one: Contact) -> Outcome:
 
 def peak_of(track: Track, one: Contact) -> tuple[float, float]:
     """Time, s, and height, N, of the highest force of a contact."""
-    steps = [step for phase in one.phases for step in phase.steps]
-    ends = one.start_time + np.cumsum([step.length for step in steps])
-    i = int(np.argmax([step.force.max() for step in steps]))
-    rising = steps[i].force.argmax() == steps[i].force.size - 1 and steps[i].last_slope(steps[i].force) > 0.0
+    steps = [(phase, step) for phase in one.phases for step in phase.steps]
+    ends = one.start_time + np.cumsum([step.length for _, step in steps])
+    i = int(np.argmax([step.force.max() for _, step in steps]))
+    force = steps[i][1].force
+    rising = force.argmax() == force.size - 1 and steps[i][1].last_slope(force) > 0.0
     k = i + 1 if rising and i + 1 < len(steps) else i
-    places = ends[k] - steps[k].length * (1.0 - np.append(0.0, steps[k].nodes.points))
-    touch = one.start_time, float(track(np.array([one.start_time]))[2, 0])
-    return max(touch, _vertex(track, places), key=lambda peak: peak[1])
+    phase, step = steps[k]
+    touch = float(track.pressed(one.phases[0], np.array([one.start_time]))[2, 0])
+    places = ends[k] - step.length * (1.0 - np.append(0.0, step.nodes.points))
+    return max((one.start_time, touch), _vertex(track, phase, places), key=lambda peak: peak[1])
 
 
-def _vertex(track: Track, places: Array) -> tuple[float, float]:
+def _vertex(track: Track, phase: Phase, places: Array) -> tuple[float, float]:
     """The highest force between the first and the last of ascending places: the vertex of ever smaller parabolas."""
-    values = track(places)[2]
+    values = track.pressed(phase, places)[2]
     i = int(np.argmax(values))
     time, height = float(places[i]), float(values[i])
     width = float(places[min(i + 1, places.size - 1)] - places[max(i - 1, 0)])
     for share in CLOSER:
         left, right = max(time - share * width, float(places[0])), min(time + share * width, float(places[-1]))
-        low, middle, high = (float(force) for force in track(np.array([left, 0.5 * (left + right), right]))[2])
+        trio = np.array([left, 0.5 * (left + right), right])
+        low, middle, high = (float(force) for force in track.pressed(phase, trio)[2])
         bent, tilt = low - 2.0 * middle + high, low - high
         if bent < 0.0 and abs(tilt) < -2.0 * bent:
             shift, height = 0.5 * tilt / bent, middle - 0.125 * tilt**2 / bent

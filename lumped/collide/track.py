@@ -36,6 +36,7 @@ class Row(NamedTuple):
     begun: Array
     mirrored: NDArray[np.bool_]
     series: Array
+    graded: bool
 
     @classmethod
     def of(cls, phase: Phase) -> Row:
@@ -45,7 +46,8 @@ class Row(NamedTuple):
         powers = np.array([float(step.nodes.power) for step in phase.steps])
         begun = np.array([step.nodes.begun for step in phase.steps])
         mirrored = np.array([step.nodes.mirrored for step in phase.steps])
-        return cls(starts, lengths, powers, begun, mirrored, np.array([_series(step) for step in phase.steps]))
+        series = np.array([_series(step) for step in phase.steps])
+        return cls(starts, lengths, powers, begun, mirrored, series, bool((powers > 1.0).any()))
 
 
 @dataclass(frozen=True)
@@ -86,10 +88,10 @@ class Track:
         found = np.zeros((3, times.size))
         for contact in self.motion.contacts:
             self._fly(found, times, contact)
-        for phase, row in zip(self._phases, self._rows, strict=True):
+        for phase in self._phases:
             inside = (times >= phase.start_time) & (times <= phase.end_time)
             if inside.any():
-                found[:, inside] = self._pressed(phase, row, times[inside])
+                found[:, inside] = self.pressed(phase, times[inside])
         return found
 
     @cached_property
@@ -97,8 +99,8 @@ class Track:
         return [phase for contact in self.motion.contacts for phase in contact.phases]
 
     @cached_property
-    def _rows(self) -> list[Row]:
-        return [Row.of(phase) for phase in self._phases]
+    def _rows(self) -> dict[int, Row]:
+        return {id(phase): Row.of(phase) for phase in self._phases}
 
     def _fly(self, found: Array, times: Array, contact: Contact) -> None:
         """Free flight, or rest, from the end of a contact on, until a later one overwrites it."""
@@ -114,12 +116,12 @@ class Track:
         found[1, after] = last.rate + gravity * elapsed
         found[2, after] = 0.0
 
-    def _pressed(self, phase: Phase, row: Row, times: Array) -> Array:
-        """The columns within one stage."""
+    def pressed(self, phase: Phase, times: Array) -> Array:
+        """The columns at times within one of its phases, shape (3, n)."""
+        row = self._rows[id(phase)]
         which = np.maximum(np.searchsorted(row.starts, times, side="right") - 1, 0)
         share = np.minimum((times - row.starts[which]) / row.lengths[which], 1.0)
-        graded = bool((row.powers > 1.0).any())
-        place = place_of(share, row.powers[which], row.begun[which], row.mirrored[which]) if graded else share
+        place = place_of(share, row.powers[which], row.begun[which], row.mirrored[which]) if row.graded else share
         depth, rate = np.einsum("kn,njk->jn", legendre_terms(2.0 * place - 1.0), row.series[which])
         return np.array([depth, rate, self.law.between(phase.steps, which, share, depth, rate, phase.stage)])
 
