@@ -377,3 +377,28 @@ def test_a_contact_that_never_ends_says_so() -> None:
 def test_what_no_damping_can_give_is_bad_input() -> None:
     with pytest.raises(BadInput, match=r"law\.e.*accepted"):
         laws.get("kuwabara_kono").of(scene("kuwabara_kono", e=0.2, damping="series"))
+
+
+STIFF = {"xi": 1e6, "c": 1e12, "chi": 1e6, "A": 1e6, "alpha_t": 1e6}
+
+
+@pytest.mark.parametrize("exit", ["force", "depth"])
+@pytest.mark.parametrize("name", [name for name in NAMES if set(STIFF) & set(laws.get(name).KEYS)])
+def test_enormous_damping_ends_with_the_right_limit_or_says_why_not(name: str, exit: str) -> None:
+    """Nothing comes back of the energy; where the tolerance is not reached the result says so."""
+    for key in sorted(set(STIFF) & set(laws.get(name).KEYS)):
+        case = scene(name, exit=exit, **{key: STIFF[key]})
+        result = laws.get(name).of(case).simulate(case, 1e-3)
+        assert result.converged or "not reached" in result.message
+        assert abs(result.energy["residual"]) <= 1e-8 * result.energy["in"]
+        e = result.quantities["restitution"].value
+        assert e is None or 0.0 < e < 1e-2
+        assert e is not None or "not separated" in result.message
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_extreme_scales_change_nothing_but_the_scale(name: str) -> None:
+    damped = {"e": 0.6} if name in DAMPED else {}
+    for k, mass, velocity in ((1e-3, 1e-12, 1e-6), (1e15, 1e-12, 1e3), (1e-3, 1e9, 1e3), (1e15, 1e9, 1e-6)):
+        found = quantities(scene(name, mass, velocity, k=k, gap=1e-12, **damped), 1e-6)
+        assert found["restitution"] == pytest.approx(damped.get("e", 1.0), abs=1e-9)
