@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from lumped.errors import BadInput, NotReached
 from lumped.fit.problem import Problem
-from lumped.fit.space import TOUCH
+from lumped.fit.space import REACH, TOUCH
 
 Array = NDArray[np.float64]
 # Of the differences: far above what an impact's integration errs by, and the search needs no better slopes.
 DIFFERENCE = 1e-4
 TOLERANCE, MOST_STEPS = 1e-10, 80
+SOLID = ("E0", "R1", "R2")
 # An impact that does not exist is this many times as far from the curve as none at all.
 FAR = 10.0
 
@@ -39,6 +40,8 @@ class Found:
 class Descent:
     """The coordinates of a search: logarithms of what is positive, the touch in shares of the contact.
 
+    Of the 3-parameter solid a slow relaxation tells the glassy modulus E0 (1 + R1) and the rate R1/R2 at which it
+    falls at first, and hardly more: in these the long valley of the error is straight, in E0 and R2 it is bent.
     `known` keeps the errors of places that have been computed, for the slopes there begin with them.
     """
 
@@ -86,12 +89,28 @@ class Descent:
         """The residuals of no force at all."""
         return self.problem.measured.error_of(np.zeros_like(self.problem.measured.force))
 
+    @property
+    def _straight(self) -> bool:
+        """Whether the solid is searched for in its glassy modulus and rate: all of it free, and without bounds."""
+        return set(SOLID) <= set(self.problem.searched) and not set(SOLID) & self.problem.space.bounds.keys()
+
     def _limits(self) -> Array:
-        guess = self.start.guess
-        limits = {name: self.problem.space.limits(name, guess[name]) for name in self.problem.searched}
-        return np.array([self._place({name: ends[i] for name, ends in limits.items()}) for i in (0, 1)]).T
+        """Lowest and highest place, shape (q, 2)."""
+        names, guess = self.problem.searched, self.start.guess
+        limits = {name: self.problem.space.limits(name, guess[name]) for name in names}
+        ends = np.array([self._plain({name: limits[name][i] for name in names}) for i in (0, 1)]).T
+        if self._straight:
+            rows = [names.index(name) for name in SOLID]
+            ends[rows] = self._place(self.start.values)[rows, None] + np.log(REACH) * np.array([-1.0, 1.0])
+        return ends
 
     def _place(self, values: Mapping[str, float]) -> Array:
+        if not self._straight:
+            return self._plain(values)
+        glassy, ratio = values["E0"] * (1.0 + values["R1"]), values["R1"]
+        return self._plain({**values, "E0": glassy, "R2": values["R2"] / ratio})
+
+    def _plain(self, values: Mapping[str, float]) -> Array:
         scale = self.problem.measured.duration
         return np.array([values[n] / scale if n == TOUCH else np.log(values[n]) for n in self.problem.searched])
 
@@ -99,4 +118,6 @@ class Descent:
         """All free parameters at a place. Raises NotReached."""
         scale, names = self.problem.measured.duration, self.problem.searched
         values = {n: float(x * scale if n == TOUCH else np.exp(x)) for n, x in zip(names, place, strict=True)}
+        if self._straight:
+            values |= {"E0": values["E0"] / (1.0 + values["R1"]), "R2": values["R2"] * values["R1"]}
         return self.problem.whole(values, self.start.values)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 from lumped import laws
@@ -13,10 +13,12 @@ from lumped.fit.measured import Measured
 from lumped.fit.space import TOUCH, Space, damping_names, own_keys
 from lumped.laws._force_law import bodies_of
 from lumped.laws._power_law import spring_contact_time, spring_of_peak
+from lumped.scene import LawChoice
 
-# Of the damper's force to the spring's, at half depth and full speed, by 1 - e: that of Hunt-Crossley is 3/2, that of
-# Kelvin 4/pi; and weaker and stronger ones, for an impulse that tells e badly.
-DAMPING = (1.4, 0.2, 5.0)
+# The damper's force over the spring's, at half depth and full speed, per 1 - e: Hunt-Crossley has 3/2, Kelvin 4/pi.
+DAMPER = 1.4
+# The loss 1 - e that the impulse tells, and less and more, for it may tell it badly.
+LOSSES = (1.0, 0.15, 3.5)
 LEAST_RESTITUTION, MOST_RESTITUTION = 0.05, 0.98
 # Guesses of the ratio E2/E1 and of the relaxation time over the contact time.
 RATIOS, TIMES = (0.3, 2.0), (0.1, 1.0, 10.0)
@@ -43,37 +45,42 @@ class Pulse:
     measured: Measured
 
     @property
-    def restitution(self) -> float:
-        """J/(m v) - 1."""
+    def loss(self) -> float:
+        """1 - e, e = J/(m v) - 1 from the impulse."""
         scene = self.space.scene
         e = self.measured.impulse / (scene.reduced_mass * scene.velocity) - 1.0
-        return min(max(e, LEAST_RESTITUTION), MOST_RESTITUTION)
+        return 1.0 - min(max(e, LEAST_RESTITUTION), MOST_RESTITUTION)
 
     def law_guesses(self, names: list[str]) -> Iterator[Values]:
-        """Of the law's own parameters: both springs, each with every damping."""
-        bodies, held = bodies_of(self.space.scene), self.space.held
+        """Of the law's own parameters: the springs of the peak and of the duration, each with every loss."""
+        bodies, held, own = bodies_of(self.space.scene), self.space.held, own_keys(self.space.law)
         depth = bodies.velocity * self.measured.duration / 3.0
-        alpha = held.get("alpha", 1.0 if "alpha" not in own_keys(self.space.law) else 1.5)
+        alpha = held.get("alpha", 1.5 if "alpha" in own else 1.0)
         of_time = (spring_contact_time(1.0, alpha, bodies) / self.measured.duration) ** (alpha + 1.0)
         of_peak = spring_of_peak(self.measured.peak, alpha, bodies)
-        stiffness = of_peak / depth ** (1.0 - alpha)
-        known = {TOUCH: 0.0, "alpha": alpha, "e": self.restitution, "gap": 0.0}
-        known |= {"k1": 2.0 * stiffness, "k2": 0.3 * stiffness, "yield_depth": 0.2 * depth}
         dampers = [name for name in names if name in damping_names(self.space.law) and name not in held]
-        for k, factor in product((of_peak, of_time), DAMPING if dampers else (1.0,)):
-            springs = {**known, "k": k, **held}
-            damper = {name: factor * self._damping(name, springs, names, depth) for name in dampers}
-            yield springs | damper
+        for k, share in product((of_peak, of_time), LOSSES if "e" in own else (1.0,)):
+            loss = min(share * self.loss, 1.0 - LEAST_RESTITUTION)
+            loop = self._loop(k, 1.0 - loss) if "k1" in names else {}
+            springs = {TOUCH: 0.0, "alpha": alpha, "e": 1.0 - loss, "k": k, **loop, **held}
+            yield springs | {name: share * self._damping(name, springs, depth) for name in dampers}
 
-    def _damping(self, name: str, springs: Mapping[str, float], names: list[str], depth: float) -> float:
-        """The damper's parameter whose force is 1 - e of the spring's at half depth and full speed."""
+    def _loop(self, k: float, e: float) -> Values:
+        """The numbers of the bilinear law by its own recipe."""
+        law = LawChoice(self.space.law, {"k": k, "e": e})
+        parameters = laws.get(law.name).of(replace(self.space.scene, law=law)).parameters
+        return {name: parameters[name] for name in ("k1", "k2", "yield_depth")}
+
+    def _damping(self, name: str, springs: Mapping[str, float], depth: float) -> float:
+        """The damper's parameter whose force to the spring's is as 1 - e asks."""
         chosen = {key: springs[key] for key in self.space.free if key in springs}
         velocity = self.space.scene.velocity
-        forces = []
-        for value in (0.0, 1.0):
-            law = laws.get(self.space.law).of(self.space.scene_at(chosen | {name: value}))
-            forces.append(float(law.force(0.5 * depth, velocity, Stage(True, 0.5 * depth, velocity))))
-        return (1.0 - self.restitution) * forces[0] / (forces[1] - forces[0])
+        half = Stage(True, 0.5 * depth, velocity)
+        bare, damped = (
+            laws.get(self.space.law).of(self.space.scene_at(chosen | {name: value})) for value in (0.0, 1.0)
+        )
+        spring, damper = bare.force(half.deepest, velocity, half), damped.lost(half.deepest, velocity, half)
+        return float(DAMPER * self.loss * spring / damper)
 
     def network_guesses(self) -> Iterator[Values]:
         """Of the material: the modulus whose Hertz impact peaks alike, shared between what lasts and what relaxes."""
