@@ -82,15 +82,15 @@ def radau(count: int) -> Nodes:
     for _ in range(2):  # the eigenvalues behind the roots leave a few last digits
         zeros -= legendre.legval(zeros, difference) / legendre.legval(zeros, legendre.legder(difference))
     zeros[-1] = 1.0
-    series = np.linalg.inv(legendre.legvander(zeros, count - 1))
+    series = np.array(np.linalg.inv(legendre.legvander(zeros, count - 1)), dtype=float)
     # d/dx of the series in x in [-1, 1] is twice that over the step's share in [0, 1]
     first = 0.5 * np.array([legendre.legint(row, lbnd=-1.0) for row in np.eye(count)])
     ends = np.array([2.0 * legendre.legval(1.0, legendre.legder(row)) for row in np.eye(count)])
     once = legendre.legvander(zeros, count) @ first.T @ series
     points: Array = 0.5 * (1.0 + zeros)
     pace = np.ones(count)
-    last = np.array(once[-1])
-    return Nodes(1, 0.0, False, points, pace, once, once @ once, last, series, first, np.array(ends @ series), points)
+    last, leaving = np.array(once[-1]), np.array(ends @ series)
+    return Nodes(1, 0.0, False, points, pace, once, once @ once, last, series, first, leaving, points)
 
 
 def place_of(share: Array, power: Array, begun: Array, mirrored: NDArray[np.bool_]) -> Array:

@@ -14,7 +14,7 @@ from lumped.ending import End
 
 Array = NDArray[np.float64]
 # Half the widths of the parabolas through which a peak is found, in that of its surroundings.
-CLOSER = (0.5, 0.1, 0.02, 0.004)
+CLOSER = (0.5, 0.1, 0.02, 0.004, 0.0008)
 
 
 class Outcome(NamedTuple):

@@ -19,6 +19,8 @@ from lumped.scene import Model, Scene
 Array = NDArray[np.float64]
 # Rounding of the sums behind a quantity, relative to it.
 ROUNDING = 1e-12
+# A peak is flat: its time is known to the root of what its height is known to.
+ROUNDING_OF = {"peak_time": 1e-8}
 FINEST_ROWS = 1e-9
 # Two integrations may agree in one quantity by chance: its bar is at least this share of the history's (L2).
 LEAST_SHARE = 0.1
@@ -85,7 +87,7 @@ def bars(fine: Answer, coarse: Answer, safety: float) -> tuple[dict[str, Quantit
         other, error = coarse.values[name], None
         if value is not None:
             scale = 1.0 if name == "restitution" else abs(value)
-            least = SHARE_OF_HISTORY.get(name, LEAST_SHARE) * l2 + fine.rounding
+            least = SHARE_OF_HISTORY.get(name, LEAST_SHARE) * l2 + fine.rounding + ROUNDING_OF.get(name, 0.0)
             error = safety * max(abs(value - (other or 0.0)), least * scale)
         quantities[name] = Quantity(value, error, UNITS[name])
     return {name: quantities[name] for name in UNITS}, safety * worst
