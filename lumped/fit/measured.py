@@ -23,10 +23,15 @@ EXACT, RANDOM = 1e-5, 0.5
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Times, s, and forces, N: `points` of the curve's own, then the silence; `peak`, N."""
+    """Times, s, and forces, N: `points` of the curve's own, then the silence; `peak`, N.
+
+    `weight`: roots of the times that the points stand for, one where they are equally spaced: rows that crowd count
+    no more than others.
+    """
 
     time: Array
     force: Array
+    weight: Array
     points: int
     peak: float
 
@@ -39,7 +44,9 @@ class Measured:
         if not highest > 0.0 or not time[-1] > max(time[0], 0.0):
             raise BadInput(Fault("fit", "curve", "has no force above zero after t = 0; accepted: a contact"))
         after = _silence(time) if force[-1] <= ENDED * highest else time[:0]
-        return cls(np.append(time, after), np.append(force, 0.0 * after), time.size, highest)
+        spacing = _spacing(time)
+        weight = np.append(np.sqrt(spacing / spacing.mean()), np.ones(after.size))
+        return cls(np.append(time, after), np.append(force, 0.0 * after), weight, time.size, highest)
 
     @property
     def ended(self) -> bool:
@@ -68,8 +75,8 @@ class Measured:
         return Curve(own, history.force_at(own))
 
     def error_of(self, force: Array) -> Array:
-        """The residual of a force at the times, shape (n,), relative to the peak."""
-        return np.asarray((force - self.force) / self.peak)
+        """The weighted residual of a force at the times, shape (n,), relative to the peak."""
+        return np.asarray(self.weight * (force - self.force) / self.peak)
 
     def systematic(self, error: Array) -> bool:
         """Whether residuals show what a law cannot follow, and not noise alone."""
@@ -81,6 +88,12 @@ class Measured:
 def _spread(time: Array) -> NDArray[np.intp]:
     """Rows nearest to equally spaced times: between the rows even a computed history is only interpolated."""
     return np.unique(np.searchsorted(time, np.linspace(time[0], time[-1], POINTS)))
+
+
+def _spacing(time: Array) -> Array:
+    """The time that each row stands for, s: half of the way to both neighbours, at the ends all of it to the one."""
+    steps = np.diff(time)
+    return np.asarray(0.5 * (np.append(steps[0], steps) + np.append(steps, steps[-1])))
 
 
 def _silence(time: Array) -> Array:

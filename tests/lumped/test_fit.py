@@ -130,6 +130,16 @@ def test_a_clock_that_starts_before_the_touch() -> None:
     assert found.history.time[0] == pytest.approx(4e-5, rel=1e-4)
 
 
+def test_rows_that_crowd_count_no_more_than_others() -> None:
+    """A curve that the law cannot follow: its fit depends on the curve, not on where its rows lie."""
+    truth = history("jankowski", **TRUTHS["jankowski"])
+    share = np.linspace(0.0, 1.0, 801)
+    even, crowded = (
+        fit(Curve(t, truth.force_at(t)), "kelvin", BODY) for t in truth.time[-1] * np.array([share, share**3])
+    )
+    assert crowded.values == pytest.approx(even.values, rel=5e-3)
+
+
 def test_a_curve_cut_off_in_the_contact_tells_the_same() -> None:
     truth = history("jankowski", **TRUTHS["jankowski"])
     time = np.linspace(0.0, 0.6 * truth.time[-1], 301)
