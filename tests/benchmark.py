@@ -18,6 +18,9 @@ import tempfile
 import time
 from pathlib import Path
 
+from lumped import Scene, laws, simulate
+from lumped.laws import mdr
+
 ROOT = Path(__file__).resolve().parent.parent
 REPEATS = 5
 IMPORTS = "import numpy, scipy.sparse.linalg, scipy.linalg, skfem, gmsh, meshio"
@@ -26,6 +29,14 @@ BOUNDS = {"1e-3": 3.0, "1e-4": 4.0}
 MEGABYTE = 1024  # ru_maxrss counts kilobytes
 # One impact between two masses: 5 ms where bare imports take 0.4 s; a study of many.
 FORCE_BOUND, FORCE_TOLERANCE, FORCE_SAMPLES, FORCE_STUDY = 5e-3 / 0.4, 1e-3, 21, 10_000
+# Impacts of lumped laws as multiples of bare imports, where these take 0.4 s: 5 ms and 30 ms.
+LAW_BOUNDS = {"correspondence": 5e-3 / 0.4, "ting": 30e-3 / 0.4, "mdr": 30e-3 / 0.4}
+LAW_TOLERANCE, LAW_REPEATS = 1e-5, 15
+# A parameter study of laws that are ordinary differential equations, on so many cores, in so many seconds.
+STUDY, CORES, STUDY_BOUND, SAMPLES = 10_000, 2, 60.0, 100
+STUDY_LAWS = {"hertz": {}, "kelvin": {"e": 0.65}, "jankowski": {"e": 0.65}, "hunt_crossley": {"e": 0.65}}
+STIFFNESS = {"kelvin": 9.35e7}  # N/m; the others are of power 3/2, N/m^1.5
+POWER_STIFFNESS = 2.75e9
 
 
 def child(arguments: list[str]) -> tuple[float, float]:
@@ -58,8 +69,8 @@ def run_once(tolerance: str, folder: str) -> tuple[float, float]:
     return child(["-m", "fe_contact", *command])
 
 
-def cold() -> None:
-    """Whole processes against bare imports."""
+def cold() -> float:
+    """Whole processes against bare imports, whose CPU seconds it returns."""
     found: dict[str, list[tuple[float, float]]] = {"imports": [], **{t: [] for t in TOLERANCES}}
     with tempfile.TemporaryDirectory() as folder:
         run_once(TOLERANCES[0], folder)  # fills the disk cache
@@ -76,6 +87,7 @@ def cold() -> None:
             f"fe-contact run, {tolerance}    {cpu[tolerance]:.3f} s CPU = {ratio:.2f} x imports "
             f"(bound {BOUNDS[tolerance]:g}), {memory[tolerance]:.0f} MB (bound 300)"
         )
+    return cpu["imports"]
 
 
 def marginal() -> None:
@@ -108,6 +120,47 @@ def marginal() -> None:
     say(f"this process            {peak:.0f} MB")
 
 
+def one_impact(law: str, scenes: list[Scene]) -> float:
+    """Median CPU seconds of one impact by a law, the first left out."""
+    spent = []
+    for scene in scenes:
+        start = time.process_time()
+        simulate(laws.get(law).of(scene), scene, LAW_TOLERANCE)
+        spent.append(time.process_time() - start)
+    return statistics.median(spent[1:])
+
+
+def lumped_laws(imports: float) -> None:
+    """Impacts by the laws with memory, as multiples of bare imports."""
+    rng = random.SystemRandom()
+    for name, base in (("polymer-sphere", 0.02), ("steel-ball-sls", 1.0)):
+        speeds = [base * rng.uniform(0.75, 1.25) for _ in range(LAW_REPEATS + 1)]
+        scenes = [Scene.load(name, {"striker.velocity": speed}) for speed in speeds]
+        for law, bound in LAW_BOUNDS.items():
+            cpu = one_impact(law, scenes)
+            say(f"{law:14} {name:15} {1e3 * cpu:6.1f} ms = {cpu / imports:.4f} x imports (bound {bound:.4f})")
+        start = time.process_time()
+        for scene in scenes:
+            mdr.estimate(scene)
+        cpu = (time.process_time() - start) / len(scenes)
+        bound = LAW_BOUNDS["correspondence"]
+        say(f"mdr.estimate   {name:15} {1e3 * cpu:6.1f} ms = {cpu / imports:.4f} x imports (bound {bound:.4f})")
+
+
+def study(imports: float) -> None:
+    """A parameter study of laws without memory, extrapolated from a sample."""
+    rng = random.SystemRandom()
+    total = 0.0
+    for name, damping in STUDY_LAWS.items():
+        law = {"name": name, "k": STIFFNESS.get(name, POWER_STIFFNESS), **damping}
+        strikers = [{"mass": rng.uniform(500.0, 2000.0), "velocity": rng.uniform(0.1, 2.0)} for _ in range(SAMPLES + 1)]
+        cpu = one_impact(name, [Scene.from_dict({"striker": striker, "law": law}) for striker in strikers])
+        say(f"{name:14} {1e3 * cpu:22.1f} ms = {cpu / imports:.4f} x imports")
+        total += cpu / len(STUDY_LAWS)
+    wall = STUDY * total / CORES
+    say(f"{STUDY} such impacts on {CORES} cores: {wall:.0f} s (bound {STUDY_BOUND:.0f})")
+
+
 def force_laws() -> None:
     """Every law between two masses: one impact by one march, and as a Result with bars, rows and ledgers."""
     from lumped import Scene, laws
@@ -138,6 +191,8 @@ def force_laws() -> None:
 
 
 if __name__ == "__main__":
-    cold()
+    imports = cold()
     marginal()
+    lumped_laws(imports)
+    study(imports)
     force_laws()

@@ -15,7 +15,7 @@ from lumped.ending import AT_REST
 from lumped.errors import NotReached
 from lumped.hereditary.march import March, Piece, Settings, Stretch
 from lumped.hereditary.motion import Motion
-from lumped.hereditary.path import Path, falling_zero
+from lumped.hereditary.path import Path
 from lumped.hereditary.problem import Hereditary
 
 Array = NDArray[np.float64]
@@ -56,10 +56,11 @@ def follow(
     """March over a span of r from a state until `over`; `first` is the length to begin with. Raises NotReached."""
 
     def attempt(root: float, length: float, state: Array) -> Piece | None:
-        force: float | Array = float(state[FORCE])
+        motion, found = Motion.over_root(problem, settings.table, root, length), None
         if before is not None:
             force, _ = before.field(FORCE, root + length * settings.table.nodes)
-        return Motion.over_root(problem, settings.table, root, length).piece(state, problem.gravity - force)
+            found = motion.piece(state, problem.gravity - force)
+        return found or motion.piece(state, problem.gravity - float(state[FORCE]))
 
     found = Stretch(attempt, FORCE, over).march(span, state, first, settings, largest, before)
     if found.stuck:
@@ -91,12 +92,11 @@ def _to_velocity(
     """The march until the velocity has fallen to `slow`, and the place where it has."""
 
     def over(values: Array) -> bool:
-        return bool(values[VELOCITY, -1] <= slow)
+        return bool(values[VELOCITY].min() <= slow)
 
     span, first = (0.0, end_time**0.5), FIRST * problem.shortest**0.5
     found = follow(problem, span, problem.start(), first, over, settings, before=before)
     if not found.over:
         return found, found.path.end
-    low, high = (float(place) for place in found.path.breaks[-2:])
-    velocity, _ = found.path.curve(VELOCITY, 0.5 * (low + high))
-    return found, falling_zero(lambda place: velocity(place) - slow, low, high)
+    place = found.path.fall(VELOCITY, slow)
+    return found, found.path.end if place is None else place

@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 
 from lumped.errors import TooManySteps
 from lumped.hereditary.approach import DEPTH, FORCE, VELOCITY, Approach, follow
-from lumped.hereditary.march import MOST_PIECES, Piece, Settings, tail
+from lumped.hereditary.march import Piece, Settings, tail
 from lumped.hereditary.motion import Motion
-from lumped.hereditary.path import Path, falling_zero
+from lumped.hereditary.path import Path
 from lumped.hereditary.problem import Hereditary
 
 Array = NDArray[np.float64]
-SECANT_STEPS = 12
+SECANT_STEPS, MOST_ATTEMPTS = 12, 300
 # The duration is found to this relative change; the first time, with few nodes, this share of the accuracy will do.
 CLOSED, NEARLY_CLOSED = 1e-12, 1e-2
 # A piece that errs by so many times what is allowed will not do, wherever it ends.
@@ -82,13 +82,13 @@ def close(
         known = _again(problem, path, settings, largest, before, before.last)
         if known and known.end <= end_time:
             return known
-    for _ in range(MOST_PIECES):
-        released = float(path.at(path.end)[FORCE]) <= 0.0
-        if path.end >= limit and not released:
+    for _ in range(MOST_ATTEMPTS):
+        zero = path.fall(FORCE)
+        if path.end >= limit and zero is None:
             return Closing(path, None, end_time, 0.0, steps)
-        begin = float(path.breaks[-2]) if released else path.end
+        begin = path.end if zero is None else float(path.breaks[-2])
         state = path.at(begin)
-        duration = _until_released(path, begin) if released else _until_flat(problem, state)
+        duration = _until_flat(problem, state) if zero is None else zero**2 - begin**2
         earlier = _before(path, begin)
         guess = Guess(duration, np.full(settings.points, problem.gravity - state[FORCE]), 0.0)
         hopeful = 0.0 < duration < math.inf
@@ -99,7 +99,7 @@ def close(
         more = follow(problem, (begin, target), state, target - begin, _released, settings, largest)
         steps += more.steps
         path = earlier.joined(more.path) if earlier else more.path
-    raise TooManySteps(f"contact had not ended after {MOST_PIECES} pieces: accepted: an earlier end_time")
+    raise TooManySteps(f"contact had not ended after {MOST_ATTEMPTS} attempts: accepted: an earlier end_time")
 
 
 def _again(
@@ -120,19 +120,13 @@ def _again(
 
 
 def _released(values: Array) -> bool:
-    return bool(values[FORCE, -1] <= 0.0)
+    return bool(values[FORCE, 1:].min() <= 0.0)
 
 
 def _before(path: Path, place: float) -> Path | None:
     """The pieces before a break; None where there are none."""
     count = int(np.searchsorted(path.breaks, place))
     return Path(path.breaks[: count + 1], path.coefficients[:count], place) if count else None
-
-
-def _until_released(path: Path, begin: float) -> float:
-    """Time from `begin` to F = 0 in the last piece, which starts there."""
-    force, _ = path.curve(FORCE, 0.5 * (begin + path.end))
-    return falling_zero(force, begin, path.end) ** 2 - begin**2
 
 
 def _until_flat(problem: Hereditary, state: Array) -> float:

@@ -15,7 +15,7 @@ from lumped.hereditary.radau import Radau
 
 Array = NDArray[np.float64]
 Curve = Callable[[float], float]
-POINTS_PER_PIECE = 24
+POINTS_PER_PIECE, SAMPLES = 24, 65
 ROOT_STEPS = 100
 ROUNDING = 4e-16
 
@@ -40,6 +40,10 @@ class Path:
         """The path, whole, and one that goes on from its last break."""
         breaks = np.append(self.breaks, later.breaks[1:])
         return Path(breaks, np.concatenate([self.coefficients, later.coefficients]), later.end)
+
+    def of_fields(self, chosen: list[int]) -> Path:
+        """The same path with these fields only, in this order."""
+        return replace(self, coefficients=self.coefficients[:, chosen])
 
     def until(self, end: float) -> Path:
         """The same path with another end."""
@@ -95,6 +99,17 @@ class Path:
                 return top, value(top)
         return places[i], float(values[i])
 
+    def fall(self, index: int, level: float = 0.0) -> float | None:
+        """Where a field first falls to a level in the last piece, after its start; None where it does not."""
+        low, high = (float(place) for place in self.breaks[-2:])
+        places = np.linspace(low, high, SAMPLES)
+        below = np.flatnonzero(self.field(index, places)[0][1:] <= level)
+        if not below.size:
+            return None
+        value, _ = self.curve(index, 0.5 * (low + high))
+        before, after = places[below[0] : below[0] + 2].tolist()
+        return falling_zero(lambda place: value(place) - level, before, after)
+
     def _piece(self, places: Array | float) -> Array:
         """The index of the piece of each place."""
         return np.minimum(np.searchsorted(self.breaks[1:-1], places, side="right"), len(self.coefficients) - 1)
@@ -107,7 +122,9 @@ class Path:
         basis = np.empty((self.coefficients.shape[2], *x.shape))
         basis[0], basis[1] = 1.0, x
         for n in range(1, len(basis) - 1):
-            basis[n + 1] = ((2 * n + 1) / (n + 1)) * x * basis[n] - (n / (n + 1)) * basis[n - 1]
+            basis[n + 1] = x * basis[n]
+            basis[n + 1] *= (2 * n + 1) / (n + 1)
+            basis[n + 1] -= (n / (n + 1)) * basis[n - 1]
         return np.moveaxis(basis, 0, -1), piece
 
 

@@ -104,8 +104,11 @@ class Phase:
 
     def at(self, times: Array) -> Array:
         """Depth, velocity, force and the edge's depth at times (n,), shape (4, n)."""
-        fields = self.path.at(np.minimum(self.clock.place(times), self.path.end))
-        return fields[[self.depth, self.depth + 1, self.depth + 3, self.edge]]
+        return self._seen.at(np.minimum(self.clock.place(times), self.path.end))
+
+    @cached_property
+    def _seen(self) -> Path:
+        return self.path.of_fields([self.depth, self.depth + 1, self.depth + 3, self.edge])
 
     def highest(self, field: int) -> tuple[float, float]:
         """When a field is highest, 0 the depth and 3 the force, and how high."""

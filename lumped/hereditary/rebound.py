@@ -7,6 +7,7 @@ and the force is F(t) = int_0^{t1} E(t-s) dy(s). The rebound is followed over s 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -64,17 +65,8 @@ class Retreat:
         """The piece of a length at a place, from the state there; None where Newton's steps fail."""
         over = place + length * self.table.nodes
         then, weights = self._then(over), length * self.table.integral
-        if self.before is not None:
-            places = np.clip(over, self.before.breaks[0], self.before.breaks[-1])
-            return self._solved(weights, state, then, self.before.field(TIME, places)[1])
-        modulus = self.problem.modulus
-        # The terms of the relaxation series act as springs where they are slow, as dashpots where they are fast.
-        dashpots = modulus.viscosity + float(self.problem.stiffnesses @ np.array(modulus.times))
-        for stiffness, viscosity in ((modulus.glassy, modulus.viscosity), (modulus.equilibrium, dashpots)):
-            found = self._solved(weights, state, then, self._pace(over, stiffness, viscosity))
-            if found:
-                return found
-        return None
+        tried = (self._solved(weights, state, then, pace) for pace in self._paces(over))
+        return next((found for found in tried if found), None)
 
     def _solved(self, weights: Array, state: Array, then: Then, pace: Array) -> Piece | None:
         """Newton's steps for the pace p = dt/ds at the nodes, which lets nothing lack."""
@@ -90,6 +82,16 @@ class Retreat:
                 forth = bool(np.all(np.diff(values[TIME]) >= -ROUNDING * values[TIME, -1]))
                 return Piece(values, step) if forth else None
         return None
+
+    def _paces(self, over: Array) -> Iterator[Array]:
+        """Guesses, the best first."""
+        if self.before is not None:
+            yield self.before.field(TIME, np.clip(over, self.before.breaks[0], self.before.breaks[-1]))[1]
+        modulus = self.problem.modulus
+        yield self._pace(over, modulus.glassy, modulus.viscosity)
+        # Fast terms of the relaxation series are dashpots.
+        dashpots = modulus.viscosity + float(self.problem.stiffnesses @ np.array(modulus.times))
+        yield self._pace(over, modulus.equilibrium, dashpots)
 
     def _pace(self, over: Array, stiffness: float, viscosity: float) -> Array:
         """The pace on a spring and a dashpot near the turn t_m: E (t - t_m)^2 + 2 eta (t - t_m) = E (t_m - t1)^2."""

@@ -6,6 +6,7 @@ import csv
 import math
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,10 @@ from numpy.typing import NDArray
 
 from lumped import Material, Model, Relaxation, Result, Scene, Sphere, data, laws, simulate
 from lumped.ending import End
+from lumped.hereditary.march import Settings
 from lumped.interpolation import local, peak
+from lumped.laws import correspondence, ting
+from lumped.laws._hereditary import problem_of
 from lumped.laws.correspondence import Correspondence
 from lumped.lee_radok_map import error_map
 
@@ -272,7 +276,7 @@ def test_ting_and_the_springs_stop_where_the_striker_comes_back(impact: Build) -
 
 
 @pytest.mark.parametrize("ratio", [1e-6, 1.0, 1e6])
-@pytest.mark.parametrize("retardation", [1e-12, 1e-6, 1.0, 1e6])
+@pytest.mark.parametrize("retardation", [1e-12, 1e-6, 1e-2, 1.0, 1e6])
 @pytest.mark.parametrize("law", ["ting", "correspondence"])
 def test_stiff_corners_end_and_have_the_right_limits(law: str, retardation: float, ratio: float) -> None:
     scene = steel({"R1": repr(ratio), "R2_s": repr(retardation)})
@@ -286,3 +290,15 @@ def test_stiff_corners_end_and_have_the_right_limits(law: str, retardation: floa
     if retardation == 1e6:
         assert found["peak_force"] == pytest.approx(stiff.force, rel=1e-5)
         assert found["restitution"] == pytest.approx(1.0, abs=1e-5)
+
+
+@pytest.mark.parametrize("law", [ting, correspondence])
+def test_a_pulse_within_one_piece_is_seen(law: ModuleType) -> None:
+    # The pulse is over in 5e-3 of the elastic contact time, and what pulls after its end would turn the striker again.
+    scene = steel({"R1": "1e6", "R2_s": "0.01"})
+    problem = problem_of(scene, scene.profile, scene.contact_modulus)
+    exact = values(law.__name__.rpartition(".")[2], scene)["restitution"]
+    for points in range(10, 21):
+        course = law.solve(problem, 50.0, Settings(1e-6, points))
+        assert course.end is End.SEPARATED
+        assert -course.phases[-1].last[1] == pytest.approx(exact, abs=1e-5), points
