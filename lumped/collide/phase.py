@@ -73,17 +73,11 @@ class March:
         for _ in range(MOST_STEPS):
             length = min(length, self.until - now)
             nodes = NODES.graded(power, (now - time) / length) if power > 1 else NODES
-            step = self._solved(state, length, guess * nodes.pace, nodes)
-            event = None if step is None else self._first(step)
-            if step is not None and event is not None:
-                step = self._located(step, event, now)
-                before = None if step is None else self._first(step, event)
-                if step is not None and before is not None:
-                    step, event = self._located(step, before, now), before
-            rough = 0.0 if step is None else roughness(step) / self.allowed
+            step, event = self._until_event(self._solved(state, length, guess * nodes.pace, nodes), now)
             if step is None:
                 length *= SHORTEST
                 continue
+            rough = roughness(step) / self.allowed
             if rough > 1.0:
                 length = step.length * step.nodes.again(_ratio(rough, step.nodes.power))
                 continue
@@ -100,6 +94,14 @@ class March:
 
     def _solved(self, state: State, length: float, guess: Array, nodes: Nodes) -> Step | None:
         return solved(self.law, self.stage, self.bodies, state, length, guess, nodes)
+
+    def _until_event(self, step: Step | None, now: float, known: str = "") -> tuple[Step | None, str | None]:
+        """The step, cut short at its first event; and at one before that which only the shorter step shows."""
+        event = None if step is None else self._first(step, known)
+        if step is None or event is None:
+            return step, known or None
+        located = self._located(step, event, now)
+        return (located, event) if known else self._until_event(located, now, event)
 
     def _first(self, step: Step, beside: str = "") -> str | None:
         """The event that happens first within a step, `beside` one that is known."""

@@ -53,7 +53,7 @@ class Step(NamedTuple):
         power, begun = self.nodes.power, self.nodes.begun
         if power == 1:
             return np.asarray(legendre.legval(2.0 * shares - 1.0, self.nodes.series @ self.gain))
-        low, high = begun ** (1.0 / power), (1.0 + begun) ** (1.0 / power)
+        low, high = self.nodes.roots
         root = (shares + begun) ** (1.0 / power)
         gains = legendre.legval(2.0 * (root - low) / (high - low) - 1.0, self.nodes.series @ self.gain)
         return np.asarray(gains / (power * (high - low) * root ** (power - 1)))
