@@ -1,10 +1,13 @@
 """An elastic annulus in plane strain, its outer circle fixed: radial displacement of the inner circle, wave by wave.
 
-A pressure cos(n theta) on the inner circle, without shear, moves it by (inner radius/E*) c_n cos(n theta). Displacements
-and stresses of Michell's functions: Barber 2010, ISBN 978-90-481-3808-1, tables 8.1 and 9.1; here 2 G = 1, inner radius 1.
+A pressure cos(n theta) on the inner circle, without shear, moves it by (inner radius/E*) c_n cos(n theta). Michell's
+functions with their displacements and stresses: Barber 2010, ISBN 978-90-481-3808-1, tables 8.1 and 9.1; here 2 G = 1
+and the inner radius is 1.
 """
 
 from __future__ import annotations
+
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +18,7 @@ Array = NDArray[np.float64]
 TAIL, LEAST_ORDER = 42.0, 12
 
 
+@lru_cache(maxsize=64)
 def compliances(nu: float, ratio: float) -> Array:
     """c_n, n = 0, 1, ..., as far as they differ from those of a hole; `ratio` is inner over outer radius."""
     last = LEAST_ORDER + int(np.ceil(-0.5 * TAIL / np.log(ratio)))

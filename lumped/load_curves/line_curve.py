@@ -41,18 +41,13 @@ class LineCurve(TabulatedCurve):
     def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> State:
         """The curve from f, d and c; at b = 0 all is 0."""
         b, touched = np.where(contact_radius > 0.0, contact_radius, self.length), contact_radius > 0.0
-        per_radius = self.coordinate_slope(b)
         logarithm = 2.0 / np.pi * np.log(self.length / b)
         force = np.pi * b**2 / (4.0 * self.curvature_radius * smooth[0])
-        force_slope = force * (2.0 / b - slopes[0] * per_radius / smooth[0])
+        force_slope = force * (2.0 / b - slopes[0] / smooth[0])
         compliance = logarithm + smooth[1]
-        slope = force_slope * compliance + force * (slopes[1] * per_radius - 2.0 / (np.pi * b))
+        slope = force_slope * compliance + force * (slopes[1] - 2.0 / (np.pi * b))
         values = (force * compliance, slope, force, 1.0 / (logarithm + smooth[2]))
         return State(*(np.where(touched, value, 0.0) for value in values))
-
-    def coordinate_slope(self, contact_radius: Array) -> Array:
-        """d coordinate / d half-width."""
-        return np.ones_like(contact_radius)
 
     def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
         """p/E* at distances from the middle of the contact, from the equation itself."""

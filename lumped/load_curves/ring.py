@@ -1,157 +1,111 @@
-"""A rigid cylinder inside an elastic ring whose outer surface is fixed, in plane strain, per unit length."""
+"""The load curve of a rigid cylinder inside an elastic ring, in plane strain, per unit length."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from math import inf
+from functools import lru_cache
+from math import exp, log
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.errors import BadInput, Fault
-from lumped.load_curves from lumped.load_curves.line_curve import LineCurve
-from lumped.load_curves.plane_contact import Array, Collocation, Grown, collocation
-from lumped.load_curves.ring_kernel import ring_compliance
+from lumped.errors import NotReached
+from lumped.load_curves.base import GAUSS_POINTS, LoadCurve
+from lumped.load_curves.panels import Array, evaluate, panel, tested_place
+from lumped.load_curves.ring_contact import RingContact
+from lumped.quadrature import gauss
 
-POINTS, NEWTON_STEPS = 32, 40
-# Panels by the contact's half-angle: its logarithm is the coordinate, because the kernel's own curvature adds
-# terms angle and angle^2 ln(angle), which vanish below the first.
-FIRST_EDGES = (1e-7, 1e-3, 0.03, 0.15, 0.3)
-GROWTH = 1.25
-LEAST_CLEARANCE = 1e-4
-# No contact is wider, rad.
-WIDEST = 2.6
+# Panels by the logarithm of the depth over its limit: the deeper half, and a decade each below it.
+EDGES = -log(2.0) - log(10.0) * np.arange(-1.0, 18.0)
+EDGES[0] = 0.0
+ACCURACY, REFINEMENT = 1e-8, 1.5
 
 
 @dataclass(frozen=True)
-class Ring(LineCurve):
-    """Exact arcs: with D = clearance + depth the overlap is D cos(theta) + sqrt(R^2 - D^2 sin^2(theta)) - inner radius.
+class Ring(RingContact, LoadCurve):
+    """F is the component along the motion, the contact radius the half-length of the inner arc that is touched.
 
-    Its radial pressure is found from the Fourier series of the annulus; F is its component along the motion, the contact
-    radius the half-length of the inner arc touched. `nu` in (-1, 0.5]; the clearance, inner_radius - radius, is at least
-    1e-4 thickness. Depths stay below the thickness. Raises BadInput; NotReached where 1e-8 is not met.
+    While the cylinder's arc is the exact one, F is not the slope of a stored energy: the motion turns the overlap a
+    little further than cos(theta). Depths stay below thickness and radius; below 1e-17 of them all is 0. Relative accuracy 1e-8.
+    Raises BadInput, or NotReached where two resolutions differ by more or the contact closes round the whole cylinder.
     """
 
-    radius: float
-    inner_radius: float
-    thickness: float
-    nu: float
+    def force(self, depth: ArrayLike) -> Any:
+        """F/E* per unit length, m."""
+        return self._at(depth)[1]
 
-    def __post_init__(self) -> None:
-        faults = [
-            Fault("ring", key, f"must be above 0 m, is {value}")
-            for key, value in (("radius", self.radius), ("thickness", self.thickness))
-            if not 0.0 < value < inf
-        ]
-        if not -1.0 < self.nu <= 0.5:
-            faults.append(Fault("ring", "nu", f"must lie above -1 and not above 0.5, is {self.nu}"))
-        least = self.radius + LEAST_CLEARANCE * self.thickness
-        if not least <= self.inner_radius < inf:
-            faults.append(Fault("ring", "inner_radius", f"must be at least {least:g} m, is {self.inner_radius}"))
-        if faults:
-            raise BadInput(faults)
+    def contact_radius(self, depth: ArrayLike) -> Any:
+        """Half-length of the inner arc touched, m."""
+        return self._at(depth)[0]
 
-    @property
-    def clearance(self) -> float:
-        """Distance of the centres at first touch, m."""
-        return self.inner_radius - self.radius
+    def dforce_ddepth(self, depth: ArrayLike) -> Any:
+        """d(F/E*)/d depth per unit length."""
+        return self._at(depth)[2]
 
-    @property
-    def curvature_radius(self) -> float:
-        """1/(1/R - 1/inner radius), m."""
-        return self.radius * self.inner_radius / self.clearance
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Any, Any]:
+        """F/E* and dF/d depth at a depth."""
+        _, force, slope, _ = self._at(depth)
+        return force, slope
 
-    @property
-    def length(self) -> float:
-        """The inner radius, m."""
-        return self.inner_radius
+    def depth(self, contact_radius: ArrayLike) -> Any:
+        """The least depth with this half-length of arc, m, from the equation itself; infinite where none has it."""
+        half_length = np.asarray(contact_radius, dtype=float)
+        depths = [self.depth_at(float(b) / self.inner_radius) if b > 0.0 else 0.0 for b in half_length.ravel()]
+        return np.reshape(depths, half_length.shape)
 
-    def coordinate(self, contact_radius: Array) -> Array:
-        """Logarithm of the half-angle, constant below the first edge."""
-        return np.log(np.maximum(contact_radius / self.inner_radius, FIRST_EDGES[0]))
+    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+        """d depth / d half-length of arc."""
+        depth = np.asarray(self.depth(contact_radius))
+        half_length, _, _, exponent = self._at(depth)
+        product = half_length * exponent
+        return np.divide(depth, product, out=np.zeros_like(depth), where=product > 0.0)
 
-    def radius_at(self, coordinate: float) -> float:
-        """Half-length of the arc at a coordinate, m."""
-        return float(self.inner_radius * np.exp(coordinate))
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+        """p/E* at distances along the inner arc, from the equation itself."""
+        return self.pressure_at(radius, float(self.depth(contact_radius)))
 
-    def coordinate_slope(self, contact_radius: Array) -> Array:
-        """1/half-length."""
-        return np.where(contact_radius > FIRST_EDGES[0] * self.inner_radius, 1.0 / contact_radius, 0.0)
-
-    @cached_property
-    def edges(self) -> tuple[float, ...]:
-        """Panels up to the half-angle at which the depth reaches the thickness."""
-        widest = self._widest()
-        inner = [edge for edge in FIRST_EDGES if edge * GROWTH < widest]
-        growths = int(np.ceil(np.log(widest / inner[-1]) / np.log(GROWTH)))
-        angles = [*inner, *np.geomspace(inner[-1], widest, growths + 1)[1:]]
-        return tuple(float(self.inner_radius * angle) for angle in angles)
-
-    def _widest(self) -> float:
-        """The half-angle at which the depth reaches the thickness."""
-        from scipy.optimize import brentq
-
-        def left(angle: float) -> float:
-            return self.thickness / self.grown(self.inner_radius * angle, 1.0).depth - 1.0
-
-        return float(brentq(left, 1e-3, WIDEST, xtol=1e-13, rtol=1e-13))
-
-    def grown(self, half_width: float, refinement: float) -> Grown:
-        """The contact at one half-length of the inner arc."""
-        angle = half_width / self.inner_radius
-        rule = collocation(int(refinement * POINTS * (1.0 + angle)))
-        return self._grown(rule, angle, ring_compliance(self.nu, self._ratio, rule, angle))
-
-    def check_depth(self, depth: ArrayLike) -> None:
-        """Raises BadInput where a depth reaches the thickness."""
-        deepest = np.max(depth, initial=0.0)
-        if deepest >= self.thickness:
-            message = f"must stay below the thickness of {self.thickness:g} m, is {deepest:g}"
-            raise BadInput(Fault("ring", "depth", message))
-
-    def contact_radius(self, depth: ArrayLike) -> NDArray[np.float64]:
-        """Half-length of the arc touched at a depth below the thickness, m; raises BadInput for deeper ones."""
+    def pressure_at(self, radius: ArrayLike, depth: float) -> NDArray[np.float64]:
+        """p/E* at distances along the inner arc and a depth."""
         self.check_depth(depth)
-        return np.asarray(super().contact_radius(depth))
+        if depth <= 0.0:
+            return np.zeros_like(np.asarray(radius, dtype=float))
+        here = self.pressed(depth, 1.0)
+        return here.collocation.at(here.q, np.asarray(radius, dtype=float) / here.half_width)
 
-    @property
-    def _ratio(self) -> float:
-        """Inner over outer radius."""
-        return self.inner_radius / (self.inner_radius + self.thickness)
+    def energy(self, depth: ArrayLike) -> NDArray[np.float64]:
+        """Work of indentation int_0^depth F d depth."""
+        d = np.maximum(np.asarray(depth, dtype=float), 0.0)
+        nodes, weights = gauss(GAUSS_POINTS)
+        return np.asarray(d * (self.force(d[..., None] * nodes**2) @ (2.0 * nodes * weights)))
 
-    def _grown(self, rule: Collocation, angle: float, compliance: Array) -> Grown:
-        theta, matrix = angle * rule.nodes, self.inner_radius * compliance
-        distance = self._distance(theta, np.linalg.solve(matrix.T, rule.edge))
-        overlap = distance - self.clearance - self._fall(theta, distance)
-        q, growth = np.linalg.solve(matrix, np.stack([overlap, 1.0 - self._fall_slope(theta, distance)], axis=1)).T
-        half_width = self.inner_radius * angle
-        force, stiffness = half_width * rule.total(np.stack([q, growth]) * np.cos(theta))
-        return Grown(rule, half_width, q, distance - self.clearance, float(force), 1.0 / float(stiffness))
+    def _at(self, depth: ArrayLike) -> Array:
+        """Half-length, F/E*, its slope and dln(half-length)/dln(depth), shape (4, ...); all 0 without depth."""
+        self.check_depth(depth)
+        d = np.asarray(depth, dtype=float)
+        place = np.log(d / self.depth_limit, out=np.full(d.shape, -np.inf), where=d > 0.0).ravel()
+        answer = np.zeros((4, d.size))
+        for index in np.unique(np.searchsorted(-EDGES, -place)):
+            if 0 < index < EDGES.size:
+                here = (place < EDGES[index - 1]) & (place >= EDGES[index])
+                values, slopes = evaluate(_panel(self, index)[None], EDGES[[index, index - 1]], place[here])
+                answer[:, here] = np.concatenate([np.exp(values), slopes[:1]])
+        return answer.reshape(4, *d.shape)
 
-    def _distance(self, theta: Array, edge: Array) -> float:
-        """D with no pressure at the edge, by Newton's method, monotone from D = clearance; infinite where none has."""
-        share, distance = edge / edge.sum(), self.clearance
-        for _ in range(NEWTON_STEPS):
-            slope = 1.0 - float(share @ self._fall_slope(theta, distance))
-            if slope <= 0.0:
-                return inf
-            step = (self.clearance + float(share @ self._fall(theta, distance)) - distance) / slope
-            distance += step
-            if distance * np.sin(theta[0]) >= self.radius:
-                return inf
-            if abs(step) < 1e-15 * distance:
-                break
-        return distance
 
-    def _fall(self, theta: Array, distance: float) -> Array:
-        """Overlap at theta = 0 less that at theta, m: 2 D sin^2(theta/2) + R - sqrt(R^2 - D^2 sin^2(theta))."""
-        square = (distance * np.sin(theta)) ** 2
-        arc = square / (self.radius + np.sqrt(self.radius**2 - square))
-        return np.asarray(2.0 * distance * np.sin(0.5 * theta) ** 2 + arc)
+@lru_cache(maxsize=256)
+def _panel(ring: Ring, index: int) -> Array:
+    """Logarithms of half-length, F/E* and dF/d depth over ln(depth/limit), shape (POINTS, 2, 3), certified."""
 
-    def _fall_slope(self, theta: Array, distance: float) -> Array:
-        """d fall / d D."""
-        sine = np.sin(theta)
-        arc = distance * sine**2 / np.sqrt(self.radius**2 - (distance * sine) ** 2)
-        return np.asarray(2.0 * np.sin(0.5 * theta) ** 2 + arc)
+    def sample(place: float, refinement: float = 1.0) -> Array:
+        here = ring.pressed(ring.depth_limit * exp(place), refinement)
+        return np.log([here.half_width, here.force, 1.0 / here.compliance])
+
+    low, high = (float(edge) for edge in EDGES[[index, index - 1]])
+    table, place = panel(low, high, sample), tested_place(low, high)
+    kept, _ = evaluate(table[None], np.array([low, high]), np.array([place]))
+    error = float(np.abs(kept[1:, 0] - sample(place, REFINEMENT)[1:]).max())
+    if not error <= ACCURACY:
+        depth = ring.depth_limit * exp(place)
+        raise NotReached(f"{ring} at a depth of {depth:g} m: two resolutions differ by {error:.1e}")
+    return table

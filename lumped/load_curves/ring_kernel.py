@@ -41,7 +41,7 @@ def _hole_rest(nu: float, phi: Array) -> Array:
 
 def _annulus_rest(nu: float, ratio: float, theta: Array) -> Array:
     """c_0/2 + c_1 cos(phi) + sum_{n>=2} (c_n - hole's) cos(n phi), its even part in both angles, shape (m, m)."""
-    rest = compliances(nu, ratio)
+    rest = compliances(nu, ratio).copy()
     orders = np.arange(rest.size, dtype=float)
     rest[0] *= 0.5
     rest[2:] -= hole(nu, orders[2:])

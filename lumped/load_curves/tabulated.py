@@ -1,7 +1,7 @@
 """Load curves known only by solving an integral equation at each contact radius: solved at a few, certified, kept.
 
-What is kept are smooth functions of a coordinate of the contact radius, by Chebyshev polynomials on panels; they
-are found when first needed, from the smallest contact outwards.
+What is kept are smooth functions of the contact radius, by Chebyshev polynomials on panels; they are found when first
+needed, from the smallest contact outwards.
 """
 
 from __future__ import annotations
@@ -11,20 +11,15 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import NotReached
 from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.panels import Array, evaluate, panel, tested_place
 
-Array = NDArray[np.float64]
-
-POINTS = 14
-ANGLES = np.pi * (np.arange(POINTS) + 0.5) / POINTS
-# A panel is certified where its polynomial has nothing to hold it, by an equation with finer quadrature.
-TESTED_AT, REFINEMENT = 0.985, 1.5
-ACCURACY = 1e-8
-NEWTON_STEPS = 10
+# A panel is certified by an equation with finer quadrature.
+ACCURACY, REFINEMENT = 1e-8, 1.5
+NEWTON_STEPS, STARTS_PER_PANEL = 10, 50
 # The largest contact radius served, in lengths of the body and in radii of a profile that ends; panels grow outwards
 # by this factor from the first, whose end is the lesser of two shares of the same.
 REACH, SHARE_OF_EXTENT = 20.0, 0.85
@@ -57,15 +52,7 @@ class TabulatedCurve(LoadCurve):
 
     @abstractmethod
     def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> State:
-        """The curve from its smooth functions and their slopes over the coordinate, shapes (m,), (3, m), (3, m)."""
-
-    def coordinate(self, contact_radius: Array) -> Array:
-        """The coordinate of the tables; the contact radius itself unless a curve knows better."""
-        return contact_radius
-
-    def radius_at(self, coordinate: float) -> float:
-        """The contact radius at a coordinate, m."""
-        return coordinate
+        """The curve from its smooth functions and their slopes, shapes (m,), (3, m) and (3, m)."""
 
     def at(self, contact_radius: ArrayLike) -> State:
         """The curve at contact radii up to the last edge, m."""
@@ -129,15 +116,8 @@ class TabulatedCurve(LoadCurve):
         raise NotReached(f"{self} at a depth of {depth:g} m: the contact grows beyond {self.edges[-1]:g} m")
 
     def _at(self, radius: Array, panels: int) -> State:
-        edges = self.coordinate(np.array(self.edges[: panels + 1]))
-        place = self.coordinate(radius)
-        panel = np.clip(np.searchsorted(edges, place) - 1, 0, panels - 1)
-        tables = _tables(self, panels)[panel]
-        scale = 2.0 / (edges[panel + 1] - edges[panel])
-        local = np.moveaxis(tables, 0, -1)
-        z = (place - edges[panel]) * scale - 1.0
-        both = np.asarray(chebyshev.chebval(z, local, tensor=False), dtype=float)
-        return self.state(radius, both[0], both[1] * scale)
+        edges = np.array(self.edges[: panels + 1])
+        return self.state(radius, *evaluate(_tables(self, panels), edges, radius))
 
 
 def growing_edges(length: float, extent: float) -> tuple[float, ...]:
@@ -157,7 +137,7 @@ def _extended(x: Array, known_x: Array, known_y: Array) -> Array:
 @lru_cache(maxsize=256)
 def _start(curve: TabulatedCurve, panels: int) -> tuple[Array, Array]:
     """Logarithms of depth and contact radius, ascending: from them the inversion starts."""
-    shares = np.linspace(0.0, 1.0, 4 * POINTS + 1)[1:]
+    shares = np.linspace(0.0, 1.0, STARTS_PER_PANEL + 1)[1:]
     edges = np.array(curve.edges[: panels + 1])
     radius = (edges[:-1, None] + np.diff(edges)[:, None] * shares).ravel()
     return np.log(curve._at(radius, panels).depth), np.log(radius)
@@ -165,28 +145,21 @@ def _start(curve: TabulatedCurve, panels: int) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=256)
 def _tables(curve: TabulatedCurve, panels: int) -> Array:
-    """Chebyshev coefficients of functions and slopes, shape (panels, POINTS, 2, 3)."""
-    return np.stack([_panel(curve, panel) for panel in range(panels)])
+    """The first panels, shape (panels, POINTS, 2, 3)."""
+    return np.stack([_panel(curve, index) for index in range(panels)])
 
 
 @lru_cache(maxsize=1024)
-def _panel(curve: TabulatedCurve, panel: int) -> Array:
-    """Coefficients on one panel, shape (POINTS, 2, 3), certified."""
-    low, high = curve.coordinate(np.array(curve.edges[panel : panel + 2]))
-    places = 0.5 * (low + high) + 0.5 * (high - low) * np.cos(ANGLES)
-    samples = np.array([curve.sample(curve.radius_at(place), 1.0) for place in places])
-    coefficients = chebyshev.chebfit(np.cos(ANGLES), samples, POINTS - 1)
-    slopes = np.concatenate([chebyshev.chebder(coefficients), np.zeros((1, samples.shape[1]))])
-    _certify(curve, 0.5 * (low + high) + 0.5 * (high - low) * TESTED_AT, coefficients)
-    return np.stack([coefficients, slopes], axis=1)
-
-
-def _certify(curve: TabulatedCurve, place: float, coefficients: Array) -> None:
-    radius = np.array([curve.radius_at(place)])
-    flat = np.zeros((coefficients.shape[1], 1))
-    kept = curve.state(radius, np.array([chebyshev.chebval(TESTED_AT, coefficients)]).T, flat)
-    fresh = curve.state(radius, curve.sample(float(radius[0]), REFINEMENT)[:, None], flat)
+def _panel(curve: TabulatedCurve, index: int) -> Array:
+    """One panel, shape (POINTS, 2, 3), certified."""
+    low, high = curve.edges[index : index + 2]
+    table = panel(low, high, lambda radius: curve.sample(radius, 1.0))
+    radius = np.array([tested_place(low, high)])
+    values, slopes = evaluate(table[None], np.array([low, high]), radius)
+    kept = curve.state(radius, values, slopes)
+    fresh = curve.state(radius, curve.sample(float(radius[0]), REFINEMENT)[:, None], slopes)
     ratios = (kept.depth / fresh.depth, kept.force / fresh.force, kept.stiffness / fresh.stiffness)
     error = max(abs(float(ratio[0]) - 1.0) for ratio in ratios)
     if not error <= ACCURACY:
         raise NotReached(f"{curve} at a contact radius of {radius[0]:g} m: two resolutions differ by {error:.1e}")
+    return table
