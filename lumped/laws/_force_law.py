@@ -27,7 +27,7 @@ from lumped.scene import END_IN_CONTACT_TIMES, Model, Scene
 Array = NDArray[np.float64]
 # Errors of the rate allowed in one step, relative to the velocity at touch; the end of contact errs far less.
 # The first one is that asked of the result, if it is not beyond these; every next one is finer by FINER.
-COARSEST, FINEST, FINER = 1e-3, 1e-12, 1e-2
+COARSEST, FINEST, FINER = 1e-4, 1e-12, 1e-2
 SAFETY = 2.0
 
 

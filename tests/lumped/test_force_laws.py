@@ -402,3 +402,13 @@ def test_extreme_scales_change_nothing_but_the_scale(name: str) -> None:
     for k, mass, velocity in ((1e-3, 1e-12, 1e-6), (1e15, 1e-12, 1e3), (1e-3, 1e9, 1e3), (1e15, 1e9, 1e-6)):
         found = quantities(scene(name, mass, velocity, k=k, gap=1e-12, **damped), 1e-6)
         assert found["restitution"] == pytest.approx(damped.get("e", 1.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("exit", ["force", "depth"])
+@pytest.mark.parametrize(("name", "key"), [("tsuji", "alpha_t"), ("kuwabara_kono", "A"), ("kelvin", "xi")])
+def test_hardly_any_damping_hardly_loses_energy(name: str, key: str, exit: str) -> None:
+    """The force ends just before the depth, where both are least smooth."""
+    for damping in (0.0, 1e-12, 1e-7, 1e-4, 1e-2):
+        case = scene(name, exit=exit, **{key: damping})
+        energy = laws.get(name).of(case).simulate(case, 1e-2).energy
+        assert abs(energy["residual"]) <= 1e-8 * energy["in"]
