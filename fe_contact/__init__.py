@@ -35,7 +35,8 @@ def run(
     scene : a :class:`lumped.Scene`.
     tolerance : asked of every ruled quantity; None leaves it to ``numerics`` or the default 1e-3.
     method : ``fe``, ``cheapest`` or the name of a lumped law; None: the law the scene names, else ``fe``.
-    numerics : settings to keep, as in the ``[numerics]`` table of a scene file.
+    numerics : settings to keep, as in the ``[numerics]`` table of a scene file. A scene is physics alone: the table of
+        the file it was loaded from is read by the command line only, and has to be given here.
 
     Raises
     ------

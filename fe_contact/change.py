@@ -11,16 +11,21 @@ from fe_contact.curve import DENSE, PEAK_SHARE, Curve, Reading
 from fe_contact.forms import Array
 
 SMOOTHING = 0.06  # share of the contact over which a pointwise change counts as the error of its neighbours
+UNRESOLVED = 1.25  # factor within a first step
 LATE = int(np.searchsorted(DENSE, 0.75))  # from here on path and speed count for those at separation
 
 
 @dataclass(frozen=True)
 class Change:
-    """Two curves that differ in one setting, and the factor that turns their difference into an error."""
+    """Two curves that differ in one setting, and the factor that turns their difference into an error.
+
+    ``momentum``: what that factor is to be multiplied with for impulse and speed, which add up what every step errs.
+    """
 
     first: Curve
     second: Curve
     factor: float
+    momentum: float = 1.0
 
     @cached_property
     def errors(self) -> dict[str, float]:
@@ -36,8 +41,8 @@ class Change:
             "peak_time": self._peak_time,
             "peak_depth": float(depth[first.dense.depth > PEAK_SHARE * first.dense.depth.max()].max()),
             "duration": float(depth[LATE:].max()) / speed,
-            "impulse": float(np.abs(first.dense.impulse - self.second.dense.impulse)[LATE:].max()),
-            "restitution": self.velocity / first.strike.velocity,
+            "impulse": self.momentum * float(np.abs(first.dense.impulse - self.second.dense.impulse)[LATE:].max()),
+            "restitution": self.momentum * self.velocity / first.strike.velocity,
         }
         errors = {name: self._error(name, value) for name, value in around.items()}
         return errors | {"history_l2": self.factor * self._history}
@@ -49,11 +54,27 @@ class Change:
         return self.factor * max(abs(first - second), around)
 
     def force(self, time: Array) -> Array:
-        """Error of the force at times, N: the largest change in the neighbourhood of each."""
-        width = max(1, round(SMOOTHING * len(self._force_change)))
-        padded = np.pad(self._force_change, width, mode="edge")
+        """Error of the force at times, N: the largest change in the neighbourhood of each.
+
+        Within a first step no order shows, and the whole change counts.
+        """
+        places, change = self._pointwise
+        width = max(1, round(SMOOTHING * len(change)))
+        padded = np.pad(change, width, mode="edge")
         around = np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1).max(axis=1)
-        return np.asarray(self.factor * np.interp(time, self.first.dense_time, around))
+        resolved = time > self.second.duration * self.second.x[1] ** 2
+        factor = np.where(resolved, self.factor, max(self.factor, UNRESOLVED))
+        return np.asarray(factor * np.interp(time, places, around))
+
+    @property
+    def _pointwise(self) -> tuple[Array, Array]:
+        """Times, dense and within every step, and how much the force changes there, N."""
+        x = self.first.x
+        within = self.first.duration * (0.5 * (x[1:] + x[:-1])) ** 2
+        times = np.concatenate([self.first.dense_time, within])
+        order = times.argsort(kind="stable")
+        change = np.abs(self.first.force(within) - self.second.force(within))
+        return times[order], np.concatenate([self._force_change, change])[order]
 
     @cached_property
     def velocity(self) -> float:

@@ -29,10 +29,10 @@ def squared_radius(march: March) -> tuple[Array, Array]:
         (at_turn,), _ = LocalPolynomials.through(time[before], square[None, before]).at(np.array([turn]))
         time, square = np.insert(time, growing, turn), np.insert(square, growing, at_turn[0])
     shares = np.concatenate([[0.0], time / duration, [1.0]])
-    return _seen_from_both_sides(shares, np.concatenate([[0.0], square, [last]]))
+    return seen_from_both_sides(shares, np.concatenate([[0.0], square, [last]]))
 
 
-def _seen_from_both_sides(x: Array, y: Array) -> tuple[Array, Array]:
+def seen_from_both_sides(x: Array, y: Array) -> tuple[Array, Array]:
     """The samples with places in between, on the parabola from the left or the right, whichever bends less.
 
     Where the two do not lie on the same side of the straight line, the line is kept.

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_contact import impact
+from fe_contact import stepping
 from fe_contact.cli import COMMANDS, main
 from fe_contact.targets import half_space
 from lumped.data import scene_names
@@ -237,7 +237,7 @@ def test_a_tolerance_that_cannot_be_reached_is_exit_three_with_what_was_reached(
 def test_a_solve_that_does_not_converge_is_exit_three_without_a_traceback(
     empty: Path, scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(impact, "RESCALINGS", 0)
+    monkeypatch.setattr(stepping, "RESCALINGS", 0)
     assert exit_code("run", str(scene)) == 3
     err = capsys.readouterr().err
     assert len(err.strip().splitlines()) == 1

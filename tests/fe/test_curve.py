@@ -1,0 +1,76 @@
+"""Interpolation between the steps of a march: exact where it must be, honest at corners."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fe_contact.contact_radius import seen_from_both_sides
+from fe_contact.local_polynomial import PLACES, LocalPolynomials, fitted_peak, peak
+from fe_contact.time_grid import share_of_rest
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+@given(SEEDS)
+def test_local_polynomials_give_back_quintics_and_their_slopes(seed: int) -> None:
+    """And the line through two nodes, where there are no more."""
+    rng = np.random.default_rng(seed)
+    nodes = np.cumsum(rng.uniform(0.05, 0.2, int(rng.integers(2, 30))))
+    degree = min(5, len(nodes) - 1)
+    quintics = [np.polynomial.Polynomial(rng.normal(size=degree + 1)) for _ in range(2)]
+    places = rng.uniform(nodes[0], nodes[-1], 40)
+    value, slope = LocalPolynomials.through(nodes, np.stack([p(nodes) for p in quintics])).at(places)
+    size = max(np.abs(p(nodes)).max() for p in quintics) + 1.0
+    np.testing.assert_allclose(value, [p(places) for p in quintics], atol=1e-8 * size)
+    np.testing.assert_allclose(slope, [p.deriv()(places) for p in quintics], atol=1e-6 * size)
+
+
+@pytest.mark.parametrize("place", [0.31, 0.5, 0.64])
+def test_the_peak_of_a_quartic_is_found_by_interpolation_and_by_fit(place: float) -> None:
+    def quartic(x: np.ndarray) -> np.ndarray:
+        return np.asarray(2.0 - (x - place) ** 2 * (1.0 + 0.3 * (x - place) + (x - place) ** 2))
+
+    times = np.linspace(0.0, 1.0, 21)
+    for found in (peak(times, quartic(times)), fitted_peak(0.0, 1.0, quartic(np.linspace(0.0, 1.0, PLACES)))):
+        assert found == pytest.approx((place, 2.0), abs=1e-9)
+
+
+def test_a_fitted_peak_hardly_follows_a_jitter() -> None:
+    x = np.linspace(-1.0, 1.0, PLACES)
+    jitter = 1e-3 * (-1.0) ** np.arange(PLACES)
+    place, height = fitted_peak(-1.0, 1.0, 1.0 - 0.02 * (x - 0.1) ** 2 + jitter)
+    assert place == pytest.approx(0.1, abs=0.02)
+    assert height == pytest.approx(1.0, abs=2e-4)
+
+
+def test_what_is_seen_from_both_sides_is_a_parabola_where_the_samples_are_one() -> None:
+    x = np.cumsum(np.random.default_rng(3).uniform(0.5, 1.5, 12))
+    places, values = seen_from_both_sides(x, 3.0 + x - 0.05 * x**2)
+    inner = (places >= x[2]) & (places <= x[-3])
+    np.testing.assert_allclose(values[inner], (3.0 + places - 0.05 * places**2)[inner], rtol=1e-13)
+
+
+@pytest.mark.parametrize("corner", [5.1, 5.5, 5.8])
+def test_a_corner_between_two_samples_is_found_where_a_line_would_cut_it(corner: float) -> None:
+    x = np.arange(12.0)
+
+    def bent(x: np.ndarray) -> np.ndarray:
+        return np.where(x < corner, 4.0 - 0.01 * x**2, 4.0 - 0.01 * corner**2 - 0.8 * (x - corner))
+
+    places, values = seen_from_both_sides(x, bent(x))
+    beside = (places >= 5.0) & (places <= 6.0)
+    error = np.abs(values - bent(places))[beside].max()
+    cut = np.abs(np.interp(corner, x, bent(x)) - bent(np.array([corner]))[0])
+    assert error < 0.05 * cut
+
+
+@pytest.mark.parametrize("steps", [12, 48])
+def test_the_time_left_falls_to_a_thousandth_in_as_many_steps_as_the_grading_has(steps: int) -> None:
+    left, taken = 0.02, 0
+    while left > 1e-3:
+        left *= 1 - share_of_rest(left, steps)
+        taken += 1
+    assert taken <= steps * np.sqrt(0.02 / 3) + 3

@@ -1,0 +1,56 @@
+"""Kelvin-Voigt solids that creep back: eta/E of two to ten contact times, where the force fades in a long faint tail.
+
+The striker leaves with some per cent of its speed, so that a change of the path is a large change of the duration;
+all the same the bars must cover, and a refinement or two must do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import fe_contact
+import lumped
+from lumped.laws import mdr
+from lumped.result import RULED_RELATIVE
+
+IMPACTS = 24
+TOLERANCES = (1e-3, 1e-4)
+RULED = (*RULED_RELATIVE, "restitution")
+MARCHES = {1e-3: 6, 1e-4: 12}  # a certified impact is six
+REFERENCE_TOLERANCE = 1e-7
+
+
+def impact(number: int) -> lumped.Scene:
+    """Size, stiffness and mass over decades, as in the large campaign."""
+    rng = np.random.default_rng((20261121, number))
+    nu, radius, young = float(rng.uniform(0, 0.4999)), 10 ** rng.uniform(-3, -1), 10 ** rng.uniform(5, 11)
+    depth = radius * 10 ** (2 * rng.uniform(-2, np.log10(0.3)))
+    mass = rng.uniform(0.5, 2) * rng.uniform(800, 8000) * 4 / 3 * np.pi * radius**3
+    velocity = np.sqrt(16 / 15 * young / (1 - nu**2) * np.sqrt(radius) * depth**2.5 / mass)
+    eta = young * 2.943275 * depth / velocity * rng.uniform(2, 10)
+    material = {"law": "kelvin_voigt", "E": young, "eta": eta, "nu": nu}
+    striker = {"shape": "sphere", "radius": radius, "mass": mass, "velocity": velocity}
+    target = {"shape": "half_space", "material": material}
+    return lumped.Scene.from_dict({"name": f"damped-{number}", "striker": striker, "target": target})
+
+
+@pytest.fixture(scope="module")
+def exact(campaign_size: Callable[[int], int]) -> list[lumped.Result]:
+    scenes = [impact(number) for number in range(campaign_size(IMPACTS))]
+    return [lumped.simulate(mdr.of(scene), scene, tolerance=REFERENCE_TOLERANCE) for scene in scenes]
+
+
+@pytest.mark.parametrize("tolerance", TOLERANCES)
+def test_the_bars_cover_and_few_marches_do(exact: list[lumped.Result], tolerance: float) -> None:
+    for answer in exact:
+        found = fe_contact.run(answer.scene, tolerance)
+        assert found.converged
+        assert found.work["marches"] <= MARCHES[tolerance], answer.scene.name
+        for name in RULED:
+            quantity, wanted = found.quantities[name], answer.quantities[name].value
+            error = abs(quantity.value - wanted)
+            assert error <= quantity.error, f"{answer.scene.name}: {name} is not covered"
+            assert error <= tolerance * (1.0 if name == "restitution" else abs(wanted))
