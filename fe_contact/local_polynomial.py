@@ -52,7 +52,8 @@ def peak(time: Array, values: Array) -> tuple[float, float]:
     around = slice(top - 2, top + 3)
     span = time[top + 2] - time[top - 2]
     x = np.asarray((time[around] - time[top]) / span, dtype=np.float64)
-    best, height = _top(np.linalg.solve(np.vander(x), values[around]), float(x[0]), float(x[-1]))
+    quartic = np.asarray(np.linalg.solve(np.vander(x), values[around]), dtype=np.float64)
+    best, height = _top(quartic, float(x[0]), float(x[-1]))
     return float(time[top] + best * span), height
 
 
