@@ -8,13 +8,14 @@ from itertools import pairwise
 import numpy as np
 
 from fe_contact.bodies.memory import step_law
+from fe_contact.fixed_stepping import FixedStepper
 from fe_contact.march import March, Snapshot, Work
 from fe_contact.stepping import Stepper
 from fe_contact.steps import State, Step
 
 
 def record(
-    stepper: Stepper, states: Sequence[State], steps: Sequence[Step], separated: bool, end_spread: float
+    stepper: Stepper | FixedStepper, states: Sequence[State], steps: Sequence[Step], separated: bool, end_spread: float
 ) -> March:
     """Gather what a march leaves behind; ``end_spread`` as in :class:`fe_contact.march.March`."""
     works = [step.work for step in steps]
@@ -32,7 +33,7 @@ def record(
     )
 
 
-def _snapshots(stepper: Stepper, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
+def _snapshots(stepper: Stepper | FixedStepper, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
     points, early = stepper.surface.operator.points, 1 - stepper.scheme.SAMPLE
     return tuple(
         Snapshot(
@@ -45,7 +46,7 @@ def _snapshots(stepper: Stepper, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
     )
 
 
-def _energy(stepper: Stepper, states: Sequence[State], steps: Sequence[Step]) -> dict[str, float]:
+def _energy(stepper: Stepper | FixedStepper, states: Sequence[State], steps: Sequence[Step]) -> dict[str, float]:
     """Terms in J; ``contact`` is what the penalty's springs hold if the bodies have not separated."""
     strike, final, last = stepper.strike, steps[-1], states[-1]
     stiffness = stepper.numerics.penalty * step_law(strike.relaxation, stepper.scheme, final.length).now

@@ -26,10 +26,10 @@ from fe_contact.curve import Curve, extrapolated
 from fe_contact.forms import Array
 from fe_contact.impact import march
 from fe_contact.march import March, Strike
-from fe_contact.numerics import SCHEMES, Numerics
-from fe_contact.targets import half_space
+from fe_contact.numerics import SCHEMES, TARGETS, Numerics
 from lumped.errors import NotReached
 from lumped.members import get
+from lumped.scene import Geometry
 
 SAFETY = 1.25
 LEAST_ORDER = {"penalty": 1, "far_field": 2}
@@ -83,9 +83,9 @@ class Certified:
         return np.sum(known, axis=0) if known else np.zeros_like(time)
 
 
-def certify(strike: Strike, poisson: float, numerics: Numerics) -> Certified:
+def certify(strike: Strike, geometry: Geometry, numerics: Numerics) -> Certified:
     """March with ``numerics`` and with each setting varied; raises where the march itself fails."""
-    runs = _Runs(strike, poisson)
+    runs = _Runs(strike, geometry)
     finest = runs.march(numerics)
     steps = _time_steps(runs, Curve.of(finest, strike), numerics)
     cheap = numerics.varied(steps=steps.cheap)
@@ -100,7 +100,7 @@ def certify(strike: Strike, poisson: float, numerics: Numerics) -> Certified:
         "time_step": (steps.change,),
         "far_field": (_change(on_mesh, runs.curve(far), LEAST_ORDER["far_field"], farther),),
     }
-    surface = half_space.surface(poisson, numerics)
+    surface = runs.surface(numerics)
     return Certified(steps.value, finest, surface, changes, runs.work(surface))
 
 
@@ -140,18 +140,23 @@ def _time_steps(runs: _Runs, fine: Curve, numerics: Numerics) -> _TimeSteps:
 class _Runs:
     """Marches of one strike with different settings, and a count of what they cost."""
 
-    def __init__(self, strike: Strike, poisson: float) -> None:
-        self._strike, self._poisson = strike, poisson
+    def __init__(self, strike: Strike, geometry: Geometry) -> None:
+        self._strike, self._geometry = strike, geometry
         self._marches: list[March] = []
         self._surfaces: dict[int, ScaledSurface] = {}
         self._curves: dict[Numerics, Curve | None] = {}
 
     def march(self, settings: Numerics) -> March:
         """One run; raises where it fails."""
-        surface = half_space.surface(self._poisson, settings)
+        surface = self.surface(settings)
         self._surfaces[id(surface)] = surface
         self._marches.append(march(self._strike, surface, settings, accounted=not self._marches))
         return self._marches[-1]
+
+    def surface(self, settings: Numerics) -> ScaledSurface:
+        """What contact sees of the struck body."""
+        surface: ScaledSurface = get(TARGETS, self._geometry.target.name).struck(self._geometry, settings)
+        return surface
 
     def curve(self, settings: Numerics) -> Curve | None:
         """One run as a curve, None where it fails: its cause of error is then unknown.

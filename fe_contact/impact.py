@@ -10,6 +10,7 @@ import numpy as np
 from fe_contact.account import record
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall, TooManySteps
+from fe_contact.fixed_stepping import FixedStepper
 from fe_contact.march import March, Strike
 from fe_contact.numerics import Numerics
 from fe_contact.separation import time_left
@@ -41,7 +42,8 @@ class _Marcher:
 
     def __init__(self, strike: Strike, surface: ScaledSurface, numerics: Numerics, accounted: bool) -> None:
         self.strike, self.numerics = strike, numerics
-        self.stepper = Stepper(strike, surface, numerics, accounted)
+        follows = Stepper if surface.breathes else FixedStepper
+        self.stepper: Stepper | FixedStepper = follows(strike, surface, numerics, accounted)
         self.shortest = END_REACHED * numerics.contact_time
 
     def run(self) -> March:

@@ -14,7 +14,7 @@ import numpy as np
 
 from fe_contact.certify import LEAST_HALVED_SETTING, LEAST_ORDER, MESH_ORDER, SAFETY
 from fe_contact.forms import Array
-from fe_contact.numerics import RANGES, Numerics
+from fe_contact.numerics import RANGES, TARGETS, Numerics
 from fe_contact.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, SETTING, refined
 from fe_contact.pressing import Still
 from fe_contact.progress import Progress, silent
@@ -22,7 +22,6 @@ from lumped.indentation import Indentation
 from lumped.indenter import Indenter
 from lumped.members import get
 
-TARGETS = "fe_contact.targets"
 CAUSES = ("mesh", "penalty", "far_field")
 BISECTIONS = 60
 SMALL = 1e-3

@@ -12,6 +12,7 @@ from lumped.members import available
 
 ENFORCEMENTS = "fe_contact.enforcement"
 SCHEMES = "fe_contact.schemes"
+TARGETS = "fe_contact.targets"
 
 RANGES: dict[str, tuple[float, float]] = {
     "tolerance": (1e-6, 0.1),

@@ -62,7 +62,7 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     for attempt in range(ROUNDS + 1):
         progress(f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements along the contact radius")
         try:
-            certified = certify(strike, scene.geometry.material.nu, numerics)
+            certified = certify(strike, scene.geometry, numerics)
         except MemoryTooSmall:
             numerics = numerics.varied(contact_radius=1.5 * numerics.contact_radius)
             continue

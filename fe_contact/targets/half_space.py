@@ -12,11 +12,17 @@ from fe_contact.operators import surface_operator
 from fe_contact.pressing import ScaledStill, Still
 from fe_contact.targets import _half_plane as half_plane
 from lumped.indenter import Indenter
+from lumped.scene import Geometry
 
 
 def surface(poisson: float, numerics: Numerics) -> ScaledSurface:
     """Contact surface for these settings; made once a process, then shared by every impact that agrees."""
     return _surface(poisson, numerics.elements_per_contact, numerics.order, numerics.far_radius)
+
+
+def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
+    """The half-space in an impact."""
+    return surface(geometry.material.nu, numerics)
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:

@@ -15,8 +15,10 @@ from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
 from fe_contact.targets._zone import REFINEMENT, Zone, held
 from lumped.indenter import Indenter
+from lumped.scene import Geometry
 from lumped.targets.layer import Layer
 
+SMALLEST_STRUCK = 0.04  # contact radius over the largest one, below which an impact's elements grow no finer
 SIDES = 0.4  # distance of the sides in thicknesses, per far radius of the settings
 
 
@@ -36,6 +38,23 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
         indenter.shape.plane,
     )
     return FixedStill(surface, indenter, numerics, zone.reference, zone.reference)
+
+
+def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
+    """The layer in an impact whose contact grows from nothing to the radius that the settings expect."""
+    target = geometry.target
+    assert isinstance(target, Layer)
+    reference = numerics.contact_radius
+    return _surface(
+        geometry.material.nu,
+        REFINEMENT * numerics.elements_per_contact,
+        numerics.order,
+        1.0 if geometry.shape.fixed_radius is not None else SMALLEST_STRUCK,
+        target.thickness / reference,
+        SIDES * numerics.far_radius * target.thickness / reference,
+        target.base == "bonded",
+        geometry.shape.plane,
+    )
 
 
 @lru_cache(maxsize=32)

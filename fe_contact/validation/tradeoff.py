@@ -106,7 +106,7 @@ def _fe(scene: Scene, numerics: Numerics, exact: Result, default_for: float | No
 def _certify(scene: Scene, numerics: Numerics) -> Certified:
     """A certified impact with no operator at hand."""
     half_space._surface.cache_clear()
-    return certify(strike_of(scene), scene.geometry.material.nu, numerics)
+    return certify(strike_of(scene), scene.geometry, numerics)
 
 
 def _rows(scene: Scene, exact: Result) -> Iterator[Point]:

@@ -43,7 +43,7 @@ def case(request: pytest.FixtureRequest, scene_of: Scenes) -> tuple[lumped.Scene
 
 def certified(scene: lumped.Scene, **changes: Any) -> Certified:
     numerics = plan(scene, {"tolerance": 1e-3}).numerics.varied(**{SETTING[cause]: FINE[cause] for cause in CAUSES})
-    return certify(strike_of(scene), scene.material.nu, numerics.varied(**changes))
+    return certify(strike_of(scene), scene.geometry, numerics.varied(**changes))
 
 
 def exact_values(scene: lumped.Scene, scales: mdr.ImpactScales) -> dict[str, float]:

@@ -177,7 +177,7 @@ def test_a_fluid_creeps_and_is_never_said_to_separate(scene_of: Scenes) -> None:
     scene = scene_of({"law": "maxwell", "E": 1e6, "eta": 200.0})
     assert mdr.estimate(scene).duration is None
     chosen = plan(scene, {"tolerance": 1e-3}).numerics
-    certified = certify(strike_of(scene), scene.material.nu, chosen)
+    certified = certify(strike_of(scene), scene.geometry, chosen)
     assert not certified.curve.separated
     assert certified.curve.duration == pytest.approx(scene.end_time)
 
