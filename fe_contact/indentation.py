@@ -63,7 +63,7 @@ def indent(
             break
         numerics = finer
     error = np.sum([budget[cause] for cause in CAUSES], axis=0)
-    force = modulus * getattr(indenter.shape, "length", 1.0) * base.force
+    force = modulus * indenter.shape.total * base.force
     kept = ("tolerance", "elements_per_contact", "order", "penalty", "enforcement", "far_radius")
     return Indentation(
         indenter=indenter,

@@ -13,13 +13,16 @@ from typing import Any
 
 from fe_contact.numerics import RANGES, Numerics
 from lumped.laws import mdr
+from lumped.laws._hereditary_force import estimate
 from lumped.model_ledger import Peak, model_ledger
 from lumped.result import LedgerEntry
 from lumped.scene import Scene
+from lumped.targets import HalfSpace
 
 DEFAULT_TOLERANCE = 1e-3
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-3 and 1e-4: see `fe-contact tradeoff`
 SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
+FIXED_ELEMENTS = 2.0  # the same on a mesh that stays, four times refined where the contact may end
 VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
 STEPS_AT_DEFAULT = 40
 STEPS_ORDER = 0.176  # steps grow with tolerance to this power: 60 at 1e-4
@@ -49,7 +52,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     Raises NotReached where even the coarse row of springs does not come to an end.
     """
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
-    scales = mdr.estimate(scene, SPRINGS)
+    scales = _scales(scene)
     contact_time = scales.duration or scene.end_time
     peak_share = min(max(scales.peak_time / contact_time, SOONEST_PEAK), 1.0)
     chosen = {
@@ -65,10 +68,19 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     return Plan(Numerics(**{**chosen, **given}), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
 
 
+def _scales(scene: Scene) -> mdr.ImpactScales:
+    """By the row of springs, or where it has no answer by the target's load curve."""
+    geometry = scene.geometry
+    if isinstance(geometry.target, HalfSpace) and geometry.shape.fixed_radius is None and not geometry.shape.plane:
+        return mdr.estimate(scene, SPRINGS)
+    return estimate(scene)
+
+
 def _elements(scene: Scene, tolerance: float) -> float:
     """Elements along the contact radius; a dashpot asks for more, since it differentiates the mesh's error."""
     order = VISCOUS_ORDER if scene.contact_modulus.viscosity > 0 else 0.0
-    return ELEMENTS * max(1.0, math.pow(1e-4 / tolerance, 0.25), math.pow(DEFAULT_TOLERANCE / tolerance, order))
+    fewest = ELEMENTS if isinstance(scene.target, HalfSpace) else FIXED_ELEMENTS
+    return fewest * max(1.0, math.pow(1e-4 / tolerance, 0.25), math.pow(DEFAULT_TOLERANCE / tolerance, order))
 
 
 def _steps(tolerance: float, peak_share: float) -> int:

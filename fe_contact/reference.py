@@ -12,12 +12,15 @@ import numpy as np
 from fe_contact.certify import CAUSES, Certified, certify
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.march import Strike
-from fe_contact.numerics import RANGES, Numerics
+from fe_contact.numerics import RANGES, TARGETS, Numerics
 from fe_contact.plan import SETTING, Plan, plan, refined
 from fe_contact.progress import Progress, silent
+from lumped.errors import BadInput, Fault
 from lumped.history import History, densified
+from lumped.members import get
 from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity, Result, meets, provenance, unmet
 from lumped.scene import Scene
+from lumped.targets import HalfSpace
 
 CURE = "cure: a larger tolerance, or fewer numerics of your own"
 ROUNDS = 4  # refinements before giving up
@@ -53,8 +56,7 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     Raises NotReached where no march came to an end, BadInput for a scene without geometry or of several impacts.
     """
     scene.check_single("fe")
-    if scene.has_geometry:
-        scene.check_half_space("fe")
+    check_target(scene)
     cpu, wall = time.process_time(), time.perf_counter()
     chosen = plan(scene, given)
     strike = strike_of(scene)
@@ -75,14 +77,24 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     return Solved(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall)
 
 
+def check_target(scene: Scene) -> None:
+    """Raise BadInput for a target which no impact is marched on."""
+    geometry = scene.geometry
+    half_plane = geometry.shape.plane and isinstance(geometry.target, HalfSpace)
+    if half_plane or not hasattr(get(TARGETS, geometry.target.name), "struck"):
+        where = "the half-plane" if half_plane else geometry.target.name
+        reason = f"no impact on {where} by finite elements in this version; accepted: indent, or half_space, layer"
+        raise BadInput(Fault(scene.source, "target.shape", reason))
+
+
 def strike_of(scene: Scene) -> Strike:
-    """What the march needs of a scene."""
+    """What the march needs of a scene; forces in plane strain are totals, so the modulus counts with the length."""
     return Strike(
         height=scene.profile.height,
         mass=scene.reduced_mass,
         velocity=scene.velocity,
         gravity=scene.gravity,
-        relaxation=scene.contact_modulus,
+        relaxation=scene.contact_modulus.scaled(scene.geometry.shape.total),
         end_time=scene.end_time,
     )
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from lumped.errors import BadInput, Fault
 from lumped.keys import Choice, Count, Flag, Key, Number, Text, check_fields, read_table
+from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material, Relaxation
 from lumped.members import get
 from lumped.scales import stiffest_impact
@@ -134,8 +135,8 @@ class Scene:
 
     def check_half_space(self, method: str) -> None:
         """Raise BadInput for a target which `method` has no answer for."""
-        if not isinstance(self.target, HalfSpace):
-            reason = f"{self.target.name}: {method} has no impact on it in this version; accepted: half_space"
+        if self.shape is not None and (not isinstance(self.target, HalfSpace) or self.shape.plane):
+            reason = f"{self.target.name}: {method} is for the half-space; accepted: half_space, or another method"
             raise BadInput(Fault(self.source, "target.shape", reason))
 
     @property
@@ -176,6 +177,11 @@ class Scene:
     def contact_modulus(self) -> Relaxation:
         """E*(t) of the target, Pa. Raises BadInput without geometry."""
         return self.geometry.material.contact_modulus()
+
+    @property
+    def load_curve(self) -> LoadCurve:
+        """The target's exact elastic answer to the profile, per unit E* (and length). Raises BadInput without one."""
+        return self.target.load_curve(self.profile, self.geometry.material.nu)
 
     @property
     def elastic_contact_time(self) -> float:

@@ -22,7 +22,8 @@ def indent(
     cpu, wall = process_time(), perf_counter()
     depth, modulus = np.array(indenter.checked(depths)), indenter.modulus(instant)
     shape = indenter.shape.resolved("parabola") if method == "hertz" else indenter.profile
-    force = modulus * np.asarray(shape.load_curve.force(depth))
+    curve = indenter.target.load_curve(shape, indenter.material.nu)
+    force = modulus * shape.total * np.asarray(curve.force(depth))
     return Indentation(
         indenter=indenter,
         method=method,
@@ -30,7 +31,7 @@ def indent(
         tolerance=tolerance,
         depth=depth,
         force=force,
-        contact_radius=np.asarray(shape.load_curve.contact_radius(depth)),
+        contact_radius=np.asarray(curve.contact_radius(depth)),
         force_error=ROUNDING * force,
         timing={"cpu_s": process_time() - cpu, "wall_s": perf_counter() - wall},
     )

@@ -14,6 +14,7 @@ KEYS: Mapping[str, Key] = {}
 def check(scene: Scene, name: str) -> None:
     """Raise BadInput for a scene without geometry, and for several impacts, which need a memory between them."""
     check_geometry(scene, name)
+    scene.check_half_space(name)
     scene.check_single(name)
 
 
@@ -22,4 +23,3 @@ def check_geometry(scene: Scene, name: str) -> None:
     if not scene.has_geometry:
         reason = f"missing; the law {name} follows from the striker's shape and the target's material"
         raise BadInput(Fault(scene.source, "striker.shape", reason))
-    scene.check_half_space(name)

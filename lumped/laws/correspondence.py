@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.collide import memory
-from lumped.collide.hereditary import HereditaryLoad
 from lumped.ending import End
 from lumped.hereditary.approach import DEPTH, approach
 from lumped.hereditary.closing import Closing, close
@@ -23,9 +22,10 @@ from lumped.hereditary.problem import Hereditary
 from lumped.keys import Choice, Key
 from lumped.laws._half_space import check_geometry
 from lumped.laws._hereditary import Course, simulate
-from lumped.laws._hereditary_force import HereditaryForce
+from lumped.laws._hereditary_force import law_of
 from lumped.result import Result
 from lumped.scene import Scene
+from lumped.targets import HalfSpace
 
 KEYS: Mapping[str, Key] = {
     "exit": Choice(("force", "depth"), required=False),
@@ -48,12 +48,9 @@ class Correspondence:
 
     def simulate(self, scene: Scene, tolerance: float) -> Result:
         """The impacts of a scene to this tolerance. Raises NotReached."""
-        if self.exit == "force" and scene.motion.impacts == 1:
+        if self.exit == "force" and scene.motion.impacts == 1 and isinstance(scene.target, HalfSpace):
             return simulate(self.name, scene, scene.profile, scene.contact_modulus, tolerance, solve)
-        curve, time = scene.profile.load_curve, scene.elastic_contact_time
-        load = HereditaryLoad(curve, scene.contact_modulus)
-        law = HereditaryForce(exit=self.exit, rule=self.memory, load=load, scale=time, load_curve=curve)
-        return law.simulate(scene, tolerance)
+        return law_of(scene, self.exit, self.memory).simulate(scene, tolerance)
 
 
 def of(scene: Scene) -> Correspondence:

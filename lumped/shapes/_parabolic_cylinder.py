@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.load_curves import line_profile
 from lumped.shapes.cylinder import Cylinder
 
 
@@ -24,6 +25,11 @@ class ParabolicCylinder(Cylinder):
     def slope(self, r: ArrayLike) -> NDArray[np.float64]:
         """r/R."""
         return np.asarray(np.abs(np.asarray(r, dtype=float)) / self.radius)
+
+    @property
+    def line_profile(self) -> line_profile.LineProfile:
+        """The parabola."""
+        return line_profile.ParabolicCylinder(self.radius)
 
     def resolved(self, profile: str) -> Cylinder:
         """Itself."""

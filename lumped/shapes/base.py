@@ -9,9 +9,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.errors import BadInput, Fault
 from lumped.keys import Key
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
+from lumped.load_curves.line_profile import LineProfile
 
 
 class Shape(ABC):
@@ -41,6 +43,16 @@ class Shape(ABC):
     @abstractmethod
     def exponent_of_force(self) -> float:
         """alpha in F ~ depth^alpha on the half-space, Table 1; for the true sphere that of its start."""
+
+    @property
+    def line_profile(self) -> LineProfile:
+        """The profile of a contact per unit length, of a shape in plane strain. Raises BadInput for any other."""
+        raise BadInput(Fault("shape", "striker.shape", f"{self.name} is no cylinder"))
+
+    @property
+    def total(self) -> float:
+        """What a force is multiplied by: the length of a shape in plane strain, m, else 1."""
+        return 1.0
 
     @property
     def fixed_radius(self) -> float | None:

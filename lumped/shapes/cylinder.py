@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.keys import Key, Number, check_fields
+from lumped.load_curves import line_profile
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
 from lumped.shapes.base import Shape
@@ -58,6 +59,16 @@ class Cylinder(Shape):
     def tip_radius(self) -> float:
         """Its radius, m."""
         return self.radius
+
+    @property
+    def line_profile(self) -> line_profile.LineProfile:
+        """The true cylinder."""
+        return line_profile.Cylinder(self.radius)
+
+    @property
+    def total(self) -> float:
+        """Its length, m."""
+        return self.length
 
     @property
     def load_curve(self) -> LoadCurve:

@@ -9,7 +9,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.errors import BadInput, Fault
 from lumped.keys import Key
+from lumped.load_curves.base import LoadCurve
 from lumped.shapes.base import Shape
 
 
@@ -26,6 +28,13 @@ class Target(ABC):
 
         `r` is the place on the surface, zero at first touch: a radius, m, or what else the target counts in.
         """
+
+    def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
+        """The elastic answer to this shape, exact, per unit E* (and per unit length in plane strain).
+
+        Raises BadInput where none is known.
+        """
+        raise BadInput(Fault(self.name, "target.shape", "no exact load curve in this version; accepted: --method fe"))
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput, naming the key, for a striker which this target is not for; here any will do."""

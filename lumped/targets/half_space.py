@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.keys import Key, Number
+from lumped.load_curves.base import LoadCurve
 from lumped.shapes.base import Shape
 from lumped.targets.base import Target
 
@@ -32,6 +33,14 @@ class HalfSpace(Target):
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
         """depth - height(r)."""
         return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
+
+    def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
+        """The shape's own; of a cylinder, relative to the datum."""
+        if not shape.plane:
+            return shape.load_curve
+        from lumped.load_curves.half_plane import HalfPlane
+
+        return HalfPlane(shape.line_profile, self.datum_depth or 0.0, nu)
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """A half-plane has no finite compliance of its own: plane strain needs a datum, and only that."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.keys import Choice, Key, Number, check_fields
+from lumped.load_curves.base import LoadCurve
 from lumped.shapes.base import Shape
 from lumped.targets.base import Target
 
@@ -35,6 +36,19 @@ class Layer(Target):
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
         """depth - height(r)."""
         return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
+
+    def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
+        """By the layer's integral equation."""
+        from lumped.load_curves.layer import Layer as Elastic
+        from lumped.load_curves.layer_curve import LayerCurve, LayerPunch
+        from lumped.load_curves.line_layer import LineLayer
+
+        elastic = Elastic(self.thickness, nu, self.base)
+        if shape.plane:
+            return LineLayer(shape.line_profile, elastic)
+        if shape.fixed_radius is not None:
+            return LayerPunch(shape.fixed_radius, elastic)
+        return LayerCurve(shape.load_curve, elastic)
 
     def check_depth(self, shape: Shape, depth: float) -> str:
         """Neither through the layer nor past the equator."""

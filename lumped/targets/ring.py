@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.keys import Key, Number, check_fields
+from lumped.load_curves.base import LoadCurve
 from lumped.shapes.base import Shape
 from lumped.targets.base import Target
 
@@ -39,6 +40,12 @@ class Ring(Target):
         across = offset * np.sin(angle)
         sagitta = across**2 / (radius + np.sqrt(np.maximum(radius**2 - across**2, 0.0)))
         return np.asarray(np.asarray(depth) - 2.0 * offset * np.sin(0.5 * angle) ** 2 - sagitta)
+
+    def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
+        """By the Fourier series of the annulus."""
+        from lumped.load_curves.ring import Ring as Elastic
+
+        return Elastic(shape.tip_radius or 0.0, self.inner_radius, self.thickness, nu)
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is no cylinder, or does not fit in."""
