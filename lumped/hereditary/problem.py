@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from lumped.load_curves import LoadCurve
 from lumped.materials import Relaxation
-from lumped.scales import stiffest_impact
-from lumped.shapes import Shape
 
 Array = NDArray[np.float64]
 # A relative step for a difference, and a depth too small to matter.
@@ -64,16 +62,22 @@ class Hereditary:
 
     @classmethod
     def of(
-        cls, profile: Shape, modulus: Relaxation, mass: float, velocity: float, gravity: float, time: float
+        cls,
+        curve: LoadCurve,
+        modulus: Relaxation,
+        mass: float,
+        velocity: float,
+        gravity: float,
+        time: float,
+        shortest: float,
     ) -> Hereditary:
         """From values in SI; `time` is the unit of time, s."""
         unit = modulus.relaxed or modulus.glassy or modulus.viscosity / time
         taus = tuple(tau / time for tau in modulus.times)
         moduli = tuple(value / unit for value in modulus.moduli)
         plain = Relaxation(modulus.equilibrium / unit, moduli, taus, modulus.viscosity / (unit * time))
-        shortest = stiffest_impact(profile, modulus, mass, velocity).duration / time
         scales = Scales(time, velocity, mass, unit)
-        return cls(scales, profile.load_curve, plain, gravity * time / velocity, shortest)
+        return cls(scales, curve, plain, gravity * time / velocity, shortest / time)
 
     @property
     def terms(self) -> int:

@@ -17,10 +17,9 @@ from lumped.hereditary.phase import Phase
 from lumped.hereditary.problem import Hereditary
 from lumped.hereditary.rebound import Rebound
 from lumped.laws._assembly import Answer, Clock, assemble, bars
-from lumped.materials import Relaxation
 from lumped.result import Result, meets
-from lumped.scene import Model, Scene
-from lumped.shapes import Shape
+from lumped.scales import stiffest_impact
+from lumped.scene import Scene
 
 Array = NDArray[np.float64]
 # The force may err by this share of the tolerance in each piece.
@@ -76,47 +75,42 @@ class Solve(Protocol):
     ) -> Course: ...
 
 
-def simulate(
-    name: str,
-    scene: Scene,
-    profile: Shape,
-    modulus: Relaxation,
-    tolerance: float,
-    solve: Solve,
-    model: Model | None = None,
-    message: str = "",
-) -> Result:
+def simulate(name: str, scene: Scene, tolerance: float, solve: Solve) -> Result:
     """Integrate tighter and tighter until every bar is within the tolerance. Raises NotReached."""
     clock, time = Clock(), scene.elastic_contact_time
-    problem, last = problem_of(scene, profile, modulus), scene.end_time / time
+    problem, last = problem_of(scene), scene.end_time / time
     rtol, evaluations = min(max(tolerance * LOCAL_SHARE, TIGHTEST), LOOSEST), 0
     while True:
         few = solve(problem, last, Settings(rtol, FEW))
         more = solve(problem, last, Settings(rtol, MORE), few)
         evaluations += FEW * few.steps + MORE * more.steps
-        fine = answer_of(scene, problem, more, message)
-        quantities, force_error = bars(fine, answer_of(scene, problem, few, message), SAFETY)
+        fine = answer_of(scene, problem, more)
+        quantities, force_error = bars(fine, answer_of(scene, problem, few), SAFETY)
         if meets(quantities, tolerance) or rtol * NEXT < TIGHTEST:
             break
         rtol *= NEXT
     numerics = {"integrator": "Radau", "rtol": rtol, "points": MORE}
     work = {"force_evaluations": evaluations}
-    return assemble(name, scene, tolerance, fine, quantities, force_error, clock, numerics, work, model)
+    return assemble(name, scene, tolerance, fine, quantities, force_error, clock, numerics, work)
 
 
-def problem_of(scene: Scene, profile: Shape, modulus: Relaxation) -> Hereditary:
-    """The problem of a scene; its unit of time is the elastic contact time."""
-    mass, velocity, gravity = scene.reduced_mass, scene.velocity, scene.gravity
-    return Hereditary.of(profile, modulus, mass, velocity, gravity, scene.elastic_contact_time)
+def problem_of(scene: Scene) -> Hereditary:
+    """The problem of a scene, on the load curve of its target; its unit of time is the elastic contact time."""
+    mass, velocity = scene.reduced_mass, scene.velocity
+    shortest = stiffest_impact(scene.profile, scene.contact_modulus, mass, velocity).duration
+    modulus = scene.contact_modulus.scaled(scene.geometry.shape.total)
+    return Hereditary.of(
+        scene.load_curve, modulus, mass, velocity, scene.gravity, scene.elastic_contact_time, shortest
+    )
 
 
 def once(scene: Scene, rtol: float, solve: Solve) -> Answer:
     """One integration of a scene, without bars. Raises NotReached."""
-    problem = problem_of(scene, scene.profile, scene.contact_modulus)
+    problem = problem_of(scene)
     return answer_of(scene, problem, solve(problem, scene.end_time / problem.scales.time, Settings(rtol)))
 
 
-def answer_of(scene: Scene, problem: Hereditary, course: Course, message: str = "") -> Answer:
+def answer_of(scene: Scene, problem: Hereditary, course: Course) -> Answer:
     """What an integration says, in SI."""
     scales, separated = problem.scales, course.end is End.SEPARATED
     (peak_time, force), (_, depth) = course.highest(3), course.highest(0)
@@ -131,7 +125,7 @@ def answer_of(scene: Scene, problem: Hereditary, course: Course, message: str = 
         "restitution": -velocity / scene.velocity if separated else None,
         "impulse": None if course.end is End.SECOND_APPROACH else impulse,
     }
-    said = "; ".join(part for part in (message, "" if separated else course.end.value) if part)
+    said = "" if separated else course.end.value
     columns = _Columns(problem, course)
     return Answer(course.times * scales.time, columns, values, course.end, _energy(scene, problem, last.last), said)
 

@@ -25,7 +25,6 @@ from lumped.laws._hereditary import Course, simulate
 from lumped.laws._hereditary_force import law_of
 from lumped.result import Result
 from lumped.scene import Scene
-from lumped.targets import HalfSpace
 
 KEYS: Mapping[str, Key] = {
     "exit": Choice(("force", "depth"), required=False),
@@ -48,8 +47,8 @@ class Correspondence:
 
     def simulate(self, scene: Scene, tolerance: float) -> Result:
         """The impacts of a scene to this tolerance. Raises NotReached."""
-        if self.exit == "force" and scene.motion.impacts == 1 and isinstance(scene.target, HalfSpace):
-            return simulate(self.name, scene, scene.profile, scene.contact_modulus, tolerance, solve)
+        if self.exit == "force" and scene.motion.impacts == 1:
+            return simulate(self.name, scene, tolerance, solve)
         return law_of(scene, self.exit, self.memory).simulate(scene, tolerance)
 
 

@@ -15,7 +15,7 @@ from lumped.hereditary.march import Settings
 from lumped.hereditary.phase import ByField, Phase, SinceTouch
 from lumped.hereditary.problem import Hereditary
 from lumped.laws._half_space import KEYS as KEYS
-from lumped.laws._half_space import check
+from lumped.laws._half_space import check_geometry
 from lumped.laws._hereditary import Course, simulate
 from lumped.result import Result
 from lumped.scene import Scene
@@ -29,12 +29,13 @@ class Ting:
 
     def simulate(self, scene: Scene, tolerance: float) -> Result:
         """One impact to this tolerance. Raises NotReached."""
-        return simulate(self.name, scene, scene.profile, scene.contact_modulus, tolerance, solve)
+        return simulate(self.name, scene, tolerance, solve)
 
 
 def of(scene: Scene) -> Ting:
     """The law for a scene: every half-space has it. Raises BadInput for a scene without geometry."""
-    check(scene, Ting.name)
+    check_geometry(scene, Ting.name)
+    scene.check_single(Ting.name)
     return Ting()
 
 

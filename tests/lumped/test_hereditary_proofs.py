@@ -296,7 +296,7 @@ def test_stiff_corners_end_and_have_the_right_limits(law: str, retardation: floa
 def test_a_pulse_within_one_piece_is_seen(law: ModuleType) -> None:
     # The pulse is over in 5e-3 of the elastic contact time, and what pulls after its end would turn the striker again.
     scene = steel({"R1": "1e6", "R2_s": "0.01"})
-    problem = problem_of(scene, scene.profile, scene.contact_modulus)
+    problem = problem_of(scene)
     exact = values(law.__name__.rpartition(".")[2], scene)["restitution"]
     for points in range(10, 21):
         course = law.solve(problem, 50.0, Settings(1e-6, points))
