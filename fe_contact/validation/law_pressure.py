@@ -21,6 +21,7 @@ from fe_contact.forms import Array
 from lumped.load_curves import LoadCurve
 from lumped.materials import Relaxation
 from lumped.result import Result
+from lumped.targets import HalfSpace
 
 FOLLOWING, EXACT = ("hertz", "correspondence"), ("ting", "mdr")
 PATH_POINTS = 400
@@ -42,15 +43,18 @@ class LawPressure:
 
     @classmethod
     def of(cls, result: Result) -> LawPressure | None:
-        """The pressure of a law's result; None for a law without one."""
+        """The pressure of a law's result; None where it is not known: other laws, fixed areas, dashpots on a layer."""
         if result.method not in FOLLOWING + EXACT:
             return None
-        modulus = result.scene.contact_modulus
+        geometry, modulus = result.scene.geometry, result.scene.contact_modulus
+        grows = geometry.shape.fixed_radius is None
+        if not grows or (modulus.viscosity > 0.0 and not isinstance(geometry.target, HalfSpace)):
+            return None
         history = result.history
         rows = np.unique(np.linspace(0, len(history) - 1, PATH_POINTS).astype(int))
         return cls(
             modulus=Relaxation(modulus.relaxed) if result.method == "hertz" else modulus,
-            curve=result.scene.geometry.shape.resolved(result.model.profile).load_curve,
+            curve=geometry.target.load_curve(geometry.shape.resolved(result.model.profile), geometry.material.nu),
             times=history.time[rows],
             contact_radii=history.contact_radius[rows],
             velocities=history.velocity[rows],
