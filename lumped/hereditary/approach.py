@@ -25,6 +25,9 @@ DEPTH, VELOCITY, WORK, FORCE, MEMORIES = range(5)
 SLOW = 1e-3
 # The first piece is this share of the root of the stiffest contact time.
 FIRST = 0.4
+# A force that the accuracy is counted in at least, in units of the problem, whose own is about one: where a load starts
+# like depth over its logarithm, no first piece however short is smooth on its own scale.
+FAINT = 1e-3
 
 
 @dataclass(frozen=True)
@@ -95,7 +98,7 @@ def _to_velocity(
         return bool(values[VELOCITY].min() <= slow)
 
     span, first = (0.0, end_time**0.5), FIRST * problem.shortest**0.5
-    found = follow(problem, span, problem.start(), first, over, settings, before=before)
+    found = follow(problem, span, problem.start(), first, over, settings, FAINT, before)
     if not found.over:
         return found, found.path.end
     place = found.path.fall(VELOCITY, slow)
