@@ -1,0 +1,85 @@
+"""Impacts on a layer, axisymmetric and in plane strain, against Ting with the layer's own load curve."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fe_contact
+from lumped import BadInput, Material, Model, Relaxation, Result, Scene, Sphere, laws, simulate
+from lumped.score import normalized_error
+from lumped.shapes.cone import Cone
+from lumped.shapes.cylinder import Cylinder
+from lumped.targets.layer import Layer
+
+TOLERANCE = 1e-3
+RULED = ("peak_force", "peak_depth", "duration", "impulse", "restitution")
+IMPACTS = 30
+
+
+def random_scene(seed: int) -> Scene:
+    """Elastic, one or two Prony terms; sphere, cone or cylinder; contact radius over thickness about 0.1 to 2."""
+    rng = np.random.default_rng([20261121, seed])
+    shape = (Sphere(0.01), Cone(float(rng.uniform(2.0, 8.0))), Cylinder(0.01, 0.02))[seed % 3]
+    terms = seed % 4 % 3
+    times = tuple(float(t) for t in 10.0 ** rng.uniform(-3.5, -1.0, terms))
+    young = Relaxation(1e6, tuple(float(m) for m in 1e6 * rng.uniform(0.1, 1.5, terms)), times)
+    material = Material(young, float(rng.uniform(0.0, 0.48)))
+    velocity = float(10.0 ** rng.uniform(-2.3, -1.3))
+    loose = Scene(shape, 0.02, velocity, material)
+    radius = shape.hertz_impact(1e6, loose.mass, velocity).contact_radius
+    thickness = radius / float(10.0 ** rng.uniform(-1.0, 0.3))
+    base = "bonded" if rng.random() < 0.7 else "sliding"
+    return replace(loose, target=Layer(max(thickness, 1e-4), base))
+
+
+def exact(scene: Scene) -> Result:
+    return simulate(laws.ting.of(scene), scene, 1e-6)
+
+
+def test_finite_elements_agree_with_ting_within_bar_and_tolerance(campaign_size: Callable[[int], int]) -> None:
+    for seed in range(campaign_size(IMPACTS)):
+        agree(seed)
+
+
+def agree(seed: int) -> None:
+    """One random impact: converged, within the tolerance and its bars."""
+    scene = random_scene(seed)
+    found, truth = fe_contact.run(scene, TOLERANCE), exact(scene)
+    assert found.converged
+    for name in RULED:
+        value, true = found.quantities[name], truth.quantities[name]
+        assert value.value is not None
+        assert value.error is not None
+        assert true.value is not None
+        scale = 1.0 if name == "restitution" else abs(true.value)
+        assert abs(value.value - true.value) <= TOLERANCE * scale, name
+        assert abs(value.value - true.value) <= value.error + (true.error or 0.0), name
+    difference = normalized_error(truth.history, found.history)
+    assert difference <= (found.quantities["history_l2"].error or 0.0) + 1e-4  # what linear interpolation leaves
+    assert abs(found.energy["residual"] or 0.0) <= 5e-3 * (found.energy["in"] or 0.0)
+
+
+def test_a_thick_layer_is_the_half_space() -> None:
+    scene = Scene.load("polymer-sphere")
+    deep = replace(scene, target=Layer(1.0, "bonded"))
+    one, other = fe_contact.run(scene, TOLERANCE), fe_contact.run(deep, TOLERANCE)
+    # 0.4 mm of contact on a metre: the layer is stiffer by some a/h
+    for name in RULED:
+        value = one.quantities[name].value or 0.0
+        assert other.quantities[name].value == pytest.approx(value, rel=2.5e-3)
+
+
+def test_what_cannot_be_struck_says_so() -> None:
+    material = Material(Relaxation(1e6), 0.3)
+    ring = {"shape": "ring", "inner_radius": 0.02, "thickness": 0.005, "material": material.to_dict()}
+    striker = {"shape": "cylinder", "radius": 0.01, "length": 0.02, "mass": 0.1, "velocity": 0.01}
+    with pytest.raises(BadInput, match="no impact on ring"):
+        fe_contact.run(Scene.from_dict({"striker": striker, "target": ring}))
+    with pytest.raises(BadInput, match="datum_depth"):
+        Scene(Cylinder(0.01, 0.02), 0.1, 0.01, material, model=Model())
+    with pytest.raises(BadInput, match="mdr is for the half-space"):
+        laws.mdr.of(random_scene(0))
