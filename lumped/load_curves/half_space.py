@@ -33,7 +33,7 @@ class HalfSpaceCurve(LoadCurve):
 
         Popov and Hess 2015, ISBN 978-3-642-53876-6.
         """
-        r = np.abs(np.asarray(radius, dtype=float))
+        r = np.minimum(np.abs(np.asarray(radius, dtype=float)), contact_radius)
         reach = np.sqrt(np.maximum(contact_radius**2 - r**2, 0.0))
         nodes, weights = gauss(GAUSS_POINTS)
         s = reach[..., None] * nodes

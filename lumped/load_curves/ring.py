@@ -27,8 +27,8 @@ class Ring(RingContact, LoadCurve):
     """F is the component along the motion, the contact radius the half-length of the inner arc that is touched.
 
     While the cylinder's arc is the exact one, F is not the slope of a stored energy: the motion turns the overlap a
-    little further than cos(theta). Depths stay below thickness and radius; below 1e-17 of them all is 0. Relative accuracy 1e-8.
-    Raises BadInput, or NotReached where two resolutions differ by more or the contact closes round the whole cylinder.
+    little further than cos(theta). Depths stay below thickness and radius; below 1e-17 of them all is 0.
+    Raises BadInput, or NotReached where two resolutions differ by more than 1e-8 or the contact goes all the way round.
     """
 
     def force(self, depth: ArrayLike) -> Any:
