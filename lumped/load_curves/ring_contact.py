@@ -84,9 +84,9 @@ class RingContact:
             step = (float(share @ self._fall(theta, distance)) - depth) / slope
             if slope <= 0.0 or (distance + step) * np.sin(theta).max() >= self.radius:
                 return inf
-            depth += step
-            if abs(step) <= 1e-12 * depth:
+            if step <= 1e-13 * depth:
                 return depth
+            depth += step
         raise NotReached(f"the depth of {self} at a half-angle of {angle:g} was not found in {NEWTON_STEPS} steps")
 
     def _half_angle(self, depth: float, refinement: float) -> float:
