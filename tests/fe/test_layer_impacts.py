@@ -15,7 +15,7 @@ from lumped.shapes.cone import Cone
 from lumped.shapes.cylinder import Cylinder
 from lumped.targets.layer import Layer
 
-TOLERANCE = 1e-3
+TOLERANCE, MASS = 1e-3, 0.02
 RULED = ("peak_force", "peak_depth", "duration", "impulse", "restitution")
 IMPACTS = 30
 
@@ -29,11 +29,10 @@ def random_scene(seed: int) -> Scene:
     young = Relaxation(1e6, tuple(float(m) for m in 1e6 * rng.uniform(0.1, 1.5, terms)), times)
     material = Material(young, float(rng.uniform(0.0, 0.48)))
     velocity = float(10.0 ** rng.uniform(-2.3, -1.3))
-    loose = Scene(shape, 0.02, velocity, material)
-    radius = shape.hertz_impact(1e6, loose.mass, velocity).contact_radius
+    radius = shape.hertz_impact(1e6, MASS, velocity).contact_radius
     thickness = radius / float(10.0 ** rng.uniform(-1.0, 0.3))
     base = "bonded" if rng.random() < 0.7 else "sliding"
-    return replace(loose, target=Layer(max(thickness, 1e-4), base))
+    return Scene(shape, MASS, velocity, material, target=Layer(thickness, base))
 
 
 def exact(scene: Scene) -> Result:
