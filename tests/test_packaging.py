@@ -85,10 +85,12 @@ def test_the_readme_names_only_what_exists() -> None:
     assert not [place for place in quoted if not (ROOT / place).exists()]
 
 
-def test_the_readme_scene_is_a_packaged_one() -> None:
-    (example,) = (tomllib.loads(text) for text in blocks("toml"))
-    packaged = ROOT / "data" / "scenes" / f"{example['name']}.toml"
-    assert tomllib.loads(packaged.read_text(encoding="utf-8")) == example
+def test_the_readme_scenes_are_packaged_ones() -> None:
+    examples = [tomllib.loads(text) for text in blocks("toml")]
+    assert len(examples) == 2
+    for example in examples:
+        packaged = ROOT / "data" / "scenes" / f"{example['name']}.toml"
+        assert tomllib.loads(packaged.read_text(encoding="utf-8")) == example
 
 
 def test_the_readme_example_runs(tmp_path: Path) -> None:
