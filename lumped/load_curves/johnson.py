@@ -22,7 +22,7 @@ class Johnson(LoadCurve):
     depth = (F/(pi E*)) [2 ln(2d/b) - nu/(1-nu)], F = pi E* b^2/(4R): the greatest
     depth has 2 ln(2d/b) = 1 + nu/(1-nu).
     `radius` R and `datum_depth` d in m, `nu` in (-1, 0.5]. Raises BadInput; NotReached where no half-width answers.
-    Johnson 1985, ISBN 978-0-521-34796-9, section 5.6.
+    Johnson 1985, ISBN 978-0-521-34796-9, chapter 5.
     """
 
     radius: float

@@ -19,7 +19,7 @@ from lumped.load_curves.tabulated import growing_edges
 class LineLayer(LineCurve):
     """u(x) = (2/(pi E*)) int p(x') int_0^inf L(u) cos(u(x-x')/h)/u du dx': half-widths up to 20 thicknesses and to
     0.85 of a true cylinder's radius; a depth of a thickness or more raises BadInput. Relative accuracy 1e-8, or
-    NotReached. Johnson 1985, ISBN 978-0-521-34796-9, section 5.8.
+    NotReached. Johnson 1985, ISBN 978-0-521-34796-9, chapter 5.
     """
 
     profile: LineProfile

@@ -18,7 +18,7 @@ class Popov(LoadCurve):
     """The row F = (pi/4) E* l depth of the paper's Table 1, here per unit length, with b^2 = R depth: a heuristic.
 
     It takes the approach of a sphere for that of a cylinder, which has none; no body follows it at more than one depth.
-    `radius` R in m. Popov 2010, ISBN 978-3-642-10802-0, section 5.2.
+    `radius` R in m. Popov 2010, ISBN 978-3-642-10802-0, chapter 5.
     """
 
     radius: float

@@ -19,7 +19,8 @@ from lumped.load_curves.panels import Array, evaluate, panel, tested_place
 
 # A panel is certified by an equation with finer quadrature.
 ACCURACY, REFINEMENT = 1e-8, 1.5
-NEWTON_STEPS, STARTS_PER_PANEL = 10, 50
+# Newton's method squares its error: a step of 1e-6 leaves 1e-12.
+NEWTON_STEPS, LAST_STEP, STARTS_PER_PANEL = 10, 1e-6, 50
 # The largest contact radius served, in lengths of the body and in radii of a profile that ends; panels grow outwards
 # by this factor from the first, whose end is the lesser of two shares of the same.
 REACH, SHARE_OF_EXTENT = 20.0, 0.85
@@ -105,7 +106,7 @@ class TabulatedCurve(LoadCurve):
             here = self._at(radius, panels)
             step = np.log(here.depth / depth) * here.depth / (radius * here.depth_slope)
             radius = np.minimum(radius * np.exp(-step), self.edges[panels])
-            if np.abs(step).max() < 1e-9:
+            if np.abs(step).max() < LAST_STEP:
                 return radius
         raise NotReached(f"the contact radius of {self} at a depth of {depth.max():g} m was not found")
 

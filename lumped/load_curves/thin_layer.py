@@ -1,7 +1,7 @@
 """Layers much thinner than the contact is wide: each strip of the layer on its own, or squeezed like a fluid.
 
 The closed forms that the integral equations approach: exponents 2 and 3/2 while the layer can be compressed, 3 and
-5/2 once it cannot (Johnson 1985, ISBN 978-0-521-34796-9, section 5.8).
+5/2 once it cannot (Johnson 1985, ISBN 978-0-521-34796-9, chapter 5).
 """
 
 from __future__ import annotations

@@ -87,7 +87,8 @@ def test_slopes_energy_and_inverse(ring: Ring) -> None:
         (ring.energy(depths + step) - ring.energy(depths - step)) / (2.0 * step), force, rtol=1e-7
     )
     np.testing.assert_allclose(ring.depth(ring.contact_radius(depths)), depths, rtol=2e-8)
-    radii = ring.contact_radius(depths[1:])
+    # the deepest of the conforming ring is where the half-angle ends to grow
+    radii = ring.contact_radius(depths[1:4])
     change = (ring.depth(radii * (1 + 1e-6)) - ring.depth(radii * (1 - 1e-6))) / (2e-6 * radii)
     np.testing.assert_allclose(ring.depth_slope(radii), change, rtol=2e-4)
     assert float(ring.force(0.0)) == float(ring.contact_radius(-1.0)) == float(ring.depth(0.0)) == 0.0
