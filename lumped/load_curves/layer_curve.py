@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
+from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.dual_equation import DualEquation, dual_equation
 from lumped.load_curves.fixed_area import FixedArea, under_flat_end
 from lumped.load_curves.half_space import HalfSpaceCurve
@@ -25,8 +26,13 @@ class LayerCurve(TabulatedCurve):
     BadInput. Relative accuracy 1e-8, or NotReached.
     """
 
-    half_space: HalfSpaceCurve
+    half_space: LoadCurve
     layer: Layer
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.half_space, HalfSpaceCurve):
+            message = f"must be a curve of the half-space under a profile that touches at a point, is {self.half_space}"
+            raise BadInput(Fault("layer", "half_space", message))
 
     @cached_property
     def edges(self) -> tuple[float, ...]:

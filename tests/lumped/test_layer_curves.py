@@ -281,6 +281,8 @@ def test_impossible_indenters_and_depths_are_named() -> None:
     for build in (lambda: Cone(0.0), lambda: Cone(90.0), lambda: Power(0.0, 2.0), lambda: Power(1.0, 0.9)):
         with pytest.raises(BadInput):
             build()
+    with pytest.raises(BadInput, match="half_space"):
+        LayerCurve(Punch(0.001), LAYERS[0])
     with pytest.raises(BadInput, match="thickness"):
         LayerCurve(Hertz(0.006), LAYERS[0]).force(H)
     with pytest.raises(BadInput, match="radius"):
