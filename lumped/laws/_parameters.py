@@ -61,6 +61,11 @@ class Parameters:
         """A number with a default."""
         return self.values.get(key, default)
 
+    def exponent(self) -> float:
+        """alpha of `[law]`; else the scene's own, Table 1, or 3/2 without geometry."""
+        own = self.scene.geometry.shape.exponent_of_force if self.scene.has_geometry else 1.5
+        return float(self.values.get("alpha", own))
+
     def common(self) -> dict[str, Any]:
         """What every force law has, last: the words of `taken` are complete then. Raises BadInput."""
         self.checked()

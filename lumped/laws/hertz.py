@@ -37,5 +37,5 @@ class HertzLaw(PowerLaw):
 def of(scene: Scene) -> HertzLaw:
     """The law for a scene. Raises BadInput, for a fluid too, which has no relaxed modulus."""
     given = Parameters(scene, HertzLaw.name)
-    alpha = given.get("alpha", 1.5)
+    alpha = given.exponent()
     return HertzLaw(k=given.stiffness(alpha), alpha=alpha, **given.common())

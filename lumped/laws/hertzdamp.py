@@ -42,7 +42,7 @@ class Hertzdamp(SpringDamped):
 def of(scene: Scene) -> Hertzdamp:
     """The law for a scene. Raises BadInput."""
     given = Parameters(scene, Hertzdamp.name)
-    alpha = given.get("alpha", 1.5)
+    alpha = given.exponent()
     k = given.stiffness(alpha)
     kind, xi = given.damping(("xi",))
     if kind == "e":

@@ -41,7 +41,7 @@ class HuntCrossley(SpringDamped):
 def of(scene: Scene) -> HuntCrossley:
     """The law for a scene. Raises BadInput."""
     given = Parameters(scene, HuntCrossley.name)
-    alpha = given.get("alpha", 1.5)
+    alpha = given.exponent()
     k = given.stiffness(alpha)
     kind, chi = given.damping(("chi",))
     if kind == "e":

@@ -68,7 +68,7 @@ def of(scene: Scene) -> Jankowski:
     xi sqrt(2/(alpha + 1)), whatever the exponent: xi grows with sqrt((alpha + 1)/2) at the same e.
     """
     given = Parameters(scene, Jankowski.name)
-    alpha = given.get("alpha", 1.5)
+    alpha = given.exponent()
     k = given.stiffness(alpha)
     kind, xi = given.damping(("xi",))
     if kind == "e":

@@ -41,7 +41,7 @@ class Khatiwada(SpringDamped):
 def of(scene: Scene) -> Khatiwada:
     """The law for a scene. Raises BadInput."""
     given = Parameters(scene, Khatiwada.name)
-    alpha = given.get("alpha", 1.5)
+    alpha = given.exponent()
     k = given.stiffness(alpha)
     kind, c = given.damping(("c",))
     if kind == "e":

@@ -65,7 +65,7 @@ def of(scene: Scene) -> Tsuji:
     same e.
     """
     given = Parameters(scene, Tsuji.name)
-    alpha = given.get("alpha", 1.5)
+    alpha = given.exponent()
     k = given.stiffness(alpha)
     kind, alpha_t = given.damping(("alpha_t",))
     if kind == "e":
