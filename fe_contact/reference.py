@@ -79,6 +79,7 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
 
 def check_target(scene: Scene) -> None:
     """Raise BadInput for a target which no impact is marched on."""
+    scene.check_memory()
     geometry = scene.geometry
     half_plane = geometry.shape.plane and isinstance(geometry.target, HalfSpace)
     if half_plane or not hasattr(get(TARGETS, geometry.target.name), "struck"):

@@ -181,7 +181,15 @@ class Scene:
     @property
     def load_curve(self) -> LoadCurve:
         """The target's exact elastic answer to the profile, per unit E* (and length). Raises BadInput without one."""
+        self.check_memory()
         return self.target.load_curve(self.profile, self.geometry.material.nu)
+
+    def check_memory(self) -> None:
+        """Raise BadInput where no surface alone remembers: of a body with lengths, nu(t) changes the load curve."""
+        material = self.geometry.material
+        if material.constant == "bulk" and not material.young.is_elastic and not isinstance(self.target, HalfSpace):
+            reason = f'"bulk" changes Poisson\'s ratio in time, which {self.target.name} does not follow in this version'
+            raise BadInput(Fault(self.source, "target.material.constant", f'{reason}; accepted: "poisson"'))
 
     @property
     def elastic_contact_time(self) -> float:
