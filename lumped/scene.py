@@ -188,7 +188,7 @@ class Scene:
         """Raise BadInput where no surface alone remembers: of a body with lengths, nu(t) changes the load curve."""
         material = self.geometry.material
         if material.constant == "bulk" and not material.young.is_elastic and not isinstance(self.target, HalfSpace):
-            reason = f'"bulk" changes Poisson\'s ratio in time, which {self.target.name} does not follow in this version'
+            reason = f'"bulk" changes nu in time, which {self.target.name} does not follow in this version'
             raise BadInput(Fault(self.source, "target.material.constant", f'{reason}; accepted: "poisson"'))
 
     @property
