@@ -9,12 +9,12 @@ from fe_contact.numerics import checked
 from fe_contact.progress import Progress, silent
 from lumped import laws
 from lumped import simulate as simulate_law
-from lumped.errors import BadInput, Fault, nearest
+from lumped.errors import BadInput, Fault, FeContactError, nearest
 from lumped.result import Result
 from lumped.scene import Scene
 
 FE = "fe"
-EXACT = "mdr"  # exact for a rigid striker on a homogeneous half-space, in milliseconds
+EXACT = ("mdr", "ting")  # exact in milliseconds: the row of springs on the half-space, Ting on any load curve
 OWN = (FE, "cheapest")
 
 
@@ -42,15 +42,31 @@ def simulate(
         from fe_contact.reference import fe
 
         return fe(scene, given, progress)
-    name = _cheapest(scene) if method == "cheapest" else method
-    if name not in laws.available():
+    if method == "cheapest":
+        return _cheapest(scene, given, progress)
+    if method not in laws.available():
         names = (*OWN, *laws.available())
         raise BadInput(Fault("--method", "", f"{method!r}: accepted {', '.join(names)}{nearest(method, names)}"))
+    return _lumped(scene, method, given)
+
+
+def _lumped(scene: Scene, name: str, given: Mapping[str, Any]) -> Result:
     from fe_contact.plan import DEFAULT_TOLERANCE
 
     return simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))
 
 
-def _cheapest(scene: Scene) -> str:
-    """The exact law of a geometry; without one there is only the scene's own law."""
-    return EXACT if scene.has_geometry or scene.law is None else scene.law.name
+def _cheapest(scene: Scene, given: Mapping[str, Any], progress: Progress) -> Result:
+    """An exact law where it meets the tolerance, else finite elements; without geometry the scene's own law."""
+    if scene.law is not None and not scene.has_geometry:
+        return _lumped(scene, scene.law.name, given)
+    for name in EXACT:
+        try:
+            result = _lumped(scene, name, given)
+        except FeContactError:  # it has no answer here, which the next one may
+            continue
+        if result.converged:
+            return result
+    from fe_contact.reference import fe
+
+    return fe(scene, given, progress)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.ending import End
+from lumped.errors import BadInput, Fault
 from lumped.interpolation import local, peak
 from lumped.laws._assembly import Answer, Clock, assemble, bars
 from lumped.laws._half_space import KEYS as KEYS
@@ -73,8 +74,11 @@ class SpringRow:
 
 
 def of(scene: Scene) -> SpringRow:
-    """The law for a scene: every half-space has it. Raises BadInput for a scene without geometry."""
+    """The law for a scene: every half-space has it. Raises BadInput without geometry, and for a fixed contact area."""
     check(scene, SpringRow.name)
+    if scene.profile.fixed_radius is not None:
+        reason = "its springs touch all at once, and are one; accepted: correspondence, which is exact here"
+        raise BadInput(Fault(scene.source, "striker.shape", f"{scene.profile.name}: {reason}"))
     return SpringRow()
 
 
