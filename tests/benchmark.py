@@ -34,11 +34,6 @@ FORCE_BOUND, FORCE_TOLERANCE, FORCE_SAMPLES, FORCE_STUDY = 5e-3 / 0.4, 1e-3, 21,
 # Impacts of lumped laws as multiples of bare imports, where these take 0.4 s: 5 ms and 30 ms.
 LAW_BOUNDS = {"correspondence": 5e-3 / 0.4, "ting": 30e-3 / 0.4, "mdr": 30e-3 / 0.4}
 LAW_TOLERANCE, LAW_REPEATS = 1e-5, 15
-# A parameter study of laws that are ordinary differential equations, on so many cores, in so many seconds.
-STUDY, CORES, STUDY_BOUND, SAMPLES = 10_000, 2, 60.0, 100
-STUDY_LAWS = {"hertz": {}, "kelvin": {"e": 0.65}, "jankowski": {"e": 0.65}, "hunt_crossley": {"e": 0.65}}
-STIFFNESS = {"kelvin": 9.35e7}  # N/m; the others are of power 3/2, N/m^1.5
-POWER_STIFFNESS = 2.75e9
 
 
 def child(arguments: list[str]) -> tuple[float, float]:
@@ -152,20 +147,6 @@ def lumped_laws(imports: float) -> None:
         say(f"mdr.estimate   {name:15} {1e3 * cpu:6.1f} ms = {cpu / imports:.4f} x imports (bound {bound:.4f})")
 
 
-def study(imports: float) -> None:
-    """A parameter study of laws without memory, extrapolated from a sample."""
-    rng = random.SystemRandom()
-    total = 0.0
-    for name, damping in STUDY_LAWS.items():
-        law = {"name": name, "k": STIFFNESS.get(name, POWER_STIFFNESS), **damping}
-        strikers = [{"mass": rng.uniform(500.0, 2000.0), "velocity": rng.uniform(0.1, 2.0)} for _ in range(SAMPLES + 1)]
-        cpu = one_impact(name, [Scene.from_dict({"striker": striker, "law": law}) for striker in strikers])
-        say(f"{name:14} {1e3 * cpu:22.1f} ms = {cpu / imports:.4f} x imports")
-        total += cpu / len(STUDY_LAWS)
-    wall = STUDY * total / CORES
-    say(f"{STUDY} such impacts on {CORES} cores: {wall:.0f} s (bound {STUDY_BOUND:.0f})")
-
-
 def force_laws() -> None:
     """Every law between two masses: one impact by one march, and as a Result with bars, rows and ledgers."""
     from lumped import Scene, laws
@@ -199,5 +180,4 @@ if __name__ == "__main__":
     imports = cold()
     marginal(imports)
     lumped_laws(imports)
-    study(imports)
     force_laws()

@@ -114,7 +114,6 @@ def estimate(scene: Scene) -> ImpactScales:
         peak_depth=value["peak_depth"] or 0.0,
         peak_force=value["peak_force"] or 0.0,
         peak_time=value["peak_time"] or 0.0,
-        turn_time=float(history.time[history.depth.argmax()]),
         end=float(history.time[-1]),
         duration=value["duration"],
         restitution=value["restitution"],

@@ -38,7 +38,6 @@ class ImpactScales:
     peak_depth: float
     peak_force: float
     peak_time: float
-    turn_time: float
     end: float
     duration: float | None
     restitution: float | None
@@ -93,7 +92,6 @@ def estimate(scene: Scene, elements: int = 70) -> ImpactScales:
         peak_depth=float(depth.max()),
         peak_force=float(force.max()),
         peak_time=float(time[force.argmax()]),
-        turn_time=track.approach[-1].time,
         end=float(time[-1]),
         duration=float(time[-1]) if separated else None,
         restitution=float(-velocity[-1]) / scene.velocity if separated else None,
