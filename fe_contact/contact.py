@@ -16,10 +16,12 @@ line search on ``J`` makes it converge from anywhere; an exhausted budget is rep
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse as sparse
 from scipy.linalg.lapack import dposv
 
 from fe_contact.forms import Array
@@ -43,6 +45,22 @@ class PressedSurface:
     trace: Array
     weights: Array
     recurring: bool = True
+
+    def held(self, springs: Array) -> Array:
+        """Stiffness with springs (q,) at the points, (n, n), in the order of columns that LAPACK needs."""
+        return np.asarray(self.stiffness + (self._squares @ springs).reshape(self.stiffness.shape)).T
+
+    @cached_property
+    def _squares(self) -> Any:
+        """Every point's trace times itself as a column, sparse (n n, q): a point sees the nodes of its facet alone."""
+        points, nodes = self.trace.shape
+        rows = sparse.csr_matrix(self.trace)
+        seen = [rows.indices[start:end] for start, end in zip(rows.indptr, rows.indptr[1:], strict=False)]
+        pairs = [(ours[:, None] * nodes + ours).ravel() for ours in seen]
+        values = [np.outer(own := self.trace[i, ours], own).ravel() for i, ours in enumerate(seen)]
+        columns = np.repeat(np.arange(points), [len(pair) for pair in pairs])
+        entries = (np.concatenate(values), (np.concatenate(pairs), columns))
+        return sparse.csr_matrix(entries, shape=(nodes * nodes, points))
 
 
 @dataclass(frozen=True)
@@ -149,14 +167,13 @@ class _Once:
 
 
 def _once(problem: ContactProblem, touching: bytes) -> _Once:
-    held = np.frombuffer(touching, bool)
-    trace, springs = problem.surface.trace[held], problem.penalty * problem.surface.weights * held
-    weighted = trace.T * springs[held]
+    trace, springs = problem.surface.trace, problem.penalty * problem.surface.weights * np.frombuffer(touching, bool)
     overlaps = np.column_stack([problem.overlap, np.ones_like(problem.overlap)])
-    _, displacement, failure = dposv(problem.surface.stiffness + weighted @ trace, weighted @ overlaps[held])
+    pushed = trace.T @ (springs[:, None] * overlaps)
+    _, displacement, failure = dposv(problem.surface.held(springs), pushed, overwrite_a=True, overwrite_b=True)
     if failure:
         raise FloatingPointError("the condensed stiffness lost its positive definiteness")
-    gap, lifted = (overlaps - problem.surface.trace @ displacement).T
+    gap, lifted = (overlaps - trace @ displacement).T
     retreat = problem.yielding * float(springs @ gap) / (1.0 + problem.yielding * float(springs @ lifted))
     return _Once(gap - retreat * lifted, retreat, springs)
 
@@ -165,7 +182,7 @@ def _once(problem: ContactProblem, touching: bytes) -> _Once:
 def _answer(surface: PressedSurface, penalty: float, touching: bytes) -> _Answer:
     springs = penalty * surface.weights * np.frombuffer(touching, bool)
     weighted = surface.trace.T * springs
-    _, displacement, failure = dposv(surface.stiffness + weighted @ surface.trace, weighted)
+    _, displacement, failure = dposv(surface.held(springs), weighted)
     if failure:
         raise FloatingPointError("the condensed stiffness lost its positive definiteness")
     left = np.eye(len(springs)) - surface.trace @ displacement

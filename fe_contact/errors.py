@@ -39,3 +39,10 @@ class IndentationNotSettled(NotReached):
 
     def __init__(self, depth: float) -> None:
         super().__init__(f"contact at depth {depth:.3g} m did not settle; cure: a lower numerics.penalty")
+
+
+class ContactTooWide(NotReached):
+    """The contact at one depth left the part of the mesh that is fine enough for it."""
+
+    def __init__(self, depth: float) -> None:
+        super().__init__(f"contact at depth {depth:.3g} m leaves the fine mesh; cure: raise numerics.elements_per_contact")

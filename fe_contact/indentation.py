@@ -26,6 +26,8 @@ CAUSES = ("mesh", "penalty", "far_field")
 BISECTIONS = 60
 SMALL = 1e-3
 ROUNDS = 5  # refinements before giving up
+SCOUTING = 1.0  # elements along the contact radius that tell how large contacts will be
+LEAST_SHARE, LARGEST_SHARE = 0.4, 2.0  # contact radius over the one at which the undeformed surfaces overlap
 DOMINANT = 0.5  # causes above this share of the largest one are refined together
 
 
@@ -54,10 +56,11 @@ def indent(
     modulus, depth = indenter.modulus(instant), np.array(indenter.checked(depths))
     numerics = settings(given)
     pinned = set(given) - {"tolerance"}
+    radii = _expected(indenter, depth, numerics)
     for attempt in range(ROUNDS + 1):
         progress(f"{numerics.elements_per_contact:g} elements along the contact radius")
-        base = press(indenter, depth, numerics)
-        budget = _budget(base, lambda changed: press(indenter, depth, changed), numerics)
+        base = press(indenter, depth, radii, numerics)
+        budget = _budget(base, lambda changed: press(indenter, depth, radii, changed), numerics)
         finer = _refined(numerics, budget, pinned)
         if finer == numerics or attempt == ROUNDS:
             break
@@ -89,15 +92,14 @@ def settings(given: Mapping[str, Any]) -> Numerics:
     return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
 
 
-def press(indenter: Indenter, depth: Array, numerics: Numerics) -> Pressing:
-    """Every depth, m, with one setting of everything; from the largest to the smallest, each guessing the next."""
-    overlapping = _overlapping(indenter, depth)
-    body: Still = get(TARGETS, indenter.target.name).still(indenter, overlapping, numerics)
+def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) -> Pressing:
+    """Every depth, m, with one setting of everything, from the largest to the smallest; ``radii`` to begin with, m."""
+    body: Still = get(TARGETS, indenter.target.name).still(indenter, radii, numerics)
     force, radius = np.empty_like(depth), np.empty_like(depth)
     growth, problems, iterations = 1.0, 0, 0
     for i in np.argsort(-depth):
-        found = body.press(float(depth[i]), growth * float(overlapping[i]))
-        force[i], radius[i], growth = found.force, found.contact_radius, found.contact_radius / overlapping[i]
+        found = body.press(float(depth[i]), growth * float(radii[i]))
+        force[i], radius[i], growth = found.force, found.contact_radius, found.contact_radius / radii[i]
         problems, iterations = problems + found.problems, iterations + found.iterations
     counted = {"contact_problems": problems, "iterations": iterations}
     return Pressing(force, radius, {"degrees_of_freedom": body.degrees_of_freedom, **counted})
@@ -106,17 +108,21 @@ def press(indenter: Indenter, depth: Array, numerics: Numerics) -> Pressing:
 def _budget(base: Pressing, run: Callable[[Numerics], Pressing], numerics: Numerics) -> dict[str, Array]:
     """Relative error of the force by cause, at every depth: each setting halved, or doubled where it is coarse.
 
-    A body without a length of its own answers alike at every depth, so the largest change speaks for all.
+    Penalty and far field are varied on the other mesh, which as a rule is the cheaper one. A body without a length of
+    its own answers alike at every depth, so the largest change speaks for all.
     """
     orders = {"mesh": MESH_ORDER[numerics.order], **LEAST_ORDER}
-    found = {}
+    found, start, reference = {}, numerics, base
     for cause in CAUSES:
         key, order = SETTING[cause], orders[cause]
         value = getattr(numerics, key)
         finer = value < LEAST_HALVED_SETTING[key]
-        other = run(numerics.varied(**{key: 2.0 * value if finer else 0.5 * value}))
-        change = np.abs(other.force / base.force - 1.0).max()
+        varied = start.varied(**{key: 2.0 * value if finer else 0.5 * value})
+        other = run(varied)
+        change = np.abs(other.force / reference.force - 1.0).max()
         found[cause] = np.full_like(base.force, SAFETY * (2**order if finer else 1) / (2**order - 1) * change)
+        if cause == CAUSES[0]:
+            start, reference = varied, other
     return found
 
 
@@ -132,6 +138,23 @@ def _refined(numerics: Numerics, budget: Mapping[str, Array], pinned: set[str]) 
         if error >= DOMINANT * worst and key not in pinned and getattr(candidate, key) <= RANGES[key][1]:
             finer = candidate
     return finer
+
+
+def _expected(indenter: Indenter, depth: Array, numerics: Numerics) -> Array:
+    """Contact radii which the meshes are made for, m, shape (n,); they enter no value.
+
+    Where the undeformed surfaces overlap, times what a coarse mesh finds of it at the extreme depths.
+    """
+    overlapping = _overlapping(indenter, depth)
+    if indenter.shape.fixed_radius is not None or not indenter.target.has_length:
+        return overlapping
+    ends = [int(depth.argmin()), int(depth.argmax())]
+    coarse = numerics.varied(elements_per_contact=SCOUTING)
+    reach = overlapping[ends] * np.array([LEAST_SHARE, LARGEST_SHARE])
+    body: Still = get(TARGETS, indenter.target.name).still(indenter, reach, coarse)
+    found = [body.press(float(depth[i]), float(overlapping[i])).contact_radius for i in ends]
+    share = np.interp(np.log(depth), np.log(depth[ends]), np.log(found / overlapping[ends]))
+    return np.asarray(overlapping * np.exp(share))
 
 
 def _overlapping(indenter: Indenter, depth: Array) -> Array:

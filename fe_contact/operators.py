@@ -44,7 +44,8 @@ class SurfaceOperator:
     what counts for the force along the motion;
     ``trace`` (q, n) displacement at the points from that of the nodes;
     ``solve`` maps nodal forces (n,) on the zone to the displacement of the whole mesh (2 N,);
-    ``basis`` the scalar scikit-fem basis, ``poisson`` its Poisson's ratio; ``dimension`` as of :class:`Surface`.
+    ``basis`` the scalar scikit-fem basis, ``poisson`` its Poisson's ratio; ``dimension`` as of :class:`Surface`;
+    ``watched`` (n,) the displacement that was watched elsewhere, under unit nodal forces on the zone.
     """
 
     nodes: Array
@@ -59,6 +60,7 @@ class SurfaceOperator:
     basis: Any
     poisson: float
     dimension: int
+    watched: Array
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -68,6 +70,11 @@ class SurfaceOperator:
     def force(self, scale: float, pressure: Array) -> float:
         """Force along the motion of a unit-mesh pressure (q,) on the mesh scaled by ``scale``."""
         return float(scale ** (self.dimension - 2) * (self.pull @ pressure))
+
+    def punched(self, radius: float) -> Array:
+        """Nodal forces (m,) of a flat end pressed in by one, on the m nodes up to a radius."""
+        reached = min(max(int(np.searchsorted(self.nodes, radius)), self.order + 1), len(self.stiffness))
+        return np.asarray(np.linalg.solve(self.response[:reached, :reached], np.ones(reached)))
 
 
 def surface_operator(mesh: MeshTri, order: int, poisson: float) -> SurfaceOperator:
@@ -85,7 +92,12 @@ def surface_operator(mesh: MeshTri, order: int, poisson: float) -> SurfaceOperat
 
 
 def condensed(
-    basis: Any, matrix: Any, fixed: npt.NDArray[np.integer[Any]], poisson: float, surface: Surface
+    basis: Any,
+    matrix: Any,
+    fixed: npt.NDArray[np.integer[Any]],
+    poisson: float,
+    surface: Surface,
+    watch: Any = None,
 ) -> SurfaceOperator:
     """Factorise the stiffness of a body once and condense it to its contact zone.
 
@@ -96,6 +108,7 @@ def condensed(
     fixed : degrees of freedom held at zero.
     poisson : Poisson's ratio.
     surface : where contact may happen, in units of the mesh.
+    watch : weights of the displacement to be watched, sparse (1, 2 N); None: of nothing.
     """
     order = basis.elem.maxdeg
     corners = surface.coordinate[::order]
@@ -116,7 +129,8 @@ def condensed(
         answer[free] = factor.solve(load[free])
         return answer
 
-    response = -(normal.T @ displacement(np.eye(loaded)))
+    moved = displacement(np.eye(loaded))
+    response = -(normal.T @ moved)
     compliance = response[:loaded]
     condensed = np.linalg.inv((compliance + compliance.T) / 2)
     points, lengths, trace = _contact_quadrature(zone, order)
@@ -134,6 +148,7 @@ def condensed(
         basis=basis,
         poisson=poisson,
         dimension=surface.dimension,
+        watched=np.zeros(loaded) if watch is None else np.asarray(watch @ moved)[0],
     )
 
 

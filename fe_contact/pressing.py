@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.contact import ContactSolution, Touching
-from fe_contact.errors import IndentationNotSettled
+from fe_contact.errors import ContactTooWide, IndentationNotSettled
 from fe_contact.forms import Array
 from fe_contact.numerics import ENFORCEMENTS, Numerics
 from lumped.indenter import Indenter
@@ -19,7 +19,9 @@ from lumped.members import get
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
 RESCALINGS = 60
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
-EDGE_FIT = (0.6, 0.97)  # shares of the contact radius between which the pressure tells where it ends
+# The pressure tells where it ends within this distance of the edge, in contact radii and in thicknesses of the body,
+# but not in the last share of it.
+EDGE_FIT, EDGE_FIT_OF_THICKNESS, EDGE_RINGS = 0.4, 0.7, 0.08
 EDGE_DEGREE = 2
 
 
@@ -79,7 +81,8 @@ class ScaledStill:
 class FixedStill:
     """A body with lengths of its own, on one mesh in units of ``reference``, m: the contact may end anywhere in it.
 
-    ``stretch``: the target's place on the surface over the mesh's coordinate.
+    ``stretch``: the target's place on the surface over the mesh's coordinate; ``thickness`` of the body, in units of
+    the mesh.
     """
 
     surface: ScaledSurface
@@ -87,6 +90,7 @@ class FixedStill:
     numerics: Numerics
     reference: float
     stretch: float
+    thickness: float
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -94,22 +98,35 @@ class FixedStill:
         return self.surface.operator.degrees_of_freedom
 
     def press(self, depth: float, guess: float) -> Pressed:
-        """Press to a depth, m; raises IndentationNotSettled, also where the contact leaves the fine mesh."""
-        solution, solves = self.solved(depth, guess)
-        operator, shape = self.surface.operator, self.indenter.shape
-        edge = solution.edge(operator.points)
-        if not solution.converged or not np.isfinite(edge):
-            raise IndentationNotSettled(depth)
-        radius = shape.fixed_radius or self.reference * contact_end(operator.points, solution)
-        force = operator.force(self.reference, solution.pressure)
-        return Pressed(force, radius, solves, solution.iterations)
+        """Press to a depth, m; raises IndentationNotSettled, ContactTooWide."""
+        solution, solves = self.solved(depth, guess, self.within(guess))
+        return self.read(depth, solution, solves, solution.iterations)
 
-    def solved(self, depth: float, guess: float) -> tuple[ContactSolution, int]:
-        """The contact problem at a depth, m, and how many solves it took."""
+    def within(self, radius: float) -> Touching:
+        """Points closer than a radius, m."""
+        return np.asarray(self.surface.operator.points < radius / self.reference)
+
+    def solved(self, depth: float, guess: float, touching: Touching) -> tuple[ContactSolution, int]:
+        """The contact problem at a depth, m, and how many solves it took.
+
+        The penalty counts in the body's own stiffness under a flat end of radius a over 2 a^2 (2 a in plane strain):
+        E*/a on the half-space, and much more where a thin layer is confined.
+        """
         operator, expected = self.surface.operator, guess / self.reference
         overlap = self.indenter.target.overlap(self.indenter.profile, self.stretch * operator.points, depth)
-        numerics = replace(self.numerics, penalty=self.numerics.penalty / expected)
-        return _enforced(self.surface, overlap, self.reference, numerics, operator.points < expected)
+        unit = float(operator.punched(expected).sum()) / (2.0 * expected ** (operator.dimension - 1))
+        numerics = replace(self.numerics, penalty=self.numerics.penalty * unit)
+        return _enforced(self.surface, overlap, self.reference, numerics, touching)
+
+    def read(self, depth: float, solution: ContactSolution, problems: int, iterations: int) -> Pressed:
+        """Force and contact radius of a solution; raises IndentationNotSettled, ContactTooWide."""
+        operator, fixed = self.surface.operator, self.indenter.shape.fixed_radius
+        if not solution.converged:
+            raise IndentationNotSettled(depth)
+        if fixed is None and not np.isfinite(solution.edge(operator.points)):
+            raise ContactTooWide(depth)
+        radius = fixed or self.reference * contact_end(operator.points, solution, self.thickness)
+        return Pressed(operator.force(self.reference, solution.pressure), radius, problems, iterations)
 
 
 def _enforced(
@@ -121,17 +138,19 @@ def _enforced(
     return enforcement.enforce(problem, touching), enforcement.SOLVES
 
 
-def contact_end(points: Array, solution: ContactSolution) -> float:
+def contact_end(points: Array, solution: ContactSolution, thickness: float = np.inf) -> float:
     """Where the pressure ends, from its inside: its square is smooth and falls to zero like a straight line.
 
-    At the edge itself, anywhere in an element, the pressure rings.
+    At the edge itself, anywhere in an element, the pressure rings. In a body thinner than the contact is wide the
+    line is short: ``thickness``, in the unit of the points.
     """
     edge, pressure = solution.edge(points), solution.pressure
-    inside = (points > EDGE_FIT[0] * edge) & (points < EDGE_FIT[1] * edge)
+    reach = min(EDGE_FIT * edge, EDGE_FIT_OF_THICKNESS * thickness)
+    inside = (points > edge - reach) & (points < edge - EDGE_RINGS * reach)
     if np.count_nonzero(inside) <= 2 * EDGE_DEGREE:
         return edge
     fit = np.polynomial.Polynomial.fit(points[inside], pressure[inside] ** 2, EDGE_DEGREE)
     roots = fit.roots()
     real = np.real(roots[np.abs(np.imag(roots)) < 1e-9 * edge])
-    near = real[(real > EDGE_FIT[1] * edge) & (real < (2.0 - EDGE_FIT[1]) * edge)]
+    near = real[np.abs(real - edge) < reach]
     return float(near[np.argmin(np.abs(near - edge))]) if near.size else edge

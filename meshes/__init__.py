@@ -6,7 +6,7 @@ raises :class:`meshes.errors.MeshError`; nothing here knows a material or a load
 
 from meshes.errors import GmshMissing, MeshError
 from meshes.half_space import half_space
-from meshes.layer import layer
+from meshes.layer import layer, layer_under_rim
 from meshes.ring import ring
 
-__all__ = ["GmshMissing", "MeshError", "half_space", "layer", "ring"]
+__all__ = ["GmshMissing", "MeshError", "half_space", "layer", "layer_under_rim", "ring"]

@@ -12,17 +12,23 @@ from meshes.errors import MeshError
 from meshes.session import session
 from meshes.triangles import triangulated
 
-GROWTH = 0.4  # growth of the element size per unit distance from the surface, and from the contact outwards
-LARGEST = 0.7  # element size over thickness
+GROWTH = 3.2  # growth of the element size per unit distance from the contact, for one element along the radius
+LARGEST_GROWTH = 1.0  # steeper gradings leave gmsh too little room for well-shaped triangles
+LARGEST = 5.6  # element size over thickness, for one element along the radius
+COARSEST = 1.0  # element size over thickness, whatever is asked
+WITHIN = 2.0  # from this many thicknesses on, the surface is as fine as there: the pressure ends within one of them
 ZONE = 1.1  # the surface is fine up to this radius
+RIM = 1e-3  # element size at a rim over its radius, for one element along the radius
 
 
 def layer(elements_per_radius: float, smallest: float, thickness: float, width: float) -> MeshTri:
     """Triangles of the layer ``-thickness <= z <= 0``, ``r <= 1.1 + width``, fine for contact radii up to one.
 
+    Doubling ``elements_per_radius`` halves the element size everywhere.
+
     Parameters
     ----------
-    elements_per_radius : radius over element size at the surface, 1 to 200.
+    elements_per_radius : radius, or two thicknesses where they are less, over element size at the surface, 1 to 200.
     smallest : the smallest contact radius to resolve so, 1e-6 to 1.
     thickness : of the layer, 1e-3 to 1e6.
     width : of what lies beyond the contact, 1e-3 to 1e8.
@@ -35,28 +41,34 @@ def layer(elements_per_radius: float, smallest: float, thickness: float, width: 
     ------
     MeshError for numbers outside these ranges.
     """
-    for name, value, low, high in (
-        ("elements_per_radius", elements_per_radius, 1.0, 200.0),
-        ("smallest", smallest, 1e-6, 1.0),
-        ("thickness", thickness, 1e-3, 1e6),
-        ("width", width, 1e-3, 1e8),
-    ):
-        if not low <= value <= high:
-            raise MeshError(f"{name} = {value:g}: accepted {low:g} to {high:g}")
-    smallest, thickness, side = float(smallest), float(thickness), ZONE + float(width)  # gmsh reads their digits
-    within = f"(x+{smallest!r}+Fabs(x-{smallest!r}))/2"  # the larger of the two
-    within = f"({within}+{ZONE!r}-Fabs({within}-{ZONE!r}))/2"
-    beyond = f"(x-{ZONE!r}+Fabs(x-{ZONE!r}))/2"
-    growing = f"(({within})/{float(elements_per_radius)!r}+{GROWTH!r}*(Fabs(y)+{beyond}))"
-    size = f"({growing}+{LARGEST * thickness!r}-Fabs({growing}-{LARGEST * thickness!r}))/2"
+    _check(elements_per_radius, smallest, thickness, width)
+    within = _least(_most("x", smallest), min(ZONE, WITHIN * thickness))
+    away = f"(Fabs(y)+{_most(f'x-{ZONE!r}', 0.0)})"
+    return _rectangle(elements_per_radius, f"{within}/{float(elements_per_radius)!r}", away, ZONE, thickness, width)
+
+
+def layer_under_rim(elements_per_radius: float, thickness: float, width: float) -> MeshTri:
+    """The same for a contact that ends at the node (1, 0) whatever the depth, under a pressure infinite there.
+
+    Elements shrink towards that rim in proportion to their distance.
+    """
+    _check(elements_per_radius, 1.0, thickness, width)
+    away = "Sqrt((x-1)^2+y^2)"
+    return _rectangle(elements_per_radius, repr(float(RIM / elements_per_radius)), away, 1.0, thickness, width)
+
+
+def _rectangle(elements: float, finest: str, away: str, node: float, thickness: float, width: float) -> MeshTri:
+    """Triangles of size ``finest`` that grow ``away``, formulas of gmsh; a node of the surface at ``node``."""
+    growth, largest = min(GROWTH / elements, LARGEST_GROWTH), min(LARGEST / elements, COARSEST) * thickness
+    side = ZONE + width
     with session("layer") as gmsh:
         geometry = gmsh.model.geo
-        corners = [(0, 0), (ZONE, 0), (side, 0), (side, -thickness), (0, -thickness)]
+        corners = [(0, 0), (node, 0), (side, 0), (side, -thickness), (0, -thickness)]
         points = [geometry.addPoint(r, z, 0) for r, z in corners]
         lines = [geometry.addLine(points[i], points[(i + 1) % len(points)]) for i in range(len(points))]
         geometry.addPlaneSurface([geometry.addCurveLoop(lines)])
         geometry.synchronize()
-        nodes, triangles = triangulated(gmsh, size)
+        nodes, triangles = triangulated(gmsh, _least(f"({finest}+{growth!r}*{away})", largest))
     nodes[abs(nodes) < 1e-12 * side] = 0.0  # onto the axis and the surface exactly
     return MeshTri(nodes, triangles).with_boundaries(
         {
@@ -66,3 +78,24 @@ def layer(elements_per_radius: float, smallest: float, thickness: float, width: 
             "side": lambda x: x[0] > side * (1 - 1e-9),
         }
     )
+
+
+def _check(elements: float, smallest: float, thickness: float, width: float) -> None:
+    for name, value, low, high in (
+        ("elements_per_radius", elements, 1.0, 200.0),
+        ("smallest", smallest, 1e-6, 1.0),
+        ("thickness", thickness, 1e-3, 1e6),
+        ("width", width, 1e-3, 1e8),
+    ):
+        if not low <= value <= high:
+            raise MeshError(f"{name} = {value:g}: accepted {low:g} to {high:g}")
+
+
+def _least(formula: str, bound: float) -> str:
+    """The smaller of a formula of gmsh and a number."""
+    return f"(({formula})+{float(bound)!r}-Fabs(({formula})-{float(bound)!r}))/2"
+
+
+def _most(formula: str, bound: float) -> str:
+    """The larger of a formula of gmsh and a number."""
+    return f"(({formula})+{float(bound)!r}+Fabs(({formula})-{float(bound)!r}))/2"

@@ -25,6 +25,14 @@ def robin(facets: Any, poisson: float) -> sparse.coo_matrix:
     """
     position = np.asarray(facets.global_coordinates())
     displacement, traction = boussinesq(position, np.asarray(facets.normals), poisson)
+    return springs(facets, displacement, traction, 2 * np.pi * position[0])
+
+
+def springs(facets: Any, displacement: Array, traction: Array, measure: Array | float) -> sparse.coo_matrix:
+    """Stiffness of ``t = -k u`` with the symmetric k that meets this displacement and traction, shape (2 N, 2 N).
+
+    Both (2, facets, points) on the boundary of ``facets``; ``measure``: area per length of the boundary.
+    """
     length = np.hypot(*displacement)
     along = displacement / length
     across = np.stack([-along[1], along[0]])
@@ -32,8 +40,13 @@ def robin(facets: Any, poisson: float) -> sparse.coo_matrix:
     coupling = -np.einsum("c...,c...", traction, across) / length
     tensor = direct * (_outer(along, along) + _outer(across, across))
     tensor += coupling * (_outer(along, across) + _outer(across, along))
-    value = np.stack([np.broadcast_to(np.asarray(shape[0]), length.shape) for shape in facets.basis])
-    weight = 2 * np.pi * position[0] * facets.dx
+    return on_boundary(facets, tensor, measure)
+
+
+def on_boundary(facets: Any, tensor: Array, measure: Array | float) -> sparse.coo_matrix:
+    """``int u.k v`` over a boundary, k (2, 2, facets, points); shape (2 N, 2 N)."""
+    weight = measure * np.asarray(facets.dx)
+    value = np.stack([np.broadcast_to(np.asarray(shape[0]), weight.shape) for shape in facets.basis])
     local = np.einsum("ifq,jfq,abfq,fq->fiajb", value, value, tensor, weight, optimize=True)
     functions = 2 * len(facets.basis)
     matrices = local.reshape(len(weight), functions, functions)

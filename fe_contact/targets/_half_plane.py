@@ -1,21 +1,18 @@
-"""The half-plane struck by a cylinder: depth relative to the point at the datum.
-
-A finite block stands for it, so wide that what it adds is the same at the surface and at the datum.
-"""
+"""The half-plane struck by a cylinder: depth relative to the point at the datum."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
-from skfem import Basis
+import scipy.sparse as sparse
+from skfem import Basis, FacetBasis
 
 import meshes
 from fe_contact.bodies.scaled_surface import ScaledSurface
-from fe_contact.contact import ContactSolution
 from fe_contact.errors import IndentationNotSettled
+from fe_contact.far_field import half_plane
 from fe_contact.forms import Array, isotropic, plane_stiffness
 from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, condensed
@@ -24,17 +21,15 @@ from fe_contact.surface import flat
 from fe_contact.targets._zone import REFINEMENT, Zone, held
 from lumped.indenter import Indenter
 
-FAR = 10.0  # size of the block over the datum's depth (or the contact's width), per far radius of the settings
 SECANTS = 30
-PRECISE = 1e-12
+PRECISE = 1e-10
 
 
 @dataclass(frozen=True)
 class DatumStill:
-    """A block pressed until the striker has moved by the depth relative to the datum; ``datum`` in reference radii."""
+    """A block pressed until the striker has moved by the depth relative to the datum."""
 
     block: FixedStill
-    datum: float
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -42,53 +37,55 @@ class DatumStill:
         return self.block.degrees_of_freedom
 
     def press(self, depth: float, guess: float) -> Pressed:
-        """Press to a depth, m, relative to the datum: secants on the depth relative to the block's foot.
+        """Press to a depth, m, relative to the datum: secants on the depth relative to the block's outside.
 
-        Raises IndentationNotSettled.
+        A flat end with the contact's radius tells the first slope. Raises IndentationNotSettled.
         """
-        known, absolute = (0.0, 0.0), depth
-        problems = iterations = 0
-        for _ in range(SECANTS):
-            solution, solves = self.block.solved(absolute, guess)
+        operator = self.block.surface.operator
+        punched = operator.punched(guess / self.block.reference)
+        slope = 1.0 / (1.0 + float(operator.watched[: punched.size] @ punched))
+        absolute, known = 0.5 * (1.0 + slope) * depth, (0.0, 0.0)
+        touching, problems, iterations = self.block.within(guess), 0, 0
+        for attempt in range(SECANTS):
+            solution, solves = self.block.solved(absolute, guess, touching)
             problems, iterations = problems + solves, iterations + solution.iterations
             if not solution.converged:
                 break
-            relative = absolute - self._sunk(solution)
+            relative = absolute + float(operator.watched @ (operator.trace.T @ (operator.weights * solution.pressure)))
             if abs(relative - depth) <= PRECISE * depth:
-                found = self.block.press(absolute, guess)
-                return Pressed(found.force, found.contact_radius, problems + found.problems, iterations)
-            slope = (absolute - known[0]) / (relative - known[1])
+                return self.block.read(depth, solution, problems, iterations)
+            if attempt:
+                slope = (absolute - known[0]) / (relative - known[1])
             known, absolute = (absolute, relative), absolute + slope * (depth - relative)
+            touching = solution.sets[0]
         raise IndentationNotSettled(depth)
-
-    def _sunk(self, solution: ContactSolution) -> float:
-        """How far the datum sinks under the pressure, m."""
-        operator = self.block.surface.operator
-        displacement = operator.solve(operator.trace.T @ (operator.weights * solution.pressure))
-        return -float((_at(operator.basis, self.datum) @ displacement[1::2])[0])
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
-    """The half-plane at rest; ``radii``, m: where the undeformed surfaces overlap at the depths to come."""
-    datum, zone = getattr(indenter.target, "datum_depth", None), Zone.of(indenter.shape, radii)
+    """The half-plane at rest; ``radii``, m: between which the contacts will end."""
+    datum, zone = getattr(indenter.target, "datum_depth", None), Zone.of(radii)
     assert datum is not None
-    size = FAR * numerics.far_radius * max(datum / zone.reference, 1.0)
-    elements = REFINEMENT * numerics.elements_per_contact
-    surface = _surface(indenter.material.nu, elements, numerics.order, zone.smallest, size)
-    return DatumStill(
-        FixedStill(surface, indenter, numerics, zone.reference, zone.reference), datum / zone.reference
-    )
+    elements, depth = REFINEMENT * numerics.elements_per_contact, datum / zone.reference
+    size = numerics.far_radius * max(depth, 1.0)
+    surface = _surface(indenter.material.nu, elements, numerics.order, zone.smallest, depth, size)
+    return DatumStill(FixedStill(surface, indenter, numerics, zone.reference, zone.reference, np.inf))
 
 
 @lru_cache(maxsize=32)
-def _surface(poisson: float, elements: float, order: int, smallest: float, size: float) -> ScaledSurface:
+def _surface(
+    poisson: float, elements: float, order: int, smallest: float, datum: float, size: float
+) -> ScaledSurface:
+    """Condensed for unit reference radius, with the datum's displacement upwards."""
     basis = Basis(meshes.layer(elements, smallest, size, size), ELEMENTS[order](), intorder=2 * order)
-    matrix = plane_stiffness(basis, isotropic(1.0 - poisson**2, poisson)).tocsc()
-    fixed = held(basis, along=("axis", "base"), across=("base",))
-    return ScaledSurface(condensed(basis, matrix, fixed, poisson, flat(basis, 2)), breathes=False)
-
-
-@lru_cache(maxsize=32)
-def _at(basis: Any, depth: float) -> Any:
-    """Weights of the scalar degrees of freedom at the point below the first touch, sparse (1, N)."""
-    return basis.probes(np.array([[0.0], [-depth]]))
+    boundaries = basis.mesh.boundaries
+    outside = FacetBasis(
+        basis.mesh,
+        basis.elem,
+        facets=np.concatenate([boundaries["base"], boundaries["side"]]),
+        intorder=2 * order + 4,
+    )
+    law = isotropic(1.0 - poisson**2, poisson)
+    matrix = (plane_stiffness(basis, law) + half_plane.robin(outside, poisson)).tocsc()
+    upwards = sparse.kron(basis.probes(np.array([[0.0], [-datum]])), [[0.0, 1.0]])
+    fixed = held(basis, along=("axis",), across=())
+    return ScaledSurface(condensed(basis, matrix, fixed, poisson, flat(basis, 2), upwards), breathes=False)

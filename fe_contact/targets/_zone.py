@@ -9,26 +9,21 @@ import numpy as np
 import numpy.typing as npt
 
 from fe_contact.forms import Array
-from lumped.shapes import Shape
 
-REFINEMENT = 4.0  # elements along a contact radius where the contact may end anywhere, over those where it may not
-LARGEST, SMALLEST = 1.6, 0.4  # contact radius over the one at which the undeformed surfaces overlap, in any body
+REFINEMENT = 2.0  # elements along a contact radius where the contact may end anywhere, over those where it may not
 
 
 @dataclass(frozen=True)
 class Zone:
-    """The reference radius, in the target's own places, and the smallest contact over it."""
+    """Where contacts end: the largest radius, in the target's own places, and the smallest over it."""
 
     reference: float
     smallest: float
 
     @classmethod
-    def of(cls, shape: Shape, overlapping: Array) -> Zone:
-        """From the places where the undeformed surfaces overlap at the depths to come."""
-        if shape.fixed_radius is not None:
-            return cls(shape.fixed_radius, 1.0)
-        reference = LARGEST * float(overlapping.max())
-        return cls(reference, min(SMALLEST * float(overlapping.min()) / reference, 1.0))
+    def of(cls, radii: Array) -> Zone:
+        """Of contact radii, m."""
+        return cls(float(radii.max()), float(radii.min() / radii.max()))
 
 
 def held(basis: Any, along: tuple[str, ...], across: tuple[str, ...]) -> npt.NDArray[np.integer[Any]]:

@@ -26,7 +26,7 @@ def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
-    """The half-space at rest, or the half-plane relative to its datum; ``radii``: where the surfaces overlap, m."""
+    """The half-space at rest, or the half-plane relative to its datum; ``radii``: of the contacts, m."""
     if indenter.shape.plane:
         return half_plane.still(indenter, radii, numerics)
     return ScaledStill(surface(indenter.material.nu, numerics), indenter, numerics)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
-from skfem import Basis
+from skfem import Basis, FacetBasis, MeshTri
 
 import meshes
 from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.far_field import plate
 from fe_contact.forms import Array, isotropic, plane_stiffness, stiffness
 from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, condensed
@@ -23,21 +25,20 @@ SIDES = 0.4  # distance of the sides in thicknesses, per far radius of the setti
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
-    """The layer at rest; ``radii``, m: where the undeformed surfaces overlap at the depths to come."""
+    """The layer at rest; ``radii``, m: between which the contacts will end."""
     target = indenter.target
     assert isinstance(target, Layer)
-    zone = Zone.of(indenter.shape, radii)
+    zone, rim = Zone.of(radii), indenter.shape.fixed_radius is not None
+    thickness = target.thickness / zone.reference
+    elements, width = REFINEMENT * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
     surface = _surface(
         indenter.material.nu,
-        REFINEMENT * numerics.elements_per_contact,
+        (elements, None if rim else zone.smallest, thickness, width),
         numerics.order,
-        zone.smallest,
-        target.thickness / zone.reference,
-        SIDES * numerics.far_radius * target.thickness / zone.reference,
         target.base == "bonded",
         indenter.shape.plane,
     )
-    return FixedStill(surface, indenter, numerics, zone.reference, zone.reference)
+    return FixedStill(surface, indenter, numerics, zone.reference, zone.reference, thickness)
 
 
 def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
@@ -59,19 +60,30 @@ def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
 
 @lru_cache(maxsize=32)
 def _surface(
-    poisson: float,
-    elements: float,
-    order: int,
-    smallest: float,
-    thickness: float,
-    width: float,
-    bonded: bool,
-    plane: bool,
+    poisson: float, sizes: tuple[float, float | None, float, float], order: int, bonded: bool, plane: bool
 ) -> ScaledSurface:
-    """Condensed for unit reference radius; the sides are held in the radial direction."""
-    basis = Basis(meshes.layer(elements, smallest, thickness, width), ELEMENTS[order](), intorder=2 * order)
-    law = isotropic(1.0 - poisson**2, poisson)
-    matrix = plane_stiffness(basis, law) if plane else stiffness(basis, law)
-    fixed = held(basis, along=("axis", "side", "base") if bonded else ("axis", "side"), across=("base",))
-    operator = condensed(basis, matrix.tocsc(), fixed, poisson, flat(basis, 2 if plane else 3))
+    """Condensed for unit reference radius."""
+    mesh = _mesh(*sizes)
+    basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
+    fixed = held(basis, along=("axis", "side", "base") if bonded else ("axis",), across=("base",))
+    matrix = _matrix(basis, poisson, bonded, plane).tocsc()
+    operator = condensed(basis, matrix, fixed, poisson, flat(basis, 2 if plane else 3))
     return ScaledSurface(operator, breathes=False)
+
+
+def _mesh(elements: float, smallest: float | None, thickness: float, width: float) -> MeshTri:
+    """Fine for every contact from the smallest, or, without one, at the rim."""
+    if smallest is None:
+        return meshes.layer_under_rim(elements, thickness, width)
+    return meshes.layer(elements, smallest, thickness, width)
+
+
+def _matrix(basis: Any, poisson: float, bonded: bool, plane: bool) -> Any:
+    """Stiffness of the layer, and of what lies beyond its sides: a sliding one gives way to the end of the world."""
+    law = isotropic(1.0 - poisson**2, poisson)
+    if plane:
+        return plane_stiffness(basis, law)
+    if bonded:
+        return stiffness(basis, law)
+    sides = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["side"], intorder=2 * basis.elem.maxdeg)
+    return stiffness(basis, law) + plate.robin(sides, poisson)

@@ -23,23 +23,23 @@ WIDEST = 2.7  # rad: the contact zone ends before the far side of the ring
 
 
 def still(indenter: Indenter, angles: Array, numerics: Numerics) -> Still:
-    """The ring at rest; ``angles``, rad: where the undeformed surfaces overlap at the depths to come.
+    """The ring at rest; ``angles``, rad: between which the contacts will end.
 
     The whole ring is meshed, so that there is no far field.
     """
     target = indenter.target
     assert isinstance(target, Ring)
-    zone = Zone.of(indenter.shape, np.minimum(angles, WIDEST))
-    angle = min(zone.reference, WIDEST)
+    zone = Zone.of(np.minimum(angles, WIDEST))
+    arc = target.inner_radius * zone.reference
     surface = _surface(
         indenter.material.nu,
         REFINEMENT * numerics.elements_per_contact,
         numerics.order,
-        min(zone.smallest * zone.reference / angle, 1.0),
-        target.thickness / (target.inner_radius * angle),
-        angle,
+        zone.smallest,
+        target.thickness / arc,
+        zone.reference,
     )
-    return FixedStill(surface, indenter, numerics, target.inner_radius * angle, angle)
+    return FixedStill(surface, indenter, numerics, arc, zone.reference, target.thickness / arc)
 
 
 @lru_cache(maxsize=32)

@@ -22,6 +22,11 @@ class Target(ABC):
     keys: ClassVar[Mapping[str, Key]]
     has_inertia: ClassVar[bool]
 
+    @property
+    def has_length(self) -> bool:
+        """Whether the body has a length of its own, beside which a contact is small or large."""
+        return True
+
     @abstractmethod
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
         """Interpenetration of the undeformed surfaces, m, positive inside; broadcasts over r and depth, m.

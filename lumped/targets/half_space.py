@@ -30,6 +30,11 @@ class HalfSpace(Target):
     keys: ClassVar[Mapping[str, Key]] = KEYS
     has_inertia: ClassVar[bool] = False
 
+    @property
+    def has_length(self) -> bool:
+        """Only the datum's depth."""
+        return self.datum_depth is not None
+
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
         """depth - height(r)."""
         return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))

@@ -1,0 +1,18 @@
+"""The outside of a layer that slides on its base: far from the contact a plate in plane stress, u_r ~ 1/r."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sparse
+
+from fe_contact.far_field.static import on_boundary
+
+
+def robin(facets: Any, poisson: float) -> sparse.coo_matrix:
+    """Radial springs E/((1 + nu) r) on the layer's side for E* = 1, shape (2 N, 2 N)."""
+    radius = np.asarray(facets.global_coordinates())[0]
+    tensor = np.zeros((2, 2, *radius.shape))
+    tensor[0, 0] = (1.0 - poisson) / radius
+    return on_boundary(facets, tensor, 2 * np.pi * radius)
