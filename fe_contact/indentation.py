@@ -26,7 +26,7 @@ CAUSES = ("mesh", "penalty", "far_field")
 BISECTIONS = 60
 SMALL = 1e-3
 ROUNDS = 5  # refinements before giving up
-SCOUTING = 1.0  # elements along the contact radius that tell how large contacts will be
+SCOUTING = 2.0  # elements along the contact radius that tell how large contacts will be
 LEAST_SHARE, LARGEST_SHARE = 0.4, 2.0  # contact radius over the one at which the undeformed surfaces overlap
 DOMINANT = 0.5  # causes above this share of the largest one are refined together
 
@@ -158,13 +158,15 @@ def _expected(indenter: Indenter, depth: Array, numerics: Numerics) -> Array:
 
 
 def _overlapping(indenter: Indenter, depth: Array) -> Array:
-    """Place on the target up to which the undeformed surfaces overlap at each depth, m; shape (n,)."""
+    """Length on the target up to which the undeformed surfaces overlap at each depth, m; shape (n,)."""
     fixed = indenter.shape.fixed_radius
-    return np.array([fixed if fixed is not None else _overlap_end(indenter, float(one)) for one in depth])
+    if fixed is not None:
+        return np.full_like(depth, fixed)
+    return indenter.target.length_of_place * np.array([_overlap_end(indenter, float(one)) for one in depth])
 
 
 def _overlap_end(indenter: Indenter, depth: float) -> float:
-    """By bisection; where the profile ends before, its end."""
+    """The same as a place of the target, by bisection; where the profile ends before, its end."""
     profile = indenter.profile
 
     def overlaps(place: float) -> bool:

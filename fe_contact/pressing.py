@@ -19,10 +19,10 @@ from lumped.members import get
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
 RESCALINGS = 60
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
-# The pressure tells where it ends within this distance of the edge, in contact radii and in thicknesses of the body,
-# but not in the last share of it.
-EDGE_FIT, EDGE_FIT_OF_THICKNESS, EDGE_RINGS = 0.4, 0.7, 0.08
-EDGE_DEGREE = 2
+# The gap tells where contact ends up to this distance from the edge, in contact radii and in thicknesses of the body,
+# but for the nearest share of it.
+GAP_REACH, GAP_NEAREST = 0.5, 0.2
+GAP_DEGREE = 2
 
 
 @dataclass(frozen=True)
@@ -139,18 +139,18 @@ def _enforced(
 
 
 def contact_end(points: Array, solution: ContactSolution, thickness: float = np.inf) -> float:
-    """Where the pressure ends, from its inside: its square is smooth and falls to zero like a straight line.
+    """Where the surfaces part, from the gap outside: beyond the edge it grows like the 3/2 power of the distance.
 
-    At the edge itself, anywhere in an element, the pressure rings. In a body thinner than the contact is wide the
-    line is short: ``thickness``, in the unit of the points.
+    The pressure rings at an edge anywhere in an element; the gap, a displacement, does not. In a body thinner than
+    the contact is wide the power holds less far: ``thickness``, in the unit of the points.
     """
-    edge, pressure = solution.edge(points), solution.pressure
-    reach = min(EDGE_FIT * edge, EDGE_FIT_OF_THICKNESS * thickness)
-    inside = (points > edge - reach) & (points < edge - EDGE_RINGS * reach)
-    if np.count_nonzero(inside) <= 2 * EDGE_DEGREE:
+    edge = solution.edge(points)
+    reach = GAP_REACH * min(edge, thickness)
+    outside = (points > edge + GAP_NEAREST * reach) & (points < edge + reach)
+    if np.count_nonzero(outside) <= 2 * GAP_DEGREE:
         return edge
-    fit = np.polynomial.Polynomial.fit(points[inside], pressure[inside] ** 2, EDGE_DEGREE)
-    roots = fit.roots()
+    gap = np.maximum(-solution.signed_pressure[outside], 0.0)
+    roots = np.polynomial.Polynomial.fit(points[outside], gap ** (2 / 3), GAP_DEGREE).roots()
     real = np.real(roots[np.abs(np.imag(roots)) < 1e-9 * edge])
     near = real[np.abs(real - edge) < reach]
     return float(near[np.argmin(np.abs(near - edge))]) if near.size else edge

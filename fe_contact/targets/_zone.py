@@ -11,6 +11,7 @@ import numpy.typing as npt
 from fe_contact.forms import Array
 
 REFINEMENT = 2.0  # elements along a contact radius where the contact may end anywhere, over those where it may not
+MARGIN = 1.35  # largest radius of the fine mesh over that of the contacts expected
 
 
 @dataclass(frozen=True)
@@ -23,7 +24,8 @@ class Zone:
     @classmethod
     def of(cls, radii: Array) -> Zone:
         """Of contact radii, m."""
-        return cls(float(radii.max()), float(radii.min() / radii.max()))
+        reference = MARGIN * float(radii.max())
+        return cls(reference, float(radii.min()) / reference)
 
 
 def held(basis: Any, along: tuple[str, ...], across: tuple[str, ...]) -> npt.NDArray[np.integer[Any]]:

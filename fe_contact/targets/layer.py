@@ -28,12 +28,13 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The layer at rest; ``radii``, m: between which the contacts will end."""
     target = indenter.target
     assert isinstance(target, Layer)
-    zone, rim = Zone.of(radii), indenter.shape.fixed_radius is not None
+    rim = indenter.shape.fixed_radius
+    zone = Zone.of(radii) if rim is None else Zone(rim, 1.0)
     thickness = target.thickness / zone.reference
     elements, width = REFINEMENT * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
     surface = _surface(
         indenter.material.nu,
-        (elements, None if rim else zone.smallest, thickness, width),
+        (elements, zone.smallest if rim is None else None, thickness, width),
         numerics.order,
         target.base == "bonded",
         indenter.shape.plane,

@@ -15,31 +15,25 @@ from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, condensed
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
-from fe_contact.targets._zone import REFINEMENT, Zone, held
+from fe_contact.targets._zone import MARGIN, REFINEMENT, Zone, held
 from lumped.indenter import Indenter
 from lumped.targets.ring import Ring
 
 WIDEST = 2.7  # rad: the contact zone ends before the far side of the ring
 
 
-def still(indenter: Indenter, angles: Array, numerics: Numerics) -> Still:
-    """The ring at rest; ``angles``, rad: between which the contacts will end.
+def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
+    """The ring at rest; ``radii``, m of arc: between which the contacts will end.
 
     The whole ring is meshed, so that there is no far field.
     """
     target = indenter.target
     assert isinstance(target, Ring)
-    zone = Zone.of(np.minimum(angles, WIDEST))
-    arc = target.inner_radius * zone.reference
-    surface = _surface(
-        indenter.material.nu,
-        REFINEMENT * numerics.elements_per_contact,
-        numerics.order,
-        zone.smallest,
-        target.thickness / arc,
-        zone.reference,
-    )
-    return FixedStill(surface, indenter, numerics, arc, zone.reference, target.thickness / arc)
+    zone = Zone.of(np.minimum(radii, WIDEST / MARGIN * target.inner_radius))
+    angle, thickness = zone.reference / target.inner_radius, target.thickness / zone.reference
+    elements = REFINEMENT * numerics.elements_per_contact
+    surface = _surface(indenter.material.nu, elements, numerics.order, zone.smallest, thickness, angle)
+    return FixedStill(surface, indenter, numerics, zone.reference, angle, thickness)
 
 
 @lru_cache(maxsize=32)

@@ -27,6 +27,11 @@ class Target(ABC):
         """Whether the body has a length of its own, beside which a contact is small or large."""
         return True
 
+    @property
+    def length_of_place(self) -> float:
+        """Length along the surface per unit of its places, m."""
+        return 1.0
+
     @abstractmethod
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
         """Interpenetration of the undeformed surfaces, m, positive inside; broadcasts over r and depth, m.

@@ -31,6 +31,11 @@ class Ring(Target):
     def __post_init__(self) -> None:
         check_fields("ring", self, KEYS)
 
+    @property
+    def length_of_place(self) -> float:
+        """The inner radius: its places are angles."""
+        return self.inner_radius
+
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
         """D cos(theta) + sqrt(R^2 - D^2 sin^2(theta)) - inner_radius, D = clearance + depth; `r` is theta."""
         radius, angle = shape.tip_radius or 0.0, np.asarray(r, dtype=float)
