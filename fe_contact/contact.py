@@ -65,12 +65,16 @@ class PressedSurface:
 
 @dataclass(frozen=True)
 class ContactProblem:
-    """A surface, its free overlap (q,), the penalty stiffness, and the striker's retreat per force, 0 held fixed."""
+    """A surface, its free overlap (q,), the penalty stiffness, and the striker's retreat per force, 0 held fixed.
+
+    ``yielding`` (q,): per force at each point, on surfaces that do not recur; there is no energy then, nor its line
+    search.
+    """
 
     surface: PressedSurface
     overlap: Array
     penalty: float
-    yielding: float = 0.0
+    yielding: float | Array = 0.0
 
 
 @dataclass(frozen=True)
@@ -112,7 +116,7 @@ def solve(problem: ContactProblem, touching: Touching) -> ContactSolution:
         found = (gap > 0.0).tobytes()
         if found == held:
             return _solution(problem, gap, iteration, True)
-        if iteration >= UNGUARDED:
+        if iteration >= UNGUARDED and isinstance(problem.yielding, float):
             point = _Point(problem.surface.trace.T @ (answer.springs * gap), retreat, gap)
             if before is not None:
                 point, still = _descended(problem, before, point)
@@ -174,7 +178,8 @@ def _once(problem: ContactProblem, touching: bytes) -> _Once:
     if failure:
         raise FloatingPointError("the condensed stiffness lost its positive definiteness")
     gap, lifted = (overlaps - trace @ displacement).T
-    retreat = problem.yielding * float(springs @ gap) / (1.0 + problem.yielding * float(springs @ lifted))
+    given = problem.yielding * springs
+    retreat = float(given @ gap) / (1.0 + float(given @ lifted))
     return _Once(gap - retreat * lifted, retreat, springs)
 
 

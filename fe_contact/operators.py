@@ -45,7 +45,8 @@ class SurfaceOperator:
     ``trace`` (q, n) displacement at the points from that of the nodes;
     ``solve`` maps nodal forces (n,) on the zone to the displacement of the whole mesh (2 N,);
     ``basis`` the scalar scikit-fem basis, ``poisson`` its Poisson's ratio; ``dimension`` as of :class:`Surface`;
-    ``watched`` (n,) the displacement that was watched elsewhere, under unit nodal forces on the zone.
+    ``watched`` (n,) how far the place from which depth is measured comes up under unit nodal forces on the zone, None
+    where it is at rest.
     """
 
     nodes: Array
@@ -60,7 +61,7 @@ class SurfaceOperator:
     basis: Any
     poisson: float
     dimension: int
-    watched: Array
+    watched: Array | None
 
     @property
     def degrees_of_freedom(self) -> int:
@@ -74,7 +75,13 @@ class SurfaceOperator:
     def punched(self, radius: float) -> Array:
         """Nodal forces (m,) of a flat end pressed in by one, on the m nodes up to a radius."""
         reached = min(max(int(np.searchsorted(self.nodes, radius)), self.order + 1), len(self.stiffness))
-        return np.asarray(np.linalg.solve(self.response[:reached, :reached], np.ones(reached)))
+        forces = np.asarray(np.linalg.solve(self.response[:reached, :reached], np.ones(reached)))
+        return forces if self.watched is None else forces / (1.0 + self.watched[:reached] @ forces)
+
+    @property
+    def yielding(self) -> float | Array:
+        """How far the place from which depth is measured comes up under unit forces at the points, (q,) or 0."""
+        return 0.0 if self.watched is None else np.asarray(self.trace @ self.watched)
 
 
 def surface_operator(mesh: MeshTri, order: int, poisson: float) -> SurfaceOperator:
@@ -108,7 +115,7 @@ def condensed(
     fixed : degrees of freedom held at zero.
     poisson : Poisson's ratio.
     surface : where contact may happen, in units of the mesh.
-    watch : weights of the displacement to be watched, sparse (1, 2 N); None: of nothing.
+    watch : weights of the displacement of the place from which depth is measured, (1, 2 N); None: it is at rest.
     """
     order = basis.elem.maxdeg
     corners = surface.coordinate[::order]
@@ -148,7 +155,7 @@ def condensed(
         basis=basis,
         poisson=poisson,
         dimension=surface.dimension,
-        watched=np.zeros(loaded) if watch is None else np.asarray(watch @ moved)[0],
+        watched=None if watch is None else np.asarray(watch @ moved)[0],
     )
 
 

@@ -99,34 +99,26 @@ class FixedStill:
 
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m; raises IndentationNotSettled, ContactTooWide."""
-        solution, solves = self.solved(depth, guess, self.within(guess))
-        return self.read(depth, solution, solves, solution.iterations)
-
-    def within(self, radius: float) -> Touching:
-        """Points closer than a radius, m."""
-        return np.asarray(self.surface.operator.points < radius / self.reference)
-
-    def solved(self, depth: float, guess: float, touching: Touching) -> tuple[ContactSolution, int]:
-        """The contact problem at a depth, m, and how many solves it took.
-
-        The penalty counts in the body's own stiffness under a flat end of radius a over 2 a^2 (2 a in plane strain):
-        E*/a on the half-space, and much more where a thin layer is confined.
-        """
-        operator, expected = self.surface.operator, guess / self.reference
-        overlap = self.indenter.target.overlap(self.indenter.profile, self.stretch * operator.points, depth)
-        unit = float(operator.punched(expected).sum()) / (2.0 * expected ** (operator.dimension - 1))
-        numerics = replace(self.numerics, penalty=self.numerics.penalty * unit)
-        return _enforced(self.surface, overlap, self.reference, numerics, touching)
-
-    def read(self, depth: float, solution: ContactSolution, problems: int, iterations: int) -> Pressed:
-        """Force and contact radius of a solution; raises IndentationNotSettled, ContactTooWide."""
         operator, fixed = self.surface.operator, self.indenter.shape.fixed_radius
+        solution, solves = self._solved(depth, guess / self.reference)
         if not solution.converged:
             raise IndentationNotSettled(depth)
         if fixed is None and not np.isfinite(solution.edge(operator.points)):
             raise ContactTooWide(depth)
         radius = fixed or self.reference * contact_end(operator.points, solution, self.thickness)
-        return Pressed(operator.force(self.reference, solution.pressure), radius, problems, iterations)
+        return Pressed(operator.force(self.reference, solution.pressure), radius, solves, solution.iterations)
+
+    def _solved(self, depth: float, expected: float) -> tuple[ContactSolution, int]:
+        """The contact problem at a depth, m, and how many solves it took.
+
+        The penalty counts in the body's own stiffness under a flat end of radius a over 2 a^2 (2 a in plane strain):
+        E*/a on the half-space, and much more where a thin layer is confined.
+        """
+        operator = self.surface.operator
+        overlap = self.indenter.target.overlap(self.indenter.profile, self.stretch * operator.points, depth)
+        unit = float(operator.punched(expected).sum()) / (2.0 * expected ** (operator.dimension - 1))
+        numerics = replace(self.numerics, penalty=self.numerics.penalty * unit)
+        return _enforced(self.surface, overlap, self.reference, numerics, operator.points < expected)
 
 
 def _enforced(
@@ -134,7 +126,7 @@ def _enforced(
 ) -> tuple[ContactSolution, int]:
     """The contact problem on the mesh scaled by ``scale``, m; and how many solves it took."""
     enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
-    problem = surface.problem(np.maximum(overlap, -BEYOND * scale), numerics.penalty, 0.0)
+    problem = surface.problem(np.maximum(overlap, -BEYOND * scale), numerics.penalty, surface.operator.yielding)
     return enforcement.enforce(problem, touching), enforcement.SOLVES
 
 

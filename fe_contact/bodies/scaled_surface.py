@@ -37,14 +37,14 @@ class ScaledSurface:
         operator = self.operator
         return PressedSurface(operator.stiffness, operator.trace, operator.weights, self.breathes)
 
-    def problem(self, overlap: Array, penalty: float, yielding: float) -> ContactProblem:
+    def problem(self, overlap: Array, penalty: float, yielding: float | Array) -> ContactProblem:
         """Contact problem on the unit mesh.
 
         Parameters
         ----------
         overlap : (q,) free overlap times modulus at the quadrature points.
         penalty : dimensionless penalty stiffness, in units of modulus over contact radius.
-        yielding : striker's displacement times modulus per unit-mesh force; 0 holds it fixed.
+        yielding : striker's displacement times modulus per unit-mesh force; 0 holds it fixed, (q,) counts by place.
         """
         return ContactProblem(self._pressed, overlap, penalty, yielding)
 
