@@ -23,11 +23,13 @@ from lumped.indenter import Indenter
 from lumped.members import get
 
 CAUSES = ("mesh", "penalty", "far_field")
-BISECTIONS = 60
-SMALL = 1e-3
+BISECTIONS = 40
+SMALL = 1e-3  # radius, in depths, from which the search for the overlap's end begins
 ROUNDS = 5  # refinements before giving up
-SCOUTING = 2.0  # elements along the contact radius that tell how large contacts will be
+SCOUTING, SCOUTING_ORDER = 2.0, 2  # elements along the contact radius that tell how large contacts will be
 LEAST_SHARE, LARGEST_SHARE = 0.4, 2.0  # contact radius over the one at which the undeformed surfaces overlap
+FEWEST = 12  # depths that tell an error bar
+SPREAD = 0.6  # of them at least, smallest over largest: contact edges over an element of the coarser mesh
 DOMINANT = 0.5  # causes above this share of the largest one are refined together
 
 
@@ -53,7 +55,8 @@ def indent(
     Raises BadInput for depths and materials that cannot be, NotReached where contact does not settle.
     """
     clock = time.process_time(), time.perf_counter()
-    modulus, depth = indenter.modulus(instant), np.array(indenter.checked(depths))
+    modulus, asked = indenter.modulus(instant), len(indenter.checked(depths))
+    depth = _accompanied(np.array(depths))
     numerics = settings(given)
     pinned = set(given) - {"tolerance"}
     radii = _expected(indenter, depth, numerics)
@@ -65,23 +68,33 @@ def indent(
         if finer == numerics or attempt == ROUNDS:
             break
         numerics = finer
-    error = np.sum([budget[cause] for cause in CAUSES], axis=0)
-    force = modulus * indenter.shape.total * base.force
+    error = np.sum([budget[cause] for cause in CAUSES], axis=0)[:asked]
+    force = (modulus * indenter.shape.total * base.force)[:asked]
     kept = ("tolerance", "elements_per_contact", "order", "penalty", "enforcement", "far_radius")
     return Indentation(
         indenter=indenter,
         method="fe",
         modulus=modulus,
         tolerance=numerics.tolerance,
-        depth=depth,
+        depth=depth[:asked],
         force=force,
-        contact_radius=base.contact_radius,
+        contact_radius=base.contact_radius[:asked],
         force_error=error * force,
-        budget=budget,
+        budget={cause: error[:asked] for cause, error in budget.items()},
         numerics={key: value for key, value in numerics.as_dict().items() if key in kept},
         timing={"cpu_s": time.process_time() - clock[0], "wall_s": time.perf_counter() - clock[1]},
         work=base.work,
     )
+
+
+def _accompanied(depth: Array) -> Array:
+    """The depths, m, and some between them: how far a mesh errs depends on where in an element a contact ends.
+
+    A lone depth could end where two meshes agree by chance.
+    """
+    if depth.size >= FEWEST:
+        return depth
+    return np.concatenate([depth, np.geomspace(min(depth.min(), SPREAD * depth.max()), depth.max(), FEWEST)])
 
 
 def settings(given: Mapping[str, Any]) -> Numerics:
@@ -106,24 +119,36 @@ def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) ->
 
 
 def _budget(base: Pressing, run: Callable[[Numerics], Pressing], numerics: Numerics) -> dict[str, Array]:
-    """Relative error of the force by cause, at every depth: each setting halved, or doubled where it is coarse.
+    """Relative error of the force by cause, at every depth.
 
-    Penalty and far field are varied on the other mesh, which as a rule is the cheaper one. A body without a length of
-    its own answers alike at every depth, so the largest change speaks for all.
+    The far field is varied on the other mesh, which as a rule is the cheaper one; the penalty costs no mesh.
     """
-    orders = {"mesh": MESH_ORDER[numerics.order], **LEAST_ORDER}
-    found, start, reference = {}, numerics, base
-    for cause in CAUSES:
-        key, order = SETTING[cause], orders[cause]
-        value = getattr(numerics, key)
-        finer = value < LEAST_HALVED_SETTING[key]
-        varied = start.varied(**{key: 2.0 * value if finer else 0.5 * value})
-        other = run(varied)
-        change = np.abs(other.force / reference.force - 1.0).max()
-        found[cause] = np.full_like(base.force, SAFETY * (2**order if finer else 1) / (2**order - 1) * change)
-        if cause == CAUSES[0]:
-            start, reference = varied, other
-    return found
+    other = _other(numerics, "mesh")
+    on_other = run(other)
+    return {
+        "mesh": _error(numerics, "mesh", base, on_other),
+        "penalty": _error(numerics, "penalty", base, run(_other(numerics, "penalty"))),
+        "far_field": _error(numerics, "far_field", on_other, run(_other(other, "far_field"))),
+    }
+
+
+def _other(numerics: Numerics, cause: str) -> Numerics:
+    """The setting behind a cause halved, or doubled where it is coarse."""
+    key = SETTING[cause]
+    value = getattr(numerics, key)
+    return numerics.varied(**{key: 2.0 * value if value < LEAST_HALVED_SETTING[key] else 0.5 * value})
+
+
+def _error(numerics: Numerics, cause: str, first: Pressing, second: Pressing) -> Array:
+    """Error by a cause from what its other setting changes, (n,).
+
+    A body without a length of its own answers alike at every depth, so the largest change speaks for all.
+    """
+    key = SETTING[cause]
+    order = MESH_ORDER[numerics.order] if cause == "mesh" else LEAST_ORDER[cause]
+    finer = getattr(numerics, key) < LEAST_HALVED_SETTING[key]
+    change = np.abs(second.force / first.force - 1.0).max()
+    return np.full_like(first.force, SAFETY * (2**order if finer else 1) / (2**order - 1) * change)
 
 
 def _refined(numerics: Numerics, budget: Mapping[str, Array], pinned: set[str]) -> Numerics:
@@ -149,7 +174,7 @@ def _expected(indenter: Indenter, depth: Array, numerics: Numerics) -> Array:
     if indenter.shape.fixed_radius is not None or not indenter.target.has_length:
         return overlapping
     ends = [int(depth.argmin()), int(depth.argmax())]
-    coarse = numerics.varied(elements_per_contact=SCOUTING)
+    coarse = numerics.varied(elements_per_contact=SCOUTING, order=SCOUTING_ORDER)
     reach = overlapping[ends] * np.array([LEAST_SHARE, LARGEST_SHARE])
     body: Still = get(TARGETS, indenter.target.name).still(indenter, reach, coarse)
     found = [body.press(float(depth[i]), float(overlapping[i])).contact_radius for i in ends]
@@ -158,24 +183,15 @@ def _expected(indenter: Indenter, depth: Array, numerics: Numerics) -> Array:
 
 
 def _overlapping(indenter: Indenter, depth: Array) -> Array:
-    """Length on the target up to which the undeformed surfaces overlap at each depth, m; shape (n,)."""
-    fixed = indenter.shape.fixed_radius
+    """Length on the target up to which the undeformed surfaces overlap at each depth, m, by bisection; shape (n,)."""
+    fixed, target, profile = indenter.shape.fixed_radius, indenter.target, indenter.profile
     if fixed is not None:
         return np.full_like(depth, fixed)
-    return indenter.target.length_of_place * np.array([_overlap_end(indenter, float(one)) for one in depth])
-
-
-def _overlap_end(indenter: Indenter, depth: float) -> float:
-    """The same as a place of the target, by bisection; where the profile ends before, its end."""
-    profile = indenter.profile
-
-    def overlaps(place: float) -> bool:
-        return bool(indenter.target.overlap(profile, np.array([place]), depth)[0] > 0.0)
-
-    low, high = 0.0, depth / (profile.tip_radius or 1.0) * SMALL
-    while overlaps(high):
-        high *= 2.0
+    low, high = np.zeros_like(depth), SMALL * depth / target.length_of_place
+    while np.any(touched := target.overlap(profile, high, depth) > 0.0):
+        high = np.where(touched, 2.0 * high, high)
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if overlaps(middle) else (low, middle)
-    return high
+        touched = target.overlap(profile, middle, depth) > 0.0
+        low, high = np.where(touched, middle, low), np.where(touched, high, middle)
+    return target.length_of_place * high
