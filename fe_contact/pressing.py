@@ -21,7 +21,7 @@ RESCALINGS = 60
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 # The gap tells where contact ends up to this distance from the edge, in contact radii and in thicknesses of the body,
 # but for the nearest share of it.
-GAP_REACH, GAP_NEAREST = 0.5, 0.2
+GAP_REACH, GAP_REACH_OF_THICKNESS, GAP_NEAREST = 0.4, 0.6, 0.2
 GAP_DEGREE = 2
 
 
@@ -137,7 +137,7 @@ def contact_end(points: Array, solution: ContactSolution, thickness: float = np.
     the contact is wide the power holds less far: ``thickness``, in the unit of the points.
     """
     edge = solution.edge(points)
-    reach = GAP_REACH * min(edge, thickness)
+    reach = min(GAP_REACH * edge, GAP_REACH_OF_THICKNESS * thickness)
     outside = (points > edge + GAP_NEAREST * reach) & (points < edge + reach)
     if np.count_nonzero(outside) <= 2 * GAP_DEGREE:
         return edge
