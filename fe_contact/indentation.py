@@ -21,6 +21,7 @@ from fe_contact.progress import Progress, silent
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
 from lumped.members import get
+from lumped.shapes import Shape
 
 CAUSES = ("mesh", "penalty", "far_field")
 BISECTIONS = 40
@@ -28,6 +29,7 @@ SMALL = 1e-3  # radius, in depths, from which the search for the overlap's end b
 ROUNDS = 5  # refinements before giving up
 SCOUTING, SCOUTING_ORDER = 2.0, 2  # elements along the contact radius that tell how large contacts will be
 LEAST_SHARE, LARGEST_SHARE = 0.4, 2.0  # contact radius over the one at which the undeformed surfaces overlap
+RIM_PENALTY = 16.0  # penalty under a rim over the usual: the pressure is infinite there
 FEWEST = 12  # depths that tell an error bar
 SPREAD = 0.6  # of them at least, smallest over largest: contact edges over an element of the coarser mesh
 DOMINANT = 0.5  # causes above this share of the largest one are refined together
@@ -57,7 +59,7 @@ def indent(
     clock = time.process_time(), time.perf_counter()
     modulus, asked = indenter.modulus(instant), len(indenter.checked(depths))
     depth = _accompanied(np.array(depths))
-    numerics = settings(given)
+    numerics = settings(given, indenter.shape)
     pinned = set(given) - {"tolerance"}
     radii = _expected(indenter, depth, numerics)
     for attempt in range(ROUNDS + 1):
@@ -97,11 +99,12 @@ def _accompanied(depth: Array) -> Array:
     return np.concatenate([depth, np.geomspace(min(depth.min(), SPREAD * depth.max()), depth.max(), FEWEST)])
 
 
-def settings(given: Mapping[str, Any]) -> Numerics:
-    """Settings of an indentation: those of an impact without its time."""
+def settings(given: Mapping[str, Any], shape: Shape) -> Numerics:
+    """Settings of an indentation: those of an impact without its time; stiffer where no edge has to be found."""
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
     elements = ELEMENTS * max(1.0, (1e-4 / tolerance) ** 0.25)
-    chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "steps": 8}
+    penalty = DEFAULTS["penalty"] * (1.0 if shape.fixed_radius is None else RIM_PENALTY)
+    chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "penalty": penalty, "steps": 8}
     return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
 
 

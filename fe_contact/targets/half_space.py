@@ -11,6 +11,7 @@ from fe_contact.numerics import Numerics
 from fe_contact.operators import surface_operator
 from fe_contact.pressing import ScaledStill, Still
 from fe_contact.targets import _half_plane as half_plane
+from fe_contact.targets import _rim as rim
 from lumped.indenter import Indenter
 from lumped.scene import Geometry
 
@@ -29,6 +30,8 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The half-space at rest, or the half-plane relative to its datum; ``radii``: of the contacts, m."""
     if indenter.shape.plane:
         return half_plane.still(indenter, radii, numerics)
+    if indenter.shape.fixed_radius is not None:
+        return rim.still(indenter, indenter.shape.fixed_radius, numerics)
     return ScaledStill(surface(indenter.material.nu, numerics), indenter, numerics)
 
 

@@ -1,0 +1,37 @@
+"""The half-space under a flat end, whose rim no depth moves: the mesh is as fine there as the pressure is steep."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from skfem import Basis, FacetBasis
+
+import meshes
+from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.far_field import static
+from fe_contact.forms import isotropic, stiffness
+from fe_contact.numerics import Numerics
+from fe_contact.operators import ELEMENTS, condensed
+from fe_contact.pressing import FixedStill, Still
+from fe_contact.surface import flat
+from fe_contact.targets._zone import REFINEMENT, held
+from lumped.indenter import Indenter
+
+
+def still(indenter: Indenter, radius: float, numerics: Numerics) -> Still:
+    """The half-space at rest under an end of this radius, m."""
+    elements = REFINEMENT * numerics.elements_per_contact
+    surface = _surface(indenter.material.nu, elements, numerics.order, numerics.far_radius)
+    return FixedStill(surface, indenter, numerics, radius, radius, np.inf)
+
+
+@lru_cache(maxsize=32)
+def _surface(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
+    """Condensed for unit radius."""
+    basis = Basis(meshes.layer_under_rim(elements, far_radius, far_radius), ELEMENTS[order](), intorder=2 * order)
+    ends = [basis.mesh.boundaries[name] for name in ("base", "side")]
+    outside = FacetBasis(basis.mesh, basis.elem, facets=np.concatenate(ends), intorder=2 * order + 4)
+    matrix = stiffness(basis, isotropic(1.0 - poisson**2, poisson)) + static.robin(outside, poisson)
+    fixed = held(basis, along=("axis",), across=())
+    return ScaledSurface(condensed(basis, matrix.tocsc(), fixed, poisson, flat(basis)), breathes=False)
