@@ -149,10 +149,11 @@ class _Answer:
     def gap(self, problem: ContactProblem) -> tuple[Array, float]:
         """Gap (q,) and the striker's retreat."""
         gap: Array = self.left @ problem.overlap
-        if problem.yielding == 0.0:
+        yielding = float(problem.yielding)
+        if yielding == 0.0:
             return gap, 0.0
-        force = float(self.springs @ gap) / (1.0 + problem.yielding * self.stiffness)
-        retreat = problem.yielding * force
+        force = float(self.springs @ gap) / (1.0 + yielding * self.stiffness)
+        retreat = yielding * force
         gap -= retreat * self.lifted
         return gap, retreat
 
@@ -214,7 +215,7 @@ class _Point:
     def energy(self, problem: ContactProblem) -> float:
         """J of the module's docstring."""
         strain = self.load @ np.linalg.solve(problem.surface.stiffness, self.load)
-        striker = self.retreat**2 / problem.yielding if problem.yielding else 0.0
+        striker = self.retreat**2 / float(problem.yielding) if problem.yielding else 0.0
         pressed = problem.surface.weights @ np.maximum(self.gap, 0.0) ** 2
         return 0.5 * float(strain + striker + problem.penalty * pressed)
 

@@ -45,4 +45,5 @@ class ContactTooWide(NotReached):
     """The contact at one depth left the part of the mesh that is fine enough for it."""
 
     def __init__(self, depth: float) -> None:
-        super().__init__(f"contact at depth {depth:.3g} m leaves the fine mesh; cure: raise numerics.elements_per_contact")
+        reason = f"contact at depth {depth:.3g} m leaves the fine mesh"
+        super().__init__(f"{reason}; cure: raise numerics.elements_per_contact")

@@ -34,9 +34,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 
 
 @lru_cache(maxsize=32)
-def _surface(
-    poisson: float, elements: float, order: int, smallest: float, datum: float, size: float
-) -> ScaledSurface:
+def _surface(poisson: float, elements: float, order: int, smallest: float, datum: float, size: float) -> ScaledSurface:
     """Condensed for unit reference radius; the datum's motion upwards is watched."""
     basis = Basis(meshes.layer(elements, smallest, size, size), ELEMENTS[order](), intorder=2 * order)
     ends = [basis.mesh.boundaries[name] for name in ("base", "side")]

@@ -21,6 +21,7 @@ from lumped.scene import Geometry
 from lumped.targets.layer import Layer
 
 SMALLEST_STRUCK = 0.04  # contact radius over the largest one, below which an impact's elements grow no finer
+STRUCK_REFINEMENT = 4.0  # elements along a contact radius in an impact: its force must be smooth in time
 SIDES = 0.4  # distance of the sides in thicknesses, per far radius of the settings
 
 
@@ -32,13 +33,8 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     zone = Zone.of(radii) if rim is None else Zone(rim, 1.0)
     thickness = target.thickness / zone.reference
     elements, width = REFINEMENT * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
-    surface = _surface(
-        indenter.material.nu,
-        (elements, zone.smallest if rim is None else None, thickness, width),
-        numerics.order,
-        target.base == "bonded",
-        indenter.shape.plane,
-    )
+    sizes, bonded = (elements, zone.smallest if rim is None else None, thickness, width), target.base == "bonded"
+    surface = _surface(indenter.material.nu, sizes, numerics.order, bonded, indenter.shape.plane)
     return FixedStill(surface, indenter, numerics, zone.reference, zone.reference, thickness)
 
 
@@ -46,17 +42,11 @@ def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
     """The layer in an impact whose contact grows from nothing to the radius that the settings expect."""
     target = geometry.target
     assert isinstance(target, Layer)
-    reference = numerics.contact_radius
-    return _surface(
-        geometry.material.nu,
-        REFINEMENT * numerics.elements_per_contact,
-        numerics.order,
-        1.0 if geometry.shape.fixed_radius is not None else SMALLEST_STRUCK,
-        target.thickness / reference,
-        SIDES * numerics.far_radius * target.thickness / reference,
-        target.base == "bonded",
-        geometry.shape.plane,
-    )
+    thickness = target.thickness / numerics.contact_radius
+    smallest = 1.0 if geometry.shape.fixed_radius is not None else SMALLEST_STRUCK
+    elements, width = STRUCK_REFINEMENT * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
+    sizes, bonded = (elements, smallest, thickness, width), target.base == "bonded"
+    return _surface(geometry.material.nu, sizes, numerics.order, bonded, geometry.shape.plane)
 
 
 @lru_cache(maxsize=32)
