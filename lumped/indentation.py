@@ -113,4 +113,4 @@ def power_law(depth: Array, force: Array, error: Array, row: float) -> dict[str,
 def _factor(logarithm: float, error: float, alpha: float) -> Quantity:
     """A geometry factor from its logarithm."""
     value = math.exp(logarithm)
-    return Quantity(value, value * math.expm1(error), f"m^{2.0 - alpha:.4g}")
+    return Quantity(value, value * math.expm1(error), f"m^{round(2.0 - alpha, 4):g}")

@@ -1,4 +1,4 @@
-"""Slow indentation by the closed forms: the exact answer of the half-space, or Hertz's."""
+"""Slow indentation by the target's own load curve, exact to its stated accuracy, or by Hertz's."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ from time import perf_counter, process_time
 
 import numpy as np
 
+from lumped.errors import BadInput, Fault
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
 
-ROUNDING = 1e-12
+HALF_SPACE_ALONE = ("mdr", "hertz")
 
 
 def indent(
@@ -17,8 +18,11 @@ def indent(
 ) -> Indentation:
     """Force and contact radius at every depth, m, by the load curve of the profile; Hertz's is the parabola's.
 
-    Raises BadInput for depths and materials that cannot be.
+    Raises BadInput for depths and materials that cannot be, NotReached where the load curve ends.
     """
+    if method in HALF_SPACE_ALONE and indenter.target.has_length:
+        reason = f"{method} knows the half-space alone; accepted: another method, or half_space without a datum"
+        raise BadInput(Fault(indenter.source, "target.shape", reason))
     cpu, wall = process_time(), perf_counter()
     depth, modulus = np.array(indenter.checked(depths)), indenter.modulus(instant)
     shape = indenter.shape.resolved("parabola") if method == "hertz" else indenter.profile
@@ -32,6 +36,6 @@ def indent(
         depth=depth,
         force=force,
         contact_radius=np.asarray(curve.contact_radius(depth)),
-        force_error=ROUNDING * force,
+        force_error=curve.accuracy * force,
         timing={"cpu_s": process_time() - cpu, "wall_s": perf_counter() - wall},
     )

@@ -7,12 +7,12 @@ import json
 from typing import Any
 
 from fe_contact.commands import base
-from lumped.errors import BadInput, Fault, nearest
+from lumped.errors import BadInput, Fault, NotReached, nearest
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
 
 SUMMARY = "slow indentation to given depths: indentation.csv and result.json, with error bars"
-EXACT = ("mdr", "ting", "correspondence")  # at rest they all are the load curve of the exact profile
+EXACT = ("mdr", "ting", "correspondence")  # at rest all are the exact load curve, the first the half-space's alone
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -47,20 +47,24 @@ def _indented(
     args: argparse.Namespace, indenter: Indenter, depths: tuple[float, ...], given: dict[str, Any]
 ) -> Indentation:
     """By finite elements or by a closed form; raises BadInput for any other method."""
+    from fe_contact.indentation import indent as by_elements
     from fe_contact.plan import DEFAULT_TOLERANCE
 
     if args.method == "fe":
-        from fe_contact.indentation import indent
-
-        return indent(indenter, depths, given, args.instant, base.progress_of(args))
+        return by_elements(indenter, depths, given, args.instant, base.progress_of(args))
     names = ("fe", "cheapest", "hertz", *EXACT)
     if args.method not in names:
         reason = f"{args.method!r}: accepted {', '.join(names)}{nearest(args.method, names)}"
         raise BadInput(Fault("--method", "", reason))
     from lumped.slow import indent as closed_form
 
-    method = EXACT[0] if args.method == "cheapest" else args.method
-    return closed_form(indenter, depths, method, args.instant, given.get("tolerance", DEFAULT_TOLERANCE))
+    tolerance = given.get("tolerance", DEFAULT_TOLERANCE)
+    if args.method != "cheapest":
+        return closed_form(indenter, depths, args.method, args.instant, tolerance)
+    try:
+        return closed_form(indenter, depths, EXACT[indenter.target.has_length], args.instant, tolerance)
+    except NotReached:  # the load curve ends before
+        return by_elements(indenter, depths, given, args.instant, base.progress_of(args))
 
 
 def _lines(found: Indentation) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,8 +19,10 @@ class LoadCurve(ABC):
     Everything is per unit contact modulus E* = E/(1-nu^2): an axisymmetric curve gives F/E* in m^2, pressure/E*
     in 1 and energy/E* in m^3; a plane one gives them per unit length, F/E* in m and energy/E* in m^2, and its
     contact radius is the half-width. Depths and radii in m; arguments are scalars or arrays; a depth below zero
-    counts as zero.
+    counts as zero. `accuracy`: relative, of forces and radii.
     """
+
+    accuracy: ClassVar[float] = 1e-12
 
     @property
     def extent(self) -> float:

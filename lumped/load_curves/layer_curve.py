@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -87,6 +88,7 @@ class LayerPunch(FixedArea):
 
     radius: float
     layer: Layer
+    accuracy: ClassVar[float] = 1e-10
 
     def __post_init__(self) -> None:
         reach = REACH * self.layer.thickness

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from math import exp, log
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,6 +30,8 @@ class Ring(RingContact, LoadCurve):
     little further than cos(theta). Depths stay below thickness and radius; below 1e-17 of them all is 0.
     Raises BadInput, or NotReached where two resolutions differ by more than 1e-8 or the contact goes all the way round.
     """
+
+    accuracy: ClassVar[float] = ACCURACY
 
     def force(self, depth: ArrayLike) -> Any:
         """F/E* per unit length, m."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -41,6 +41,8 @@ class TabulatedCurve(LoadCurve):
 
     Raises NotReached when two resolutions of the equation differ by more, and for depths beyond the last panel.
     """
+
+    accuracy: ClassVar[float] = ACCURACY
 
     @property
     @abstractmethod
