@@ -1,0 +1,221 @@
+"""Slow indentation by finite elements against exact load curves: force, contact radius, bars that cover, cost."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_contact.errors import ContactTooWide
+from fe_contact.indentation import indent, press, settings
+from lumped import BadInput, Material, Relaxation
+from lumped.indentation import Indentation
+from lumped.indenter import Indenter
+from lumped.members import get
+from lumped.shapes import Shape, Sphere
+from lumped.targets import HalfSpace, Target
+from lumped.targets.layer import Layer
+from lumped.targets.ring import Ring
+
+RATIOS = (0.0, 0.2, 0.3, 0.4, 0.45, 0.49, 0.4999)
+DEPTHS = (1, 2, 3, 5, 10)
+THICKNESS = 1e-3
+EXACT_ROWS: dict[str, tuple[Any, ...]] = {
+    "sphere": (1.0,),
+    "cone": (20.0,),
+    "punch": (0.1,),
+    **{f"power-{n:g}": (10.0, n) for n in (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)},
+}
+
+
+@dataclass(frozen=True)
+class Case:
+    """A shape on a target, nu, and depths in the order asked, m."""
+
+    shape: Shape
+    target: Target
+    nu: float
+    depths: tuple[float, ...]
+
+    @property
+    def indenter(self) -> Indenter:
+        return Indenter(self.shape, Material(Relaxation(1e6), self.nu), self.target)
+
+    def found(self, **given: Any) -> Indentation:
+        return indent(self.indenter, self.depths, {"tolerance": 1e-3, **given})
+
+    def errors(self, found: Indentation) -> tuple[np.ndarray, np.ndarray]:
+        """Relative errors of force and contact radius, (n,)."""
+        curve = self.target.load_curve(self.shape, self.nu)
+        force = found.modulus * self.shape.total * np.asarray(curve.force(found.depth))
+        return found.force / force - 1.0, found.contact_radius / np.asarray(curve.contact_radius(found.depth)) - 1.0
+
+
+def shaped(name: str, *values: float) -> Shape:
+    made: Shape = get("lumped.shapes", name).of(*values)
+    return made
+
+
+def to_width(shape: Shape, target: Target, nu: float, length: float, rng: np.random.Generator, most: float) -> Case:
+    """Depths with contacts from a hundredth of a length to ``most`` of it, mesh and edge anywhere."""
+    curve = target.load_curve(shape, nu)
+    widest = float(10 ** rng.uniform(-2.0, np.log10(most)))
+    ends = widest * np.array([10 ** rng.uniform(-1.5, 0.0), 1.0])
+    deepest = [float(curve.depth(end * length)) for end in ends]
+    depths = np.geomspace(*deepest, int(rng.choice(DEPTHS)))
+    return Case(shape, target, nu, tuple(map(float, rng.permutation(depths))))
+
+
+def on_layer(rng: np.random.Generator) -> Case:
+    """Parabola-like sphere, cone, power or cylinder on a layer, up to ten thicknesses wide, three near nu = 0.5."""
+    shape = (
+        shaped("sphere", 1.0),
+        shaped("cone", 0.1),
+        shaped("power", 1.0, float(rng.uniform(1.0, 2.5))),
+        shaped("cylinder", 1.0, 0.1),
+    )[int(rng.integers(4))]
+    nu = float(rng.choice(RATIOS))
+    target = Layer(THICKNESS, str(rng.choice(["bonded", "sliding"])))
+    return to_width(shape, target, nu, THICKNESS, rng, 3.0 if nu > 0.49 else 10.0)
+
+
+def on_half_plane(rng: np.random.Generator) -> Case:
+    """A cylinder on the half-plane, up to 0.8 of the datum's depth wide."""
+    return to_width(shaped("cylinder", 0.01, 0.1), HalfSpace(0.005), float(rng.choice(RATIOS)), 0.005, rng, 0.8)
+
+
+def in_ring(rng: np.random.Generator) -> Case:
+    """A rod in a ring thin or thick, its clearance wide or closing."""
+    inner, thickness = 0.01, float(10 ** rng.uniform(-3.0, -2.0))
+    deepest = thickness * 10 ** rng.uniform(-3.0, -0.7)
+    depths = np.geomspace(deepest * 10 ** rng.uniform(-2.0, 0.0), deepest, int(rng.choice(DEPTHS)))
+    shape = shaped("cylinder", float(rng.uniform(0.3, 0.98)) * inner, 0.1)
+    return Case(shape, Ring(inner, thickness), float(rng.choice(RATIOS)), tuple(map(float, depths)))
+
+
+def cases(number: int) -> list[Case]:
+    rng = np.random.default_rng(4)
+    kinds = (on_layer, on_layer, on_half_plane, in_ring)
+    return [kinds[i % len(kinds)](rng) for i in range(number)]
+
+
+def test_bodies_with_lengths_against_their_exact_curves(campaign_size: Callable[[int], int]) -> None:
+    for case in cases(campaign_size(200)):
+        found = case.found()
+        force, radius = case.errors(found)
+        assert found.converged, case
+        assert found.depth.tolist() == list(case.depths), "rows in the order asked"
+        assert np.all(np.abs(force) * found.force <= found.force_error), case
+        assert np.abs(force).max() <= 5e-4, case
+        assert np.abs(radius).max() <= 2e-3, case
+
+
+@pytest.mark.parametrize("name", EXACT_ROWS)
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.4999])
+def test_exact_rows_on_the_half_space(name: str, nu: float) -> None:
+    shape = shaped(name.split("-")[0], *EXACT_ROWS[name])
+    scale = float(shape.load_curve.depth(0.1)) or 1e-3
+    case = Case(shape, HalfSpace(), nu, (0.5 * scale, scale, 0.2 * scale))
+    found = case.found()
+    force, radius = case.errors(found)
+    assert np.all(np.abs(force) * found.force <= found.force_error)
+    assert np.abs(force).max() <= 1e-4
+    assert np.abs(radius).max() <= 2e-3
+    exact = np.log(np.asarray(shape.load_curve.force(found.depth)))
+    alpha, level = np.polyfit(np.log(found.depth), exact, 1)
+    held = np.exp(np.mean(exact - shape.exponent_of_force * np.log(found.depth)))
+    for key, wanted, most in (("alpha", alpha, 5e-4), ("D", np.exp(level), 1e-3), ("D_at_alpha", held, 1e-3)):
+        quantity = found.quantities[key]
+        assert quantity.value is not None
+        assert quantity.error is not None
+        assert abs(quantity.value - wanted) <= quantity.error
+        assert abs(quantity.value / wanted - 1.0) <= most
+
+
+@pytest.mark.parametrize("base", ["bonded", "sliding"])
+@pytest.mark.parametrize(("ratio", "nu"), [(0.01, 0.3), (1.0, 0.0), (1.0, 0.49), (3.0, 0.4999), (10.0, 0.3)])
+def test_flat_end_on_a_layer(base: str, ratio: float, nu: float) -> None:
+    case = Case(shaped("punch", ratio * THICKNESS), Layer(THICKNESS, base), nu, (1e-5,))
+    found = case.found()
+    force, radius = case.errors(found)
+    assert np.all(np.abs(force) * found.force <= found.force_error)
+    assert np.abs(force).max() <= 1e-4
+    assert np.all(radius == 0.0)
+
+
+LAYERED = Case(Sphere(0.01), Layer(2e-3, "bonded"), 0.3, (1e-5, 5e-5, 2e-4))
+SPREAD = Case(Sphere(0.01), HalfSpace(), 0.3, (1e-5, 5e-5, 2e-4))
+COARSER = {"mesh": "elements_per_contact", "penalty": "penalty", "far_field": "far_radius"}
+
+
+@pytest.mark.parametrize("case", [LAYERED, SPREAD], ids=["layer", "half-space"])
+@pytest.mark.parametrize("cause", COARSER)
+def test_a_setting_fourfold_coarser_shows_in_its_entry_and_is_covered(case: Case, cause: str) -> None:
+    usual = {"elements_per_contact": 4.0, "penalty": 1000.0, "far_radius": 20.0}
+    fine, coarse = case.found(**usual), case.found(**{**usual, COARSER[cause]: usual[COARSER[cause]] / 4.0})
+    assert coarse.budget[cause].max() > 1.2 * fine.budget[cause].max()
+    force, _ = case.errors(coarse)
+    assert np.all(np.abs(force) * coarse.force <= coarse.force_error)
+
+
+def test_the_exact_curves_enter_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = LAYERED.found()
+
+    def refused(*_: Any) -> Any:
+        raise AssertionError("an exact curve was asked")
+
+    monkeypatch.setattr(Layer, "load_curve", refused)
+    monkeypatch.setattr(Sphere, "load_curve", property(refused))
+    after = LAYERED.found()
+    assert np.array_equal(after.force, before.force)
+    assert np.array_equal(after.force_error, before.force_error)
+
+
+def test_a_lone_depth_is_judged_like_one_of_many() -> None:
+    lone = Case(LAYERED.shape, LAYERED.target, LAYERED.nu, (5e-5,)).found()
+    many = LAYERED.found()
+    assert lone.force_error[0] == pytest.approx(many.force_error[1], rel=1.0)
+    assert lone.force[0] == pytest.approx(many.force[1], rel=5e-4)
+    assert lone.quantities == {}
+
+
+def test_twenty_depths_cost_two_contact_problems_each_and_few_iterations() -> None:
+    depths = tuple(map(float, np.geomspace(1e-5, 4e-4, 20)))
+    for target in (Layer(2e-3, "bonded"), HalfSpace()):
+        work = Case(Sphere(0.01), target, 0.3, depths).found().work
+        assert work["contact_problems"] <= 50
+        assert work["iterations"] <= 120
+        assert work["degrees_of_freedom"] <= 6000
+
+
+def test_a_contact_beyond_the_fine_mesh_is_named() -> None:
+    numerics = settings({"tolerance": 1e-3}, LAYERED.shape)
+    with pytest.raises(ContactTooWide, match=r"2e-04|0\.0002"):
+        press(LAYERED.indenter, np.array([2e-4]), np.array([5e-4]), numerics)
+
+
+@pytest.mark.parametrize(
+    ("case", "reason"),
+    [
+        (Case(Sphere(0.01), Layer(2e-3, "bonded"), 0.3, (2e-3,)), "below the layer's thickness"),
+        (Case(Sphere(0.01), HalfSpace(), 0.3, (1e-5, 0.01)), "below the striker's radius"),
+        (Case(shaped("cylinder", 6e-3, 0.1), Ring(0.01, 3e-3), 0.3, (3e-3,)), "below the ring's thickness"),
+    ],
+)
+def test_impossible_depths_are_refused(case: Case, reason: str) -> None:
+    with pytest.raises(BadInput, match=reason):
+        case.found()
+
+
+@pytest.mark.parametrize("angle", [0.0, 90.0])
+def test_a_cone_flat_or_upright_is_refused(angle: float) -> None:
+    with pytest.raises(BadInput, match="angle"):
+        shaped("cone", angle)
+
+
+def test_a_rod_larger_than_its_ring_is_refused() -> None:
+    with pytest.raises(BadInput, match="inner radius"):
+        assert Case(shaped("cylinder", 0.01, 0.1), Ring(0.01, 3e-3), 0.3, (1e-5,)).indenter

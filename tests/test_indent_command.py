@@ -1,0 +1,167 @@
+"""`fe-contact indent`: rows in the order asked, at rest or at once, exits, closed forms and elements alike."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_contact.cli import main
+from lumped.data import scene_names
+from lumped.errors import BadInput
+from lumped.indenter import Indenter
+
+HEADER = ["depth_m", "force_N", "contact_radius_m", "force_error_N"]
+SCENE = """
+name = "pressed"
+[striker]
+shape = "{shape}"
+[target]
+shape = "{target}"
+[target.material]
+nu = 0.3
+{material}
+"""
+SLS = 'law = "sls"\nE0 = 2e6\nR1 = 0.5\nR2 = 0.01'
+FLUID = 'law = "maxwell"\nE = 1e6\neta = 1e3'
+DASHPOT = 'law = "kelvin_voigt"\nE = 1e6\neta = 1e3'
+SPHERE = 'sphere"\nradius = 0.01\n# "'
+LAYER = 'layer"\nthickness = 0.002\nbase = "bonded"\n# "'
+ASKED = "5e-5,1e-5,2e-5"
+
+
+@pytest.fixture
+def empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty working folder."""
+    folder = tmp_path / "work"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    return folder
+
+
+@pytest.fixture
+def write(tmp_path: Path) -> Any:
+    """A scene file without mass and velocity."""
+
+    def build(material: str = SLS, shape: str = SPHERE, target: str = "half_space") -> str:
+        path = tmp_path / "pressed.toml"
+        path.write_text(SCENE.format(shape=shape, target=target, material=material))
+        return str(path)
+
+    return build
+
+
+def exit_code(*arguments: str) -> int:
+    try:
+        return main(["indent", *arguments])
+    except SystemExit as stop:  # argparse
+        return int(stop.code or 0)
+
+
+def rows(folder: Path) -> np.ndarray:
+    """The table of indentation.csv, (n, 4); its header is what users rely on."""
+    with (folder / "indentation.csv").open(newline="") as file:
+        lines = list(csv.reader(file))
+    assert lines[0] == HEADER
+    return np.array(lines[1:], dtype=float)
+
+
+def content(folder: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((folder / "result.json").read_text(encoding="utf-8"))
+    return found
+
+
+@pytest.mark.parametrize("target", ["half_space", LAYER])
+def test_one_row_per_depth_in_the_order_asked(target: str, write: Any, empty: Path) -> None:
+    scene = write(target=target)
+    assert exit_code(scene, "--depths", ASKED, "--out", "fe") == 0
+    assert exit_code(scene, "--depths", ASKED, "--out", "exact", "--method", "cheapest") == 0
+    elements, exact = rows(empty / "fe"), rows(empty / "exact")
+    assert elements[:, 0].tolist() == exact[:, 0].tolist() == [5e-5, 1e-5, 2e-5]
+    assert np.all(np.abs(elements[:, 1] - exact[:, 1]) <= elements[:, 3] + exact[:, 3])
+    assert np.all(elements[:, 3] <= 1e-3 * elements[:, 1])
+    assert np.abs(elements[:, 2] / exact[:, 2] - 1.0).max() <= 2e-3
+    quantities = content(empty / "fe")["quantities"]
+    assert set(quantities) == {"alpha", "D", "D_at_alpha"}
+    for name, quantity in content(empty / "exact")["quantities"].items():
+        assert abs(quantity["value"] - quantities[name]["value"]) <= quantity["error"] + quantities[name]["error"]
+
+
+def test_at_once_is_stiffer_by_the_glassy_modulus(write: Any, empty: Path) -> None:
+    for out, more in (("slow", ()), ("fast", ("--instant",))):
+        assert exit_code(write(), "--depths", "1e-5", "--out", out, *more) == 0
+    assert rows(empty / "fast")[0, 1] / rows(empty / "slow")[0, 1] == pytest.approx(1.5, rel=1e-12)
+    assert content(empty / "slow")["quantities"] == {}, "one depth tells no power law"
+
+
+@pytest.mark.parametrize(("material", "more"), [(FLUID, ()), (DASHPOT, ("--instant",))])
+def test_what_has_no_modulus_is_refused(
+    material: str, more: tuple[str, ...], write: Any, empty: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exit_code(write(material), "--depths", "1e-5", *more) == 2
+    assert "target.material" in capsys.readouterr().err
+    assert not list(empty.iterdir())
+
+
+@pytest.mark.parametrize(("material", "more"), [(FLUID, ("--instant",)), (DASHPOT, ())])
+def test_what_has_one_is_pressed(material: str, more: tuple[str, ...], write: Any, empty: Path) -> None:
+    assert exit_code(write(material), "--depths", "1e-5", "--method", "cheapest", "--out", "out", *more) == 0
+    assert content(empty / "out")["contact_modulus"] == pytest.approx(1e6 / (1 - 0.3**2))
+
+
+@pytest.mark.parametrize("depths", ["", "1e-5,", "0", "-1e-5", "nan", "inf", "1e-5;2e-5", "0.01", "1e-5,2e-3"])
+def test_bad_depths_write_nothing(depths: str, write: Any, empty: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert exit_code(write(target=LAYER), f"--depths={depths}") == 2
+    assert "--depths" in capsys.readouterr().err
+    assert not list(empty.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("method", "target", "reason"),
+    [("hertzz", "half_space", "hertz"), ("hertz", LAYER, "half-space alone"), ("mdr", LAYER, "half-space alone")],
+)
+def test_a_method_that_does_not_know_the_body_is_refused(
+    method: str, target: str, reason: str, write: Any, empty: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exit_code(write(target=target), "--depths", "1e-5", "--method", method) == 2
+    assert reason in capsys.readouterr().err
+    assert not list(empty.iterdir())
+
+
+def test_hertz_is_the_parabola(write: Any, empty: Path) -> None:
+    assert exit_code(write(), "--depths", "1e-5,1e-3", "--method", "hertz", "--out", "out") == 0
+    depth, force, radius, _ = rows(empty / "out").T
+    np.testing.assert_allclose(force, 4.0 / 3.0 * 2e6 / 0.91 * np.sqrt(0.01 * depth**3), rtol=1e-12)
+    np.testing.assert_allclose(radius, np.sqrt(0.01 * depth), rtol=1e-12)
+
+
+def test_json_on_stdout_is_the_file(write: Any, empty: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert exit_code(write(), "--depths", ASKED, "--method", "cheapest", "--json", "--out", "out") == 0
+    assert json.loads(capsys.readouterr().out) == content(empty / "out")
+
+
+def test_a_tolerance_out_of_reach_is_said(write: Any, empty: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    fixed = ("--set", "numerics.elements_per_contact=1", "--set", "numerics.penalty=50")
+    assert exit_code(write(), "--depths", ASKED, "--tolerance", "1e-6", "--out", "out", *fixed) == 3
+    assert "not reached" in capsys.readouterr().err
+    assert not content(empty / "out")["converged"]
+    assert len(rows(empty / "out")) == 3
+
+
+def geometric(name: str) -> bool:
+    try:
+        return bool(Indenter.load(name))
+    except BadInput:  # a scene of a law without geometry
+        return False
+
+
+@pytest.mark.parametrize("name", [name for name in scene_names() if geometric(name)])
+def test_packaged_scenes_are_pressed_within_their_bars(name: str, empty: Path) -> None:
+    assert exit_code(name, "--depths", "2e-5", "--out", "fe") == 0
+    assert exit_code(name, "--depths", "2e-5", "--out", "exact", "--method", "cheapest") == 0
+    elements, exact = rows(empty / "fe")[0], rows(empty / "exact")[0]
+    assert abs(elements[1] - exact[1]) <= elements[3] + exact[3]
