@@ -1,0 +1,46 @@
+"""Row 2: a thin plate pressed onto a rigid plane."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from lumped.keys import Key, Number
+from lumped.table1.base import Elastic, Row
+
+KEYS: Mapping[str, Key] = {"area": Number(1e-18, 1e8, "m2"), "thickness": Number(1e-9, 1e4, "m")}
+
+
+@dataclass(frozen=True)
+class Plate(Row):
+    """F = (A/l) M depth with the confined modulus M = K + 4 G/3: uniaxial strain."""
+
+    area: float
+    thickness: float
+    number: ClassVar[int] = 2
+    name: ClassVar[str] = "plate"
+    case: ClassVar[str] = "thin plate to rigid plane"
+    printed: ClassVar[tuple[str, str]] = ("A/l", "E(1-nu)/((1+nu)(1-2nu))")
+    corrected: ClassVar[tuple[str, str]] = printed
+    alpha: ClassVar[float] = 1.0
+    validity: ClassVar[str] = "confined sides, or bonded faces far wider than l; nu < 0.5"
+    keys: ClassVar[Mapping[str, Key]] = KEYS
+
+    @property
+    def factor(self) -> float:
+        """A/l, m."""
+        return self.area / self.thickness
+
+    @property
+    def length(self) -> float:
+        """The thickness, m."""
+        return self.thickness
+
+    def modulus(self, *bodies: Elastic) -> float:
+        """The confined modulus, Pa."""
+        (young, nu), *_ = bodies
+        return young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+
+
+EXAMPLE = Plate(area=1e-2, thickness=1e-3)

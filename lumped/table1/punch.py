@@ -1,0 +1,44 @@
+"""Row 3: a flat-ended rigid cylinder."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from lumped.keys import Key, Number
+from lumped.table1.base import Elastic, Row, contact_modulus
+
+KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}
+
+
+@dataclass(frozen=True)
+class Punch(Row):
+    """F = 2 R E* depth (Boussinesq 1885)."""
+
+    radius: float
+    number: ClassVar[int] = 3
+    name: ClassVar[str] = "punch"
+    case: ClassVar[str] = "rigid cylinder to elastic plane"
+    printed: ClassVar[tuple[str, str]] = ("2R", "E/(1-nu^2)")
+    corrected: ClassVar[tuple[str, str]] = printed
+    alpha: ClassVar[float] = 1.0
+    validity: ClassVar[str] = "a flat end on a half-space: any depth of small strains"
+    keys: ClassVar[Mapping[str, Key]] = KEYS
+
+    @property
+    def factor(self) -> float:
+        """2 R, m."""
+        return 2.0 * self.radius
+
+    @property
+    def length(self) -> float:
+        """The radius, m."""
+        return self.radius
+
+    def modulus(self, *bodies: Elastic) -> float:
+        """E/(1-nu^2), Pa."""
+        return contact_modulus(*bodies)
+
+
+EXAMPLE = Punch(radius=0.01)
