@@ -11,7 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
+from lumped.indenter import Indenter
 from lumped.keys import Key, check_fields
+from lumped.materials import Material, Relaxation
+from lumped.shapes import Shape
+from lumped.targets import HalfSpace, Target
 
 
 class Elastic(NamedTuple):
@@ -26,7 +30,8 @@ class Row(ABC):
 
     `number` is the row's place, `case` what the paper calls it, `printed` its D and E* as printed and `corrected`
     as they should be, `validity` where the row holds; `correction` says what is wrong and why, empty where nothing
-    is. `single`: whether the half-space has one D at all. `bodies`: how many of them deform.
+    is. `length_name` names the length which depths are compared with, empty where the geometry has none. `single`:
+    whether the half-space has one D at all. `bodies`: how many of them deform.
     """
 
     number: ClassVar[int]
@@ -34,6 +39,7 @@ class Row(ABC):
     case: ClassVar[str]
     printed: ClassVar[tuple[str, str]]
     corrected: ClassVar[tuple[str, str]]
+    length_name: ClassVar[str]
     alpha: ClassVar[float]
     validity: ClassVar[str]
     correction: ClassVar[str] = ""
@@ -62,6 +68,10 @@ class Row(ABC):
         """E* as printed, Pa: the right one unless a row says otherwise."""
         return self.modulus(*bodies)
 
+    def scene(self, *bodies: Elastic) -> Indenter | None:
+        """The slow indentation that puts the row on trial; None where finite elements have no such body."""
+        return None
+
     def force(self, depth: ArrayLike, *bodies: Elastic) -> Any:
         """D E* depth^alpha with the corrected E*, N; depths below zero count as zero. Raises BadInput."""
         if len(bodies) != self.bodies:
@@ -71,6 +81,11 @@ class Row(ABC):
     def to_dict(self) -> dict[str, Any]:
         """The geometry, by the names of its lengths."""
         return {one.name: getattr(self, one.name) for one in fields(self)}  # type: ignore[arg-type]
+
+
+def pressed(name: str, shape: Shape, body: Elastic, target: Target | None = None) -> Indenter:
+    """A rigid shape pressed into an elastic half-space, or another target. Raises BadInput."""
+    return Indenter(shape, Material(Relaxation(body.young), body.nu), target or HalfSpace(), name=f"table1-{name}")
 
 
 def contact_modulus(*bodies: Elastic) -> float:

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from math import pi, radians, tan
 from typing import ClassVar
 
+from lumped.indenter import Indenter
 from lumped.keys import Key, Number
-from lumped.table1.base import Elastic, Row, contact_modulus
+from lumped.shapes import cone
+from lumped.table1.base import Elastic, Row, contact_modulus, pressed
 
 KEYS: Mapping[str, Key] = {"angle": Number(0.01, 80.0, "degrees, between face and undeformed surface")}
 
@@ -23,6 +25,7 @@ class Cone(Row):
     case: ClassVar[str] = "rigid cone to elastic plane"
     printed: ClassVar[tuple[str, str]] = ("2/(pi tan theta)", "E")
     corrected: ClassVar[tuple[str, str]] = ("2/(pi tan theta)", "E/(1-nu^2)")
+    length_name: ClassVar[str] = ""
     alpha: ClassVar[float] = 2.0
     validity: ClassVar[str] = "theta between face and undeformed surface; small angles, where strains are small"
     correction: ClassVar[str] = (
@@ -47,6 +50,10 @@ class Cone(Row):
     def printed_modulus(self, *bodies: Elastic) -> float:
         """E, Pa."""
         return bodies[0].young
+
+    def scene(self, *bodies: Elastic) -> Indenter:
+        """On the half-space."""
+        return pressed(self.name, cone.of(self.angle), bodies[0])
 
 
 EXAMPLE = Cone(angle=20.0)

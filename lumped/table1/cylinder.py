@@ -7,9 +7,13 @@ from dataclasses import dataclass
 from math import pi
 from typing import ClassVar
 
+from lumped.indenter import Indenter
 from lumped.keys import Key, Number
-from lumped.table1.base import Elastic, Row, contact_modulus
+from lumped.shapes import cylinder
+from lumped.table1.base import Elastic, Row, contact_modulus, pressed
+from lumped.targets import layer
 
+LAYER = 10.0  # thickness over radius of the layer that tells E*
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "height": Number(1e-9, 1e6, "m")}
 
 
@@ -24,6 +28,7 @@ class Cylinder(Row):
     case: ClassVar[str] = "rigid cylinder to elastic plane (curvature surface contact)"
     printed: ClassVar[tuple[str, str]] = ("pi l/4", "E/(1-nu^2)")
     corrected: ClassVar[tuple[str, str]] = ("none: F/(E* depth) depends on the datum", "E/(1-nu^2)")
+    length_name: ClassVar[str] = "radius"
     alpha: ClassVar[float] = 1.0
     validity: ClassVar[str] = "one depth of each layer or datum: where 2 ln(2 datum/b) - nu/(1-nu) = 4"
     correction: ClassVar[str] = (
@@ -46,6 +51,11 @@ class Cylinder(Row):
     def modulus(self, *bodies: Elastic) -> float:
         """E/(1-nu^2), Pa."""
         return contact_modulus(*bodies)
+
+    def scene(self, *bodies: Elastic) -> Indenter:
+        """On a layer that slides on its base: the one body in plane strain that knows no nu but through E*."""
+        shape, target = cylinder.of(self.radius, self.height), layer.of(LAYER * self.radius, "sliding")
+        return pressed(self.name, shape, bodies[0], target)
 
 
 EXAMPLE = Cylinder(radius=0.01, height=0.01)

@@ -23,6 +23,7 @@ class Plate(Row):
     case: ClassVar[str] = "thin plate to rigid plane"
     printed: ClassVar[tuple[str, str]] = ("A/l", "E(1-nu)/((1+nu)(1-2nu))")
     corrected: ClassVar[tuple[str, str]] = printed
+    length_name: ClassVar[str] = "thickness"
     alpha: ClassVar[float] = 1.0
     validity: ClassVar[str] = "confined sides, or bonded faces far wider than l; nu < 0.5"
     keys: ClassVar[Mapping[str, Key]] = KEYS

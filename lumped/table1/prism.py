@@ -23,6 +23,7 @@ class Prism(Row):
     case: ClassVar[str] = "polyhedral cylinder to rigid plane"
     printed: ClassVar[tuple[str, str]] = ("A/l", "E")
     corrected: ClassVar[tuple[str, str]] = printed
+    length_name: ClassVar[str] = "height"
     alpha: ClassVar[float] = 1.0
     validity: ClassVar[str] = "free sides, ends that slide: any nu, any slenderness"
     keys: ClassVar[Mapping[str, Key]] = KEYS

@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+from lumped.indenter import Indenter
 from lumped.keys import Key, Number
-from lumped.table1.base import Elastic, Row, contact_modulus
+from lumped.shapes import punch
+from lumped.table1.base import Elastic, Row, contact_modulus, pressed
 
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}
 
@@ -22,6 +24,7 @@ class Punch(Row):
     case: ClassVar[str] = "rigid cylinder to elastic plane"
     printed: ClassVar[tuple[str, str]] = ("2R", "E/(1-nu^2)")
     corrected: ClassVar[tuple[str, str]] = printed
+    length_name: ClassVar[str] = "radius"
     alpha: ClassVar[float] = 1.0
     validity: ClassVar[str] = "a flat end on a half-space: any depth of small strains"
     keys: ClassVar[Mapping[str, Key]] = KEYS
@@ -39,6 +42,10 @@ class Punch(Row):
     def modulus(self, *bodies: Elastic) -> float:
         """E/(1-nu^2), Pa."""
         return contact_modulus(*bodies)
+
+    def scene(self, *bodies: Elastic) -> Indenter:
+        """On the half-space."""
+        return pressed(self.name, punch.of(self.radius), bodies[0])
 
 
 EXAMPLE = Punch(radius=0.01)

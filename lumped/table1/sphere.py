@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import ClassVar
 
+from lumped.indenter import Indenter
 from lumped.keys import Key, Number
-from lumped.table1.base import Elastic, Row, contact_modulus
+from lumped.shapes import sphere
+from lumped.table1.base import Elastic, Row, contact_modulus, pressed
 
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}
 
@@ -23,6 +25,7 @@ class Sphere(Row):
     case: ClassVar[str] = "rigid sphere to elastic plane"
     printed: ClassVar[tuple[str, str]] = ("(4/3) sqrt(R)", "E/(1-nu^2)")
     corrected: ClassVar[tuple[str, str]] = printed
+    length_name: ClassVar[str] = "radius"
     alpha: ClassVar[float] = 1.5
     validity: ClassVar[str] = "depths far below R on a half-space: a sphere is steeper than its paraboloid"
     keys: ClassVar[Mapping[str, Key]] = KEYS
@@ -40,6 +43,10 @@ class Sphere(Row):
     def modulus(self, *bodies: Elastic) -> float:
         """E/(1-nu^2), Pa."""
         return contact_modulus(*bodies)
+
+    def scene(self, *bodies: Elastic) -> Indenter:
+        """On the half-space."""
+        return pressed(self.name, sphere.of(self.radius), bodies[0])
 
 
 EXAMPLE = Sphere(radius=0.01)

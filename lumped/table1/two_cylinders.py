@@ -32,11 +32,12 @@ class TwoCylinders(Row):
         "none: F/(E* depth) depends on where each cylinder is held",
         "1/((1-nu_a^2)/E_a + (1-nu_b^2)/E_b)",
     )
+    length_name: ClassVar[str] = "gap's radius"
     alpha: ClassVar[float] = 1.0
     validity: ClassVar[str] = "one depth of each way to hold the cylinders"
     correction: ClassVar[str] = (
-        "in plane strain no body has a compliance of its own: each adds F (1-nu^2)/(pi E l) [2 ln(2 datum/b) - nu/(1-nu)] "
-        "to the approach, its datum where it is held (Johnson 1985, section 5.6)"
+        "in plane strain no body has a compliance of its own: to the approach each adds F (1-nu^2)/(pi E l) "
+        "[2 ln(2 datum/b) - nu/(1-nu)], its datum where it is held (Johnson 1985, section 5.6)"
     )
     single: ClassVar[bool] = False
     bodies: ClassVar[int] = 2

@@ -27,6 +27,7 @@ class TwoSpheres(Row):
         "1/((1-nu_a^2)/E_a + (1-nu_b^2)/E_b)",
     )
     corrected: ClassVar[tuple[str, str]] = printed
+    length_name: ClassVar[str] = "gap's radius"
     alpha: ClassVar[float] = 1.5
     validity: ClassVar[str] = "contacts far smaller than either sphere"
     bodies: ClassVar[int] = 2

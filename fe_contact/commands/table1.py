@@ -1,0 +1,64 @@
+"""``fe-contact table1``: the eight rows of the paper's Table 1 by finite elements, with error bars and verdicts."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import TYPE_CHECKING, NamedTuple
+
+from fe_contact.commands import base
+
+if TYPE_CHECKING:
+    from fe_contact.validation.table1 import Trial
+
+SUMMARY = "the paper's Table 1 on trial: D, alpha and E* of every row by finite elements, with error bars and verdicts"
+
+
+class Paper(NamedTuple):
+    """What the folder of results is called after."""
+
+    name: str = "paper"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """[--out DIR] [--json] [--quiet]."""
+    base.output_arguments(parser)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Press, identify, judge, write, draw; 0, or 3 where bars leave a row undecided."""
+    from fe_contact.report.table1 import plot_table1
+    from fe_contact.validation.table1 import table1
+    from fe_contact.validation.table1_files import write_table1
+    from fe_contact.validation.table1_verdict import UNDECIDED, verdict
+
+    where = base.folder(args, "table1", Paper())
+    progress = base.progress_of(args)
+    trials = table1(progress)
+    content = write_table1(trials, where)
+    progress("chart")
+    plot_table1(trials, where)
+    if args.json:
+        print(json.dumps(content, allow_nan=False))
+    else:
+        print("\n".join([*(line for trial in trials for line in _said(trial)), f"written to {where}"]))
+    undecided = [trial.row.name for trial in trials if verdict(trial).word == UNDECIDED]
+    if undecided:
+        base.complain(f"undecided: {', '.join(undecided)}")
+    return base.NOT_REACHED if undecided else base.DONE
+
+
+def _said(trial: Trial) -> list[str]:
+    """A row: its verdict, then its numbers."""
+    from fe_contact.validation.table1_verdict import verdict
+
+    row, judged = trial.row, verdict(trial)
+    lines = [f"{row.number} {row.case}: {judged.word}: {judged.sentence}"]
+    if trial.alpha is not None and trial.factor is not None:
+        alpha, factor = trial.alpha, trial.factor
+        lines.append(f"    alpha {alpha.value:.6g} +- {alpha.error:.1e}, printed {row.alpha:g}")
+        lines.append(f"    D {factor.value:.6g} +- {factor.error:.1e} {factor.unit}, printed {row.factor:.6g}")
+    if trial.moduli:
+        nu, found = max(trial.moduli.items())
+        lines.append(f"    E* {found.value:.6g} +- {found.error:.1e} Pa at nu = {nu:g}, printed {row.printed[1]}")
+    return lines

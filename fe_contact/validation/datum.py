@@ -1,0 +1,95 @@
+"""Line contact: what F/(E* depth) comes to with every datum and every layer, exactly and by finite elements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.indentation import indent
+from lumped.indentation import power_law
+from lumped.load_curves.half_plane import HalfPlane
+from lumped.load_curves.layer import Layer
+from lumped.load_curves.line_curve import LineCurve
+from lumped.load_curves.line_layer import LineLayer
+from lumped.load_curves.line_profile import Cylinder as Profile
+from lumped.result import Quantity
+from lumped.shapes import cylinder
+from lumped.table1 import Elastic, Row
+from lumped.table1.base import pressed
+from lumped.targets import Target, half_space, layer
+
+DEPTH = 0.01  # over the cylinder's radius
+CHORD = (1 / 1.1, 1.0, 1.1)  # depths around it, between which the exponent is taken
+# Datum, or thickness, over the radius; a datum nearer than the contact is wide means nothing.
+EXACT = {
+    "datum": tuple(float(share) for share in np.geomspace(1.0, 1e3, 25)),
+    "bonded layer": tuple(float(share) for share in np.geomspace(0.1, 1e3, 33)),
+}
+CHECKED = {"datum": (3.0, 30.0), "bonded layer": (0.3, 3.0, 30.0)}
+TOLERANCE = 3e-4
+
+
+@dataclass(frozen=True)
+class Place:
+    """D/l = F/(E* l depth) and the local exponent at one depth, with one support; `method`: "exact" or "fe".
+
+    ``length``: datum or thickness over the cylinder's radius; ``once``: depth over radius at which the exact D is
+    pi l/4, None where there is none or where finite elements answer.
+    """
+
+    support: str
+    length: float
+    method: str
+    factor: Quantity
+    alpha: Quantity
+    once: float | None = None
+
+
+def places(row: Row, bodies: tuple[Elastic, ...]) -> tuple[Place, ...]:
+    """Exact places over decades of the datum and of the thickness, and those which finite elements check."""
+    nu = bodies[0].nu
+    exact = [_exact(support, share, nu) for support, tried in EXACT.items() for share in tried]
+    checked = [_pressed(row, bodies[0], support, share) for support, tried in CHECKED.items() for share in tried]
+    return (*exact, *checked)
+
+
+def curve(support: str, share: float, nu: float) -> LineCurve:
+    """Of a cylinder of unit radius."""
+    if support == "datum":
+        return HalfPlane(Profile(1.0), share, nu)
+    return LineLayer(Profile(1.0), Layer(share, nu, "bonded"))
+
+
+def _exact(support: str, share: float, nu: float) -> Place:
+    line = curve(support, share, nu)
+    here = line.at(line.contact_radius(DEPTH))
+    factor, alpha = float(here.force / DEPTH), float(here.stiffness * DEPTH / here.force)
+    return Place(support, share, "exact", Quantity(factor, 0.0, "1"), Quantity(alpha, 0.0, "1"), _once(line))
+
+
+def _once(line: LineCurve) -> float | None:
+    """The depth at which F/(E* l depth) = pi/4: it grows with the contact."""
+    from scipy.optimize import brentq
+
+    def short(half_width: float) -> float:
+        here = line.at(half_width)
+        return float(here.force / here.depth) - 0.25 * np.pi
+
+    low, high = line.edges[1], line.edges[-1]
+    if not short(low) < 0.0 < short(high):
+        return None
+    return float(line.depth(brentq(short, low, high, xtol=1e-12 * high)))
+
+
+def _pressed(row: Row, body: Elastic, support: str, share: float) -> Place:
+    """The same by finite elements: a power law through three near depths."""
+    shape = cylinder.of(row.length, 1.0)
+    length = share * row.length
+    target: Target = half_space.of(length) if support == "datum" else layer.of(length, "bonded")
+    depths = tuple(factor * DEPTH * row.length for factor in CHORD)
+    found = indent(pressed(row.name, shape, body, target), depths, {"tolerance": TOLERANCE})
+    relative = found.force_error / found.force
+    alpha = power_law(found.depth, found.force / found.modulus, relative, row.alpha)["alpha"]
+    factor = float(found.force[1] / (found.modulus * found.depth[1]))
+    return Place(support, share, "fe", Quantity(factor, factor * float(relative[1]), "1"), alpha)
