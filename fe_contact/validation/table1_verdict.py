@@ -101,7 +101,7 @@ def _what_differs(trial: Trial, printed: dict[str, Deviation], wrong: list[str])
     said = []
     for name in wrong:
         off = printed[name].value
-        said.append(f"{name} is {off:+.2g} off" if name == "alpha" else f"{name} is {100 * off:+.2f} % off the printed one")
+        said.append(f"{name} is off by {off:+.2g}" if name == "alpha" else f"{name} is off by {100 * off:+.2f} %")
     return "; ".join([*said, trial.row.correction] if trial.row.correction else said)
 
 

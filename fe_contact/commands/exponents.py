@@ -1,0 +1,63 @@
+"""``fe-contact exponents``: where the exponents of contact lie, from the half-space to the thin layer."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import TYPE_CHECKING, NamedTuple
+
+from fe_contact.commands import base
+
+if TYPE_CHECKING:
+    from fe_contact.validation.exponents import Curve
+    from fe_contact.validation.exponents_check import Check
+
+SUMMARY = "local exponent and D from the half-space to the thin layer: every profile, base and nu; spots by FE"
+
+
+class Layers(NamedTuple):
+    """What the folder of results is called after."""
+
+    name: str = "layers"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """[--quick] [--out DIR] [--json] [--quiet]."""
+    base.output_arguments(parser)
+    parser.add_argument("--quick", action="store_true", help="fewer points, two Poisson's ratios")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Solve, check, write, draw; 0, or 3 where finite elements missed their tolerance."""
+    from fe_contact.report.exponents import plot_exponents
+    from fe_contact.validation.exponents import curves
+    from fe_contact.validation.exponents_check import checks
+    from fe_contact.validation.exponents_files import write_exponents
+
+    where = base.folder(args, "exponents", Layers())
+    progress = base.progress_of(args)
+    found, checked = curves(args.quick, progress), checks(args.quick, progress)
+    content = write_exponents(found, checked, where)
+    progress("chart")
+    plot_exponents(found, checked, where)
+    lines = [*map(_curve, found), *map(_check, checked), f"written to {where}"]
+    print(json.dumps(content, allow_nan=False) if args.json else "\n".join(lines))
+    missed = [check for check in checked if not check.converged]
+    if missed:
+        base.complain(f"tolerance not reached at {len(missed)} of {len(checked)} places checked by finite elements")
+    return base.NOT_REACHED if missed else base.DONE
+
+
+def _curve(curve: Curve) -> str:
+    layer = f"{curve.base}, " + ("any nu" if curve.nu is None else f"nu = {curve.nu:g}")
+    ends = f"alpha {curve.exponent[0]:.3f} to {curve.exponent[-1]:.3f} at a/h = {curve.ratio[-1]:g}"
+    return f"{curve.profile.label:12s} {layer:18s} {ends}, thin limit {curve.thin:.3f}"
+
+
+def _check(check: Check) -> str:
+    layer = f"{check.base}, " + ("any nu" if check.nu is None else f"nu = {check.nu:g}")
+    return (
+        f"{check.profile.label:12s} {layer:18s} a/h = {check.ratio:g} by FE: alpha {check.exponent.value:.5f} +- "
+        f"{check.exponent.error:.0e} (exact {check.exact_exponent:.5f}), D {check.factor.value:.5f} +- "
+        f"{check.factor.error:.0e} (exact {check.exact_factor:.5f})"
+    )
