@@ -1,0 +1,161 @@
+"""`fe-contact exponents`: limits at either end, spots by finite elements, files without NaN, the chart."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fe_contact.cli import main
+from fe_contact.report.exponents import plot_exponents
+from fe_contact.validation.exponents import PROFILES, Curve, Profile, curve, curves
+from fe_contact.validation.exponents_check import TOLERANCE, Check, check
+from fe_contact.validation.exponents_files import COLUMNS, write_exponents
+from lumped.load_curves.layer import Layer
+from lumped.load_curves.thin_layer import compressible, incompressible
+
+CONE, SPHERE, PUNCH, CYLINDER = (
+    next(profile for profile in PROFILES if profile.name == name) for name in ("cone", "sphere", "punch", "cylinder")
+)
+ENDS = np.array([1e-4, 18.0])
+
+
+@pytest.fixture(scope="module")
+def found() -> tuple[Curve, ...]:
+    return curves(quick=True)
+
+
+@pytest.fixture(scope="module")
+def checked() -> tuple[Check, ...]:
+    places = ((CONE, "bonded", 0.3, 1.0), (SPHERE, "bonded", 0.49, 1.0), (SPHERE, "sliding", None, 1.0),
+              (CYLINDER, "bonded", 0.3, 1.0))  # fmt: skip
+    return tuple(check(*place) for place in places)
+
+
+def test_limits_of_the_thin_layer() -> None:
+    """3/2 and 5/2 for the cylinder, 2 and 3 for the sphere (Johnson 1985, 5.8), 3 and 5 for the cone, always 1 flat."""
+    limits = {profile.name: [profile.thin("bonded", nu) for nu in (0.3, 0.5)] for profile in PROFILES}
+    assert limits["cylinder"] == [1.5, 2.5]
+    assert limits["sphere"] == [2.0, 3.0]
+    assert limits["cone"] == [3.0, 5.0]
+    assert limits["punch"] == [1.0, 1.0]
+    assert [profile.thin("sliding", None) for profile in (CYLINDER, SPHERE, CONE)] == [1.5, 2.0, 3.0]
+
+
+@pytest.mark.parametrize("plane", [False, True], ids=["sphere", "cylinder"])
+def test_the_limits_are_the_thin_layers_own(plane: bool) -> None:
+    profile = CYLINDER if plane else SPHERE
+    assert profile.thin("bonded", 0.3) == compressible(1.0, Layer(0.1, 0.3), plane=plane).exponent
+    assert profile.thin("bonded", 0.5) == incompressible(1.0, Layer(0.1, 0.5), plane=plane).exponent
+
+
+@pytest.mark.parametrize("profile", [one for one in PROFILES if not one.plane], ids=lambda one: one.label)
+def test_small_contacts_are_the_half_spaces(profile: Profile) -> None:
+    small = curve(profile, "bonded", 0.3, ENDS)
+    assert small.exponent[0] == pytest.approx(profile.row, abs=2e-4)
+    assert small.factor[0] == pytest.approx(1.0, abs=2e-4)
+
+
+def test_a_cylinder_has_no_half_space_to_start_from() -> None:
+    """Its exponent falls to 1 only as a logarithm does: alpha - 1 = 1/(2 ln(h/a) + ...)."""
+    near, far = (curve(CYLINDER, "bonded", 0.3, np.array([ratio])) for ratio in (1e-3, 1e-6))
+    assert 1.0 < far.exponent[0] < near.exponent[0] < 1.1
+    gained = 1.0 / (far.exponent[0] - 1.0) - 1.0 / (near.exponent[0] - 1.0)
+    assert gained == pytest.approx(2.0 * np.log(1e3), rel=1e-3)
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=lambda one: one.label)
+def test_thin_layers_come_near_their_limit(profile: Profile) -> None:
+    thin = curve(profile, "sliding", None, ENDS)
+    assert thin.exponent[-1] == pytest.approx(profile.thin("sliding", None), abs=1e-3)
+    soft = curve(profile, "bonded", 0.5, ENDS)
+    assert soft.exponent[-1] == pytest.approx(profile.thin("bonded", 0.5), rel=0.03)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.49, 0.5])
+def test_the_exponent_is_the_slope_of_the_force(nu: float) -> None:
+    for profile in (CONE, SPHERE, CYLINDER):
+        here = curve(profile, "bonded", nu, np.geomspace(0.05, 5.0, 401))
+        slope = np.gradient(np.log(here.force), np.log(here.depth), edge_order=2)
+        assert here.exponent[1:-1] == pytest.approx(slope[1:-1], abs=2e-4)
+
+
+def test_depth_and_force_agree_with_the_table_of_line_contact() -> None:
+    """R depth/h^2 and R F/(E* h^2 l) at a/h = 1: nu = 0.3: 0.65382, 1.2213; 0.45: 0.53284, 1.3813,
+    from few Chebyshev terms.
+    """
+    for nu, number, force in ((0.3, 0.65382, 1.2213), (0.45, 0.53284, 1.3813)):
+        here = curve(CYLINDER, "bonded", nu, np.array([1.0]))
+        assert 0.5 * here.depth[0] == pytest.approx(number, rel=5e-4)
+        assert 0.5 * here.force[0] == pytest.approx(force, rel=5e-4)
+
+
+def test_the_punch_is_hayes() -> None:
+    """kappa at a/h = 1: 2.4835 for nu = 0.3, 3.6187 for 0.5."""
+    for nu, kappa in ((0.3, 2.4835), (0.5, 3.6187)):
+        assert curve(PUNCH, "bonded", nu, np.array([1.0])).factor[0] == pytest.approx(kappa, abs=1e-4)
+
+
+def test_every_profile_has_every_layer(found: tuple[Curve, ...]) -> None:
+    layers = [("bonded", 0.3), ("bonded", 0.5), ("sliding", None)]
+    assert [(one.profile, one.base, one.nu) for one in found] == [(p, *layer) for p in PROFILES for layer in layers]
+
+
+def test_finite_elements_cover_the_exact_curves(checked: tuple[Check, ...]) -> None:
+    for one in checked:
+        assert one.covered
+        assert one.converged
+        assert one.factor.error is not None
+        assert one.factor.error <= 2.0 * TOLERANCE * one.exact_factor
+        assert one.exponent.value == pytest.approx(one.exact_exponent, abs=5e-4)
+
+
+def test_a_check_off_its_bar_is_told(checked: tuple[Check, ...]) -> None:
+    assert not replace(checked[0], exact_factor=1.01 * checked[0].exact_factor).covered
+    assert not replace(checked[0], exact_exponent=1.01 * checked[0].exact_exponent).covered
+
+
+def test_files(tmp_path: Path, found: tuple[Curve, ...], checked: tuple[Check, ...]) -> None:
+    content = write_exponents(found, checked, tmp_path)
+    with (tmp_path / "exponents.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == list(COLUMNS)
+    assert len(rows) == sum(one.ratio.size for one in found) + len(checked)
+    assert {row["method"] for row in rows} == {"exact", "fe"}
+    assert all(row["nu"] == "" for row in rows if row["base"] == "sliding")
+    assert all(row["profile_exponent"] == "" for row in rows if row["shape"] == "punch")
+    assert json.loads((tmp_path / "exponents.json").read_text(encoding="utf-8")) == content
+    assert len(content["curves"]) == len(found)
+    assert content["all_covered"]
+
+
+def test_the_chart_is_the_same_every_time(
+    tmp_path: Path, found: tuple[Curve, ...], checked: tuple[Check, ...]
+) -> None:
+    first = [path.read_bytes() for path in plot_exponents(found, checked, tmp_path / "one")]
+    assert first == [path.read_bytes() for path in plot_exponents(found, checked, tmp_path / "two")]
+
+
+@pytest.mark.parametrize(("converged", "code"), [(True, 0), (False, 3)], ids=["reached", "missed"])
+def test_the_command(
+    tmp_path: Path,
+    found: tuple[Curve, ...],
+    checked: tuple[Check, ...],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    converged: bool,
+    code: int,
+) -> None:
+    spots = (*checked[:-1], replace(checked[-1], converged=converged))
+    monkeypatch.setattr("fe_contact.validation.exponents_check.checks", lambda quick, progress: spots)
+    assert main(["exponents", "--quick", "--out", str(tmp_path / "out"), "--quiet"]) == code
+    said = capsys.readouterr()
+    assert len(said.out.splitlines()) == len(found) + len(spots) + 1
+    assert ("tolerance not reached at 1 of 4" in said.err) == (code == 3)
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        f"exponents.{kind}" for kind in ("csv", "json", "svg", "png")
+    }
