@@ -25,7 +25,7 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name in available(COMMANDS):
         module = get(COMMANDS, name)
-        module.arguments(commands.add_parser(name, help=module.SUMMARY, description=module.SUMMARY))
+        module.arguments(commands.add_parser(name, help=module.SUMMARY.replace("%", "%%"), description=module.SUMMARY))
     return top
 
 
