@@ -19,19 +19,21 @@ BEYOND = 5.0  # logarithm of where the displacement vanishes on the axis, over t
 def robin(facets: Any, poisson: float) -> sparse.coo_matrix:
     """Stiffness of the outside on the far boundary for E* = 1, per unit length and of both halves, (2 N, 2 N)."""
     position = np.asarray(facets.global_coordinates())
-    displacement, traction = flamant(position, np.asarray(facets.normals), poisson)
+    origin = np.exp(BEYOND) * float(np.hypot(*position).min())
+    displacement, traction = flamant(position, np.asarray(facets.normals), poisson, origin)
     return springs(facets, displacement, traction, 2.0)
 
 
-def flamant(position: Array, normal: Array, poisson: float) -> tuple[Array, Array]:
+def flamant(position: Array, normal: Array, poisson: float, origin: float) -> tuple[Array, Array]:
     """Displacement and traction of a unit line force pressing on the half-plane z <= 0 with E* = 1.
 
-    As :func:`fe_contact.far_field.static.boussinesq`, (x, z). Johnson, Contact Mechanics (1985), (2.15), (2.19).
+    As :func:`fe_contact.far_field.static.boussinesq`, (x, z); ``origin``: the depth below the force that is taken to
+    be at rest. Johnson, Contact Mechanics (1985), (2.15), (2.19).
     """
     x, depth = position[0], -position[1]
     distance, angle = np.hypot(x, depth), np.arctan2(x, depth)
     sine, cosine = np.sin(angle), np.cos(angle)
-    far = BEYOND - np.log(distance / distance.min())
+    far = np.log(origin / distance)
     side = (1.0 - 2.0 * poisson) / (1.0 - poisson)
     radial = 2.0 * cosine * far - side * angle * sine
     turning = -2.0 * sine * far + (2.0 * poisson / (1.0 - poisson) + side) * sine - side * angle * cosine

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
@@ -128,6 +128,20 @@ def test_a_yielding_striker_is_one_more_spring(seed: int) -> None:
     moved = displacement(problem.surface, found.pressure)
     stored = energy(replace(problem, yielding=yielding), moved, retreat)
     assert stored == pytest.approx(energy(whole, np.append(moved, retreat)), rel=1e-9, abs=1e-15)
+
+
+@given(SEEDS)
+def test_forces_that_count_by_their_place_move_the_striker(seed: int) -> None:
+    """A place that comes up by so much per force at each point: the same as a striker moved by what it came up."""
+    problem, rng = random_problem(seed), np.random.default_rng(seed)
+    problem = replace(problem, surface=replace(problem.surface, recurring=False))
+    per_force = float(10 ** rng.uniform(-3, 0)) * rng.uniform(0.9, 1.1, len(problem.overlap))
+    found = solve(replace(problem, yielding=per_force), problem.overlap > 0.0)
+    assume(found.converged)  # without an energy Newton may cycle, and says so
+    retreat = float((per_force * problem.surface.weights) @ found.pressure)
+    wanted = solve(replace(problem, overlap=problem.overlap - retreat), found.pressure > 0.0)
+    scale = wanted.pressure.max(initial=1e-12)
+    np.testing.assert_allclose(found.pressure, wanted.pressure, atol=1e-7 * scale)
 
 
 @given(SEEDS)

@@ -10,6 +10,7 @@ from skfem import Basis, ElementTriP4, FacetBasis
 
 import meshes
 from fe_contact.enforcement import corrected
+from fe_contact.far_field.half_plane import flamant
 from fe_contact.far_field.static import boussinesq, robin
 from fe_contact.forms import isotropic
 from fe_contact.march import Strike
@@ -131,3 +132,21 @@ def test_the_force_error_falls_at_least_with_the_square_of_the_far_radius(
     rates = np.log2(errors[:-1] / errors[1:])
     assert rates.min() > 2, errors
     assert errors[-1] < 5e-5
+
+
+@pytest.mark.parametrize("nu", POISSON)
+def test_a_line_force_is_carried_and_obeys_hooke(nu: float) -> None:
+    """Flamant's tractions on a half circle sum to the force; its strains, by differences, give them in plane strain."""
+    angle, weight = np.polynomial.legendre.leggauss(40)
+    angle, weight = np.pi / 2 * angle, np.pi / 2 * weight
+    normal = np.stack([np.sin(angle), -np.cos(angle)])
+    _, traction = flamant(3.0 * normal, normal, nu, 7.0)
+    np.testing.assert_allclose(3.0 * traction @ weight, [0.0, 1.0], atol=1e-12)
+    law, step = isotropic(1 - nu**2, nu), 1e-4
+    for x, z in RNG.uniform([0.1, -3.0], [3.0, -0.1], (5, 2)):
+        place, ahead = np.array([x, z]), step * np.eye(2)
+        moved = [[flamant(place + s * e, place, nu, 7.0)[0] for s in (1, -1)] for e in ahead]
+        (xx, zx), (xz, zz) = [(up - down) / (2 * step) for up, down in moved]
+        stress = law @ np.array([xx, zz, 0.0, zx + xz])
+        for direction, wanted in (([1.0, 0.0], stress[[0, 3]]), ([0.0, 1.0], stress[[3, 1]])):
+            np.testing.assert_allclose(flamant(place, np.array(direction), nu, 7.0)[1], wanted, rtol=1e-3, atol=2e-5)

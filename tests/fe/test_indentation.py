@@ -71,10 +71,11 @@ def to_width(shape: Shape, target: Target, nu: float, length: float, rng: np.ran
 
 def on_layer(rng: np.random.Generator) -> Case:
     """Parabola-like sphere, cone, power or cylinder on a layer, up to ten thicknesses wide, three near nu = 0.5."""
+    exponent = float(rng.uniform(1.0, 2.3))
     shape = (
         shaped("sphere", 1.0),
         shaped("cone", 0.1),
-        shaped("power", 1.0, float(rng.uniform(1.0, 2.5))),
+        shaped("power", 1e-3 * THICKNESS ** (1.0 - exponent), exponent),
         shaped("cylinder", 1.0, 0.1),
     )[int(rng.integers(4))]
     nu = float(rng.choice(RATIOS))

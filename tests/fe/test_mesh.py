@@ -102,6 +102,43 @@ def test_threads_make_the_same_mesh() -> None:
     assert all(identical(one, other) for one, other in zip(alone, together, strict=True))
 
 
+LAYERS = [(4.0, 0.1, 0.2, 3.0), (8.0, 0.02, 5.0, 40.0), (8.0, 1.0, 0.05, 0.5)]
+
+
+@pytest.mark.parametrize(("elements", "smallest", "thickness", "width"), LAYERS)
+def test_a_layer_is_as_fine_as_every_contact_asks(
+    elements: float, smallest: float, thickness: float, width: float
+) -> None:
+    mesh = meshes.layer(elements, smallest, thickness, width)
+    assert identical(mesh, meshes.layer(elements, smallest, thickness, width))
+    together = np.concatenate([np.asarray(part) for part in mesh.boundaries.values()])
+    assert np.array_equal(np.sort(together), np.sort(mesh.boundary_facets())), "every facet belongs to just one"
+    start, length = surface_facets(mesh)
+    within = start + length <= 1.1
+    asked = np.minimum(np.maximum(start + length, smallest), 2.0 * thickness) / elements
+    assert np.all(length[within] <= 1.6 * asked[within])
+    twice = surface_facets(meshes.layer(2.0 * elements, smallest, thickness, width))
+    assert np.sum(twice[0] < 1.1) == pytest.approx(2.0 * np.sum(within), rel=0.15)
+
+
+@pytest.mark.parametrize("thickness", [0.1, 1.0, 30.0])
+def test_under_a_rim_elements_shrink_with_their_distance(thickness: float) -> None:
+    mesh = meshes.layer_under_rim(8.0, thickness, 4.0 * thickness)
+    start, length = surface_facets(mesh)
+    assert np.any(start == 1.0), "the rim is a node"
+    distance = np.maximum(np.abs(start + 0.5 * length - 1.0), 1e-3 / 8.0)
+    assert np.all(length <= 0.8 * distance + 1e-3)
+    assert length[start == 1.0] < 1e-3
+
+
+@pytest.mark.parametrize(("place", "value", "name"), [(0, 0.5, "elements"), (1, 2.0, "small"), (2, 0.0, "thick")])
+def test_a_layer_outside_its_ranges_is_named(place: int, value: float, name: str) -> None:
+    numbers = [8.0, 0.1, 1.0, 4.0]
+    numbers[place] = value
+    with pytest.raises(MeshError, match=f"{name}.*accepted"):
+        meshes.layer(*numbers)
+
+
 def test_a_worker_process_makes_the_same_mesh() -> None:
     with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
         made = pool.submit(meshes.half_space, 2.0, 12.0).result()
