@@ -37,11 +37,15 @@ DOMINANT = 0.5  # causes above this share of the largest one are refined togethe
 
 @dataclass(frozen=True, eq=False)
 class Pressing:
-    """Force over modulus, m^2, and contact radius, m, at every depth, (n,); counted work."""
+    """Force over modulus, m^2, and contact radius, m, at every depth, (n,); counted work.
+
+    ``mesh_order``: the most that the mesh's order can be, where the contact ends.
+    """
 
     force: Array
     contact_radius: Array
     work: Mapping[str, int]
+    mesh_order: float
 
 
 def indent(
@@ -118,7 +122,7 @@ def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) ->
         force[i], radius[i], growth = found.force, found.contact_radius, found.contact_radius / radii[i]
         problems, iterations = problems + found.problems, iterations + found.iterations
     counted = {"contact_problems": problems, "iterations": iterations}
-    return Pressing(force, radius, {"degrees_of_freedom": body.degrees_of_freedom, **counted})
+    return Pressing(force, radius, {"degrees_of_freedom": body.degrees_of_freedom, **counted}, body.mesh_order)
 
 
 def _budget(base: Pressing, run: Callable[[Numerics], Pressing], numerics: Numerics) -> dict[str, Array]:
@@ -148,7 +152,7 @@ def _error(numerics: Numerics, cause: str, first: Pressing, second: Pressing) ->
     A body without a length of its own answers alike at every depth, so the largest change speaks for all.
     """
     key = SETTING[cause]
-    order = MESH_ORDER[numerics.order] if cause == "mesh" else LEAST_ORDER[cause]
+    order = min(MESH_ORDER[numerics.order], first.mesh_order) if cause == "mesh" else LEAST_ORDER[cause]
     finer = getattr(numerics, key) < LEAST_HALVED_SETTING[key]
     change = np.abs(second.force / first.force - 1.0).max()
     return np.full_like(first.force, SAFETY * (2**order if finer else 1) / (2**order - 1) * change)

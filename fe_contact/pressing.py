@@ -18,6 +18,7 @@ from lumped.members import get
 
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
 RESCALINGS = 60
+EDGE_ORDER = 1.5  # of the force's error where the contact ends anywhere in an element
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 # The gap tells where contact ends up to this distance from the edge, in contact radii and in thicknesses of the body,
 # but for the nearest share of it.
@@ -42,6 +43,10 @@ class Still(Protocol):
     def degrees_of_freedom(self) -> int:
         """Unknowns of the finite-element system behind it."""
 
+    @property
+    def mesh_order(self) -> float:
+        """The most that the order of the mesh's error in the force can be, whatever that of the elements."""
+
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m; ``guess``: a contact radius to begin with, m. Raises NotReached."""
 
@@ -58,6 +63,11 @@ class ScaledStill:
     def degrees_of_freedom(self) -> int:
         """Unknowns of the one mesh."""
         return self.surface.operator.degrees_of_freedom
+
+    @property
+    def mesh_order(self) -> float:
+        """That of the elements: the edge is a node but for little."""
+        return np.inf
 
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m. Raises IndentationNotSettled."""
@@ -96,6 +106,11 @@ class FixedStill:
     def degrees_of_freedom(self) -> int:
         """Unknowns of the one mesh."""
         return self.surface.operator.degrees_of_freedom
+
+    @property
+    def mesh_order(self) -> float:
+        """Less where the edge may lie anywhere in an element, at which the pressure has no slope."""
+        return EDGE_ORDER if self.indenter.shape.fixed_radius is None else np.inf
 
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m; raises IndentationNotSettled, ContactTooWide."""

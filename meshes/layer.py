@@ -12,9 +12,9 @@ from meshes.errors import MeshError
 from meshes.session import session
 from meshes.triangles import triangulated
 
-GROWTH = 3.2  # growth of the element size per unit distance from the contact, for one element along the radius
+GROWTH = 4.0  # growth of the element size per unit distance from the contact, for one element along the radius
 LARGEST_GROWTH = 1.0  # steeper gradings leave gmsh too little room for well-shaped triangles
-LARGEST = 5.6  # element size over thickness, for one element along the radius
+LARGEST = 7.0  # element size over thickness, for one element along the radius
 COARSEST = 1.0  # element size over thickness, whatever is asked
 WITHIN = 2.0  # from this many thicknesses on, the surface is as fine as there: the pressure ends within one of them
 ZONE = 1.1  # the surface is fine up to this radius

@@ -17,7 +17,7 @@ from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, condensed, lagrange
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
-from fe_contact.targets._zone import REFINEMENT, Zone, held
+from fe_contact.targets._zone import LINE_REFINEMENT, Zone, held
 from lumped.indenter import Indenter
 
 DATUM = 0.15  # size of the mesh over the datum's depth, per far radius of the settings
@@ -27,7 +27,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The half-plane at rest; ``radii``, m: between which the contacts will end."""
     datum, zone = getattr(indenter.target, "datum_depth", None), Zone.of(radii)
     assert datum is not None
-    elements, depth = REFINEMENT * numerics.elements_per_contact, datum / zone.reference
+    elements, depth = LINE_REFINEMENT * numerics.elements_per_contact, datum / zone.reference
     size = numerics.far_radius * max(1.0, DATUM * depth)
     surface = _surface(indenter.material.nu, elements, numerics.order, zone.smallest, depth, size)
     return FixedStill(surface, indenter, numerics, zone.reference, zone.reference, np.inf)

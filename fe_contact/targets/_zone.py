@@ -10,7 +10,9 @@ import numpy.typing as npt
 
 from fe_contact.forms import Array
 
-REFINEMENT = 2.0  # elements along a contact radius where the contact may end anywhere, over those where it may not
+# Elements along a contact radius where the contact may end anywhere, over those where it may not; a line's pressure
+# ends as steeply, but less of its force lies there.
+REFINEMENT, LINE_REFINEMENT = 2.5, 2.0
 MARGIN = 1.35  # largest radius of the fine mesh over that of the contacts expected
 
 

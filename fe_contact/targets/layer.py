@@ -15,7 +15,7 @@ from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, condensed
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
-from fe_contact.targets._zone import REFINEMENT, Zone, held
+from fe_contact.targets._zone import LINE_REFINEMENT, REFINEMENT, Zone, held
 from lumped.indenter import Indenter
 from lumped.scene import Geometry
 from lumped.targets.layer import Layer
@@ -32,7 +32,8 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     rim = indenter.shape.fixed_radius
     zone = Zone.of(radii) if rim is None else Zone(rim, 1.0)
     thickness = target.thickness / zone.reference
-    elements, width = REFINEMENT * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
+    refinement = LINE_REFINEMENT if indenter.shape.plane else REFINEMENT
+    elements, width = refinement * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
     sizes, bonded = (elements, zone.smallest if rim is None else None, thickness, width), target.base == "bonded"
     surface = _surface(indenter.material.nu, sizes, numerics.order, bonded, indenter.shape.plane)
     return FixedStill(surface, indenter, numerics, zone.reference, zone.reference, thickness)

@@ -15,7 +15,7 @@ from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, condensed
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
-from fe_contact.targets._zone import MARGIN, REFINEMENT, Zone, held
+from fe_contact.targets._zone import LINE_REFINEMENT, MARGIN, Zone, held
 from lumped.indenter import Indenter
 from lumped.targets.ring import Ring
 
@@ -31,7 +31,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     assert isinstance(target, Ring)
     zone = Zone.of(np.minimum(radii, WIDEST / MARGIN * target.inner_radius))
     angle, thickness = zone.reference / target.inner_radius, target.thickness / zone.reference
-    elements = REFINEMENT * numerics.elements_per_contact
+    elements = LINE_REFINEMENT * numerics.elements_per_contact
     surface = _surface(indenter.material.nu, elements, numerics.order, zone.smallest, thickness, angle)
     return FixedStill(surface, indenter, numerics, zone.reference, angle, thickness)
 
