@@ -11,7 +11,7 @@ from types import ModuleType
 
 import numpy as np
 
-from fe_contact.bodies.memory import SurfaceMemory, step_law
+from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.contact import ContactSolution, Touching
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
@@ -24,6 +24,7 @@ from lumped.members import get
 
 BEYOND = 1e3  # overlap, in reference radii, that radii past the striker's rim lack
 FIRST = 0.1  # share of the contact zone that is guessed to touch first
+SECANTS, PRECISE = 20, 1e-13
 
 
 class FixedStepper:
@@ -53,9 +54,8 @@ class FixedStepper:
         carried = state.memory.carried(law)
         lever = self.scheme.LEVER * length**2
         free_depth = state.depth + length * state.velocity + lever * strike.gravity
-        overlap = law.now * (free_depth - self.heights) + operator.trace @ carried[0]
-        yielding = law.now * lever / strike.mass * self.scale ** (operator.dimension - 2)
-        solution = self._solved(overlap, yielding, steps, state.time)
+        settle = self._settled if strike.overlap is None else self._settled_by_secants
+        solution, work = settle(law, operator.trace @ carried[0], free_depth, lever / strike.mass, steps, state.time)
         edge = contact_end(operator.points, solution)
         force = operator.force(self.scale, solution.pressure)
         strain = self._strain(law.now, carried, solution.pressure)
@@ -68,13 +68,40 @@ class FixedStepper:
         )
         axis = float(law.now * strain[0, 0] + carried[0, 0])
         found_at = state.time + length * (1.0 if moved.velocity > 0 else self.scheme.SAMPLE)
-        work = Work(1, self.enforcement.SOLVES, solution.iterations)
         return Step(length, moved, force, self.scale * edge, found_at, axis, solution, self.scale, work)
 
-    def _solved(self, overlap: Array, yielding: float, steps: Sequence[Step], time: float) -> ContactSolution:
+    def _settled(
+        self, law: StepLaw, past: Array, free_depth: float, give: float, steps: Sequence[Step], time: float
+    ) -> tuple[ContactSolution, Work]:
+        """Contact with the striker that retreats by ``give``, m/N, and every overlap with it."""
+        overlap = law.now * (free_depth - self.heights) + past
+        yielding = law.now * give * self.scale ** (self.surface.operator.dimension - 2)
+        solution = self._solved(overlap, yielding, steps[-1] if steps else None, time)
+        return solution, Work(1, self.enforcement.SOLVES, solution.iterations)
+
+    def _settled_by_secants(
+        self, law: StepLaw, past: Array, free_depth: float, give: float, steps: Sequence[Step], time: float
+    ) -> tuple[ContactSolution, Work]:
+        """The same where a place's overlap does not grow as the depth does: depth + give force = free depth."""
+        overlap, operator = self.strike.overlap, self.surface.operator
+        assert overlap is not None
+        arcs, last = self.scale * operator.points, steps[-1] if steps else None
+        depth, known, solves, iterations = free_depth - give * (last.force if last else 0.0), (0.0, -free_depth), 0, 0
+        for _ in range(SECANTS):
+            free = law.now * np.maximum(overlap(arcs, depth), -BEYOND * self.scale) + past
+            solution = self._solved(free, 0.0, last, time)
+            solves, iterations = solves + self.enforcement.SOLVES, iterations + solution.iterations
+            excess = depth + give * operator.force(self.scale, solution.pressure) - free_depth
+            if abs(excess) <= PRECISE * free_depth:
+                return solution, Work(1, solves, iterations)
+            slope = (excess - known[1]) / (depth - known[0])
+            known, depth = (depth, excess), depth - excess / slope
+        raise ContactNotSettled(time)
+
+    def _solved(self, overlap: Array, yielding: float, last: Step | None, time: float) -> ContactSolution:
         points = self.surface.operator.points
-        guesses: tuple[Touching, ...] = steps[-1].solution.sets if steps else (points < FIRST * points[-1],)
-        radius = steps[-1].radius / self.scale if steps and steps[-1].radius > 0.0 else FIRST
+        guesses: tuple[Touching, ...] = last.solution.sets if last else (points < FIRST * points[-1],)
+        radius = last.radius / self.scale if last and last.radius > 0.0 else FIRST
         problem = self.surface.problem(overlap, self.numerics.penalty / radius, yielding)
         solution: ContactSolution = self.enforcement.enforce(problem, *guesses)
         if not solution.converged:
@@ -91,4 +118,5 @@ class FixedStepper:
         operator = self.surface.operator
         load = operator.trace.T @ (operator.weights * pressure)
         displacement = operator.response[: len(load)] @ load
-        return np.asarray((np.array([displacement, load * self.scale]) - carried) / now)
+        force = load * self.scale ** (operator.dimension - 2)
+        return np.asarray((np.array([displacement, force]) - carried) / now)

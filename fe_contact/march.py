@@ -12,7 +12,7 @@ from lumped.materials import Relaxation
 @dataclass(frozen=True)
 class Strike:
     """Physics of an impact: profile height(r), m; mass, kg; velocity, m/s; gravity along the motion, m/s2;
-    contact modulus E*(t); time at which to stop, s.
+    contact modulus E*(t); time at which to stop, s; and, where it is not depth - height, overlap(arc, depth), m.
     """
 
     height: Callable[[Array], Array]
@@ -21,6 +21,7 @@ class Strike:
     gravity: float
     relaxation: Relaxation
     end_time: float
+    overlap: Callable[[Array, float], Array] | None = None
 
 
 @dataclass(frozen=True)

@@ -84,13 +84,17 @@ def check_target(scene: Scene) -> None:
     half_plane = geometry.shape.plane and isinstance(geometry.target, HalfSpace)
     if half_plane or not hasattr(get(TARGETS, geometry.target.name), "struck"):
         where = "the half-plane" if half_plane else geometry.target.name
-        reason = f"no impact on {where} by finite elements in this version; accepted: indent, or half_space, layer"
+        reason = f"no impact on {where} by finite elements in this version; accepted: indent, or another target"
         raise BadInput(Fault(scene.source, "target.shape", reason))
 
 
 def strike_of(scene: Scene) -> Strike:
     """What the march needs of a scene; forces in plane strain are totals, so the modulus counts with the length."""
+    target, profile = scene.target, scene.profile
+    place = target.length_of_place
+    bent = None if place == 1.0 else lambda arc, depth: target.overlap(profile, arc / place, depth)
     return Strike(
+        overlap=bent,
         height=scene.profile.height,
         mass=scene.reduced_mass,
         velocity=scene.velocity,

@@ -17,8 +17,10 @@ from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
 from fe_contact.targets._zone import LINE_REFINEMENT, MARGIN, Zone, held
 from lumped.indenter import Indenter
+from lumped.scene import Geometry
 from lumped.targets.ring import Ring
 
+STRUCK_REFINEMENT, SMALLEST_STRUCK = 4.0, 0.04
 WIDEST = 2.7  # rad: the contact zone ends before the far side of the ring
 
 
@@ -34,6 +36,16 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     elements = LINE_REFINEMENT * numerics.elements_per_contact
     surface = _surface(indenter.material.nu, elements, numerics.order, zone.smallest, thickness, angle)
     return FixedStill(surface, indenter, numerics, zone.reference, angle, thickness)
+
+
+def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
+    """The ring in an impact whose contact grows from nothing to the arc that the settings expect."""
+    target = geometry.target
+    assert isinstance(target, Ring)
+    reference = min(numerics.contact_radius, WIDEST * target.inner_radius)
+    elements = STRUCK_REFINEMENT * numerics.elements_per_contact
+    angle, thickness = reference / target.inner_radius, target.thickness / reference
+    return _surface(geometry.material.nu, elements, numerics.order, SMALLEST_STRUCK, thickness, angle)
 
 
 @lru_cache(maxsize=32)
