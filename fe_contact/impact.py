@@ -19,6 +19,7 @@ from fe_contact.steps import State, Step
 from fe_contact.time_grid import share_of_rest, step_length
 
 END_REACHED = 1e-3  # time left over contact time at which separation is read off the trend
+END_REACHED_IN_LINES = 2e-4  # in plane strain and on meshes that stay, where the trend bends more
 PREDICTIONS = 2  # of the separation: how far they lie apart tells how well its time can be read
 NOISE = 1e-4  # share of the peak force below which a contact problem may drown in the mesh's error
 AT_REST = 1e-4  # share of the velocity at touch below which a fluid has stopped the striker
@@ -44,7 +45,7 @@ class _Marcher:
         self.strike, self.numerics = strike, numerics
         follows = Stepper if surface.breathes else FixedStepper
         self.stepper: Stepper | FixedStepper = follows(strike, surface, numerics, accounted)
-        self.shortest = END_REACHED * numerics.contact_time
+        self.shortest = (END_REACHED if surface.breathes else END_REACHED_IN_LINES) * numerics.contact_time
 
     def run(self) -> March:
         strike = self.strike

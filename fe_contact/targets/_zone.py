@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,10 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from fe_contact.forms import Array
+from lumped.shapes import Shape
 
 # Elements along a contact radius where the contact may end anywhere, over those where it may not; a line's pressure
 # ends as steeply, but less of its force lies there.
 REFINEMENT, LINE_REFINEMENT = 2.5, 2.0
+STRUCK_REFINEMENT = 4.0  # the same in an impact: its force must be smooth in time
+FAINT = 1e-4  # share of the peak force below which an impact's contact may be resolved less
 MARGIN = 1.35  # largest radius of the fine mesh over that of the contacts expected
 
 
@@ -28,6 +32,11 @@ class Zone:
         """Of contact radii, m."""
         reference = MARGIN * float(radii.max())
         return cls(reference, float(radii.min()) / reference)
+
+
+def smallest_struck(shape: Shape) -> float:
+    """Contact radius over the largest one below which elements grow no finer: F ~ a^3 of a sphere, else a^2."""
+    return math.pow(FAINT, 1.0 / 3.0 if shape.tip_radius is not None and not shape.plane else 0.5)
 
 
 def held(basis: Any, along: tuple[str, ...], across: tuple[str, ...]) -> npt.NDArray[np.integer[Any]]:

@@ -15,13 +15,11 @@ from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, condensed
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
-from fe_contact.targets._zone import LINE_REFINEMENT, REFINEMENT, Zone, held
+from fe_contact.targets._zone import LINE_REFINEMENT, REFINEMENT, STRUCK_REFINEMENT, Zone, held, smallest_struck
 from lumped.indenter import Indenter
 from lumped.scene import Geometry
 from lumped.targets.layer import Layer
 
-SMALLEST_STRUCK = 0.04  # contact radius over the largest one, below which an impact's elements grow no finer
-STRUCK_REFINEMENT = 4.0  # elements along a contact radius in an impact: its force must be smooth in time
 SIDES = 0.4  # distance of the sides in thicknesses, per far radius of the settings
 
 
@@ -44,7 +42,7 @@ def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
     target = geometry.target
     assert isinstance(target, Layer)
     thickness = target.thickness / numerics.contact_radius
-    smallest = 1.0 if geometry.shape.fixed_radius is not None else SMALLEST_STRUCK
+    smallest = None if geometry.shape.fixed_radius is not None else smallest_struck(geometry.shape)
     elements, width = STRUCK_REFINEMENT * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
     sizes, bonded = (elements, smallest, thickness, width), target.base == "bonded"
     return _surface(geometry.material.nu, sizes, numerics.order, bonded, geometry.shape.plane)

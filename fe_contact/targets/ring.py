@@ -15,12 +15,11 @@ from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, condensed
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
-from fe_contact.targets._zone import LINE_REFINEMENT, MARGIN, Zone, held
+from fe_contact.targets._zone import LINE_REFINEMENT, MARGIN, STRUCK_REFINEMENT, Zone, held, smallest_struck
 from lumped.indenter import Indenter
 from lumped.scene import Geometry
 from lumped.targets.ring import Ring
 
-STRUCK_REFINEMENT, SMALLEST_STRUCK = 4.0, 0.04
 WIDEST = 2.7  # rad: the contact zone ends before the far side of the ring
 
 
@@ -45,7 +44,7 @@ def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
     reference = min(numerics.contact_radius, WIDEST * target.inner_radius)
     elements = STRUCK_REFINEMENT * numerics.elements_per_contact
     angle, thickness = reference / target.inner_radius, target.thickness / reference
-    return _surface(geometry.material.nu, elements, numerics.order, SMALLEST_STRUCK, thickness, angle)
+    return _surface(geometry.material.nu, elements, numerics.order, smallest_struck(geometry.shape), thickness, angle)
 
 
 @lru_cache(maxsize=32)
