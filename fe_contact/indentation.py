@@ -25,6 +25,7 @@ from lumped.shapes import Shape
 
 CAUSES = ("mesh", "penalty", "far_field")
 BISECTIONS = 40
+ROUNDING = 1e-9  # relative, of a solve of nearly incompressible bodies: where nothing else errs
 SMALL = 1e-3  # radius, in depths, from which the search for the overlap's end begins
 ROUNDS = 5  # refinements before giving up
 SCOUTING, SCOUTING_ORDER = 2.0, 2  # elements along the contact radius that tell how large contacts will be
@@ -63,18 +64,18 @@ def indent(
     clock = time.process_time(), time.perf_counter()
     modulus, asked = indenter.modulus(instant), len(indenter.checked(depths))
     depth = _accompanied(np.array(depths))
-    numerics = settings(given, indenter.shape)
+    elastic, numerics = indenter.elastic(instant), settings(given, indenter.shape)
     pinned = set(given) - {"tolerance"}
-    radii = _expected(indenter, depth, numerics)
+    radii = _expected(elastic, depth, numerics)
     for attempt in range(ROUNDS + 1):
         progress(f"{numerics.elements_per_contact:g} elements along the contact radius")
-        base = press(indenter, depth, radii, numerics)
-        budget = _budget(base, lambda changed: press(indenter, depth, radii, changed), numerics)
+        base = press(elastic, depth, radii, numerics)
+        budget = _budget(base, lambda changed: press(elastic, depth, radii, changed), numerics)
         finer = _refined(numerics, budget, pinned)
         if finer == numerics or attempt == ROUNDS:
             break
         numerics = finer
-    error = np.sum([budget[cause] for cause in CAUSES], axis=0)[:asked]
+    error = ROUNDING + np.sum([budget[cause] for cause in CAUSES], axis=0)[:asked]
     force = (modulus * indenter.shape.total * base.force)[:asked]
     kept = ("tolerance", "elements_per_contact", "order", "penalty", "enforcement", "far_radius")
     return Indentation(
@@ -178,7 +179,7 @@ def _expected(indenter: Indenter, depth: Array, numerics: Numerics) -> Array:
     Where the undeformed surfaces overlap, times what a coarse mesh finds of it at the extreme depths.
     """
     overlapping = _overlapping(indenter, depth)
-    if indenter.shape.fixed_radius is not None or not indenter.target.has_length:
+    if indenter.target.fixed_radius(indenter.shape) is not None or not indenter.target.has_length:
         return overlapping
     ends = [int(depth.argmin()), int(depth.argmax())]
     coarse = numerics.varied(elements_per_contact=SCOUTING, order=SCOUTING_ORDER)
@@ -191,7 +192,8 @@ def _expected(indenter: Indenter, depth: Array, numerics: Numerics) -> Array:
 
 def _overlapping(indenter: Indenter, depth: Array) -> Array:
     """Length on the target up to which the undeformed surfaces overlap at each depth, m, by bisection; shape (n,)."""
-    fixed, target, profile = indenter.shape.fixed_radius, indenter.target, indenter.profile
+    target, profile = indenter.target, indenter.profile
+    fixed = target.fixed_radius(indenter.shape)
     if fixed is not None:
         return np.full_like(depth, fixed)
     low, high = np.zeros_like(depth), SMALL * depth / target.length_of_place

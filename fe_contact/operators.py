@@ -26,6 +26,7 @@ from skfem import (
 )
 
 from fe_contact.far_field import static
+from fe_contact.floating import Floating
 from fe_contact.forms import Array, isotropic, stiffness
 from fe_contact.surface import Surface, flat
 
@@ -105,6 +106,7 @@ def condensed(
     poisson: float,
     surface: Surface,
     watch: Any = None,
+    floating: Floating | None = None,
 ) -> SurfaceOperator:
     """Factorise the stiffness of a body once and condense it to its contact zone.
 
@@ -116,6 +118,7 @@ def condensed(
     poisson : Poisson's ratio.
     surface : where contact may happen, in units of the mesh.
     watch : weights of the displacement of the place from which depth is measured, (1, 2 N); None: it is at rest.
+    floating : of a body whose inertia alone balances the load; ``fixed`` then holds it at one point too.
     """
     order = basis.elem.maxdeg
     corners = surface.coordinate[::order]
@@ -132,9 +135,11 @@ def condensed(
 
     def displacement(forces: Array) -> Array:
         load = -(normal[:, :loaded] @ forces)  # pressure pushes into the body
+        if floating is not None:
+            load = floating.balanced(load)
         answer = np.zeros_like(load)
         answer[free] = factor.solve(load[free])
-        return answer
+        return answer if floating is None else floating.centred(answer)
 
     moved = displacement(np.eye(loaded))
     response = -(normal.T @ moved)

@@ -47,6 +47,36 @@ def flat(basis: Any, dimension: int = 3, motion: Callable[[Array], Array] = np.o
     )
 
 
+def crown(basis: Any, contact: float, mean_radius: float | None) -> Surface:
+    """The boundary ``surface`` of a circle of radius 1, by its angle from the top, rad, where ``contact`` may end.
+
+    The pressure is vertical and acts on what the circle shows from above: ``mean_radius`` is its distance from the
+    axis, where the left of the top counts too, 0 on the axis, None in plane strain. The circle's top is the mesh's.
+    """
+    dofs = basis.get_dofs("surface").flatten()
+    places = basis.doflocs[:, dofs]
+    angle = np.arctan2(places[0] - (mean_radius or 0.0), places[1] + 1.0)
+    ascending, zone = np.argsort(angle), CONTACT_ZONE * contact
+    order = basis.elem.maxdeg
+    corners = angle[ascending][::order]
+    first = max(int(np.searchsorted(corners, -zone)) - 1, 0)
+    chosen = ascending[first * order :]
+    return Surface(
+        dofs=dofs[chosen],
+        coordinate=angle[chosen],
+        normal=np.tile([0.0, 1.0], (chosen.size, 1)),
+        measure=lambda angle: np.cos(angle) * _breadth(angle, mean_radius),
+        motion=np.ones_like,
+        zone=zone,
+        dimension=2 if mean_radius is None else 3,
+    )
+
+
+def _breadth(angle: Array, mean_radius: float | None) -> Array:
+    """Area of a band over its width seen from above."""
+    return both_halves(angle) if mean_radius is None else ring_area(mean_radius + np.sin(angle))
+
+
 def ring_area(radius: Array) -> Array:
     """2 pi r."""
     return np.asarray(2.0 * np.pi * radius)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from lumped.errors import BadInput, Fault
 from lumped.keys import Number
 from lumped.materials import Material
+from lumped.pair import check_striker_material, contact_modulus, tables
 from lumped.scene import Model
 from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
@@ -20,17 +21,23 @@ MOST_DEPTHS = 10_000
 
 @dataclass(frozen=True)
 class Indenter:
-    """A rigid `shape` pressed slowly into a target of `material`; `name` and `source` are those of the scene."""
+    """A `shape` pressed slowly into a target; `name` and `source` are those of the scene.
+
+    `material` is the target's, or the striker's where the target is rigid; `striker_material` that of a striker
+    on a target which yields too, None: rigid.
+    """
 
     shape: Shape
     material: Material
     target: Target = field(default_factory=HalfSpace)
+    striker_material: Material | None = None
     model: Model = field(default_factory=Model)
     name: str = "scene"
     source: str = "scene"
 
     def __post_init__(self) -> None:
         self.target.check_striker(self.source, self.shape)
+        check_striker_material(self.source, self.target, self.striker_material)
 
     @classmethod
     def load(cls, source: str | Path, overrides: Mapping[str, object] | None = None) -> Indenter:
@@ -44,9 +51,14 @@ class Indenter:
         """The striker's shape as `model.profile` resolves it."""
         return self.shape.resolved(self.model.profile)
 
+    def elastic(self, instant: bool) -> Indenter:
+        """The same with the elastic materials that a slow or, `instant`, a sudden indentation meets."""
+        striker = None if self.striker_material is None else self.striker_material.elastic(instant)
+        return replace(self, material=self.material.elastic(instant), striker_material=striker)
+
     def modulus(self, instant: bool) -> float:
         """E* against a slow or, `instant`, a sudden indentation, Pa. Raises BadInput where there is none."""
-        contact = self.material.contact_modulus()
+        contact = contact_modulus(self.shape, self.material, self.striker_material)
         if instant and contact.viscosity > 0.0:
             raise self._refused("has a dashpot in parallel: infinitely stiff at once; accepted: leave out --instant")
         bulk = self.material.constant == "bulk" and not self.material.young.is_elastic
@@ -69,15 +81,12 @@ class Indenter:
 
     def to_dict(self) -> dict[str, Any]:
         """The tables of a scene file that gives it back."""
-        return {
-            "name": self.name,
-            "striker": self.shape.to_dict(),
-            "target": self.target.to_dict() | {"material": self.material.to_dict()},
-            "model": vars(self.model).copy(),
-        }
+        striker, target = tables(self.shape, self.target, self.material, self.striker_material)
+        return {"name": self.name, "striker": striker, "target": target, "model": vars(self.model).copy()}
 
     def _refused(self, reason: str) -> BadInput:
-        return BadInput(Fault(self.source, "target.material", reason))
+        where = "target" if self.target.deformable else "striker"
+        return BadInput(Fault(self.source, f"{where}.material", reason))
 
 
 def _accepted(depth: float) -> bool:

@@ -12,6 +12,8 @@ from lumped.keys import Choice, Count, Flag, Key, Number, Text, check_fields, re
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material, Relaxation
 from lumped.members import get
+from lumped.pair import check_striker_material, contact_modulus
+from lumped.pair import tables as bodies
 from lumped.scales import stiffest_impact
 from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
@@ -84,8 +86,10 @@ class Geometry:
 
 @dataclass(frozen=True)
 class Scene:
-    """One impact: a rigid striker of `shape`, `mass` (kg) and `velocity` (m/s) on a target of `material`.
+    """One impact: a striker of `shape`, `mass` (kg) and `velocity` (m/s) on a target of `material`.
 
+    Where the target is rigid `material` is the striker's; `striker_material` is that of a striker on a target which
+    yields too, None: rigid.
     A law with parameters of its own needs neither shape nor material (both None); `law` may name one.
     `target_mass`: mass of a free second body, kg; None: the target is held. Raises BadInput, naming the key,
     for what cannot be used.
@@ -100,6 +104,7 @@ class Scene:
     motion: Motion = Motion()
     target_mass: float | None = None
     law: LawChoice | None = None
+    striker_material: Material | None = None
     name: str = "scene"
     source: str = "scene"
 
@@ -110,6 +115,7 @@ class Scene:
             raise BadInput(Fault(self.source, missing, "missing; shape and material come together"))
         if self.shape is not None:
             self.target.check_striker(self.source, self.shape)
+            check_striker_material(self.source, self.target, self.striker_material)
         density = None if self.material is None else self.material.density
         target = self.target if self.has_geometry else None
         faults = inertia_faults(self.source, self.model.inertia, density, target)
@@ -175,8 +181,8 @@ class Scene:
 
     @property
     def contact_modulus(self) -> Relaxation:
-        """E*(t) of the target, Pa. Raises BadInput without geometry."""
-        return self.geometry.material.contact_modulus()
+        """E*(t) of the contact, Pa. Raises BadInput without geometry."""
+        return contact_modulus(self.geometry.shape, self.geometry.material, self.striker_material)
 
     @property
     def load_curve(self) -> LoadCurve:
@@ -214,8 +220,8 @@ class Scene:
         striker: dict[str, Any] = {"mass": self.mass, "velocity": self.velocity}
         target: dict[str, Any] = {} if self.target_mass is None else {"mass": self.target_mass}
         if self.shape is not None and self.material is not None:
-            striker = self.shape.to_dict() | striker
-            target = self.target.to_dict() | target | {"material": self.material.to_dict()}
+            own, held = bodies(self.shape, self.target, self.material, self.striker_material)
+            striker, target = own | striker, held | target
         tables = {
             "striker": striker,
             "target": target,

@@ -16,6 +16,7 @@ from lumped.materials import Material
 from lumped.materials.material import KEYS as MATERIAL_KEYS
 from lumped.materials.material import bulk_fault
 from lumped.members import Member, available, get
+from lumped.pair import striker_material_faults
 from lumped.scene import (
     MODEL_KEYS,
     MOTION_KEYS,
@@ -34,10 +35,6 @@ from lumped.toml_file import overridden, parsed
 TABLES = ("striker", "target", "model", "motion", "law", "numerics")
 NETWORKS, SHAPES, TARGETS, LAWS = "lumped.materials.networks", "lumped.shapes", "lumped.targets", "lumped.laws"
 TARGET_KEYS: Mapping[str, Key] = {"mass": SECOND_BODY_KEYS["target_mass"]}
-# The interface plans these keys: saying so helps more than calling them unknown.
-NOT_YET = {
-    "striker.material": "a deformable striker is not available in this version; leave it out: rigid",
-}
 
 Table = dict[str, Any]
 
@@ -116,15 +113,28 @@ class _Reader:
         numerics = self.table("numerics", required=False)
         if self.faults:
             raise BadInput(self.faults)
-        own = {key: bodies[key] for key in ("shape", "material", "target")}
+        own = {key: bodies[key] for key in ("shape", "material", "target", "striker_material")}
         return Indenter(**own, model=Model(**model), name=name, source=self.source), numerics
 
     def bodies(self, striker_keys: Mapping[str, Key] = STRIKER_KEYS) -> Table:
         """Striker, target and material of a scene with geometry; None for what has a fault."""
         striker, shape = self.body("striker", SHAPES, striker_keys)
         held, target = self.body("target", TARGETS, TARGET_KEYS)
-        own = {"shape": shape, "target": target, "material": self.material(), "target_mass": held.get("mass")}
-        return {**striker, **own}
+        own = {"shape": shape, "target": target, "target_mass": held.get("mass")}
+        return {**striker, **own, **self.materials(target)}
+
+    def materials(self, target: Target | None) -> dict[str, Material | None]:
+        """The target's material, or the striker's where the target is rigid, and that of a striker that yields too."""
+        given = "material" in self.table("striker", required=False, quiet=True)
+        if target is None or target.deformable:
+            allowed = target is not None and target.yielding_strikers
+            if given and not allowed and target is not None:
+                self.faults += striker_material_faults(self.source, target)
+            striker = self.material("striker") if given and allowed else None
+            return {"material": self.material("target"), "striker_material": striker}
+        if "material" in self.table("target", required=False, quiet=True):
+            self.faults.append(Fault(self.source, "target.material", f"a {target.name} is rigid; leave it out"))
+        return {"material": self.material("striker"), "striker_material": None}
 
     def masses_alone(self) -> Table:
         """The masses of a scene that has a law of its own and no geometry."""
@@ -154,9 +164,7 @@ class _Reader:
     def body(self, part: str, package: str, common: Mapping[str, Key]) -> tuple[Table, Any]:
         """A body's checked common values, and what the member of `package` makes of its own keys."""
         table = self.table(part)
-        planned = {key for key in table if f"{part}.{key}" in NOT_YET}
-        self.faults += [Fault(self.source, f"{part}.{key}", NOT_YET[f"{part}.{key}"]) for key in sorted(planned)]
-        rest = {key: value for key, value in table.items() if key not in planned | {"material"}}
+        rest = {key: value for key, value in table.items() if key != "material"}
         if part not in self.raw:
             return {}, None
         (own,) = alternatives(package, table.get("shape"))
@@ -166,12 +174,12 @@ class _Reader:
         complete = kind is not None and values.keys() >= {key for key in own if own[key].required}
         return shared, kind.of(**values) if kind is not None and complete else None
 
-    def material(self) -> Material | None:
-        """The target's material, None with a fault noted."""
-        target = self.table("target", required=False, quiet=True)
-        if not target:
+    def material(self, part: str) -> Material | None:
+        """The material of a body, None with a fault noted."""
+        body = self.table(part, required=False, quiet=True)
+        if not body:
             return None
-        path, table = "target.material", self.table("material", inside="target")
+        path, table = f"{part}.material", self.table("material", inside=part)
         if not table:
             return None
         own = max(alternatives(NETWORKS, table.get("law")), key=lambda keys: len(keys.keys() & table.keys()))
@@ -180,11 +188,10 @@ class _Reader:
         if len(self.faults) > known:
             return None
         common = {key: values.pop(key) for key in MATERIAL_KEYS if key in values}
-        return self.network(values.pop("law"), values, common)
+        return self.network(path, values.pop("law"), values, common)
 
-    def network(self, law: ModuleType, values: Table, common: Table) -> Material | None:
+    def network(self, path: str, law: ModuleType, values: Table, common: Table) -> Material | None:
         """The material of a network's checked values."""
-        path = "target.material"
         try:
             young = law.of(**values)
         except ValueError as error:
@@ -198,7 +205,8 @@ class _Reader:
 
     def inertia(self, model: Table, target: Target | None) -> None:
         """Whether the target can have the inertia asked for, and a density for it."""
-        material = self.table("target", required=False, quiet=True).get("material")
+        part = "striker" if target is not None and not target.deformable else "target"
+        material = self.table(part, required=False, quiet=True).get("material")
         density = material.get("density") if isinstance(material, Mapping) else None
         self.faults += inertia_faults(self.source, model.get("inertia", False), density, target)
 

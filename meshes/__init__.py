@@ -4,9 +4,26 @@ One target's mesh a file. Every function returns a :class:`skfem.MeshTri` with n
 raises :class:`meshes.errors.MeshError`; nothing here knows a material or a load.
 """
 
+from meshes.cylinder import cylinder
 from meshes.errors import GmshMissing, MeshError
 from meshes.half_space import half_space
 from meshes.layer import layer, layer_under_rim
+from meshes.o_ring import o_ring
+from meshes.prism import prism
 from meshes.ring import ring
+from meshes.sphere import sphere
+from meshes.washer import washer
 
-__all__ = ["GmshMissing", "MeshError", "half_space", "layer", "layer_under_rim", "ring"]
+__all__ = [
+    "GmshMissing",
+    "MeshError",
+    "cylinder",
+    "half_space",
+    "layer",
+    "layer_under_rim",
+    "o_ring",
+    "prism",
+    "ring",
+    "sphere",
+    "washer",
+]

@@ -17,6 +17,8 @@ from lumped.shapes import Shape
 REFINEMENT, LINE_REFINEMENT = 2.5, 2.0
 STRUCK_REFINEMENT = 4.0  # the same in an impact: its force must be smooth in time
 FAINT = 1e-4  # share of the peak force below which an impact's contact may be resolved less
+ROUND_REFINEMENT = 4.0  # the same on round bodies, of which two may touch whose meshes do not match
+WIDEST = 1.2  # rad from the first touch: a contact on a circle ends before
 MARGIN = 1.35  # largest radius of the fine mesh over that of the contacts expected
 
 
@@ -32,6 +34,13 @@ class Zone:
         """Of contact radii, m."""
         reference = MARGIN * float(radii.max())
         return cls(reference, float(radii.min()) / reference)
+
+    @classmethod
+    def round(cls, radii: Array, radius: float) -> Zone:
+        """Angles on a circle of this radius, of contacts that end so far, m, from the line of motion."""
+        angles = np.arcsin(np.minimum(radii / radius, 1.0))
+        reference = min(MARGIN * float(angles.max()), WIDEST)
+        return cls(reference, min(float(angles.min()) / reference, 1.0))
 
 
 def smallest_struck(shape: Shape) -> float:

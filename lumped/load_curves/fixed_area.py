@@ -83,3 +83,24 @@ def under_flat_end(radius: ArrayLike, end: float, intensity: float) -> NDArray[n
     square = end**2 - np.asarray(radius, dtype=float) ** 2
     with np.errstate(divide="ignore"):
         return np.where(square < 0.0, 0.0, intensity / (np.pi * np.sqrt(np.maximum(square, 0.0))))
+
+
+@dataclass(frozen=True)
+class Column(FixedArea):
+    """A block of circular section of this radius and of this thickness, m, strained alike everywhere.
+
+    F = M A depth/thickness, where all that is per unit E* elsewhere is per unit of its own modulus M: Young's
+    under uniaxial stress, the confined one under uniaxial strain (Table 1, rows 1 and 2).
+    """
+
+    radius: float
+    thickness: float
+
+    @property
+    def stiffness(self) -> float:
+        """A/thickness, m."""
+        return float(np.pi) * self.radius**2 / self.thickness
+
+    def pressure_at(self, radius: ArrayLike, depth: float) -> NDArray[np.float64]:
+        """depth/thickness on the whole face."""
+        return np.where(np.abs(np.asarray(radius)) <= self.radius, max(depth, 0.0) / self.thickness, 0.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from lumped.errors import BadInput, Fault
@@ -62,6 +62,26 @@ class Material:
             return _bulk_contact_modulus(self.shear, self.bulk)
         return self.young.scaled(1.0 / (1.0 - self.nu**2))
 
+    def uniaxial_modulus(self) -> Relaxation:
+        """Stress over strain where the sides are free, 9KG/(3K+G), Pa: the network itself for constant nu."""
+        return _bulk_uniaxial_modulus(self.shear, self.bulk) if self.constant == "bulk" else self.young
+
+    def confined_modulus(self) -> Relaxation:
+        """Stress over strain where nothing moves sideways, K + 4G/3, Pa."""
+        if self.constant == "bulk":
+            shear = self.shear.scaled(4.0 / 3.0)
+            return replace(shear, equilibrium=shear.equilibrium + self.bulk)
+        return self.young.scaled((1.0 - self.nu) / ((1.0 + self.nu) * (1.0 - 2.0 * self.nu)))
+
+    def elastic(self, instant: bool) -> Material:
+        """The elastic material that a slow or, `instant`, a sudden load meets; it has to be finite and no fluid."""
+        young = self.young.glassy if instant else self.young.relaxed
+        if self.constant == "poisson":
+            return Material(Relaxation(young), self.nu)
+        shear = young / (2.0 * (1.0 + self.nu))
+        stiffness = 9.0 * self.bulk * shear / (3.0 * self.bulk + shear)
+        return Material(Relaxation(stiffness), 0.5 * stiffness / shear - 1.0)
+
     def to_dict(self) -> dict[str, Any]:
         """The table of a scene file that gives this material back."""
         young = self.young
@@ -107,3 +127,10 @@ def _bulk_contact_modulus(shear: Relaxation, bulk: float) -> Relaxation:
     equilibrium = 4.0 * g * (3.0 * bulk + g) / (3.0 * bulk + 4.0 * g)
     moduli = shear.moduli + tuple(6.75 * bulk**2 * compliance for compliance in creep.compliances)
     return Relaxation(equilibrium, moduli, shear.times + creep.times, shear.viscosity)
+
+
+def _bulk_uniaxial_modulus(shear: Relaxation, bulk: float) -> Relaxation:
+    """9KG/(3K+G) = 9K - 27 K^2/(3K+G), exactly, as a Prony series; see :func:`_bulk_contact_modulus`."""
+    creep = replace(shear, equilibrium=shear.equilibrium + 3.0 * bulk).creep()
+    equilibrium = 9.0 * bulk * shear.relaxed / (3.0 * bulk + shear.relaxed)
+    return Relaxation(equilibrium, tuple(27.0 * bulk**2 * compliance for compliance in creep.compliances), creep.times)

@@ -14,6 +14,7 @@ from lumped.keys import Key
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
 from lumped.load_curves.line_profile import LineProfile
+from lumped.materials import Material, Relaxation
 
 
 class Shape(ABC):
@@ -68,6 +69,10 @@ class Shape(ABC):
     @abstractmethod
     def load_curve(self) -> LoadCurve:
         """The closed form of elastic indentation by this profile."""
+
+    def modulus(self, material: Material) -> Relaxation:
+        """The modulus which forces by this shape are in proportion to, Pa: E* of the half-space by default."""
+        return material.contact_modulus()
 
     @abstractmethod
     def resolved(self, profile: str) -> Shape:

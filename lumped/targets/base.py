@@ -12,15 +12,21 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.errors import BadInput, Fault
 from lumped.keys import Key
 from lumped.load_curves.base import LoadCurve
+from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
 
 
 class Target(ABC):
-    """The geometry of a struck body; `name` and `keys` are those of the scene file."""
+    """The geometry of a struck body; `name` and `keys` are those of the scene file.
+
+    `deformable`: whether it has a material; `yielding_strikers`: whether its striker may have one.
+    """
 
     name: ClassVar[str]
     keys: ClassVar[Mapping[str, Key]]
     has_inertia: ClassVar[bool]
+    deformable: ClassVar[bool] = True
+    yielding_strikers: ClassVar[bool] = False
 
     @property
     def has_length(self) -> bool:
@@ -47,8 +53,13 @@ class Target(ABC):
         raise BadInput(Fault(self.name, "target.shape", "no exact load curve in this version; accepted: --method fe"))
 
     def check_striker(self, source: str, shape: Shape) -> None:
-        """Raise BadInput, naming the key, for a striker which this target is not for; here any will do."""
-        return
+        """Raise BadInput, naming the key, for a striker which this target is not for; here any rigid one will do."""
+        if isinstance(shape, Block):
+            raise BadInput(Fault(source, "striker.shape", f'{shape.name}: it strikes target.shape = "plane" alone'))
+
+    def fixed_radius(self, shape: Shape) -> float | None:
+        """Contact radius that no depth changes, m; None where it grows with the depth."""
+        return shape.fixed_radius
 
     def check_depth(self, shape: Shape, depth: float) -> str:
         """What is wrong with a depth, m, of this shape; empty where nothing is."""

@@ -49,6 +49,7 @@ class HalfSpace(Target):
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """A half-plane has no finite compliance of its own: plane strain needs a datum, and only that."""
+        super().check_striker(source, shape)
         if shape.plane and self.datum_depth is None:
             reason = (
                 "missing; in plane strain the half-plane has no finite compliance; accepted: a depth, m, relative to "

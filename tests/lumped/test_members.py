@@ -29,11 +29,18 @@ SHAPES = {
     "power": {"coefficient": 100.0, "exponent": 3.0},
     "punch": {"radius": 0.01},
     "cylinder": {"radius": 0.01, "length": 0.02},
+    "prism": {"area": 1e-4, "height": 0.02, "sides": "free", "faces": "bonded"},
+    "plate": {"area": 1e-4, "thickness": 0.002, "sides": "confined", "faces": "sliding"},
 }
 TARGETS: dict[str, dict[str, object]] = {
     "half_space": {},
     "layer": {"thickness": 0.01, "base": "bonded"},
     "ring": {"inner_radius": 0.02, "thickness": 0.005},
+    "plane": {},
+    "sphere": {"radius": 0.02},
+    "cylinder": {"radius": 0.02, "support": "held"},
+    "o_ring": {"mean_radius": 0.02, "section_radius": 0.002},
+    "washer": {"inner_radius": 0.01, "outer_radius": 0.02, "height": 0.005, "base": "sliding"},
 }
 
 

@@ -1,0 +1,14 @@
+"""The cylinder struck by a parallel one, in plane strain: finite bodies."""
+
+from __future__ import annotations
+
+from fe_contact.forms import Array
+from fe_contact.numerics import Numerics
+from fe_contact.pressing import Still
+from fe_contact.targets import _round
+from lumped.indenter import Indenter
+
+
+def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
+    """Both bodies at rest; ``radii``, m: half-width up to which their undeformed surfaces overlap."""
+    return _round.still(indenter, radii, numerics)

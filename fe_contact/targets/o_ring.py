@@ -1,0 +1,56 @@
+"""The O-ring between two planes: the upper half of its section, which a contact may cover on both sides of its top."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from skfem import Basis
+
+import meshes
+from fe_contact.contact import PressedSurface
+from fe_contact.forms import Array, isotropic, stiffness
+from fe_contact.numerics import Numerics
+from fe_contact.operators import ELEMENTS, SurfaceOperator, condensed
+from fe_contact.pressing import Still
+from fe_contact.surface import crown
+from fe_contact.targets._body import BodyStill
+from fe_contact.targets._zone import ROUND_REFINEMENT, Zone, held
+from lumped.indenter import Indenter
+from lumped.targets.o_ring import ORing
+
+
+def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
+    """The O-ring at rest; ``radii``, m: distance from the top where the undeformed surfaces overlap."""
+    target = indenter.target
+    assert isinstance(target, ORing)
+    zone = Zone.round(radii, target.section_radius)
+    operator, surface = _surface(
+        indenter.material.nu,
+        ROUND_REFINEMENT * numerics.elements_per_contact,
+        numerics.order,
+        zone.smallest,
+        zone.reference,
+        target.mean_radius / target.section_radius,
+    )
+    return BodyStill(
+        surface=surface,
+        operator=operator,
+        places=target.section_radius * np.sin(operator.points),
+        scale=target.section_radius,
+        indenter=indenter,
+        numerics=numerics,
+        degrees_of_freedom=operator.degrees_of_freedom,
+    )
+
+
+@lru_cache(maxsize=32)
+def _surface(
+    poisson: float, elements: float, order: int, smallest: float, contact: float, mean_radius: float
+) -> tuple[SurfaceOperator, PressedSurface]:
+    """Condensed for unit radius of the section, points and ``contact`` in rad from its top."""
+    basis = Basis(meshes.o_ring(elements, smallest, contact, mean_radius), ELEMENTS[order](), intorder=2 * order)
+    matrix = stiffness(basis, isotropic(1.0 - poisson**2, poisson)).tocsc()
+    fixed = held(basis, along=(), across=("base",))
+    operator = condensed(basis, matrix, fixed, poisson, crown(basis, contact, mean_radius))
+    return operator, PressedSurface(operator.stiffness, operator.trace, operator.weights, recurring=False)

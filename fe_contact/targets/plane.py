@@ -1,0 +1,76 @@
+"""The rigid plane and the block that strikes it: half of the block, pressed from its middle plane."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import scipy.sparse.linalg as linalg
+from skfem import Basis
+
+import meshes
+from fe_contact.forms import Array, isotropic, stiffness
+from fe_contact.numerics import Numerics
+from fe_contact.operators import ELEMENTS
+from fe_contact.pressing import Pressed, Still
+from fe_contact.targets._zone import held
+from lumped.indenter import Indenter
+from lumped.shapes._block import Block
+
+
+@dataclass(frozen=True)
+class BlockStill:
+    """A block between two planes that touch the whole of its faces: its force is in proportion to the depth.
+
+    ``stiffness``: force per depth and modulus, m; ``radius`` of its face, m.
+    """
+
+    stiffness: float
+    radius: float
+    degrees_of_freedom: int
+
+    @property
+    def mesh_order(self) -> float:
+        """That of the elements: nothing moves over the mesh."""
+        return np.inf
+
+    def press(self, depth: float, guess: float) -> Pressed:
+        """Press to a depth, m."""
+        return Pressed(self.stiffness * depth, self.radius, 1, 1)
+
+
+def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
+    """The block at rest; its area touches at once."""
+    block = indenter.shape
+    assert isinstance(block, Block)
+    radius = block.fixed_radius
+    answer, unknowns = _answer(
+        indenter.material.nu,
+        numerics.elements_per_contact,
+        numerics.order,
+        0.5 * block.thickness / radius,
+        block.sides,
+        block.faces,
+    )
+    return BlockStill(radius * answer, radius, unknowns)
+
+
+@lru_cache(maxsize=32)
+def _answer(
+    poisson: float, elements: float, order: int, half_height: float, sides: str, faces: str
+) -> tuple[float, int]:
+    """Force per depth of a block of unit radius and unit modulus, that of its sides; unknowns of the half."""
+    free = sides == "free"
+    mesh = meshes.prism(elements, half_height, sharp=free and faces == "bonded")
+    basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
+    young = 1.0 if free else (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson)
+    matrix = stiffness(basis, isotropic(young, poisson)).tocsc()
+    still_radially = ["inside", *(["surface"] if faces == "bonded" else []), *([] if free else ["outside"])]
+    fixed = held(basis, along=tuple(still_radially), across=("surface", "base"))
+    moved = 2 * basis.get_dofs("surface").flatten() + 1
+    displacement = np.zeros(2 * basis.N)
+    displacement[moved] = -0.5  # half of a unit depth
+    loose = np.setdiff1d(np.arange(displacement.size), fixed)
+    displacement[loose] = linalg.spsolve(matrix[loose][:, loose], -(matrix @ displacement)[loose])
+    return 2.0 * float(displacement @ (matrix @ displacement)), displacement.size

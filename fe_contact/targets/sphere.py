@@ -1,0 +1,21 @@
+"""The sphere struck by a sphere: two half-spaces under the gap of both, or finite bodies where a support is said."""
+
+from __future__ import annotations
+
+from fe_contact.forms import Array
+from fe_contact.numerics import Numerics
+from fe_contact.pressing import ScaledStill, Still
+from fe_contact.targets import _round, half_space
+from lumped.indenter import Indenter
+from lumped.targets.sphere import Sphere
+
+
+def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
+    """Both bodies at rest; ``radii``, m: where their undeformed surfaces overlap.
+
+    The surface of a half-space knows its E* alone, so one of the common modulus stands for two.
+    """
+    assert isinstance(indenter.target, Sphere)
+    if indenter.target.support is not None:
+        return _round.still(indenter, radii, numerics)
+    return ScaledStill(half_space.surface(indenter.material.nu, numerics), indenter, numerics)

@@ -1,0 +1,54 @@
+"""Two convex profiles on one another: the half-space under the sum of their heights."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.half_space import HalfSpaceCurve
+
+BISECTIONS = 120
+
+
+@dataclass(frozen=True)
+class TwoProfiles(HalfSpaceCurve):
+    """Heights add, so at one contact radius depths and forces add; E* is that of both materials together."""
+
+    first: LoadCurve
+    second: LoadCurve
+
+    @property
+    def extent(self) -> float:
+        """The smaller of the two, m."""
+        return min(self.first.extent, self.second.extent)
+
+    def force(self, depth: ArrayLike) -> Any:
+        """F/E*, m^2."""
+        return self.force_at(self.contact_radius(depth))
+
+    def force_at(self, contact_radius: ArrayLike) -> Any:
+        """F1(a) + F2(a), m^2."""
+        return self.first.force_at(contact_radius) + self.second.force_at(contact_radius)
+
+    def depth(self, contact_radius: ArrayLike) -> Any:
+        """d1(a) + d2(a), m."""
+        return self.first.depth(contact_radius) + self.second.depth(contact_radius)
+
+    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+        """d1'(a) + d2'(a)."""
+        return self.first.depth_slope(contact_radius) + self.second.depth_slope(contact_radius)
+
+    def contact_radius(self, depth: ArrayLike) -> Any:
+        """a with d1(a) + d2(a) = depth, m, by bisection: each profile alone would be wider."""
+        asked = np.maximum(np.asarray(depth, dtype=float), 0.0)
+        low = np.zeros_like(asked)
+        high = np.minimum(self.first.contact_radius(asked), self.second.contact_radius(asked))
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (low + high)
+            deep = self.depth(middle) > asked
+            low, high = np.where(deep, low, middle), np.where(deep, middle, high)
+        return 0.5 * (low + high)

@@ -1,0 +1,88 @@
+"""What prism and plate share: a deformable block of constant cross-section between two rigid planes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.errors import BadInput, Fault
+from lumped.keys import read_table
+from lumped.load_curves.fixed_area import Column
+from lumped.load_curves.hertz import HertzImpact, power_impact
+from lumped.materials import Material, Relaxation
+from lumped.shapes.base import Shape
+
+
+@dataclass(frozen=True)
+class Block(Shape):
+    """A block of this area, m2, and thickness along the motion, m; a cylinder where its outline matters.
+
+    `sides`: "free" or "confined" by a rigid smooth wall; `faces`: "sliding" or "bonded" to what presses them.
+    Raises BadInput.
+    """
+
+    area: float
+    thickness: float
+    sides: str
+    faces: str
+
+    def __post_init__(self) -> None:
+        own = {key: value for key, value in self.to_dict().items() if key != "shape"}
+        _, faults = read_table(self.name, "", own, self.keys)
+        if faults:
+            raise BadInput(faults)
+
+    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+        """Zero on its face, infinite beyond."""
+        return np.where(np.abs(np.asarray(r, dtype=float)) <= self.fixed_radius, 0.0, np.inf)
+
+    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+        """Zero on its face, infinite beyond."""
+        return self.height(r)
+
+    def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
+        """None: no half-space is pressed. Raises BadInput."""
+        reason = f"{self.name}: no dimensionality reduction for a block on a plane; accepted: a profile"
+        raise BadInput(Fault(self.name, "striker.shape", reason))
+
+    @property
+    def exponent_of_force(self) -> float:
+        """1."""
+        return 1.0
+
+    @property
+    def fixed_radius(self) -> float:
+        """Radius of the circle of its area, m."""
+        return math.sqrt(self.area / math.pi)
+
+    @property
+    def uniform(self) -> bool:
+        """Whether it is strained alike everywhere: unless both its faces are bonded and its sides free."""
+        return self.faces == "sliding" or self.sides == "confined"
+
+    @property
+    def load_curve(self) -> Column:
+        """F = modulus x area x depth/thickness; raises BadInput where the strain is not uniform."""
+        if not self.uniform:
+            reason = "bonded: no closed form with free sides; accepted: finite elements, or sliding"
+            raise BadInput(Fault(self.name, "striker.faces", reason))
+        return self._column
+
+    def modulus(self, material: Material) -> Relaxation:
+        """Young's modulus with free sides (uniaxial stress), the confined one else (uniaxial strain), Pa."""
+        return material.uniaxial_modulus() if self.sides == "free" else material.confined_modulus()
+
+    def resolved(self, profile: str) -> Shape:
+        """Itself: it has no other profile."""
+        return self
+
+    def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
+        """Scales of the elastic impact, those of a uniform strain."""
+        return power_impact(self._column, self.exponent_of_force, modulus, mass, velocity)
+
+    @property
+    def _column(self) -> Column:
+        return Column(self.fixed_radius, self.thickness)

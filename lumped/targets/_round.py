@@ -1,0 +1,66 @@
+"""What the round targets share: struck by their like, both bodies deformable."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.errors import BadInput, Fault
+from lumped.keys import check_fields
+from lumped.shapes.base import Shape
+from lumped.targets.base import Target
+
+SUPPORTS = ("free", "held")
+
+
+@dataclass(frozen=True)
+class Round(Target):
+    """A body of this radius, m; places are distances from the line of motion, m.
+
+    `strikers`: names of its like, exact and a parabola.
+
+    `support`: "free", the body balanced by its own uniform acceleration; "held", rigid from its middle plane on;
+    None, it is taken as a half-space. Depth is the approach of the centres of mass. Raises BadInput.
+    """
+
+    radius: float
+    support: str | None
+    strikers: ClassVar[tuple[str, str]]
+    has_inertia: ClassVar[bool] = False
+    yielding_strikers: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        check_fields(self.name, self, self.keys)
+
+    @property
+    @abstractmethod
+    def outline(self) -> Shape:
+        """Its own profile."""
+
+    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
+        """depth - height(r) of both profiles; where the striker's is a parabola, the target's is one too."""
+        return np.asarray(np.asarray(depth, dtype=float) - shape.height(r) - self.matching(shape).height(r))
+
+    def matching(self, shape: Shape) -> Shape:
+        """Its own profile, exact or a parabola as the striker's."""
+        return self.outline.resolved("exact" if shape.name == self.strikers[0] else "parabola")
+
+    def check_striker(self, source: str, shape: Shape) -> None:
+        """Raise BadInput for a striker of another kind."""
+        if shape.name not in self.strikers:
+            reason = f"{shape.name}: a {self.name} is struck by a {self.name}"
+            raise BadInput(Fault(source, "striker.shape", reason))
+
+    def check_depth(self, shape: Shape, depth: float) -> str:
+        """Not deeper than the smaller body is round."""
+        radius = min(self.radius, shape.tip_radius or self.radius)
+        return f"accepted below the smaller radius {radius:g} m" if depth >= radius else ""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Its part of the target's table."""
+        table = {"shape": self.name, "radius": self.radius}
+        return table if self.support is None else table | {"support": self.support}

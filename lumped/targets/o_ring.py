@@ -1,0 +1,66 @@
+"""A ring of round section lying flat on a rigid plane, pressed by a coaxial flat end."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.errors import BadInput, Fault
+from lumped.keys import Key, Number, check_fields
+from lumped.shapes.base import Shape
+from lumped.shapes.sphere import Sphere
+from lumped.targets.base import Target
+
+KEYS: Mapping[str, Key] = {"mean_radius": Number(1e-9, 1e4, "m"), "section_radius": Number(1e-9, 1e4, "m")}
+
+
+@dataclass(frozen=True)
+class ORing(Target):
+    """A ring of this mean radius and radius of section, m; places count from the top of the section. Raises BadInput.
+
+    Two contacts alike: the depth is the approach of the two planes, half of it at each.
+    """
+
+    mean_radius: float
+    section_radius: float
+    name: ClassVar[str] = "o_ring"
+    keys: ClassVar[Mapping[str, Key]] = KEYS
+    has_inertia: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        check_fields("o_ring", self, KEYS)
+        if self.section_radius >= self.mean_radius:
+            reason = f"{self.section_radius:g}: accepted below the mean radius {self.mean_radius:g} m"
+            raise BadInput(Fault("o_ring", "target.section_radius", reason))
+
+    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
+        """depth/2 - (s - sqrt(s^2 - x^2)), s the section's radius and `r` the distance x from its top."""
+        section = Sphere(self.section_radius)
+        return np.asarray(0.5 * np.asarray(depth, dtype=float) - section.height(r))
+
+    def fixed_radius(self, shape: Shape) -> float | None:
+        """None: both contacts widen with the depth."""
+        return None
+
+    def check_striker(self, source: str, shape: Shape) -> None:
+        """Raise BadInput for a striker that is no punch, or does not cover the ring."""
+        outside = self.mean_radius + self.section_radius
+        if shape.name != "punch":
+            raise BadInput(Fault(source, "striker.shape", f"{shape.name}: an O-ring is struck by a punch"))
+        if (shape.fixed_radius or 0.0) < outside:
+            reason = f"{shape.fixed_radius:g}: accepted from the ring's outer radius {outside:g} m on"
+            raise BadInput(Fault(source, "striker.radius", reason))
+
+    def check_depth(self, shape: Shape, depth: float) -> str:
+        """Not through the ring."""
+        thickness = 2.0 * self.section_radius
+        return f"accepted below the ring's thickness {thickness:g} m" if depth >= thickness else ""
+
+
+def of(mean_radius: float, section_radius: float) -> ORing:
+    """A ring of `mean_radius` and `section_radius`, m."""
+    return ORing(mean_radius, section_radius)

@@ -1,0 +1,44 @@
+"""A deformable sphere, struck by a sphere."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+from lumped.keys import Choice, Key, Number
+from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.two_profiles import TwoProfiles
+from lumped.shapes import Sphere as Profile
+from lumped.shapes.base import Shape
+from lumped.targets._round import SUPPORTS, Round
+
+KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "support": Choice(SUPPORTS, required=False)}
+
+
+class Sphere(Round):
+    """A sphere of this radius, m: a half-space under the gap of two spheres, finite where its support is said."""
+
+    name: ClassVar[str] = "sphere"
+    keys: ClassVar[Mapping[str, Key]] = KEYS
+    strikers: ClassVar[tuple[str, str]] = ("sphere", "parabola")
+
+    @property
+    def outline(self) -> Profile:
+        """Its own profile."""
+        return Profile(self.radius)
+
+    @property
+    def has_length(self) -> bool:
+        """Only where it is finite."""
+        return self.support is not None
+
+    def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
+        """Of two half-spaces under the gap of both profiles; raises BadInput for finite bodies."""
+        if self.support is not None:
+            return super().load_curve(shape, nu)
+        return TwoProfiles(shape.load_curve, self.matching(shape).load_curve)
+
+
+def of(radius: float, support: str | None = None) -> Sphere:
+    """A sphere of `radius`, m."""
+    return Sphere(radius, support)

@@ -1,0 +1,66 @@
+"""A ring of rectangular section on a rigid foundation, struck coaxially by a flat end."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lumped.errors import BadInput, Fault
+from lumped.keys import Choice, Key, Number, check_fields
+from lumped.shapes.base import Shape
+from lumped.targets.base import Target
+
+KEYS: Mapping[str, Key] = {
+    "inner_radius": Number(1e-9, 1e4, "m"),
+    "outer_radius": Number(1e-9, 1e4, "m"),
+    "height": Number(1e-9, 1e4, "m"),
+    "base": Choice(("bonded", "sliding")),
+}
+
+
+@dataclass(frozen=True)
+class Washer(Target):
+    """A washer of these dimensions, m, bonded to its foundation or sliding on it, always in touch. Raises BadInput."""
+
+    inner_radius: float
+    outer_radius: float
+    height: float
+    base: str
+    name: ClassVar[str] = "washer"
+    keys: ClassVar[Mapping[str, Key]] = KEYS
+    has_inertia: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        check_fields("washer", self, KEYS)
+        if self.inner_radius >= self.outer_radius:
+            reason = f"{self.inner_radius:g}: accepted below the outer radius {self.outer_radius:g} m"
+            raise BadInput(Fault("washer", "target.inner_radius", reason))
+
+    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
+        """depth - height(r); `r` from the axis."""
+        return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
+
+    def fixed_radius(self, shape: Shape) -> float | None:
+        """Up to the rim of the punch, or to its own."""
+        return None if shape.fixed_radius is None else min(shape.fixed_radius, self.outer_radius)
+
+    def check_striker(self, source: str, shape: Shape) -> None:
+        """Raise BadInput for a striker that is no punch, or passes through the hole."""
+        if shape.name != "punch":
+            raise BadInput(Fault(source, "striker.shape", f"{shape.name}: a washer is struck by a punch"))
+        if (shape.fixed_radius or 0.0) <= self.inner_radius:
+            reason = f"{shape.fixed_radius:g}: accepted above the washer's inner radius {self.inner_radius:g} m"
+            raise BadInput(Fault(source, "striker.radius", reason))
+
+    def check_depth(self, shape: Shape, depth: float) -> str:
+        """Not through the washer."""
+        return f"accepted below the washer's height {self.height:g} m" if depth >= self.height else ""
+
+
+def of(inner_radius: float, outer_radius: float, height: float, base: str) -> Washer:
+    """A washer of these dimensions, m, on a `base`."""
+    return Washer(inner_radius, outer_radius, height, base)

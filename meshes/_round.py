@@ -1,0 +1,34 @@
+"""Round sections with curved edges, fine around the point where they are touched first."""
+
+from __future__ import annotations
+
+import numpy as np
+from skfem import MeshTri, MeshTri2
+
+from meshes._sizes import beyond, distance, larger, smaller
+
+GROWTH = 0.4  # growth of the element size per unit distance from the surface, and from the contact outwards
+LARGEST = 0.3  # element size over radius
+ZONE = 1.1  # the surface is fine up to this multiple of the largest contact
+
+
+def sizes(elements: float, smallest: float, contact: float) -> str:
+    """Element size around the point (0, 0) of a circle of radius 1 about (0, -1), contacts up to ``contact``, rad.
+
+    ``elements`` along a half-width, down to the share ``smallest`` of the largest.
+    """
+    zone = ZONE * contact
+    within = smaller(larger("Fabs(x)", repr(smallest * contact)), repr(zone))
+    depth = f"Fabs(1-{distance(0.0, -1.0)})"
+    growing = f"(({within})/{elements!r}+{GROWTH!r}*({depth}+{beyond(distance(0.0, 0.0), zone)}))"
+    return smaller(growing, repr(LARGEST))
+
+
+def rounded(mesh: MeshTri) -> MeshTri2:
+    """The same triangles with their edges on ``surface`` bent onto the circle."""
+    bent = MeshTri2.from_mesh(mesh)
+    places = bent.doflocs.copy()
+    middles = mesh.p.shape[1] + mesh.boundaries["surface"]
+    arms = places[:, middles] - np.array([[0.0], [-1.0]])
+    places[:, middles] = np.array([[0.0], [-1.0]]) + arms / np.linalg.norm(arms, axis=0)
+    return MeshTri2(places, mesh.t).with_boundaries(dict(mesh.boundaries))

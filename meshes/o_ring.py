@@ -1,0 +1,45 @@
+"""The upper half of an O-ring's section, touched at its top."""
+
+from __future__ import annotations
+
+from skfem import MeshTri, MeshTri2
+
+from meshes._round import rounded, sizes
+from meshes._sizes import checked
+from meshes.session import session
+from meshes.triangles import triangulated
+
+
+def o_ring(elements: float, smallest: float, contact: float, mean_radius: float) -> MeshTri2:
+    """Curved triangles of the half disc ``z >= -1`` of radius 1 about (mean_radius, -1).
+
+    Parameters
+    ----------
+    elements : along a contact's half-width, 1 to 200.
+    smallest : the smallest contact to resolve so, over the largest, 1e-6 to 1.
+    contact : angle of the largest contact from its middle, 1e-9 to 1.4 rad.
+    mean_radius : of the ring over the section's, 1 to 1e9.
+
+    Returns
+    -------
+    MeshTri2 with coordinates (r, z) and boundaries ``surface`` (the circle), ``base`` (the middle plane).
+
+    Raises
+    ------
+    MeshError for numbers outside these ranges.
+    """
+    n, mean_radius = checked("elements", elements, 1.0, 200.0), checked("mean_radius", mean_radius, 1.0, 1e9)
+    size = sizes(n, checked("smallest", smallest, 1e-6, 1.0), checked("contact", contact, 1e-9, 1.4))
+    with session("o_ring") as gmsh:
+        geometry = gmsh.model.geo
+        left, top, right, centre = (geometry.addPoint(x, y, 0) for x, y in ((-1, -1), (0, 0), (1, -1), (0, -1)))
+        arcs = [geometry.addCircleArc(right, centre, top), geometry.addCircleArc(top, centre, left)]
+        outline = [geometry.addLine(left, centre), geometry.addLine(centre, right), *arcs]
+        geometry.addPlaneSurface([geometry.addCurveLoop(outline)])
+        geometry.synchronize()
+        nodes, triangles = triangulated(gmsh, size)
+    nodes[1, abs(nodes[1] + 1.0) < 1e-14] = -1.0  # onto the middle plane
+    section = MeshTri(nodes, triangles).with_boundaries(
+        {"surface": lambda x: x[1] > -1.0, "base": lambda x: x[1] == -1.0}
+    )
+    return rounded(section).translated((mean_radius, 0.0))

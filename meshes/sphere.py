@@ -1,0 +1,47 @@
+"""Half a disc, touched at its pole: the section of a sphere, or half of a cylinder's."""
+
+from __future__ import annotations
+
+from skfem import MeshTri, MeshTri2
+
+from meshes._round import rounded, sizes
+from meshes._sizes import checked
+from meshes.session import session
+from meshes.triangles import triangulated
+
+
+def sphere(elements: float, smallest: float, contact: float) -> MeshTri2:
+    """Curved triangles of the half disc ``x >= 0`` of radius 1 about (0, -1), its middle plane a line of nodes.
+
+    Parameters
+    ----------
+    elements : along a contact's half-width, 1 to 200.
+    smallest : the smallest contact to resolve so, over the largest, 1e-6 to 1.
+    contact : angle of the largest contact from its middle, 1e-9 to 1.4 rad.
+
+    Returns
+    -------
+    MeshTri2 with coordinates (r, z) and boundaries ``surface`` (the circle), ``axis`` (x = 0).
+
+    Raises
+    ------
+    MeshError for numbers outside these ranges.
+    """
+    n = checked("elements", elements, 1.0, 200.0)
+    size = sizes(n, checked("smallest", smallest, 1e-6, 1.0), checked("contact", contact, 1e-9, 1.4))
+    with session("sphere") as gmsh:
+        geometry = gmsh.model.geo
+        corners = ((0, 0), (1, -1), (0, -2), (0, -1))
+        pole, equator, foot, centre = (geometry.addPoint(x, y, 0) for x, y in corners)
+        middle = geometry.addLine(centre, equator)
+        upper = [geometry.addLine(pole, centre), middle, geometry.addCircleArc(equator, centre, pole)]
+        lower = [geometry.addLine(centre, foot), geometry.addCircleArc(foot, centre, equator), -middle]
+        for outline in (upper, lower):
+            geometry.addPlaneSurface([geometry.addCurveLoop(outline)])
+        geometry.synchronize()
+        nodes, triangles = triangulated(gmsh, size)
+    nodes[0, abs(nodes[0]) < 1e-14] = 0.0  # onto the axis exactly
+    nodes[1, abs(nodes[1] + 1.0) < 1e-14] = -1.0  # onto the middle plane
+    return rounded(
+        MeshTri(nodes, triangles).with_boundaries({"surface": lambda x: x[0] > 0.0, "axis": lambda x: x[0] == 0.0})
+    )
