@@ -99,7 +99,8 @@ def _operator(
     around = 1.0 if plane else 2.0 * np.pi * np.asarray(basis.global_coordinates())[0]
     floating = None if support else Floating.of(basis, around * np.asarray(basis.dx))
     fixed = _fixed(basis, support)
-    return condensed(basis, matrix, fixed, poisson, crown(basis, contact, None if plane else 0.0), floating)
+    surface = crown(basis, contact, None if plane else 0.0)
+    return condensed(basis, matrix, fixed, poisson, surface, floating=floating)
 
 
 def _fixed(basis: Basis, support: bool) -> npt.NDArray[np.int64]:
