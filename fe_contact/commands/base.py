@@ -37,10 +37,15 @@ def scene_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def json_argument(parser: argparse.ArgumentParser) -> None:
+    """--json."""
+    parser.add_argument("--json", action="store_true", help="machine-readable result on stdout")
+
+
 def output_arguments(parser: argparse.ArgumentParser) -> None:
     """--out, --json and --quiet."""
     parser.add_argument("--out", type=Path, help="folder for the results")
-    parser.add_argument("--json", action="store_true", help="machine-readable result on stdout")
+    json_argument(parser)
     parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 
 from fe_contact.commands import base
 
@@ -10,13 +11,14 @@ SUMMARY = "the lumped laws, one line each"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """No arguments."""
+    """[--json]."""
+    base.json_argument(parser)
 
 
 def execute(args: argparse.Namespace) -> int:
     """Print; 0."""
     from lumped import laws
 
-    for name in laws.available():
-        print(f"{name:20s} {(laws.get(name).__doc__ or '').splitlines()[0]}")
+    known = {name: (laws.get(name).__doc__ or "").splitlines()[0] for name in laws.available()}
+    print(json.dumps(known) if args.json else "\n".join(f"{name:20s} {says}" for name, says in known.items()))
     return base.DONE

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 
 from fe_contact.commands import base
 from lumped.scene import Scene
@@ -11,16 +12,21 @@ SUMMARY = "the packaged scenes, one line each"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """No arguments."""
+    """[--json]."""
+    base.json_argument(parser)
 
 
 def execute(args: argparse.Namespace) -> int:
     """Print; 0."""
     from lumped.data import scene_names
 
-    for name in scene_names():
-        scene = Scene.load(name)
-        print(f"{name:20s} {described(scene)}, {scene.mass:g} kg at {scene.velocity:g} m/s")
+    scenes = {name: Scene.load(name) for name in scene_names()}
+    if args.json:
+        print(json.dumps({name: scene.to_dict() for name, scene in scenes.items()}, allow_nan=False))
+        return base.DONE
+    width = max(map(len, scenes))
+    for name, scene in scenes.items():
+        print(f"{name:{width}s} {described(scene)}, {scene.mass:g} kg at {scene.velocity:g} m/s")
     return base.DONE
 
 

@@ -15,6 +15,7 @@ import pytest
 from fe_contact import stepping
 from fe_contact.cli import COMMANDS, main
 from fe_contact.targets import half_space
+from lumped import Scene, laws
 from lumped.data import scene_names
 from lumped.members import available
 from meshes import session
@@ -382,6 +383,22 @@ def test_scenes_and_laws_list_one_a_line(capsys: pytest.CaptureFixture[str]) -> 
     assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(scene_names())
     assert exit_code("laws") == 0
     assert {"mdr", "ting"} <= {line.split()[0] for line in capsys.readouterr().out.splitlines()}
+
+
+def test_scenes_and_laws_are_machine_readable(capsys: pytest.CaptureFixture[str]) -> None:
+    assert exit_code("scenes", "--json") == 0
+    tables = json.loads(capsys.readouterr().out)
+    assert {name: Scene.from_dict(table, name).to_dict() for name, table in tables.items()} == tables
+    assert list(tables) == list(scene_names())
+    assert exit_code("laws", "--json") == 0
+    assert list(json.loads(capsys.readouterr().out)) == list(laws.available())
+
+
+def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--help"])
+    assert ended.value.code == 0
+    assert set(available(COMMANDS)) - {"base"} <= set(capsys.readouterr().out.split())
 
 
 def test_the_module_runs_as_a_process(empty: Path) -> None:
