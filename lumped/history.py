@@ -24,7 +24,8 @@ COLUMNS = {
 }
 LEAST_ROWS = 201
 MOST_ROWS = 100_001
-SHORTEST = 2.0**-50
+# Relative to the time at the end of an interval, and of the first one to the whole: what halving stops at.
+SHORTEST, FIRST = 2.0**-50, 1e-150
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,21 +111,22 @@ def densified(times: ArrayLike, force: Callable[[Array], Array], tolerance: floa
     """Times between which linear interpolation of `force` errs by less than `tolerance` times its peak.
 
     `times` is where to start, shape (n,), n >= 2; `force` maps times, s, to forces, N. At least 201 rows come
-    back; an interval stops being halved when it is 2^-50 of the whole (a step in the force) or at 100001
-    rows.
+    back; an interval stops being halved when it is 2^-50 of the time there (a step in the force), the first one,
+    where a force may rise with a small power of time, when it is 1e-150 of the whole, or at 100001 rows.
     """
     t = np.unique(np.asarray(times, dtype=float))
     while t.size < LEAST_ROWS:
         t = np.sort(np.concatenate([t, 0.5 * (t[:-1] + t[1:])]))
     f = force(t)
-    shortest = (t[-1] - t[0]) * SHORTEST
+    start, first = t[0], FIRST * (t[-1] - t[0])
     rough = np.ones(t.size - 1, dtype=bool)
     while rough.any() and t.size < MOST_ROWS:
         middle = 0.5 * (t[:-1] + t[1:])[rough]
         at_middle = force(middle)
         off = np.abs(at_middle - 0.5 * (f[:-1] + f[1:])[rough])
         # A smooth arc deviates most at its middle; half of the allowance covers one that does not.
-        again = (off > 0.5 * tolerance * np.abs(f).max()) & (np.diff(t)[rough] > shortest)
+        long = np.diff(t)[rough] > np.maximum(SHORTEST * np.maximum(t[1:][rough] - start, abs(start)), first)
+        again = (off > 0.5 * tolerance * np.abs(f).max()) & long
         t, f, rough = _refined(t, f, middle[again], at_middle[again])
     return t
 

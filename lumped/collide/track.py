@@ -22,16 +22,21 @@ Array = NDArray[np.float64]
 # How near to a touch the rows begin, as a power of 1/2, in the length of its step.
 NEAREST = 48.0
 IN_FLIGHT = 17
+# Share of a step within which its first depth and the mean rate tell the depth better than its polynomial.
+EARLY = 1e-8
 
 
 class Row(NamedTuple):
     """The steps of a stage side by side, n of them: starts and lengths, s, and what their nodes are, shape (n,).
 
-    `series`, shape (n, 2, s + 1), are the Legendre coefficients of depth and rate over the place.
+    `depths` and `rates` are those at their starts. `series`, shape (n, 2, s + 1), are the Legendre coefficients of
+    depth and rate over the place.
     """
 
     starts: Array
     lengths: Array
+    depths: Array
+    rates: Array
     powers: Array
     begun: Array
     mirrored: NDArray[np.bool_]
@@ -43,11 +48,12 @@ class Row(NamedTuple):
         """Those of a phase."""
         lengths = np.array([step.length for step in phase.steps])
         starts = phase.start_time + np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
+        depths, rates = np.array([step.start[:2] for step in phase.steps]).T
         powers = np.array([float(step.nodes.power) for step in phase.steps])
         begun = np.array([step.nodes.begun for step in phase.steps])
         mirrored = np.array([step.nodes.mirrored for step in phase.steps])
         series = np.array([_series(step) for step in phase.steps])
-        return cls(starts, lengths, powers, begun, mirrored, series, bool((powers > 1.0).any()))
+        return cls(starts, lengths, depths, rates, powers, begun, mirrored, series, bool((powers > 1.0).any()))
 
 
 @dataclass(frozen=True)
@@ -120,9 +126,14 @@ class Track:
         """The columns at times within one of its phases, shape (3, n)."""
         row = self._rows[id(phase)]
         which = np.maximum(np.searchsorted(row.starts, times, side="right") - 1, 0)
-        share = np.minimum((times - row.starts[which]) / row.lengths[which], 1.0)
+        elapsed = times - row.starts[which]
+        share = np.minimum(elapsed / row.lengths[which], 1.0)
         place = place_of(share, row.powers[which], row.begun[which], row.mirrored[which]) if row.graded else share
         depth, rate = np.einsum("kn,njk->jn", legendre_terms(2.0 * place - 1.0), row.series[which])
+        # Forces may rise with a small power of the depth: after a touch it is wanted to its own digits, not its scale's.
+        first = row.rates[which]
+        rate = np.where(share > 0.0, rate, first)
+        depth = np.where(share < EARLY, row.depths[which] + 0.5 * elapsed * (first + rate), depth)
         return np.array([depth, rate, self.law.between(phase.steps, which, share, depth, rate, phase.stage)])
 
 

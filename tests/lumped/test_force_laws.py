@@ -412,3 +412,20 @@ def test_hardly_any_damping_hardly_loses_energy(name: str, key: str, exit: str) 
         case = scene(name, exit=exit, **{key: damping})
         energy = laws.get(name).of(case).simulate(case, 1e-2).energy
         assert abs(energy["residual"]) <= 1e-8 * energy["in"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_first_row_is_the_touch(name: str) -> None:
+    history = laws.get(name).of(case := scene(name, **OWN[name])).simulate(case, 1e-3).history
+    assert (history.time[0], history.depth[0], history.velocity[0]) == (0.0, 0.0, VELOCITY)
+
+
+@pytest.mark.parametrize("alpha", [1.05, 1.3, 1.5])
+def test_a_force_steep_at_touch_is_right_from_the_first_rows_on(alpha: float) -> None:
+    """Tsuji's damper rises with the power (alpha - 1)/2 of the depth, which is v t there: shares of 1e-18 matter."""
+    law = laws.get("tsuji").of(case := scene("tsuji", alpha=alpha, alpha_t=0.6))
+    history = law.simulate(case, 1e-3).history
+    early = (history.time > 0.0) & (history.time < 1e-12 * history.time[-1])
+    expected = law.force(VELOCITY * history.time[early], VELOCITY, Stage(True, 0.0, VELOCITY))
+    assert early.sum() > 10
+    assert history.force[early] == pytest.approx(expected, rel=1e-7)
