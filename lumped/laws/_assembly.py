@@ -68,6 +68,18 @@ class Clock:
         return {"wall_s": perf_counter() - self.wall, "cpu_s": process_time() - self.cpu}
 
 
+def impulse_of(scene: Scene, end: End, velocity: float, time: float, until: float) -> float | None:
+    """What the force has passed on by the last row, N s: the momentum lost, and what gravity gave meanwhile.
+
+    `velocity`, m/s, at `time`, s, is the last one; at rest the weight is borne `until` then. None where a second
+    approach was not followed.
+    """
+    if end is End.SECOND_APPROACH:
+        return None
+    lost, lasted = (scene.velocity, until) if end is End.REST else (scene.velocity - velocity, time)
+    return float(scene.reduced_mass * (lost + scene.gravity * lasted))
+
+
 def force_difference(fine: Answer, coarse: Answer) -> tuple[float, float]:
     """Largest difference of the two forces over time, N, and its L2 norm over that of the force."""
     t = np.unique(np.concatenate([fine.times, coarse.times]))

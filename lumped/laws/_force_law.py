@@ -19,7 +19,7 @@ from lumped.collide.phase import Phase
 from lumped.collide.step import Step
 from lumped.collide.track import Track
 from lumped.ending import End
-from lumped.laws._assembly import Answer, Clock, assemble, bars
+from lumped.laws._assembly import Answer, Clock, assemble, bars, impulse_of
 from lumped.load_curves.base import LoadCurve
 from lumped.result import Result, meets
 from lumped.scene import END_IN_CONTACT_TIMES, Model, Scene
@@ -174,15 +174,14 @@ class ForceLaw(ABC):
 
     def _values(self, scene: Scene, moved: Motion, outcomes: Sequence[Outcome]) -> Mapping[str, float | None]:
         highest = max(outcomes, key=lambda outcome: outcome.peak_force)
-        gained = sum(one.first.rate - one.last.rate for one in moved.contacts)
-        fallen = scene.gravity * sum(one.end_time - one.start_time for one in moved.contacts)
+        last = moved.contacts[-1]
         return {
             "peak_force": highest.peak_force,
             "peak_time": highest.peak_time,
             "peak_depth": max(outcome.peak_depth for outcome in outcomes),
             "duration": outcomes[0].duration,
             "restitution": outcomes[0].restitution,
-            "impulse": scene.reduced_mass * (gained + fallen),
+            "impulse": impulse_of(scene, moved.end, last.last.rate, last.end_time, self._until(scene)),
         }
 
     def _energy(self, scene: Scene, moved: Motion) -> dict[str, float | None]:

@@ -16,7 +16,7 @@ from lumped.hereditary.march import Settings
 from lumped.hereditary.phase import Phase
 from lumped.hereditary.problem import Hereditary
 from lumped.hereditary.rebound import Rebound
-from lumped.laws._assembly import Answer, Clock, assemble, bars
+from lumped.laws._assembly import Answer, Clock, assemble, bars, impulse_of
 from lumped.result import Result, meets
 from lumped.scales import stiffest_impact
 from lumped.scene import Scene
@@ -99,9 +99,7 @@ def problem_of(scene: Scene) -> Hereditary:
     mass, velocity = scene.reduced_mass, scene.velocity
     shortest = stiffest_impact(scene.profile, scene.contact_modulus, mass, velocity).duration
     modulus = scene.contact_modulus.scaled(scene.geometry.shape.total)
-    return Hereditary.of(
-        scene.load_curve, modulus, mass, velocity, scene.gravity, scene.elastic_contact_time, shortest
-    )
+    return Hereditary.of(scene.load_curve, modulus, mass, velocity, scene.gravity, scene.elastic_contact_time, shortest)
 
 
 def once(scene: Scene, rtol: float, solve: Solve) -> Answer:
@@ -116,14 +114,13 @@ def answer_of(scene: Scene, problem: Hereditary, course: Course) -> Answer:
     (peak_time, force), (_, depth) = course.highest(3), course.highest(0)
     last = course.phases[-1]
     velocity, duration = float(last.last[1]) * scales.velocity, float(last.times[-1]) * scales.time
-    impulse = scene.reduced_mass * (scene.velocity - velocity + scene.gravity * duration)
     values: Mapping[str, float | None] = {
         "peak_force": force * scales.force,
         "peak_time": peak_time * scales.time,
         "peak_depth": depth * scales.depth,
         "duration": duration if separated else None,
         "restitution": -velocity / scene.velocity if separated else None,
-        "impulse": None if course.end is End.SECOND_APPROACH else impulse,
+        "impulse": impulse_of(scene, course.end, velocity, duration, scene.end_time),
     }
     said = "" if separated else course.end.value
     columns = _Columns(problem, course)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lumped.ending import End
 from lumped.errors import BadInput, Fault
 from lumped.interpolation import local, peak
-from lumped.laws._assembly import Answer, Clock, assemble, bars
+from lumped.laws._assembly import Answer, Clock, assemble, bars, impulse_of
 from lumped.laws._half_space import KEYS as KEYS
 from lumped.laws._half_space import check
 from lumped.result import Result, meets
@@ -104,14 +104,13 @@ def _answer(scene: Scene, end: End, level: Level, metered: Level) -> Answer:
     whole = np.hstack([level.approach, level.rebound[:, 1:]]) if level.rebound.size else level.approach
     time, depth, velocity, _, force, _ = whole
     peak_time, peak_force = peak(time, force)
-    impulse = scene.reduced_mass * (scene.velocity - velocity[-1] + scene.gravity * time[-1])
     values = {
         "peak_force": peak_force,
         "peak_time": peak_time,
         "peak_depth": float(depth.max()),
         "duration": float(time[-1]) if separated else None,
         "restitution": float(-velocity[-1]) / scene.velocity if separated else None,
-        "impulse": None if end is End.SECOND_APPROACH else float(impulse),
+        "impulse": impulse_of(scene, end, velocity[-1], time[-1], scene.end_time),
     }
     message = "" if separated else end.value
     return Answer(time, _Dense(level, separated), values, end, _energy(scene, metered), message)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -429,3 +430,17 @@ def test_a_force_steep_at_touch_is_right_from_the_first_rows_on(alpha: float) ->
     expected = law.force(VELOCITY * history.time[early], VELOCITY, Stage(True, 0.0, VELOCITY))
     assert early.sum() > 10
     assert history.force[early] == pytest.approx(expected, rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("name", "damping"), [("kelvin", {"c": 500.0}), ("hertzdamp", {"xi": 5.0}), ("tsuji", {"e": 0.1})]
+)
+def test_a_striker_come_to_rest_under_gravity_has_an_impulse(name: str, damping: dict[str, float]) -> None:
+    """m (v + g t) by the end of the history, which the rows integrate to: the weight is borne after the rest too."""
+    case = replace(scene(name, velocity=0.3, k=1e5, **damping), model=Model(gravity=9.81))
+    result = laws.get(name).of(case).simulate(case, 1e-3)
+    assert result.converged
+    assert not result.separated
+    history, impulse = result.history, result.quantities["impulse"].value
+    assert impulse == pytest.approx(MASS * (0.3 + 9.81 * history.time[-1]), rel=1e-6)
+    assert impulse == pytest.approx(np.trapezoid(history.force, history.time), rel=1e-4)
