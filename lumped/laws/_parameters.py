@@ -23,8 +23,8 @@ COMMON: Mapping[str, Key] = {
     "exit": Choice(("force", "depth"), required=False),
 }
 RESTITUTION: Mapping[str, Key] = {"e": Number(1e-4, 1.0, required=False)}
-# The exact law that tells the restitution of a scene's own material, and how well.
-EXACT, EXACT_TOLERANCE = "mdr", 1e-4
+# The exact laws that tell the restitution of a scene's own material, the second where contact has a fixed area.
+EXACT, EXACT_FIXED, EXACT_TOLERANCE = "mdr", "ting", 1e-4
 
 
 def damping_keys(*names: str, unit: str = "") -> Mapping[str, Key]:
@@ -133,10 +133,11 @@ class Parameters:
 
         if self.scene.contact_modulus.is_elastic:
             return 1.0
-        e = laws.get(EXACT).of(self.scene).simulate(self.scene, EXACT_TOLERANCE).quantities["restitution"].value
+        exact = EXACT if self.scene.profile.fixed_radius is None else EXACT_FIXED
+        e = laws.get(exact).of(self.scene).simulate(self.scene, EXACT_TOLERANCE).quantities["restitution"].value
         if e is None:
             reason = f"the scene does not separate, so it has no restitution to take; accepted: law.e for {self.name}"
             self.faults.append(Fault(self.scene.source, "law.e", reason))
             return 1.0
-        self.taken.append(f"e = {e:.6g} of the scene by {EXACT}")
+        self.taken.append(f"e = {e:.6g} of the scene by {exact}")
         return float(min(max(e, 1e-4), 1.0))

@@ -142,3 +142,13 @@ def test_undamped_and_of_geometry_every_law_peaks_as_hertz_does(name: str, impac
     found = simulate(laws.get(name).of(scene), scene, 1e-6).quantities
     assert found["peak_force"].value == pytest.approx(hertz.force, rel=1e-9)
     assert found["restitution"].value == pytest.approx(1.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", FORCE_LAWS)
+def test_a_fixed_contact_area_has_a_restitution_to_take_too(name: str) -> None:
+    material = {"law": "sls", "E1": 1.8e6, "E2": 0.9e6, "C1": 1.8e3, "nu": 0.45}
+    striker = {"shape": "punch", "radius": 0.005, "mass": 0.01, "velocity": 0.1}
+    scene, _ = read({"striker": striker, "target": {"shape": "half_space", "material": material}})
+    exact = simulate(laws.get("correspondence").of(scene), scene, 1e-6).quantities["restitution"].value
+    found = simulate(laws.get(name).of(scene), scene, 1e-6).quantities["restitution"].value
+    assert found == pytest.approx(exact if "e" in laws.get(name).KEYS else 1.0, abs=1e-6)
