@@ -56,10 +56,12 @@ class Descent:
         from scipy.optimize import least_squares
 
         search: Any = least_squares  # its stubs know only their own array shapes
-        solution = search(
-            self.error, self._place(self.start.values), self.slopes, bounds=self._limits().T,
-            xtol=TOLERANCE, ftol=TOLERANCE, gtol=None, max_nfev=MOST_STEPS,
-        )  # fmt: skip
+        # Where no parameter changes the curve it divides by slopes of zero.
+        with np.errstate(all="ignore"):
+            solution = search(
+                self.error, self._place(self.start.values), self.slopes, bounds=self._limits().T,
+                xtol=TOLERANCE, ftol=TOLERANCE, gtol=None, max_nfev=MOST_STEPS,
+            )  # fmt: skip
         try:
             values = self._whole(solution.x)
         except NotReached:
