@@ -34,8 +34,8 @@ def first_fall(flow: Flow, time: float, state: Array, times: Array, states: Arra
     rows, constants = flow.levels
     times, states = np.append(time, times), np.concatenate([state[:, None], states], axis=1)
     levels, slopes = rows @ states + constants[:, None], rows @ flow.matrix @ states
-    zero = np.abs(levels[:, 0]) <= ROUNDING * (np.abs(rows) @ np.abs(state) + np.abs(constants))
-    begun = zero & fresh
+    # Where a phase begins no level lies below zero, but for the rounding of the switch before.
+    begun = (levels[:, 0] <= ROUNDING * (np.abs(rows) @ np.abs(state) + np.abs(constants))) & fresh
     for i in np.flatnonzero(_suspect(times, levels, slopes, begun)):
         falls = []
         for level in range(constants.size):
