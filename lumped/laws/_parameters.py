@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from lumped import restitution
@@ -128,13 +128,14 @@ class Parameters:
         self.faults.append(Fault(self.scene.source, f"law.{key}", f"missing; accepted: {accepted}"))
 
     def _own_restitution(self) -> float:
-        """The restitution of the scene by the exact law. Raises NotReached."""
+        """The restitution of the scene's first impact by the exact law. Raises NotReached."""
         from lumped import laws
 
         if self.scene.contact_modulus.is_elastic:
             return 1.0
         exact = EXACT if self.scene.profile.fixed_radius is None else EXACT_FIXED
-        e = laws.get(exact).of(self.scene).simulate(self.scene, EXACT_TOLERANCE).quantities["restitution"].value
+        once = replace(self.scene, motion=replace(self.scene.motion, impacts=1))
+        e = laws.get(exact).of(once).simulate(once, EXACT_TOLERANCE).quantities["restitution"].value
         if e is None:
             reason = f"the scene does not separate, so it has no restitution to take; accepted: law.e for {self.name}"
             self.faults.append(Fault(self.scene.source, "law.e", reason))

@@ -5,11 +5,12 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from lumped import BadInput, Scene, laws, simulate
+from lumped import BadInput, Motion, Scene, laws, simulate
 from lumped.scene_file import read
 
 BARE: dict[str, Any] = {
@@ -17,6 +18,7 @@ BARE: dict[str, Any] = {
     "law": {"name": "jankowski", "k": 1e6, "e": 0.6, "alpha": 1.4, "gap": 1e-12, "exit": "force"},
 }
 FORCE_LAWS = sorted(set(laws.available()) - {"correspondence", "ting", "mdr"})
+DAMPED = [name for name in FORCE_LAWS if "e" in laws.get(name).KEYS]
 
 
 def changed(**law: Any) -> dict[str, Any]:
@@ -152,3 +154,10 @@ def test_a_fixed_contact_area_has_a_restitution_to_take_too(name: str) -> None:
     exact = simulate(laws.get("correspondence").of(scene), scene, 1e-6).quantities["restitution"].value
     found = simulate(laws.get(name).of(scene), scene, 1e-6).quantities["restitution"].value
     assert found == pytest.approx(exact if "e" in laws.get(name).KEYS else 1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("name", DAMPED)
+def test_several_impacts_on_a_material_take_the_restitution_of_one(name: str, impact: Callable[..., Scene]) -> None:
+    once = impact(0.5, (0.5,), (1.0,))
+    expected = laws.get(name).of(once).parameters
+    assert laws.get(name).of(replace(once, motion=Motion(impacts=3))).parameters == expected
