@@ -131,9 +131,8 @@ class Track:
         place = place_of(share, row.powers[which], row.begun[which], row.mirrored[which]) if row.graded else share
         depth, rate = np.einsum("kn,njk->jn", legendre_terms(2.0 * place - 1.0), row.series[which])
         # Forces may rise with a small power of the depth: after a touch all digits of it count.
-        first = row.rates[which]
-        rate = np.where(share > 0.0, rate, first)
-        depth = np.where(share < EARLY, row.depths[which] + 0.5 * elapsed * (first + rate), depth)
+        mean = 0.5 * (row.rates[which] + rate)
+        depth = np.where(share < EARLY, row.depths[which] + elapsed * mean, depth)
         return np.array([depth, rate, self.law.between(phase.steps, which, share, depth, rate, phase.stage)])
 
 

@@ -123,6 +123,7 @@ def assemble(
     """
     times = densified(answer.rows(scene), lambda t: answer.columns(t)[2], max(tolerance, FINEST_ROWS))
     depth, velocity, force, radius = answer.columns(times)
+    depth[0], velocity[0] = 0.0, scene.velocity  # the touch, which the polynomials know to rounding
     # The rows themselves add what linear interpolation errs by, less than the tolerance; the bar is for the
     # rows.
     history = History(times, depth, velocity, force, radius, np.full(times.size, force_error))

@@ -160,3 +160,11 @@ def test_bars_never_rest_on_one_chance_agreement() -> None:
 
     quantities, _ = bars(answer(0.0), answer(1e-3), 1.5)
     assert quantities["peak_depth"].error == pytest.approx(0.1 * (quantities["history_l2"].error or 0.0), rel=1e-6)
+
+
+@pytest.mark.parametrize("law", ["ting", "mdr", "correspondence"])
+@pytest.mark.parametrize("case", ["elastic", "three terms", "kelvin-voigt", "all at once"])
+def test_the_first_row_is_the_touch(law: str, case: str, impact: Callable[..., Scene]) -> None:
+    scene = impact(**CASES[case])
+    history = simulate(laws.get(law).of(scene), scene, 1e-3).history
+    assert (history.time[0], history.depth[0], history.velocity[0]) == (0.0, 0.0, scene.velocity)
