@@ -16,5 +16,9 @@ def get(name: str) -> Any:
     return _members.get(__name__, name, source="law")
 
 
-for _name in available():
-    _members.get(__name__, _name)
+
+def __getattr__(name: str) -> Any:
+    """The law's module, imported when it is first asked for: `lumped.laws.ting`."""
+    if name in available():
+        return get(name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

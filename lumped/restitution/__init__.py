@@ -41,5 +41,9 @@ def damping(family: Family, e: float, exit: str = "force", formula: str = EXACT)
     return family.published[formula](e)
 
 
-for _name in available():
-    _members.get(__name__, _name)
+
+def __getattr__(name: str) -> Family:
+    """The family's module, imported when it is first asked for: `lumped.restitution.kelvin`."""
+    if name in available():
+        return get(name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
