@@ -27,7 +27,7 @@ RESULT_TOLERANCE = 1e-6
 STIFFNESSES = ("k", "k1", "E", "E0", "E1", "R1", "E2")
 
 
-def fit(
+def search(
     curve: History | Curve,
     law: str,
     scene: Scene,
@@ -36,14 +36,7 @@ def fit(
     bounds: Bounds | None = None,
     peak: bool = False,
 ) -> Fit:
-    """Fit the law of this name to a force over time; mass, velocity and geometry are the scene's.
-
-    `free`: names of the parameters to find, the law's own (`k`, `alpha`, `xi`, `e` ...), those of the material
-    (`E0`, `R1`, `R2`; `E1`, `E2`, `C1`; `E`, `eta`) or `touch`, when the bodies meet on the curve's clock, s. By
-    default stiffness and damping, or R1 and R2. `fixed`: values held; the rest is the scene's. `bounds`: name ->
-    (low, high). `peak`: least error at equal peak force, as "(26)". Raises BadInput, and NotReached where no
-    search converges.
-    """
+    """See :func:`lumped.fit`."""
     space = space_of(law, scene, free, fixed or {}, bounds or {})
     measured = Measured.of(curve)
     if measured.points <= len(space.free):
