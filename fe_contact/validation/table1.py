@@ -1,11 +1,12 @@
 """Table 1 on trial: D, E* and alpha of every row, identified from slow indentation by finite elements.
 
 At nu = 0 every modulus of the table is Young's: the force there tells D and alpha, and forces at other Poisson's
-ratios over it tell E*.
+ratios over it tell E*. Line contact tells its E* by the slope of its logarithm.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -17,6 +18,7 @@ from fe_contact.progress import Progress, silent
 from fe_contact.validation.datum import Place, places
 from lumped.errors import NotReached
 from lumped.indentation import Indentation, power_law
+from lumped.indenter import Indenter
 from lumped.result import Quantity
 from lumped.table1 import Elastic, Row, examples
 
@@ -24,9 +26,11 @@ RATIOS = (0.0, 0.23, 0.45)
 YOUNG = 1e9  # Pa
 SHALLOW = tuple(float(share) for share in np.geomspace(1e-5, 1e-3, 5))  # depths over the row's length: they identify
 DEEP = tuple(float(share) for share in np.geomspace(2e-3, 0.5, 16))  # they tell how far the power law holds
-LINE_DEPTHS = (0.01,)  # line contact has no power law to look for
+WHOLE = tuple(float(share) for share in np.geomspace(1e-4, 0.1, 7))  # the same for bodies of their true size
+LINE = (1e-5, 1e-4)  # line contact has no power law to look for
 TOLERANCE = 3e-4
 LIMIT = 0.01  # departure from the power law that counts as its end
+LEAST = 1e-9  # departure below which rounding rules
 
 
 @dataclass(frozen=True)
@@ -81,23 +85,28 @@ def table1(progress: Progress = silent) -> tuple[Trial, ...]:
 
 def trial(row: Row) -> Trial:
     """One row; what finite elements cannot answer is said in ``failure``."""
-    depths = np.array(SHALLOW + DEEP if row.single else LINE_DEPTHS) * row.length
     try:
-        curves = {nu: _pressed(row, nu, depths) for nu in RATIOS}
-        place = places(row, bodies(row, RATIOS[1])) if not row.single else ()
+        return _power_law(row) if row.single else _line_contact(row)
     except NotReached as failure:
         return Trial(row, failure=str(failure))
-    moduli = identified_moduli(row, curves)
-    if not row.single:
-        return Trial(row, moduli=moduli, datum=place)
-    return Trial(row, *identified_law(row, curves[0.0]), moduli, reach(row, curves))
 
 
-def _pressed(row: Row, nu: float, depths: Array) -> Indentation:
-    scene = row.scene(*bodies(row, nu))
-    if scene is None:
-        raise NotReached("finite elements have no such body in this version")
-    return indent(scene, tuple(float(depth) for depth in depths), {"tolerance": TOLERANCE})
+def _power_law(row: Row) -> Trial:
+    curves = {nu: _pressed(row, row.scene(*bodies(row, nu)), SHALLOW + DEEP) for nu in RATIOS}
+    whole, far = row.whole_scene(*bodies(row, RATIOS[1])), curves
+    if whole != row.scene(*bodies(row, RATIOS[1])):
+        far = {RATIOS[1]: _pressed(row, whole, WHOLE)}
+    return Trial(row, *identified_law(row, curves[0.0]), identified_moduli(row, curves), reach(row, far))
+
+
+def _line_contact(row: Row) -> Trial:
+    curves = {nu: _pressed(row, row.scene(*bodies(row, nu)), LINE) for nu in RATIOS}
+    moduli = {nu: logarithms_modulus(row, curve) for nu, curve in curves.items()}
+    return Trial(row, moduli=moduli, datum=places(row, *bodies(row, RATIOS[1])))
+
+
+def _pressed(row: Row, scene: Indenter, shares: tuple[float, ...]) -> Indentation:
+    return indent(scene, tuple(share * row.length for share in shares), {"tolerance": TOLERANCE})
 
 
 def identified_law(row: Row, curve: Indentation) -> tuple[Quantity, Quantity]:
@@ -120,6 +129,18 @@ def identified_moduli(row: Row, curves: Mapping[float, Indentation]) -> dict[flo
     return found
 
 
+def logarithms_modulus(row: Row, curve: Indentation) -> Quantity:
+    """E*, Pa: b^2 = 4 R F/(pi E* l), so that from one small contact to another depth/F falls by ln F/(pi E* l).
+
+    Where bodies end and where they are held adds the same to both.
+    """
+    length = row.factor / (0.25 * np.pi)
+    compliance, relative = curve.depth / curve.force, curve.force_error / curve.force
+    fall, growth = float(compliance[0] - compliance[1]), float(np.log(curve.force[1] / curve.force[0]))
+    value = growth / (np.pi * length * fall)
+    return Quantity(value, value * float(relative.sum() / growth + compliance @ relative / fall), "Pa")
+
+
 def reach(row: Row, curves: Mapping[float, Indentation]) -> Reach:
     """How deep the corrected row holds within 1 %, at every nu."""
     departures, bars = [], []
@@ -128,13 +149,13 @@ def reach(row: Row, curves: Mapping[float, Indentation]) -> Reach:
         bars.append(curve.force_error / curve.force)
     every = np.array(departures)
     worst = every[np.abs(every).argmax(axis=0), np.arange(every.shape[1])]
-    share = curves[0.0].depth / row.length
+    share = next(iter(curves.values())).depth / row.length
     held = _held(share, np.abs(worst), np.max(bars, axis=0))
     return Reach(float(share[0]), float(share[-1]), held, share, worst)
 
 
 def _held(share: Array, departure: Array, bar: Array) -> Quantity:
-    """The first depth at which a departure passes the limit, by a parabola through three depths around it.
+    """The first depth at which a departure passes the limit, by a parabola through three depths, all in logarithms.
 
     Its bar: how far the bars of the forces move it, and how far it lies from the straight line's answer.
     """
@@ -144,11 +165,11 @@ def _held(share: Array, departure: Array, bar: Array) -> Quantity:
     if beyond[0] == 0:
         return Quantity(0.0, float(share[0]), "1")
     end = int(beyond[0])
-    low, high = departure[end - 1], departure[end]
-    slope = (high - low) / (share[end] - share[end - 1])
-    straight = share[end - 1] + (LIMIT - low) / slope
-    start = max(end - 2, 0)
-    fit = np.polynomial.Polynomial.fit(share[start : end + 1], departure[start : end + 1] - LIMIT, 2)
-    roots = np.real(fit.roots())
-    bent = roots[np.abs(roots - straight).argmin()]
-    return Quantity(float(bent), float(abs(bent - straight) + bar[end] / slope), "1")
+    near = slice(max(end - 2, 0), end + 1)
+    x, y = np.log(share[near]), np.log(np.maximum(departure[near], LEAST) / LIMIT)
+    slope = (y[-1] - y[-2]) / (x[-1] - x[-2])
+    straight = x[-1] - y[-1] / slope
+    roots = np.real(np.polynomial.Polynomial.fit(x, y, x.size - 1).roots())
+    bent = float(roots[np.abs(roots - straight).argmin()])
+    moved = abs(bent - straight) + float(bar[end]) / (LIMIT * slope)
+    return Quantity(math.exp(bent), math.exp(bent) * math.expm1(moved), "1")

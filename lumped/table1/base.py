@@ -14,8 +14,9 @@ from lumped.errors import BadInput, Fault
 from lumped.indenter import Indenter
 from lumped.keys import Key, check_fields
 from lumped.materials import Material, Relaxation
+from lumped.scene import Model
 from lumped.shapes import Shape
-from lumped.targets import HalfSpace, Target
+from lumped.targets import Target
 
 
 class Elastic(NamedTuple):
@@ -68,9 +69,13 @@ class Row(ABC):
         """E* as printed, Pa: the right one unless a row says otherwise."""
         return self.modulus(*bodies)
 
-    def scene(self, *bodies: Elastic) -> Indenter | None:
-        """The slow indentation that puts the row on trial; None where finite elements have no such body."""
-        return None
+    @abstractmethod
+    def scene(self, *bodies: Elastic) -> Indenter:
+        """The slow indentation that puts the row on trial."""
+
+    def whole_scene(self, *bodies: Elastic) -> Indenter:
+        """The same with bodies of their true size, where the row takes them for half-spaces."""
+        return self.scene(*bodies)
 
     def force(self, depth: ArrayLike, *bodies: Elastic) -> Any:
         """D E* depth^alpha with the corrected E*, N; depths below zero count as zero. Raises BadInput."""
@@ -83,9 +88,17 @@ class Row(ABC):
         return {one.name: getattr(self, one.name) for one in fields(self)}  # type: ignore[arg-type]
 
 
-def pressed(name: str, shape: Shape, body: Elastic, target: Target | None = None) -> Indenter:
-    """A rigid shape pressed into an elastic half-space, or another target. Raises BadInput."""
-    return Indenter(shape, Material(Relaxation(body.young), body.nu), target or HalfSpace(), name=f"table1-{name}")
+def pressed(name: str, shape: Shape, target: Target, *bodies: Elastic, profile: str = "exact") -> Indenter:
+    """A shape pressed into a target, of the one body that deforms, or of striker and target. Raises BadInput."""
+    first, *others = (Material(Relaxation(body.young), body.nu) for body in bodies)
+    return Indenter(
+        shape,
+        others[0] if others else first,
+        target,
+        striker_material=first if others else None,
+        model=Model(profile=profile),
+        name=f"table1-{name}",
+    )
 
 
 def contact_modulus(*bodies: Elastic) -> float:

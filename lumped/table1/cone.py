@@ -11,6 +11,7 @@ from lumped.indenter import Indenter
 from lumped.keys import Key, Number
 from lumped.shapes import cone
 from lumped.table1.base import Elastic, Row, contact_modulus, pressed
+from lumped.targets import half_space
 
 KEYS: Mapping[str, Key] = {"angle": Number(0.01, 80.0, "degrees, between face and undeformed surface")}
 
@@ -53,7 +54,7 @@ class Cone(Row):
 
     def scene(self, *bodies: Elastic) -> Indenter:
         """On the half-space."""
-        return pressed(self.name, cone.of(self.angle), bodies[0])
+        return pressed(self.name, cone.of(self.angle), half_space.of(), *bodies)
 
 
 EXAMPLE = Cone(angle=20.0)

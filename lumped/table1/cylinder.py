@@ -13,7 +13,7 @@ from lumped.shapes import cylinder
 from lumped.table1.base import Elastic, Row, contact_modulus, pressed
 from lumped.targets import layer
 
-LAYER = 10.0  # thickness over radius of the layer that tells E*
+LAYER = 10.0  # thickness over radius
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "height": Number(1e-9, 1e6, "m")}
 
 
@@ -53,9 +53,9 @@ class Cylinder(Row):
         return contact_modulus(*bodies)
 
     def scene(self, *bodies: Elastic) -> Indenter:
-        """On a layer that slides on its base: the one body in plane strain that knows no nu but through E*."""
-        shape, target = cylinder.of(self.radius, self.height), layer.of(LAYER * self.radius, "sliding")
-        return pressed(self.name, shape, bodies[0], target)
+        """Its parabola on a thick layer, whose thickness stands for the datum."""
+        shape, target = cylinder.of(self.radius, self.height), layer.of(LAYER * self.radius, "bonded")
+        return pressed(self.name, shape, target, *bodies, profile="parabola")
 
 
 EXAMPLE = Cylinder(radius=0.01, height=0.01)

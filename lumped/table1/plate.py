@@ -6,8 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+from lumped.indenter import Indenter
 from lumped.keys import Key, Number
-from lumped.table1.base import Elastic, Row
+from lumped.shapes import plate
+from lumped.table1.base import Elastic, Row, pressed
+from lumped.targets import plane
 
 KEYS: Mapping[str, Key] = {"area": Number(1e-18, 1e8, "m2"), "thickness": Number(1e-9, 1e4, "m")}
 
@@ -42,6 +45,10 @@ class Plate(Row):
         """The confined modulus, Pa."""
         (young, nu), *_ = bodies
         return young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+
+    def scene(self, *bodies: Elastic) -> Indenter:
+        """Confined sides."""
+        return pressed(self.name, plate.of(self.area, self.thickness), plane.of(), *bodies)
 
 
 EXAMPLE = Plate(area=1e-2, thickness=1e-3)

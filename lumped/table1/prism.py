@@ -6,8 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+from lumped.indenter import Indenter
 from lumped.keys import Key, Number
-from lumped.table1.base import Elastic, Row
+from lumped.shapes import prism
+from lumped.table1.base import Elastic, Row, pressed
+from lumped.targets import plane
 
 KEYS: Mapping[str, Key] = {"area": Number(1e-18, 1e8, "m2"), "height": Number(1e-9, 1e4, "m")}
 
@@ -41,6 +44,10 @@ class Prism(Row):
     def modulus(self, *bodies: Elastic) -> float:
         """E, Pa."""
         return bodies[0].young
+
+    def scene(self, *bodies: Elastic) -> Indenter:
+        """Free sides, faces that slide."""
+        return pressed(self.name, prism.of(self.area, self.height, "free", "sliding"), plane.of(), *bodies)
 
 
 EXAMPLE = Prism(area=1e-4, height=0.02)

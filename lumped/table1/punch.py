@@ -10,6 +10,7 @@ from lumped.indenter import Indenter
 from lumped.keys import Key, Number
 from lumped.shapes import punch
 from lumped.table1.base import Elastic, Row, contact_modulus, pressed
+from lumped.targets import half_space
 
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}
 
@@ -45,7 +46,7 @@ class Punch(Row):
 
     def scene(self, *bodies: Elastic) -> Indenter:
         """On the half-space."""
-        return pressed(self.name, punch.of(self.radius), bodies[0])
+        return pressed(self.name, punch.of(self.radius), half_space.of(), *bodies)
 
 
 EXAMPLE = Punch(radius=0.01)

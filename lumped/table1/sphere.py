@@ -11,6 +11,7 @@ from lumped.indenter import Indenter
 from lumped.keys import Key, Number
 from lumped.shapes import sphere
 from lumped.table1.base import Elastic, Row, contact_modulus, pressed
+from lumped.targets import half_space
 
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}
 
@@ -46,7 +47,7 @@ class Sphere(Row):
 
     def scene(self, *bodies: Elastic) -> Indenter:
         """On the half-space."""
-        return pressed(self.name, sphere.of(self.radius), bodies[0])
+        return pressed(self.name, sphere.of(self.radius), half_space.of(), *bodies)
 
 
 EXAMPLE = Sphere(radius=0.01)

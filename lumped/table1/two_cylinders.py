@@ -7,8 +7,11 @@ from dataclasses import dataclass
 from math import pi
 from typing import ClassVar
 
+from lumped.indenter import Indenter
 from lumped.keys import Key, Number
-from lumped.table1.base import Elastic, Row, contact_modulus
+from lumped.shapes import cylinder
+from lumped.table1.base import Elastic, Row, contact_modulus, pressed
+from lumped.targets import cylinder as targets
 
 KEYS: Mapping[str, Key] = {
     "radius": Number(1e-9, 1e4, "m"),
@@ -56,6 +59,11 @@ class TwoCylinders(Row):
     def modulus(self, *bodies: Elastic) -> float:
         """E*, Pa."""
         return contact_modulus(*bodies)
+
+    def scene(self, *bodies: Elastic) -> Indenter:
+        """Their parabolas, the struck one held at its middle plane."""
+        striker, target = cylinder.of(self.radius, self.height), targets.of(self.other_radius, "held")
+        return pressed(self.name, striker, target, *bodies, profile="parabola")
 
 
 EXAMPLE = TwoCylinders(radius=0.01, other_radius=0.02, height=0.01)

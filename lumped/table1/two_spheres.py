@@ -7,8 +7,11 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import ClassVar
 
+from lumped.indenter import Indenter
 from lumped.keys import Key, Number
-from lumped.table1.base import Elastic, Row, contact_modulus
+from lumped.shapes import sphere
+from lumped.table1.base import Elastic, Row, contact_modulus, pressed
+from lumped.targets import sphere as targets
 
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "other_radius": Number(1e-9, 1e4, "m")}
 
@@ -46,6 +49,14 @@ class TwoSpheres(Row):
     def modulus(self, *bodies: Elastic) -> float:
         """E*, Pa."""
         return contact_modulus(*bodies)
+
+    def scene(self, *bodies: Elastic) -> Indenter:
+        """Two half-spaces under the gap of both spheres."""
+        return pressed(self.name, sphere.of(self.radius), targets.of(self.other_radius), *bodies)
+
+    def whole_scene(self, *bodies: Elastic) -> Indenter:
+        """Both spheres free; depth is the approach of their centres of mass."""
+        return pressed(self.name, sphere.of(self.radius), targets.of(self.other_radius, "free"), *bodies)
 
 
 EXAMPLE = TwoSpheres(radius=0.01, other_radius=0.02)
