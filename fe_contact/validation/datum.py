@@ -32,6 +32,7 @@ CHECKED = {"datum": (3.0, 30.0), "bonded layer": (0.3, 3.0, 30.0)}
 # Radius of the struck cylinder over R, from two equal ones to one much larger than the other.
 HELD = {"free": (2.0, 5.0, 20.0), "held": (2.0, 5.0, 20.0)}
 TOLERANCE = 3e-4
+NARROW = 1e-6  # a contact over the widest, below which no D of the table lies
 
 
 @dataclass(frozen=True)
@@ -81,10 +82,10 @@ def _once(line: LineCurve) -> float | None:
         here = line.at(half_width)
         return float(here.force / here.depth) - 0.25 * np.pi
 
-    low, high = line.edges[1], line.edges[-1]
+    low, high = NARROW * line.edges[-1], line.edges[-1]
     if not short(low) < 0.0 < short(high):
         return None
-    return float(line.depth(brentq(short, low, high, xtol=1e-12 * high)))
+    return float(line.depth(brentq(short, low, high, xtol=1e-9 * low)))
 
 
 def _body(row: Row, bodies: tuple[Elastic, ...], support: str, share: float) -> Place:

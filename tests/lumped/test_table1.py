@@ -1,0 +1,98 @@
+"""Table 1: eight rows as printed and corrected, against exact load curves, and the scenes that try them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+from lumped.errors import BadInput
+from lumped.load_curves import Cone, Hertz, Punch
+from lumped.table1 import Elastic, Row, cone, contact_modulus, examples, prism, punch, sphere, two_spheres
+
+STEEL = Elastic(2.0e11, 0.23)
+SOFT = Elastic(1.0e6, 0.45)
+
+
+def bodies(row: Row) -> tuple[Elastic, ...]:
+    return (STEEL, SOFT)[: row.bodies]
+
+
+def test_eight_rows_in_their_order() -> None:
+    assert [row.number for row in examples()] == list(range(1, 9))
+    assert [row.alpha for row in examples()] == [1.0, 1.0, 1.0, 1.5, 1.0, 2.0, 1.5, 1.0]
+    assert [row.bodies for row in examples()] == [1, 1, 1, 1, 1, 1, 2, 2]
+
+
+@pytest.mark.parametrize("row", examples(), ids=lambda row: row.name)
+def test_a_correction_is_explained_and_nothing_else_is(row: Row) -> None:
+    assert bool(row.correction) == (row.printed != row.corrected)
+    assert row.validity
+
+
+@pytest.mark.parametrize(
+    ("row", "curve"),
+    [(sphere.Sphere(0.02), Hertz(0.02)), (cone.Cone(30.0), Cone(30.0)), (punch.Punch(0.03), Punch(0.03))],
+    ids=["sphere", "cone", "punch"],
+)
+def test_corrected_rows_are_the_exact_load_curves(row: Row, curve: Hertz | Cone | Punch) -> None:
+    depth = np.array([-1e-4, 0.0, 1e-5, 1e-3])
+    modulus = STEEL.young / (1.0 - STEEL.nu**2)
+    assert row.force(depth, STEEL) == pytest.approx(modulus * np.asarray(curve.force(depth)), rel=1e-13)
+
+
+@pytest.mark.parametrize("row", examples(), ids=lambda row: row.name)
+def test_the_scene_has_the_corrected_modulus_and_the_exponent(row: Row) -> None:
+    """Two routes to E*: the row's formula, and the materials of the scene that is pressed."""
+    for scene in (row.scene(*bodies(row)), row.whole_scene(*bodies(row))):
+        assert scene.modulus(instant=False) == pytest.approx(row.modulus(*bodies(row)), rel=1e-12)
+        assert scene.shape.exponent_of_force == row.alpha
+
+
+def test_the_cone_lacks_one_minus_nu_squared() -> None:
+    """5.3 % for steel, 25 % when incompressible."""
+    row = cone.EXAMPLE
+    for nu, short in ((0.23, 0.0529), (0.5, 0.25)):
+        body = Elastic(1.0, nu)
+        assert 1.0 - row.printed_modulus(body) / row.modulus(body) == pytest.approx(short, abs=1e-12)
+
+
+def test_two_bodies_of_steel_have_the_modulus_of_23() -> None:
+    assert contact_modulus(STEEL, STEEL) == pytest.approx(STEEL.young / (2.0 * (1.0 - STEEL.nu**2)), rel=1e-14)
+    assert contact_modulus(STEEL, STEEL) == pytest.approx(1.055855e11, rel=1e-6)
+
+
+def test_a_sphere_on_one_far_larger_and_stiffer_is_a_rigid_sphere_on_a_plane() -> None:
+    rigid = Elastic(1e20, 0.3)
+    pair = two_spheres.TwoSpheres(1e-3, 1e4)
+    assert pair.force(1e-5, rigid, SOFT) == pytest.approx(sphere.Sphere(1e-3).force(1e-5, SOFT), rel=1e-6)
+
+
+def test_a_confined_plate_is_a_prism_without_poisson() -> None:
+    """At nu = 0 all moduli of the table are Young's."""
+    for row in examples():
+        loose = tuple(Elastic(1e9, 0.0) for _ in range(row.bodies))
+        assert row.modulus(*loose) == pytest.approx(row.printed_modulus(*loose), rel=1e-14)
+        assert row.modulus(*loose) == pytest.approx(1e9 / row.bodies, rel=1e-14)
+
+
+def test_line_contact_has_no_d_of_its_own() -> None:
+    lines = [row for row in examples() if not row.single]
+    assert [row.number for row in lines] == [5, 8]
+    for row in lines:
+        assert row.factor == pytest.approx(0.25 * pi * 0.01, rel=1e-14)
+        assert row.corrected[0].startswith("none")
+
+
+def test_impossible_geometry_names_its_key() -> None:
+    with pytest.raises(BadInput, match="angle"):
+        cone.Cone(90.0)
+    with pytest.raises(BadInput, match="height"):
+        replace(prism.EXAMPLE, height=0.0)
+
+
+def test_the_number_of_bodies_is_checked() -> None:
+    with pytest.raises(BadInput, match="accepted 2, got 1"):
+        two_spheres.EXAMPLE.force(1e-5, STEEL)

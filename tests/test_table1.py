@@ -1,0 +1,230 @@
+"""`fe-contact table1`: what finite elements identify, the verdict's rules, files without NaN, the chart."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from fe_contact.cli import main
+from fe_contact.report.table1 import plot_table1
+from fe_contact.validation import datum
+from fe_contact.validation.datum import DEPTH, Place, curve
+from fe_contact.validation.table1 import LIMIT, RATIOS, Reach, Trial, bodies, trial
+from fe_contact.validation.table1_files import COLUMNS, write_table1
+from fe_contact.validation.table1_verdict import HOLDS, RANGE, UNDECIDED, UNTRIED, WRONG, deviations, verdict
+from lumped.load_curves import Hertz, SneddonSphere
+from lumped.result import Quantity
+from lumped.table1 import Row, cone, cylinder, examples, punch, sphere, two_cylinders
+
+ROUNDING = 1e-9
+
+
+@pytest.fixture(scope="module")
+def trials() -> Iterator[dict[str, Trial]]:
+    """Every row, line contact at few places."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(datum, "CHECKED", {"datum": (3.0,), "bonded layer": (0.3,)})
+        patch.setattr(datum, "HELD", {"free": (2.0, 20.0), "held": (2.0,)})
+        yield {row.name: trial(row) for row in examples()}
+
+
+def value(quantity: Quantity | None) -> float:
+    assert quantity is not None
+    assert quantity.value is not None
+    return quantity.value
+
+
+def covers(quantity: Quantity, exact: float) -> bool:
+    return abs(value(quantity) - exact) <= (quantity.error or 0.0) + ROUNDING * abs(exact)
+
+
+@pytest.mark.parametrize("name", ["prism", "plate", "punch", "cone", "sphere", "two_spheres"])
+def test_exact_rows_are_identified(trials: Mapping[str, Trial], name: str) -> None:
+    found = trials[name]
+    assert value(found.alpha) == pytest.approx(found.row.alpha, abs=5e-4)
+    assert value(found.factor) == pytest.approx(found.row.factor, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["prism", "plate", "punch", "cone"])
+def test_the_bars_of_power_laws_cover_them(trials: Mapping[str, Trial], name: str) -> None:
+    """Spheres are no power laws: their truth is tested below."""
+    found = trials[name]
+    assert found.alpha is not None
+    assert found.factor is not None
+    assert covers(found.alpha, found.row.alpha)
+    assert covers(found.factor, found.row.factor)
+
+
+@pytest.mark.parametrize("name", [row.name for row in examples()])
+def test_poissons_ratio_moves_the_modulus_as_the_corrected_row_says(trials: Mapping[str, Trial], name: str) -> None:
+    found = trials[name]
+    assert tuple(found.moduli) == RATIOS
+    for nu, modulus in found.moduli.items():
+        exact = found.row.modulus(*bodies(found.row, nu))
+        assert value(modulus) == pytest.approx(exact, rel=2e-4)
+        assert covers(modulus, exact)
+
+
+def test_the_sphere_leaves_its_row_where_the_exact_sphere_does(trials: Mapping[str, Trial]) -> None:
+    reach = trials["sphere"].reach
+    assert reach is not None
+    true, parabola = SneddonSphere(1.0), Hertz(1.0)
+    exact = brentq(lambda d: float(true.force(d) / parabola.force(d)) - 1.0 + LIMIT, 1e-3, 0.5, xtol=1e-12)
+    assert covers(reach.held, exact)
+    assert value(reach.held) == pytest.approx(exact, rel=5e-3)
+    found = trials["sphere"]
+    shallow = found.row.length * 1e-4
+    ratio = float(true.force(1e-4) / parabola.force(1e-4))
+    assert shallow > 0.0
+    assert value(found.factor) / found.row.factor == pytest.approx(ratio, abs=2e-5)
+
+
+def test_whole_spheres_leave_their_row_far_earlier(trials: Mapping[str, Trial]) -> None:
+    """Two spheres of their true size depart rather as a/R, depth^(1/2), than as (a/R)^2 like the profile alone."""
+    reach = trials["two_spheres"].reach
+    assert reach is not None
+    assert 0.0 < value(reach.held) < 0.01
+    slope = np.diff(np.log(reach.departure[:3])) / np.diff(np.log(reach.depth[:3]))
+    assert np.all((slope > 0.45) & (slope < 0.75))
+
+
+def test_line_contact_covers_the_exact_curves(trials: Mapping[str, Trial]) -> None:
+    checked = [place for place in trials["cylinder"].datum if place.method == "fe"]
+    assert {place.support for place in checked} == {"datum", "bonded layer"}
+    for place in checked:
+        line = curve(place.support, place.length, RATIOS[1])
+        near = np.array([DEPTH / 1.1, DEPTH * 1.1])
+        force = np.asarray(line.force(near))
+        chord = float(np.diff(np.log(force))[0] / np.diff(np.log(near))[0])
+        assert covers(place.factor, float(line.force(DEPTH)) / DEPTH)
+        assert value(place.alpha) == pytest.approx(chord, abs=(place.alpha.error or 0.0) + 1e-5)
+
+
+def test_the_printed_d_of_line_contact_is_met_at_one_depth() -> None:
+    """Against 4d of the audit: a bonded layer, nu = 0.3 and 0.45, meets pi/4 at R depth/h^2 = 0.075 and 0.042."""
+    for nu, number in ((0.3, 0.075), (0.45, 0.042)):
+        line = curve("bonded layer", 1e-2, nu)
+        once = datum._once(line)
+        assert once is not None
+        assert once / 1e-4 == pytest.approx(number, abs=0.001)
+
+
+def test_held_cylinders_are_stiffer_to_approach_differently(trials: Mapping[str, Trial]) -> None:
+    """No two ways of holding agree, nor two sizes: there is no D."""
+    factors = [value(place.factor) for place in trials["two_cylinders"].datum]
+    assert len(factors) == 3
+    assert min(abs(a - b) for i, a in enumerate(factors) for b in factors[:i]) > 0.005
+    assert all(1.05 < value(place.alpha) < 1.25 for place in trials["two_cylinders"].datum)
+
+
+def test_verdicts(trials: Mapping[str, Trial]) -> None:
+    words = {name: verdict(found).word for name, found in trials.items()}
+    assert words == {
+        "prism": HOLDS, "plate": HOLDS, "punch": HOLDS, "sphere": RANGE,
+        "cylinder": WRONG, "cone": WRONG, "two_spheres": RANGE, "two_cylinders": WRONG,
+    }  # fmt: skip
+    assert "1/(1-nu^2)" in verdict(trials["cone"]).sentence
+    for name in ("cylinder", "two_cylinders"):
+        assert trials[name].alpha is None
+        assert trials[name].factor is None
+        assert verdict(trials[name]).sentence.startswith("no half-space answer; D depends on the datum")
+
+
+def made_up(row: Row, alpha: float = 0.0, factor: float = 1.0, bar: float = 1e-5, held: float = 0.5) -> Trial:
+    """A trial that differs from the corrected row by so much."""
+    share = np.array([1e-3, 0.5])
+    moduli = {nu: row.modulus(*bodies(row, nu)) for nu in RATIOS}
+    return Trial(
+        row,
+        Quantity(row.alpha + alpha, bar, "1"),
+        Quantity(row.factor * factor, bar * row.factor, "m"),
+        {nu: Quantity(one, bar * one, "Pa") for nu, one in moduli.items()},
+        Reach(1e-3, 0.5, Quantity(held, 0.0, "1"), share, np.zeros(2)),
+    )
+
+
+def test_the_rule_of_the_verdict() -> None:
+    row = punch.EXAMPLE
+    assert verdict(made_up(row)).word == HOLDS
+    assert verdict(made_up(row, held=0.1)).word == RANGE
+    assert verdict(made_up(row, factor=1.0008)).word == HOLDS
+    assert verdict(made_up(cone.EXAMPLE)).word == WRONG
+    assert verdict(Trial(row, failure="no contact")) == type(verdict(made_up(row)))(UNTRIED, "no contact")
+
+
+def test_what_neither_printed_nor_corrected_row_explains_is_undecided() -> None:
+    assert verdict(made_up(punch.EXAMPLE, factor=1.01)).word == UNDECIDED
+    assert verdict(made_up(punch.EXAMPLE, alpha=0.01)).word == UNDECIDED
+
+
+def test_a_wide_bar_decides_nothing() -> None:
+    assert verdict(made_up(punch.EXAMPLE, bar=5e-3)).word == UNDECIDED
+    assert not any(one.differs for one in deviations(made_up(punch.EXAMPLE, factor=1.004, bar=5e-3)).values())
+
+
+def test_one_d_for_every_datum_would_not_be_called_wrong() -> None:
+    same = tuple(Place("datum", length, "exact", Quantity(0.5, 0.0, "1"), Quantity(1.0, 0.0, "1")) for length in (1, 9))
+    moduli = made_up(cylinder.EXAMPLE).moduli
+    assert verdict(Trial(cylinder.EXAMPLE, moduli=moduli, datum=same)).word == UNDECIDED
+    other = (same[0], replace(same[1], factor=Quantity(0.6, 0.0, "1")))
+    assert verdict(Trial(cylinder.EXAMPLE, moduli=moduli, datum=other)).word == WRONG
+
+
+def test_files(tmp_path: Path, trials: Mapping[str, Trial]) -> None:
+    content = write_table1(list(trials.values()), tmp_path)
+    with (tmp_path / "table1.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == list(COLUMNS)
+    assert [int(row["number"]) for row in rows] == list(range(1, 9))
+    assert [row["D"] == "" for row in rows] == [row["alpha"] == "" for row in rows] == [
+        not one.single for one in examples()
+    ]
+    for row in rows:
+        assert all(math.isfinite(float(row[name])) for name in COLUMNS if name.endswith("_Pa"))
+    with (tmp_path / "table1-datum.csv").open(newline="", encoding="utf-8") as file:
+        places = list(csv.DictReader(file))
+    assert {place["row"] for place in places} == {"cylinder", "two_cylinders"}
+    assert len(places) == sum(len(found.datum) for found in trials.values())
+    assert json.loads((tmp_path / "table1.json").read_text(encoding="utf-8")) == content
+    assert [row["verdict"]["word"] for row in content["rows"]] == [verdict(found).word for found in trials.values()]
+
+
+def test_the_chart_is_the_same_every_time(tmp_path: Path, trials: Mapping[str, Trial]) -> None:
+    found = list(trials.values())
+    first = [path.read_bytes() for path in plot_table1(found, tmp_path / "one")]
+    assert first == [path.read_bytes() for path in plot_table1(found, tmp_path / "two")]
+
+
+@pytest.mark.parametrize(("factor", "code"), [(1.0, 0), (1.01, 3)], ids=["decided", "undecided"])
+def test_the_command(
+    tmp_path: Path,
+    trials: Mapping[str, Trial],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    factor: float,
+    code: int,
+) -> None:
+    tried = (made_up(sphere.EXAMPLE, factor=factor), trials["cone"], trials["two_cylinders"])
+    monkeypatch.setattr("fe_contact.validation.table1.table1", lambda progress: tried)
+    assert main(["table1", "--out", str(tmp_path / "out"), "--quiet"]) == code
+    said = capsys.readouterr()
+    assert [line[0] for line in said.out.splitlines() if line[0].isdigit()] == ["4", "6", "8"]
+    assert ("undecided: sphere" in said.err) == (code == 3)
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    assert names == {"table1.csv", "table1-datum.csv", "table1.json", "table1.svg", "table1.png"}
+    assert main(["table1", "--out", str(tmp_path / "out"), "--json"]) == code
+    assert json.loads(capsys.readouterr().out)["schema"] == "fe-contact/table1/1"
+
+
+def test_two_cylinders_vary_both_materials() -> None:
+    first, second = bodies(two_cylinders.EXAMPLE, RATIOS[-1])
+    assert first.young != second.young
+    assert first.nu != second.nu
