@@ -1,4 +1,4 @@
-"""The chart of Table 1 on trial: E* over Poisson's ratio, how far the power laws hold, line contact's datum."""
+"""The chart of Table 1 on trial: E* of every row, how far power laws hold, line contact's datum, bonded blocks."""
 
 from __future__ import annotations
 
@@ -11,14 +11,20 @@ from matplotlib.figure import Figure
 
 from fe_contact.report import style
 from fe_contact.validation.datum import DEPTH
-from fe_contact.validation.table1 import LIMIT, Trial, bodies
+from fe_contact.validation.table1 import LIMIT, RATIOS, Trial, bodies
 from fe_contact.validation.table1_verdict import verdict
+from lumped.result import Quantity
 
 PANEL = 2.55  # height of a panel, in
 TITLE_WIDTH = 132  # characters
-RATIOS = np.linspace(0.0, 0.46, 93)
+SHIFT = 0.2  # of the points of one row, nu by nu
 MARKERS = ("o", "s", "D", "^", "v", "P", "X", "h")
-SUPPORTS = {"datum": style.BLUE, "bonded layer": style.VERMILION}
+SUPPORTS = {
+    "datum": style.BLUE,
+    "bonded layer": style.VERMILION,
+    "free": style.GREEN,
+    "held": style.PURPLE,
+}
 DASHED = (0, (3, 1.6))
 TABLE_ALPHA = 1.0
 
@@ -29,17 +35,24 @@ def plot_table1(trials: Sequence[Trial], where: Path) -> tuple[Path, Path]:
     lines = [f"{row.number}  {row.case}: {one.word}: {one.sentence}" for row, one in judged]
     with style.look():
         above, below = style.heading_height(lines, TITLE_WIDTH) + 0.35, 0.45
-        height = above + 2 * PANEL + below
+        height = above + 3 * PANEL + below
         figure = Figure(figsize=(style.PAGE, height))
-        grid = figure.add_gridspec(2, 2, wspace=0.24, hspace=0.42)
+        grid = figure.add_gridspec(3, 2, wspace=0.24, hspace=0.42)
         grid.update(left=0.075, right=0.985, top=1 - above / height, bottom=below / height)
         panels = [figure.add_subplot(grid[place // 2, place % 2]) for place in range(4)]
+        panels.append(figure.add_subplot(grid[2, :]))
         _moduli(panels[0], trials)
         _departures(panels[1], trials)
         _datum(panels[2], panels[3], trials)
-        titles = ("modulus over Poisson's ratio", "force over the corrected row's",
-                  f"line contact: D at a depth of R/{1 / DEPTH:g}", "line contact: exponent there")  # fmt: skip
-        for axes, letter, title in zip(panels, "abcd", titles, strict=True):
+        _bonded(panels[4], trials)
+        titles = (
+            "identified modulus",
+            "force over the corrected row's",
+            f"line contact: D at a depth of R/{1 / DEPTH:g}",
+            "line contact: exponent there",
+            "blocks with bonded faces and free sides",
+        )
+        for axes, letter, title in zip(panels, "abcde", titles, strict=True):
             style.label(axes, letter, title)
         style.heading(figure, "Table 1 on trial", lines, TITLE_WIDTH)
         return style.save(figure, where, "table1")
@@ -52,22 +65,21 @@ def _look(trial: Trial) -> tuple[str, str]:
 
 
 def _moduli(axes: Axes, trials: Sequence[Trial]) -> None:
-    """E* over its value at nu = 0: finite elements, the corrected rows, and dashed the printed ones that differ."""
-    for trial in trials:
-        if not trial.moduli:
-            continue
-        row, (colour, marker) = trial.row, _look(trial)
-        unit = row.modulus(*bodies(row, 0.0))
-        corrected = np.array([row.modulus(*bodies(row, nu)) for nu in RATIOS]) / unit
-        printed = np.array([row.printed_modulus(*bodies(row, nu)) for nu in RATIOS]) / unit
-        axes.plot(RATIOS, corrected, color=colour, linewidth=0.9)
-        if not np.allclose(printed, corrected):
-            axes.plot(RATIOS, printed, color=colour, linewidth=0.9, linestyle=DASHED, label=f"{row.name}, printed")
-        values = [(one.value or 0.0) / unit for one in trial.moduli.values()]
-        bars = [(one.error or 0.0) / unit for one in trial.moduli.values()]
-        axes.errorbar(list(trial.moduli), values, yerr=bars, color=colour, linestyle="", marker=marker,
-                      markersize=2.0 + 1.2 * row.number, markerfacecolor="none", label=f"{row.name}, FE")  # fmt: skip
-    axes.set(xlabel="Poisson's ratio", ylabel="E* over its value at ν = 0")
+    """E* over the printed one, row by row: finite elements with bars, and dashes where the corrected row lies."""
+    axes.axhline(1.0, color=style.BLACK, linewidth=0.8, linestyle=DASHED)
+    for place, nu in enumerate(RATIOS):
+        tried = [trial for trial in trials if nu in trial.moduli]
+        numbers = np.array([trial.row.number for trial in tried]) + SHIFT * (place - 1)
+        printed = np.array([trial.row.printed_modulus(*bodies(trial.row, nu)) for trial in tried])
+        corrected = np.array([trial.row.modulus(*bodies(trial.row, nu)) for trial in tried])
+        found = np.array([trial.moduli[nu].value or 0.0 for trial in tried])
+        bars = np.array([trial.moduli[nu].error or 0.0 for trial in tried])
+        colour = style.CYCLE[place]
+        axes.errorbar(numbers, found / printed, yerr=bars / printed, color=colour, linestyle="", marker="o",
+                      markersize=4.0, markerfacecolor="none", label=f"ν = {nu:g}, FE")  # fmt: skip
+        axes.plot(numbers, corrected / printed, color=colour, linestyle="", marker="_", markersize=8.0)
+    axes.plot([], [], color=style.GREY, linestyle="", marker="_", markersize=8.0, label="corrected row")
+    axes.set(xlabel="row", ylabel="E* over the printed one", xticks=range(1, 9))
     axes.legend(loc="upper left", fontsize=6.0, labelspacing=0.25)
 
 
@@ -79,7 +91,7 @@ def _departures(axes: Axes, trials: Sequence[Trial]) -> None:
         if trial.reach is not None:
             colour, marker = _look(trial)
             axes.plot(trial.reach.depth, 100.0 * trial.reach.departure, color=colour, marker=marker, markersize=3.0,
-                      linewidth=0.8, label=trial.row.name)  # fmt: skip
+                      linewidth=0.8, label=trial.row.name.replace("_", " "))  # fmt: skip
     axes.set(xscale="log", ylim=(-6.5 * percent, 2.5 * percent))
     axes.set(xlabel="depth over the row's length", ylabel="departure, %")
     axes.legend(loc="lower left", fontsize=6.0, labelspacing=0.25)
@@ -90,19 +102,40 @@ def _datum(left: Axes, right: Axes, trials: Sequence[Trial]) -> None:
     for trial in trials:
         for support, colour in SUPPORTS.items():
             own = [place for place in trial.datum if place.support == support]
-            exact = [place for place in own if place.method == "exact"]
-            checked = [place for place in own if place.method == "fe"]
-            if not own:
-                continue
-            for axes, name in ((left, "factor"), (right, "alpha")):
-                axes.plot([one.length for one in exact], [getattr(one, name).value for one in exact], color=colour,
-                          label=f"{support}, exact")  # fmt: skip
-                axes.errorbar([one.length for one in checked], [getattr(one, name).value for one in checked],
-                              yerr=[getattr(one, name).error for one in checked], linestyle="", color=colour,
-                              marker="o", markersize=4.0, markerfacecolor="white", label=f"{support}, FE")  # fmt: skip
+            if own:
+                label = f"{trial.row.name.replace('_', ' ')}, {support}"
+                _places(left, [(one.length, one.factor, one.method) for one in own], colour, label)
+                _places(right, [(one.length, one.alpha, one.method) for one in own], colour, label)
     for axes, printed, name in ((left, 0.25 * np.pi, "printed, π/4"), (right, TABLE_ALPHA, "printed, 1")):
         axes.axhline(printed, color=style.BLACK, linewidth=0.8, linestyle=DASHED, label=name)
-        axes.set(xscale="log", xlabel="datum or thickness over R")
+        axes.set(xscale="log", xlabel="datum, thickness or the struck radius over R")
         axes.legend(loc="upper right", fontsize=6.0, labelspacing=0.25)
     left.set(ylabel="D/l = F/(E* l depth)")
     right.set(ylabel="d ln F/d ln depth")
+
+
+def _places(axes: Axes, places: Sequence[tuple[float, Quantity, str]], colour: str, label: str) -> None:
+    """One support: a line of exact places, circles with bars by finite elements."""
+    exact = [(length, one.value or 0.0) for length, one, method in places if method == "exact"]
+    checked = [(length, one.value or 0.0, one.error or 0.0) for length, one, method in places if method == "fe"]
+    if exact:
+        axes.plot(*zip(*exact, strict=True), color=colour)
+    x, y, bars = zip(*checked, strict=True)
+    axes.errorbar(x, y, yerr=bars, linestyle="", color=colour, marker="o", markersize=4.0, markerfacecolor="white",
+                  label=label)  # fmt: skip
+
+
+def _bonded(axes: Axes, trials: Sequence[Trial]) -> None:
+    """Modulus over Young's from slender to wide blocks, between those of rows 1 and 2."""
+    tried = dict.fromkeys(block for trial in trials for block in trial.bonded)
+    rows = [trial.row for trial in trials if trial.bonded]
+    for colour, body in zip((style.BLUE, style.VERMILION), dict.fromkeys(block.body for block in tried), strict=False):
+        own = [block for block in tried if block.body == body]
+        axes.errorbar([block.width for block in own], [(block.modulus.value or 0.0) / body.young for block in own],
+                      yerr=[(block.modulus.error or 0.0) / body.young for block in own], color=colour, marker="o",
+                      markersize=4.0, markerfacecolor="white", linewidth=0.8, label=f"ν = {body.nu:g}, FE")  # fmt: skip
+        for row in rows:
+            axes.axhline(row.modulus(body) / body.young, color=colour, linewidth=0.8, linestyle=DASHED)
+    axes.set(xscale="log", xlabel="radius over thickness", ylabel="F l/(A depth) over E")
+    axes.plot([], [], color=style.GREY, linewidth=0.8, linestyle=DASHED, label="rows 1 and 2")
+    axes.legend(loc="center left", fontsize=6.0, labelspacing=0.25)

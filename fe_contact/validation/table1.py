@@ -9,12 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 
 from fe_contact.forms import Array
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
+from fe_contact.validation.blocks import Block, blocks
 from fe_contact.validation.datum import Place, places
 from lumped.errors import NotReached
 from lumped.indentation import Indentation, power_law
@@ -57,7 +59,8 @@ class Trial:
     """What finite elements make of one row.
 
     ``alpha`` and ``factor`` D, m^(2-alpha), from shallow depths at nu = 0; ``moduli``: E*, Pa, by Poisson's ratio (of
-    the first body); rows whose D depends on a datum have ``datum`` instead. ``failure``: why there is no answer.
+    the first body); rows whose D depends on a datum have ``datum`` instead. ``bonded``: blocks whose faces do
+    not slide, at every nu above 0. ``failure``: why there is no answer.
     """
 
     row: Row
@@ -66,6 +69,7 @@ class Trial:
     moduli: Mapping[float, Quantity] = field(default_factory=dict)
     reach: Reach | None = None
     datum: tuple[Place, ...] = ()
+    bonded: tuple[Block, ...] = ()
     failure: str = ""
 
 
@@ -96,7 +100,15 @@ def _power_law(row: Row) -> Trial:
     whole, far = row.whole_scene(*bodies(row, RATIOS[1])), curves
     if whole != row.scene(*bodies(row, RATIOS[1])):
         far = {RATIOS[1]: _pressed(row, whole, WHOLE)}
-    return Trial(row, *identified_law(row, curves[0.0]), identified_moduli(row, curves), reach(row, far))
+    law = identified_law(row, curves[0.0])
+    stuck = _bonded() if row.block else ()
+    return Trial(row, *law, identified_moduli(row, curves), reach(row, far), bonded=stuck)
+
+
+@cache
+def _bonded() -> tuple[Block, ...]:
+    """The same blocks stand beside both rows that press one."""
+    return tuple(block for nu in RATIOS if nu for block in blocks(Elastic(YOUNG, nu)))
 
 
 def _line_contact(row: Row) -> Trial:

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from fe_contact.validation.blocks import Block
 from fe_contact.validation.datum import DEPTH
 from fe_contact.validation.table1 import Trial, bodies
 from fe_contact.validation.table1_verdict import Deviation, deviations, verdict
@@ -23,11 +24,15 @@ COLUMNS = (
 DATUM_COLUMNS = ("number", "row", "support", "length_over_radius", "method", "D_over_l", "D_over_l_error", "alpha",
                  "alpha_error", "depth_over_radius_with_printed_D")  # fmt: skip
 
+BONDED_COLUMNS = ("nu", "radius_over_thickness", "modulus_over_young", "modulus_over_young_error")
+
 
 def write_table1(trials: Sequence[Trial], where: Path) -> dict[str, Any]:
-    """Write ``table1.csv``, ``table1-datum.csv`` and ``table1.json`` into a folder; the content of the latter."""
+    """Write ``table1.csv``, ``-datum.csv``, ``-bonded.csv`` and ``table1.json`` into a folder; the latter's content."""
     where.mkdir(parents=True, exist_ok=True)
     write_csv(where / "table1.csv", COLUMNS, [_line(trial) for trial in trials])
+    stuck = {block: None for trial in trials for block in trial.bonded}
+    write_csv(where / "table1-bonded.csv", BONDED_COLUMNS, [_block(block) for block in stuck])
     write_csv(where / "table1-datum.csv", DATUM_COLUMNS, [line for trial in trials for line in _data(trial)])
     content: dict[str, Any] = plain({"schema": SCHEMA, "rows": [_described(trial) for trial in trials]})
     write_json(where / "table1.json", content)
@@ -60,6 +65,12 @@ def _data(trial: Trial) -> list[list[Any]]:
     ]  # fmt: skip
 
 
+def _block(block: Block) -> list[float]:
+    """One row of table1-bonded.csv."""
+    young, modulus = block.body.young, block.modulus
+    return [block.body.nu, block.width, (modulus.value or 0.0) / young, (modulus.error or 0.0) / young]
+
+
 def _described(trial: Trial) -> dict[str, Any]:
     """One row of table1.json."""
     row, reach = trial.row, trial.reach
@@ -79,6 +90,10 @@ def _described(trial: Trial) -> dict[str, Any]:
         "reach": None if reach is None else _reach(trial),
         "datum": [asdict(place) for place in trial.datum],
         "datum_depth_over_radius": DEPTH if trial.datum else None,
+        "bonded": [
+            {"nu": block.body.nu, "radius_over_thickness": block.width, **asdict(block.modulus)}
+            for block in trial.bonded
+        ],
         "deviations": {name: asdict(one) for name, one in deviations(trial).items()},
         "verdict": asdict(verdict(trial)),
         "failure": trial.failure or None,

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
+from fe_contact.validation.blocks import WIDTHS, within
 from fe_contact.validation.table1 import LIMIT, Trial, bodies
 from lumped.result import Quantity
 
@@ -77,9 +79,22 @@ def _within(trial: Trial) -> Verdict:
     assert reach is not None
     if reach.throughout:
         last = f", up to {reach.last:.2g} of the {name}" if name else ""
-        return Verdict(HOLDS, f"within {100 * LIMIT:g} % at every depth tried{last}")
+        return Verdict(HOLDS, f"within {100 * LIMIT:g} % at every depth tried{last}{_bonded(trial)}")
     held = f"within {100 * LIMIT:g} % up to a depth of {_value(reach.held):.3g} of the {name}"
     return Verdict(RANGE, f"{held}; tried up to {reach.last:.2g}")
+
+
+def _bonded(trial: Trial) -> str:
+    """What becomes of the row when the faces of its block are bonded."""
+    said = []
+    for body in dict.fromkeys(block.body for block in trial.bonded):
+        found = within(trial.row, [block for block in trial.bonded if block.body == body], LIMIT)
+        if found is None:
+            said.append(f"nowhere up to {WIDTHS[-1]:g} at nu = {body.nu:g}")
+        else:
+            ends = (f"from {found[0]:.2g}" if found[0] else "", f"up to {found[1]:.2g}" if found[1] < math.inf else "")
+            said.append(f"{' '.join(end for end in ends if end)} at nu = {body.nu:g}")
+    return f"; faces bonded, sides free: at radius over thickness {', '.join(said)}" if said else ""
 
 
 def _spread(trial: Trial, wrong: list[str]) -> Verdict:

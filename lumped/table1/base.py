@@ -32,7 +32,8 @@ class Row(ABC):
     `number` is the row's place, `case` what the paper calls it, `printed` its D and E* as printed and `corrected`
     as they should be, `validity` where the row holds; `correction` says what is wrong and why, empty where nothing
     is. `length_name` names the length which depths are compared with, empty where the geometry has none. `single`:
-    whether the half-space has one D at all. `bodies`: how many of them deform.
+    whether the half-space has one D at all. `bodies`: how many of them deform. `block`: whether
+    it presses a block between two faces.
     """
 
     number: ClassVar[int]
@@ -46,6 +47,7 @@ class Row(ABC):
     correction: ClassVar[str] = ""
     single: ClassVar[bool] = True
     bodies: ClassVar[int] = 1
+    block: ClassVar[bool] = False
     keys: ClassVar[Mapping[str, Key]]
 
     def __post_init__(self) -> None:

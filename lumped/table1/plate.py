@@ -29,6 +29,7 @@ class Plate(Row):
     length_name: ClassVar[str] = "thickness"
     alpha: ClassVar[float] = 1.0
     validity: ClassVar[str] = "confined sides, or bonded faces far wider than l; nu < 0.5"
+    block: ClassVar[bool] = True
     keys: ClassVar[Mapping[str, Key]] = KEYS
 
     @property

@@ -29,6 +29,7 @@ class Prism(Row):
     length_name: ClassVar[str] = "height"
     alpha: ClassVar[float] = 1.0
     validity: ClassVar[str] = "free sides, ends that slide: any nu, any slenderness"
+    block: ClassVar[bool] = True
     keys: ClassVar[Mapping[str, Key]] = KEYS
 
     @property
