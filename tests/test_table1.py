@@ -15,14 +15,16 @@ from scipy.optimize import brentq
 
 from fe_contact.cli import main
 from fe_contact.report.table1 import plot_table1
+from fe_contact.validation import blocks as blocks_module
 from fe_contact.validation import datum
+from fe_contact.validation.blocks import Block, within
 from fe_contact.validation.datum import DEPTH, Place, curve
 from fe_contact.validation.table1 import LIMIT, RATIOS, Reach, Trial, bodies, trial
 from fe_contact.validation.table1_files import COLUMNS, write_table1
 from fe_contact.validation.table1_verdict import HOLDS, RANGE, UNDECIDED, UNTRIED, WRONG, deviations, verdict
 from lumped.load_curves import Hertz, SneddonSphere
 from lumped.result import Quantity
-from lumped.table1 import Row, cone, cylinder, examples, punch, sphere, two_cylinders
+from lumped.table1 import Elastic, Row, cone, cylinder, examples, prism, punch, sphere, two_cylinders
 
 ROUNDING = 1e-9
 
@@ -125,6 +127,36 @@ def test_held_cylinders_are_stiffer_to_approach_differently(trials: Mapping[str,
     assert all(1.05 < value(place.alpha) < 1.25 for place in trials["two_cylinders"].datum)
 
 
+def test_bonded_blocks_go_from_young_to_confined(trials: Mapping[str, Trial]) -> None:
+    assert trials["prism"].bonded == trials["plate"].bonded
+    for nu in RATIOS[1:]:
+        own = [block for block in trials["plate"].bonded if block.body.nu == nu]
+        moduli = [value(block.modulus) for block in own]
+        young, confined = own[0].body.young, trials["plate"].row.modulus(own[0].body)
+        assert young < moduli[0] < 1.01 * young
+        assert 0.97 * confined < moduli[-1] < confined
+        assert moduli == sorted(moduli)
+
+
+def test_a_bonded_block_of_rubber_stiffens_with_its_shape_factor_squared() -> None:
+    """Thin, nu -> 1/2: E (1 + 2 S^2), S = radius/(2 thickness), within some per cent (Gent and Lindley 1959)."""
+    body = Elastic(1.0, 0.49999)
+    block = blocks_module._pressed(body, 5.0)
+    assert value(block.modulus) == pytest.approx(1.0 + 2.0 * 2.5**2, rel=0.08)
+
+
+def test_widths_within_a_limit() -> None:
+    """Moduli made up as E (1 + 0.1 width): row 1 holds to 1 % up to 0.1, row 2 at nu = 0 alike."""
+    body = Elastic(1.0, 0.0)
+    made = [Block(body, width, Quantity(1.0 + 0.1 * width, 0.0, "Pa")) for width in (0.01, 0.05, 0.2, 1.0)]
+    found = within(prism.EXAMPLE, made, LIMIT)
+    assert found is not None
+    assert found[0] == 0.0
+    assert found[1] == pytest.approx(0.1, rel=1e-9)
+    assert within(prism.EXAMPLE, made[2:], LIMIT) is None
+    assert within(prism.EXAMPLE, made[:2], LIMIT) == (0.0, math.inf)
+
+
 def test_verdicts(trials: Mapping[str, Trial]) -> None:
     words = {name: verdict(found).word for name, found in trials.items()}
     assert words == {
@@ -219,7 +251,7 @@ def test_the_command(
     assert [line[0] for line in said.out.splitlines() if line[0].isdigit()] == ["4", "6", "8"]
     assert ("undecided: sphere" in said.err) == (code == 3)
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert names == {"table1.csv", "table1-datum.csv", "table1.json", "table1.svg", "table1.png"}
+    assert names == {"table1.csv", "table1-bonded.csv", "table1-datum.csv", "table1.json", "table1.svg", "table1.png"}
     assert main(["table1", "--out", str(tmp_path / "out"), "--json"]) == code
     assert json.loads(capsys.readouterr().out)["schema"] == "fe-contact/table1/1"
 
