@@ -57,12 +57,11 @@ class SpringRow:
         track = coarse(problem, scene.end_time, intervals)
         nest = Nest.around(problem, scene.end_time, track, intervals)
         start = nest.level(1, (track.approach[-1].time, (track.rebound or track.approach)[-1].time))
-        levels, limits, answers, parts = [start], [], [], 1
+        levels, answers, parts = [start], [], 1
         while parts < MOST_PARTS:
             parts *= 2
             levels.append(nest.level(parts, predicted_ends(levels)))
-            limits.append(limit(levels[-2], levels[-1]))
-            answers.append(_answer(scene, track.end, limits[-1], limits[0]))
+            answers.append(_answer(scene, track.end, limit(levels[-2], levels[-1])))
             if len(answers) > 1:
                 quantities, force_error = bars(answers[-1], answers[-2], SAFETY)
                 if meets(quantities, tolerance):
@@ -98,8 +97,8 @@ def estimate(scene: Scene, elements: int = 70) -> ImpactScales:
     )
 
 
-def _answer(scene: Scene, end: End, level: Level, metered: Level) -> Answer:
-    """The dense answer of one level, its energies those of the metered one."""
+def _answer(scene: Scene, end: End, level: Level) -> Answer:
+    """The dense answer of one level."""
     separated = end is End.SEPARATED
     whole = np.hstack([level.approach, level.rebound[:, 1:]]) if level.rebound.size else level.approach
     time, depth, velocity, _, force, _ = whole
@@ -113,7 +112,7 @@ def _answer(scene: Scene, end: End, level: Level, metered: Level) -> Answer:
         "impulse": impulse_of(scene, end, velocity[-1], time[-1], scene.end_time),
     }
     message = "" if separated else end.value
-    return Answer(time, _Dense(level, separated), values, end, _energy(scene, metered), message)
+    return Answer(time, _Dense(level, separated), values, end, _energy(scene, level), message)
 
 
 @dataclass(frozen=True)

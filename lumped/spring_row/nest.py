@@ -23,8 +23,6 @@ from lumped.spring_row.row import Instant, Problem, Row
 Array = NDArray[np.float64]
 ALIGNING_TRIES = 8
 NEARLY = 0.05
-# The energies need two levels only: they are a check, not a quantity.
-METERED = (1, 2)
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,7 @@ class Nest:
         steps = 0
         for _ in range(ALIGNING_TRIES):
             meter = Meter(self.problem)
-            track = self._march(parts, ends, meter.observe if parts in METERED else None)
+            track = self._march(parts, ends, meter.observe)
             steps += len(track.approach) + len(track.rebound)
             level = Level(_columns(track.approach), _columns(track.rebound), steps, meter.energies)
             if self._aligned(level, parts, ends):
@@ -82,7 +80,7 @@ class Nest:
             ends = level.ends
         raise NotReached("finer and coarser steps of the spring row do not follow the same course of events")
 
-    def _march(self, parts: int, ends: tuple[float, float], observe: Callable[[Row, Instant], None] | None) -> Track:
+    def _march(self, parts: int, ends: tuple[float, float], observe: Callable[[Row, Instant], None]) -> Track:
         turn, last = ends
 
         def pace(start: Instant) -> Pace:

@@ -136,9 +136,19 @@ def test_energy_of_the_spring_row_closes_term_by_term(impact: Callable[..., Scen
     for case in ("elastic", "sls", "stiff kelvin-voigt", "maxwell", "all at once"):
         scene = impact(**CASES[case])
         energy = simulate(laws.mdr.of(scene), scene, 1e-5).energy
-        assert energy["residual"] == pytest.approx(0.0, abs=2e-5 * (energy["in"] or 0.0)), case
+        assert energy["residual"] == pytest.approx(0.0, abs=5e-6 * (energy["in"] or 0.0)), case
         assert (energy["viscous"] or 0.0) >= -1e-9
         assert (energy["stored"] or 0.0) >= -1e-9
+
+
+def test_energy_of_the_spring_row_closes_where_gravity_does_most_of_the_work() -> None:
+    """Two coarse levels alone would leave 1.6 % of the energy over."""
+    material = {"law": "maxwell", "E": 2.559e8, "eta": 3.349e9, "nu": 0.18}
+    striker = {"shape": "power", "coefficient": 1373.6, "exponent": 5.66, "mass": 95.2, "velocity": 0.00257}
+    target = {"shape": "half_space", "material": material}
+    scene = Scene.from_dict({"striker": striker, "target": target, "model": {"gravity": 9.81}})
+    energy = simulate(laws.mdr.of(scene), scene, 1e-3).energy
+    assert energy["residual"] == pytest.approx(0.0, abs=2e-4 * (energy["in"] or 0.0))
 
 
 def test_a_law_that_cannot_go_on_says_so(impact: Callable[..., Scene]) -> None:
