@@ -27,6 +27,7 @@ from fe_contact.forms import Array
 from fe_contact.impact import march
 from fe_contact.march import March, Strike
 from fe_contact.numerics import SCHEMES, TARGETS, Numerics
+from fe_contact.softening import Softening, compliance_change
 from lumped.errors import NotReached
 from lumped.members import get
 from lumped.scene import Geometry
@@ -66,7 +67,7 @@ class Certified:
     curve: Curve
     march: March
     surface: ScaledSurface
-    changes: Mapping[str, tuple[Change | None, ...]]
+    changes: Mapping[str, tuple[Change | Softening | None, ...]]
     work: TotalWork
 
     def error(self, name: str, cause: str) -> float:
@@ -92,17 +93,26 @@ def certify(strike: Strike, geometry: Geometry, numerics: Numerics) -> Certified
     cheap = numerics.varied(steps=steps.cheap)
     base = runs.curve(cheap)
     mesh, finer_mesh = _other(cheap, "elements_per_contact")
-    far, farther = _other(mesh, "far_radius")
     penalty, stiffer = _other(cheap, "penalty")
-    on_mesh, surface = runs.curve(mesh), runs.surface(numerics)
+    surface = runs.surface(numerics)
     order = MESH_ORDER[numerics.order] if surface.breathes else MESH_ORDER_ANYWHERE
     changes = {
-        "mesh": (_change(base, on_mesh, order, finer_mesh), *steps.jitter),
+        "mesh": (_change(base, runs.curve(mesh), order, finer_mesh), *steps.jitter),
         "penalty": (_change(base, runs.curve(penalty), LEAST_ORDER["penalty"], stiffer),),
         "time_step": (steps.change,),
-        "far_field": (_change(on_mesh, runs.curve(far), LEAST_ORDER["far_field"], farther),),
+        "far_field": (_far_field(runs, steps.value, cheap, mesh),),
     }
     return Certified(steps.value, finest, surface, changes, runs.work(surface))
+
+
+def _far_field(runs: _Runs, value: Curve, cheap: Numerics, mesh: Numerics) -> Change | Softening | None:
+    """By one press of either surface where they breathe with the contact; else by a march more, on the varied mesh."""
+    order = LEAST_ORDER["far_field"]
+    far, farther = _other(cheap, "far_radius")
+    surface = runs.surface(cheap)
+    if surface.breathes:
+        return Softening(value, _factor(order, farther) * compliance_change(surface, runs.surface(far)))
+    return _change(runs.curve(mesh), runs.curve(mesh.varied(far_radius=far.far_radius)), order, farther)
 
 
 @dataclass(frozen=True)
@@ -144,19 +154,22 @@ class _Runs:
     def __init__(self, strike: Strike, geometry: Geometry) -> None:
         self._strike, self._geometry = strike, geometry
         self._marches: list[March] = []
+        self._radii: dict[int, Array] = {}
         self._surfaces: dict[int, ScaledSurface] = {}
         self._curves: dict[Numerics, Curve | None] = {}
 
     def march(self, settings: Numerics) -> March:
-        """One run; raises where it fails."""
+        """One run, its contact radii expected to be those of the first with as many steps; raises where it fails."""
         surface = self.surface(settings)
-        self._surfaces[id(surface)] = surface
-        self._marches.append(march(self._strike, surface, settings, accounted=not self._marches))
+        expected = self._radii.get(settings.steps, ())
+        self._marches.append(march(self._strike, surface, settings, not self._marches, expected))
+        self._radii.setdefault(settings.steps, self._marches[-1].radius)
         return self._marches[-1]
 
     def surface(self, settings: Numerics) -> ScaledSurface:
         """What contact sees of the struck body."""
         surface: ScaledSurface = get(TARGETS, self._geometry.target.name).struck(self._geometry, settings)
+        self._surfaces[id(surface)] = surface
         return surface
 
     def curve(self, settings: Numerics) -> Curve | None:
@@ -185,7 +198,7 @@ class _Runs:
         )
 
 
-def _error(change: Change | None, name: str) -> float:
+def _error(change: Change | Softening | None, name: str) -> float:
     """Error of a quantity by one change; infinite where the variation failed."""
     return np.inf if change is None else change.errors[name]
 
@@ -201,9 +214,12 @@ def _trusted_order(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
 
 def _change(first: Curve | None, second: Curve | None, order: float, finer: bool = False) -> Change | None:
     """Change between settings in the ratio 1 : 2; ``finer`` if it is the second that is the better one."""
-    if first is None or second is None:
-        return None
-    return Change(first, second, SAFETY * (2**order if finer else 1) / (2**order - 1))
+    return None if first is None or second is None else Change(first, second, _factor(order, finer))
+
+
+def _factor(order: float, finer: bool) -> float:
+    """Error over change, by the module's formula; of the first setting, ``finer`` if the second is the better one."""
+    return SAFETY * (2**order if finer else 1) / (2**order - 1)
 
 
 def _other(numerics: Numerics, key: str) -> tuple[Numerics, bool]:

@@ -128,6 +128,16 @@ def solve(problem: ContactProblem, touching: Touching) -> ContactSolution:
     return _solution(problem, gap, MAX_ITERATIONS, False)
 
 
+def count(touching: Touching) -> int:
+    """How many points touch."""
+    return int(np.count_nonzero(touching))
+
+
+def moved(touching: Touching, by: int) -> Touching:
+    """As many points and ``by`` more, all from the first touch outwards: contact seldom has holes."""
+    return np.arange(touching.size) < count(touching) + by
+
+
 def _solution(problem: ContactProblem, gap: Array, iterations: int, converged: bool) -> ContactSolution:
     return ContactSolution(problem.penalty * gap, iterations, converged, (gap > 0.0,))
 

@@ -11,6 +11,7 @@ from fe_contact.account import record
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall, TooManySteps
 from fe_contact.fixed_stepping import FixedStepper
+from fe_contact.forms import Array
 from fe_contact.march import March, Strike
 from fe_contact.numerics import Numerics
 from fe_contact.separation import time_left
@@ -28,24 +29,35 @@ FAINT = 1e-3  # share of the peak force below which contact may end
 STEPS_ALLOWED = 20  # multiple of the settings' steps after which the march gives up
 
 
-def march(strike: Strike, surface: ScaledSurface, numerics: Numerics, accounted: bool = True) -> March:
+def march(
+    strike: Strike,
+    surface: ScaledSurface,
+    numerics: Numerics,
+    accounted: bool = True,
+    expected: Sequence[float] | Array = (),
+) -> March:
     """Integrate from first touch to separation, or to ``strike.end_time``.
 
-    ``accounted`` marches also tell the pressure of every step and the energies.
+    ``accounted`` marches also tell the pressure of every step and the energies; ``expected`` contact radii, m, of
+    the first steps, known from a like march, spare a mesh that breathes the search for its scale.
 
     Raises the named failures of :mod:`fe_contact.errors` where a step does not converge.
     """
-    return _Marcher(strike, surface, numerics, accounted).run()
+    stepper: Stepper | FixedStepper
+    if surface.breathes:
+        stepper = Stepper(strike, surface, numerics, accounted, expected)
+    else:
+        stepper = FixedStepper(strike, surface, numerics, accounted)
+    return _Marcher(stepper).run()
 
 
 class _Marcher:
     """The loop: what stays the same through an impact is held here, what changes is passed and returned."""
 
-    def __init__(self, strike: Strike, surface: ScaledSurface, numerics: Numerics, accounted: bool) -> None:
-        self.strike, self.numerics = strike, numerics
-        follows = Stepper if surface.breathes else FixedStepper
-        self.stepper: Stepper | FixedStepper = follows(strike, surface, numerics, accounted)
-        self.shortest = (END_REACHED if surface.breathes else END_REACHED_IN_LINES) * numerics.contact_time
+    def __init__(self, stepper: Stepper | FixedStepper) -> None:
+        self.stepper, self.strike, self.numerics = stepper, stepper.strike, stepper.numerics
+        share = END_REACHED if stepper.surface.breathes else END_REACHED_IN_LINES
+        self.shortest = share * self.numerics.contact_time
 
     def run(self) -> March:
         strike = self.strike

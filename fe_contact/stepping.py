@@ -12,7 +12,7 @@ import numpy as np
 
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, area_weights, interpolate, step_law
 from fe_contact.bodies.scaled_surface import ScaledSurface
-from fe_contact.contact import ContactSolution
+from fe_contact.contact import ContactSolution, Touching, count, moved
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
 from fe_contact.forms import Array
 from fe_contact.march import Strike, Work
@@ -34,15 +34,24 @@ class Stepper:
     """Takes steps: what stays the same through an impact is held here, what changes is passed and returned.
 
     ``accounted``: the memory also keeps the pressure that each of its branches carries, for the energies.
+    ``expected``: contact radii, m, of the first steps where a like march has told them, for as many as it did.
     """
 
-    def __init__(self, strike: Strike, surface: ScaledSurface, numerics: Numerics, accounted: bool) -> None:
+    def __init__(
+        self,
+        strike: Strike,
+        surface: ScaledSurface,
+        numerics: Numerics,
+        accounted: bool,
+        expected: Sequence[float] | Array = (),
+    ) -> None:
         self.strike, self.surface, self.numerics = strike, surface, numerics
         self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
         self.enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
         self.radii = np.linspace(0.0, MEMORY_REACH * numerics.contact_radius, MEMORY_POINTS)
         self.heights = strike.height(self.radii)
-        self.accounted = accounted
+        self.accounted, self.expected = accounted, expected
+        self.unit = count(surface.operator.points < 1.0)
 
     def touch(self) -> State:
         """The striker at the surface at rest."""
@@ -92,7 +101,7 @@ class Stepper:
         """Scale the mesh until the contact edge lies in its finest elements: scale, edge on the unit mesh, solution."""
         points, limit = self.surface.operator.points, self.radii[-1]
         scale = self._expected_radius(state, steps, free_depth, length)
-        guesses = steps[-1].solution.sets if steps else (points < 1.0,)
+        guesses = self._guesses(steps)
         iterations = 0
         for attempt in range(RESCALINGS):
             radii = scale * points
@@ -111,11 +120,24 @@ class Stepper:
             scale *= min(max(edge, 0.3), points[-1])
             if scale < VANISHING * (steps[-1].radius if steps else self.numerics.contact_radius * VANISHING):
                 raise ContactLost(state.time)
-            guesses = (points < 1.0,)
+            guesses = self._centred(solution)
         raise ContactNotSettled(state.time)
 
+    def _guesses(self, steps: Sequence[Step]) -> tuple[Touching, ...]:
+        """Points that may touch in the coming step."""
+        if not steps:
+            return (self.surface.operator.points < 1.0,)
+        return self._centred(steps[-1].solution) if len(steps) < len(self.expected) else steps[-1].solution.sets
+
+    def _centred(self, solution: ContactSolution) -> tuple[Touching, ...]:
+        """Sets of another step or scale, moved so that the last of them, whose edge is the contact's, ends at one."""
+        by = self.unit - count(solution.sets[-1])
+        return tuple(moved(touching, by) for touching in solution.sets)
+
     def _expected_radius(self, state: State, steps: Sequence[Step], depth: float, length: float) -> float:
-        """Contact radius in the coming step: its square is smooth in time, and zero at touch."""
+        """Contact radius in the coming step, if it is not told: its square is smooth in time, and zero at touch."""
+        if len(steps) < len(self.expected):
+            return float(self.expected[len(steps)])
         if not steps:
             return _overlap_radius(self.strike.height, depth, self.radii[-1])
         known = [(step.radius_time, step.radius**2) for step in steps[-3:]]

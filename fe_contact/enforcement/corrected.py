@@ -8,16 +8,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from fe_contact.contact import ContactProblem, ContactSolution, Touching, solve
+from fe_contact.contact import ContactProblem, ContactSolution, Touching, count, moved, solve
 
 SOLVES = 2
 
 
 def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:
-    """Solve, take the pressure as multiplier, solve again; a lone guess serves the first, its answer the second."""
+    """Solve, take the pressure as multiplier, solve again.
+
+    A second guess tells by how many points the second set differs from the first; without it, by none.
+    """
     first = solve(problem, guesses[0])
     shifted = replace(problem, overlap=problem.overlap + first.pressure / problem.penalty)
-    second = solve(shifted, *(guesses[1:] or first.sets))
+    second = solve(shifted, moved(first.sets[0], count(guesses[-1]) - count(guesses[0])))
     return ContactSolution(
         signed_pressure=second.signed_pressure,
         iterations=first.iterations + second.iterations,
