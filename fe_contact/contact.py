@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -77,8 +77,7 @@ class ContactProblem:
     yielding: float | Array = 0.0
 
 
-@dataclass(frozen=True)
-class ContactSolution:
+class ContactSolution(NamedTuple):
     """Signed pressure (q,) (negative where open), Newton iterations, convergence.
 
     ``sets``: touching points (q,) of every contact problem on the way, first guesses for a problem much like it.

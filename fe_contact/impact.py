@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -118,7 +117,7 @@ class _Marcher:
             return []
         pull = self.strike.gravity * left
         depth = state.depth + left * (state.velocity + 0.5 * pull)
-        return [replace(state, time=state.time + left, depth=depth, velocity=state.velocity + pull)]
+        return [state._replace(time=state.time + left, depth=depth, velocity=state.velocity + pull)]
 
     def _rest(self, state: State, resting: float) -> list[State]:
         """A striker that a fluid has stopped, up to the end time; raises where it is no fluid or still moves."""
@@ -126,7 +125,7 @@ class _Marcher:
         if resting == 0.0 or state.velocity > resting:
             raise ContactNotSettled(state.time)
         roots = np.linspace(np.sqrt(state.time), np.sqrt(strike.end_time), REST_ROWS)[1:]
-        return [replace(state, time=float(root) ** 2) for root in roots]
+        return [state._replace(time=float(root) ** 2) for root in roots]
 
 
 def _faint(steps: Sequence[Step], share: float) -> bool:

@@ -10,6 +10,7 @@ from fe_contact.forms import Array
 
 STENCIL = 6  # nodes of a polynomial
 PLACES = 17  # equidistant, from which a quartic is fitted
+FINE = np.linspace(0.0, 1.0, 201)  # where in an interval a maximum is looked for
 NEAREST_QUARTIC = np.linalg.pinv(np.vander(np.linspace(-1.0, 1.0, PLACES), 5))
 
 
@@ -36,13 +37,14 @@ class LocalPolynomials:
         """Value and derivative of every field, (f, p), each by the polynomial whose nodes lie around."""
         size, fields, count = self.differences.shape
         first = np.minimum(np.maximum(self.nodes.searchsorted(places) - size // 2, 0), count - 1)
-        value, slope = self.differences[-1].take(first, axis=1), np.zeros((fields, len(places)))
-        for level in range(size - 2, -1, -1):
-            step = places - self.nodes.take(first + level)
+        coefficients = self.differences.take(first, axis=2)
+        steps = places - self.nodes.take(first + np.arange(size - 1)[:, None])
+        value, slope = coefficients[-1], np.zeros((fields, len(places)))
+        for step, coefficient in zip(steps[::-1], coefficients[-2::-1], strict=True):
             slope *= step
             slope += value
             value *= step
-            value += self.differences[level].take(first, axis=1)
+            value += coefficient
         return value, slope
 
 
@@ -68,10 +70,12 @@ def fitted_peak(first: float, last: float, values: Array) -> tuple[float, float]
 
 def _top(quartic: Array, low: float, high: float) -> tuple[float, float]:
     """Place and height of a quartic's maximum in an interval."""
-    fine = np.linspace(low, high, 201)
-    best, spacing = float(fine[int(np.argmax(np.polyval(quartic, fine)))]), (high - low) / 200
+    a, b, c, d, e = quartic.tolist()
+    fine = low + (high - low) * FINE
+    best = float(fine[int(np.argmax((((a * fine + b) * fine + c) * fine + d) * fine))])
+    spacing = (high - low) * float(FINE[1])
     best = _stationary(quartic, best, max(best - spacing, low), min(best + spacing, high))
-    return best, float(np.polyval(quartic, best))
+    return best, (((a * best + b) * best + c) * best + d) * best + e
 
 
 def _stationary(quartic: Array, place: float, low: float, high: float) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from fe_contact.forms import Array
 from lumped.materials import Relaxation
@@ -34,8 +35,7 @@ class Snapshot:
     pressure: Array
 
 
-@dataclass(frozen=True)
-class Work:
+class Work(NamedTuple):
     """Counted work: time steps, contact problems, Newton iterations."""
 
     steps: int = 0

@@ -1,16 +1,15 @@
-"""What a march carries from step to step."""
+"""What a march carries from step to step: named tuples, of which there are many and which are quick to make."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from fe_contact.bodies.memory import SurfaceMemory
 from fe_contact.contact import ContactSolution
 from fe_contact.march import Work
 
 
-@dataclass(frozen=True)
-class State:
+class State(NamedTuple):
     """Striker and surface at an instant: s, m, m/s, N s since touch."""
 
     time: float
@@ -20,8 +19,7 @@ class State:
     memory: SurfaceMemory
 
 
-@dataclass(frozen=True)
-class Step:
+class Step(NamedTuple):
     """A step taken, SI units: its length, the state after it, force and contact radius in it, and when that was.
 
     ``axis_response`` is the axis' displacement times modulus, ``scale`` the contact radius the mesh was scaled

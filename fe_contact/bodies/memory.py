@@ -11,8 +11,8 @@ The same recursion run on the pressure itself gives the pressure each branch car
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from types import ModuleType
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,8 +23,7 @@ STENCIL = np.arange(4)[:, None]
 TO_MONOMIALS = np.linalg.inv(np.vander(np.arange(4.0), increasing=True))  # of the cubic through four values
 
 
-@dataclass(frozen=True)
-class StepLaw:
+class StepLaw(NamedTuple):
     """Stress of one step: ``now`` x new strain + ``past`` . (old strain, old branches); see :func:`step_law`.
 
     ``decay``, ``gain`` (k,) move the branches on: z' = decay z + gain (u' - u).
@@ -52,8 +51,7 @@ def step_law(relaxation: Relaxation, scheme: ModuleType, step: float) -> StepLaw
     )
 
 
-@dataclass(frozen=True)
-class SurfaceMemory:
+class SurfaceMemory(NamedTuple):
     """Displacement and, for its energies, its elastic pressure on fixed radii.
 
     ``areas`` (r,) m^2 that belong to the radii; ``strain`` (f, r): displacement u, m, and, where f = 2, the

@@ -31,9 +31,9 @@ class Sphere(Shape):
 
     def height(self, r: ArrayLike) -> NDArray[np.float64]:
         """R - sqrt(R^2-r^2) = r^2/(R + sqrt(R^2-r^2)), which cancels no digit; infinite beyond R."""
-        ratio = np.abs(np.asarray(r, dtype=float)) / self.radius
-        rise = self.radius * ratio**2 / (1.0 + np.sqrt(np.maximum(1.0 - ratio**2, 0.0)))
-        return np.where(ratio <= 1.0, rise, np.inf)
+        square = (np.asarray(r, dtype=float) / self.radius) ** 2
+        rise = self.radius * square / (1.0 + np.sqrt(np.maximum(1.0 - square, 0.0)))
+        return np.where(square <= 1.0, rise, np.inf)
 
     def slope(self, r: ArrayLike) -> NDArray[np.float64]:
         """r/sqrt(R^2-r^2), infinite from R on."""
