@@ -31,7 +31,7 @@ from fe_contact.forms import Array, isotropic, stiffness
 from fe_contact.surface import Surface, flat
 
 ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
-FACET_POINTS = 2  # quadrature points a facet beyond the element order: the contact edge is a kink
+FACET_POINTS = 4  # quadrature points a facet beyond the element order: the contact edge is a kink
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from lumped.targets import HalfSpace
 
 DEFAULT_TOLERANCE = 1e-3
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-3 and 1e-4: see `fe-contact tradeoff`
-SPRINGS = 16  # along the contact radius: scales within one per cent place everything well
+SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
 FIXED_ELEMENTS = 2.0  # the same on a mesh that stays, four times refined where the contact may end
 VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
 STEPS_AT_DEFAULT = 40

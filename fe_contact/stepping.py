@@ -23,7 +23,7 @@ from lumped.members import get
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
 RESCALINGS = 60
 PATIENCE = 8  # rescalings after which the window widens by half each time: the edge may jitter in the last tail
-MEMORY_POINTS = 800
+MEMORY_POINTS = 1000
 MEMORY_REACH = 1.25  # memory extends to this multiple of the expected contact radius
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 COARSE = np.geomspace(1e-6, 1.0, 200)  # where, in units of the memory's reach, the first contact is looked for
