@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -77,7 +77,8 @@ class ContactProblem:
     yielding: float | Array = 0.0
 
 
-class ContactSolution(NamedTuple):
+@dataclass(frozen=True)
+class ContactSolution:
     """Signed pressure (q,) (negative where open), Newton iterations, convergence.
 
     ``sets``: touching points (q,) of every contact problem on the way, first guesses for a problem much like it.
@@ -133,8 +134,8 @@ def count(touching: Touching) -> int:
 
 
 def moved(touching: Touching, by: int) -> Touching:
-    """As many points and ``by`` more, all from the first touch outwards: contact seldom has holes."""
-    return np.arange(touching.size) < count(touching) + by
+    """As many points and ``by`` more, then all from the first touch outwards: contact seldom has holes."""
+    return np.arange(touching.size) < count(touching) + by if by else touching
 
 
 def _solution(problem: ContactProblem, gap: Array, iterations: int, converged: bool) -> ContactSolution:
