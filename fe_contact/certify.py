@@ -1,8 +1,8 @@
 """The error budget: the impact again with one setting varied at a time, by finite elements alone.
 
 Time steps in the ratio 1 : 2 : 4 give a value (extrapolated from the two finest) and its change from the
-pair before. Mesh, penalty and far field are varied on the coarsest of them, where a march is cheapest: what
-they change does not depend on the step. A change between settings in the ratio 1 : 2 bounds the error by
+pair before. Mesh and penalty are varied on the coarsest of them, where a march is cheapest: what they change does
+not depend on the step. The far field of a mesh that breathes with the contact takes no march. A change between settings in the ratio 1 : 2 bounds the error by
 
     SAFETY / (2^order - 1) x change ,
 
