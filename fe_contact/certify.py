@@ -2,7 +2,8 @@
 
 Time steps in the ratio 1 : 2 : 4 give a value (extrapolated from the two finest) and its change from the
 pair before. Mesh and penalty are varied on the coarsest of them, where a march is cheapest: what they change does
-not depend on the step. The far field of a mesh that breathes with the contact takes no march. A change between settings in the ratio 1 : 2 bounds the error by
+not depend on the step. The far field of a mesh that breathes with the contact takes no march. A change
+between settings in the ratio 1 : 2 bounds the error by
 
     SAFETY / (2^order - 1) x change ,
 
