@@ -19,13 +19,15 @@ LATE = int(np.searchsorted(DENSE, 0.75))  # from here on path and speed count fo
 class Change:
     """Two curves that differ in one setting, and the factor that turns their difference into an error.
 
-    ``momentum``: what that factor is to be multiplied with for impulse and speed, which add up what every step errs.
+    ``momentum``: what that factor is to be multiplied with for impulse and speed, which add up what every step errs;
+    ``lasting``: the same for the duration.
     """
 
     first: Curve
     second: Curve
     factor: float
     momentum: float = 1.0
+    lasting: float = 1.0
 
     @cached_property
     def errors(self) -> dict[str, float]:
@@ -40,11 +42,12 @@ class Change:
             "peak_force": float(self._force_change[first.near_peak].max()),
             "peak_time": self._peak_time,
             "peak_depth": float(depth[first.dense.depth > PEAK_SHARE * first.dense.depth.max()].max()),
-            "duration": float(depth[LATE:].max()) / speed,
+            "duration": self.lasting * float(depth[LATE:].max()) / speed,
             "impulse": self.momentum * float(np.abs(first.dense.impulse - self.second.dense.impulse)[LATE:].max()),
             "restitution": self.momentum * self.velocity / first.strike.velocity,
         }
         errors = {name: self._error(name, value) for name, value in around.items()}
+        errors["duration"] = max(errors["duration"], self.lasting * self._error("duration", 0.0))
         return errors | {"history_l2": self.factor * self._history}
 
     def _error(self, name: str, around: float) -> float:
