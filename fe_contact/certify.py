@@ -40,6 +40,7 @@ MESH_ORDER_ANYWHERE = 1  # where the edge falls anywhere in an element: 1.6 is w
 LEAST_HALVED = 40  # steps below which halving them twice would leave too few to tell anything
 LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 20.0, "far_radius": 5.0}
 AS_EXPECTED = (0.6, 2.5)  # shares of the expected ratio of changes that show the order; faster does no harm
+ASYMPTOTIC = 1e-2  # share of the duration by which the fewest steps may err where orders are to be believed
 NEARLY = 0.8  # share of the expected ratio that the durations must show: they stand for themselves alone
 CAUSES = ("mesh", "penalty", "time_step", "far_field")
 
@@ -145,7 +146,7 @@ def _time_steps(runs: _Runs, fine: Curve, numerics: Numerics) -> _TimeSteps:
     trusted = _trusted_order(fine, half, quarter, order)
     # a relaxation shorter than the step spoils the higher order of what adds up over the contact
     momentum = (2**trusted - 1) / (2 ** min(trusted, order) - 1)
-    lasting = (2**trusted - 1) / (2 ** min(trusted, _order_of_duration(fine, half, quarter, order, numerics)) - 1)
+    lasting = (2**trusted - 1) / (2 ** min(trusted, _order_of_duration(fine, half, quarter, order)) - 1)
     change = Change(value, before, SAFETY / (2**trusted - 1), momentum, lasting)
     jitter = Change(fine, fine.thinned(), 1.0)
     return _TimeSteps(value, change, (jitter,), numerics.steps // 4)
@@ -215,10 +216,10 @@ def _trusted_order(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
     return order + 1 if AS_EXPECTED[0] <= seen / 2**order <= AS_EXPECTED[1] else 1
 
 
-def _order_of_duration(fine: Curve, half: Curve, quarter: Curve, order: int, numerics: Numerics) -> int:
-    """Order to trust of the duration: where the fewest steps err by more than the tolerance, only what it shows."""
+def _order_of_duration(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
+    """Order to trust of the duration: where the fewest steps err by more than a per cent, only what it shows."""
     first, second, third = (curve.quantities["duration"] for curve in (fine, half, quarter))
-    if first is None or second is None or third is None or abs(third - second) <= numerics.tolerance * first:
+    if first is None or second is None or third is None or abs(third - second) <= ASYMPTOTIC * first:
         return order + 1
     return order if abs(third - second) >= NEARLY * 2**order * abs(second - first) else 1
 

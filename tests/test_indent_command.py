@@ -152,6 +152,10 @@ def test_a_tolerance_out_of_reach_is_said(write: Any, empty: Path, capsys: pytes
     assert len(rows(empty / "out")) == 3
 
 
+# Bodies which no closed form is known for.
+WITHOUT_CURVE = ("polymer-o-ring", "polymer-plate", "polymer-washer", "two-cylinders", "two-finite-spheres")
+
+
 def geometric(name: str) -> bool:
     try:
         return bool(Indenter.load(name))
@@ -162,6 +166,10 @@ def geometric(name: str) -> bool:
 @pytest.mark.parametrize("name", [name for name in scene_names() if geometric(name)])
 def test_packaged_scenes_are_pressed_within_their_bars(name: str, empty: Path) -> None:
     assert exit_code(name, "--depths", "2e-5", "--out", "fe") == 0
-    assert exit_code(name, "--depths", "2e-5", "--out", "exact", "--method", "cheapest") == 0
+    code = exit_code(name, "--depths", "2e-5", "--out", "exact", "--method", "cheapest")
+    if name in WITHOUT_CURVE:
+        assert code == 2
+        return
+    assert code == 0
     elements, exact = rows(empty / "fe")[0], rows(empty / "exact")[0]
     assert abs(elements[1] - exact[1]) <= elements[3] + exact[3]
