@@ -20,10 +20,9 @@ from lumped.scene import Scene
 from lumped.targets import HalfSpace
 
 DEFAULT_TOLERANCE = 1e-3
-ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-4: see `fe-contact tradeoff`
+ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-3 and 1e-4: see `fe-contact tradeoff`
 SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
 FIXED_ELEMENTS = 2.0  # the same on a mesh that stays, four times refined where the contact may end
-LOOSER = 0.06  # three and a half elements at 1e-3
 VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
 STEPS_AT_DEFAULT = 40
 STEPS_ORDER = 0.176  # steps grow with tolerance to this power: 60 at 1e-4
@@ -81,8 +80,6 @@ def _elements(scene: Scene, tolerance: float) -> float:
     """Elements along the contact radius; a dashpot asks for more, since it differentiates the mesh's error."""
     order = VISCOUS_ORDER if scene.contact_modulus.viscosity > 0 else 0.0
     fewest = ELEMENTS if isinstance(scene.target, HalfSpace) else FIXED_ELEMENTS
-    if isinstance(scene.target, HalfSpace):
-        fewest *= math.pow(min(tolerance / 1e-4, 10.0), -LOOSER)
     return fewest * max(1.0, math.pow(1e-4 / tolerance, 0.25), math.pow(DEFAULT_TOLERANCE / tolerance, order))
 
 
