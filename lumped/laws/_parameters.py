@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -122,6 +123,13 @@ class Parameters:
         except BadInput as bad:
             self.faults += [Fault(self.scene.source, "law.e", fault.message) for fault in bad.faults]
             return 0.0
+
+    def dashpot(self, k: float) -> float:
+        """c, N s/m, of the dashpot beside a spring k, N/m: given, or of xi "(7)", or of e by the family of this name."""
+        kind, value = self.damping(("xi", "c"))
+        if kind == "e":
+            value = self.meeting(self.name, value)
+        return value if kind == "c" else 2.0 * value * math.sqrt(k * self.scene.reduced_mass)
 
     def missing(self, key: str, accepted: str) -> None:
         """Note a key that has to be given."""

@@ -59,6 +59,19 @@ class PowerLaw(ForceLaw):
         return spring_contact_time(self.k, self.alpha, bodies)
 
 
+@dataclass(frozen=True, kw_only=True)
+class Undamped(PowerLaw):
+    """The spring alone: nothing is lost."""
+
+    def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:
+        """None."""
+        return 0.0 * depth
+
+    def damper_tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+        """None."""
+        return 0.0, 0.0 * depth
+
+
 def spring_contact_time(k: float, alpha: float, bodies: Bodies) -> float:
     """2 (d_m/v) int_0^1 dx/sqrt(1 - x^(alpha + 1)), s, of the impact on k depth^alpha."""
     power = alpha + 1.0

@@ -1,7 +1,7 @@
-"""The contract of a law: what time does to a load curve.
+"""The contract of a law: a force between two masses, or what time does to a load curve.
 
-A law is one module of this folder with `of(scene) -> Law`; a Law is a frozen dataclass which knows its `name`
-and simulates one impact of a scene to a tolerance.
+A law is one module of this folder with `KEYS`, those of the `[law]` table, and `of(scene) -> Law`; a Law is a frozen
+dataclass which knows its `name` and simulates the impacts of a scene to a tolerance.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ class Law(Protocol):
     name: ClassVar[str]
 
     def simulate(self, scene: Scene, tolerance: float) -> Result:
-        """One impact; every claimed error is the integration error of this law. Raises NotReached."""
+        """The impacts of a scene; every claimed error is the integration error of this law. Raises NotReached."""
 
 
 def simulate(model: Law, scene: Scene, tolerance: float = 1e-6) -> Result:
-    """One impact under the law `model`, every ruled quantity to `tolerance`. Raises NotReached."""
+    """The impacts of a scene under the law `model`, every ruled quantity to `tolerance`. Raises NotReached."""
     return model.simulate(scene, tolerance)

@@ -6,7 +6,6 @@ damping "(7)" (1988, doi 10.1002/eqe.4290160312) belongs to `exit = "depth"`, wh
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -49,9 +48,4 @@ def of(scene: Scene) -> Kelvin:
     """The law for a scene. Raises BadInput."""
     given = Parameters(scene, Kelvin.name)
     k = given.stiffness(1.0)
-    kind, value = given.damping(("xi", "c"))
-    if kind == "e":
-        value = given.meeting("kelvin", value)
-    common = given.common()
-    c = value if kind == "c" else 2.0 * value * math.sqrt(k * scene.reduced_mass)
-    return Kelvin(k=k, c=c, **common)
+    return Kelvin(k=k, c=given.dashpot(k), **given.common())

@@ -6,7 +6,6 @@ Jankowski 2011, Iran. J. Sci. Technol. C 35, 51-62.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -48,9 +47,4 @@ def of(scene: Scene) -> Mahmoud:
     """The law for a scene. Raises BadInput."""
     given = Parameters(scene, Mahmoud.name)
     k = given.stiffness(1.0)
-    kind, value = given.damping(("xi", "c"))
-    if kind == "e":
-        value = given.meeting("mahmoud", value)
-    common = given.common()
-    c = value if kind == "c" else 2.0 * value * math.sqrt(k * scene.reduced_mass)
-    return Mahmoud(k=k, c=c, **common)
+    return Mahmoud(k=k, c=given.dashpot(k), **given.common())
