@@ -125,7 +125,7 @@ class Parameters:
             return 0.0
 
     def dashpot(self, k: float) -> float:
-        """c, N s/m, of the dashpot beside a spring k, N/m: given, or of xi "(7)", or of e by the family of this name."""
+        """c, N s/m, of the dashpot beside a spring k, N/m: given, or of xi "(7)", or of e at the law's exit."""
         kind, value = self.damping(("xi", "c"))
         if kind == "e":
             value = self.meeting(self.name, value)
