@@ -7,7 +7,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from fe_contact.bodies.memory import step_law
 from fe_contact.fixed_stepping import FixedStepper
 from fe_contact.march import March, Snapshot, Work
 from fe_contact.stepping import Stepper
@@ -49,17 +48,17 @@ def _snapshots(stepper: Stepper | FixedStepper, steps: Sequence[Step]) -> tuple[
 def _energy(stepper: Stepper | FixedStepper, states: Sequence[State], steps: Sequence[Step]) -> dict[str, float]:
     """Terms in J; ``contact`` is what the penalty's springs hold if the bodies have not separated."""
     strike, final, last = stepper.strike, steps[-1], states[-1]
-    stiffness = stepper.numerics.penalty * step_law(strike.relaxation, stepper.scheme, final.length).now
+    stiffness = stepper.numerics.penalty * stepper.modulus(final.length)
     springs = 0.5 * final.scale * float(stepper.surface.operator.weights @ final.solution.pressure**2) / stiffness
     memories = [state.memory for state in states[: len(steps) + 1]]
     heats = [
-        before.dissipated(after, strike.relaxation, step.length)
+        stepper.dissipated(before, after, step.length)
         for (before, after), step in zip(pairwise(memories), steps, strict=True)
     ]
     terms = {
         "in": 0.5 * strike.mass * strike.velocity**2 + strike.mass * strike.gravity * last.depth,
         "out": 0.5 * strike.mass * last.velocity**2,
-        "stored": last.memory.stored(strike.relaxation),
+        "stored": stepper.stored(last.memory),
         "viscous": sum(heats),
         "radiated": 0.0,
         "contact": springs if last is final.state else 0.0,

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.bodies.offer import Deformable
 from fe_contact.change import Change
 from fe_contact.curve import Curve, extrapolated
 from fe_contact.forms import Array
@@ -69,7 +69,7 @@ class Certified:
 
     curve: Curve
     march: March
-    surface: ScaledSurface
+    surface: Deformable
     changes: Mapping[str, tuple[Change | Softening | None, ...]]
     work: TotalWork
 
@@ -159,7 +159,7 @@ class _Runs:
         self._strike, self._geometry = strike, geometry
         self._marches: list[March] = []
         self._radii: dict[int, Array] = {}
-        self._surfaces: dict[int, ScaledSurface] = {}
+        self._surfaces: dict[int, Deformable] = {}
         self._curves: dict[Numerics, Curve | None] = {}
 
     def march(self, settings: Numerics) -> March:
@@ -170,9 +170,9 @@ class _Runs:
         self._radii.setdefault(settings.steps, self._marches[-1].radius)
         return self._marches[-1]
 
-    def surface(self, settings: Numerics) -> ScaledSurface:
+    def surface(self, settings: Numerics) -> Deformable:
         """What contact sees of the struck body."""
-        surface: ScaledSurface = get(TARGETS, self._geometry.target.name).struck(self._geometry, settings)
+        surface: Deformable = get(TARGETS, self._geometry.target.name).struck(self._geometry, settings)
         self._surfaces[id(surface)] = surface
         return surface
 
@@ -188,13 +188,13 @@ class _Runs:
                 self._curves[settings] = None
         return self._curves[settings]
 
-    def work(self, finest: ScaledSurface) -> TotalWork:
+    def work(self, finest: Deformable) -> TotalWork:
         """What all runs cost together."""
         works = [m.work for m in self._marches]
         return TotalWork(
             degrees_of_freedom=finest.operator.degrees_of_freedom,
-            factorizations=len(self._surfaces),
-            solves=sum(len(s.operator.stiffness) for s in self._surfaces.values()),
+            factorizations=sum(s.factorizations for s in self._surfaces.values()),
+            solves=sum(s.solves for s in self._surfaces.values()),
             marches=len(works),
             steps=sum(w.steps for w in works),
             contact_problems=sum(w.contact_problems for w in works),

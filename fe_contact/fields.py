@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 from skfem import Basis
 
+from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.forms import Array, isotropic
 from fe_contact.numerics import ENFORCEMENTS, SCHEMES
 from fe_contact.reference import Solved
@@ -108,6 +109,7 @@ def _indented(scene: Scene, solved: Solved, depth: float, length: float) -> Arra
     elastic one at the same depth (Lee and Radok 1960, doi:10.1115/1.3644020).
     """
     surface, numerics = solved.certified.surface, solved.numerics
+    assert isinstance(surface, ScaledSurface)
     operator = surface.operator
     height = np.minimum(scene.profile.height(length * operator.points), BEYOND * length)
     enforcement = get(ENFORCEMENTS, numerics.enforcement)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_contact.account import record
+from fe_contact.bodies.offer import Deformable
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall, TooManySteps
 from fe_contact.fixed_stepping import FixedStepper
@@ -30,7 +31,7 @@ STEPS_ALLOWED = 20  # multiple of the settings' steps after which the march give
 
 def march(
     strike: Strike,
-    surface: ScaledSurface,
+    surface: Deformable,
     numerics: Numerics,
     accounted: bool = True,
     expected: Sequence[float] | Array = (),
@@ -43,7 +44,7 @@ def march(
     Raises the named failures of :mod:`fe_contact.errors` where a step does not converge.
     """
     stepper: Stepper | FixedStepper
-    if surface.breathes:
+    if isinstance(surface, ScaledSurface) and surface.breathes:
         stepper = Stepper(strike, surface, numerics, accounted, expected)
     else:
         stepper = FixedStepper(strike, surface, numerics, accounted)

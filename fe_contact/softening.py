@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.bodies.offer import Deformable
 from fe_contact.curve import Curve
 from fe_contact.forms import Array
 
@@ -46,7 +46,7 @@ class Softening:
         return np.full_like(time, self.errors["peak_force"])
 
 
-def compliance_change(first: ScaledSurface, second: ScaledSurface) -> float:
+def compliance_change(first: Deformable, second: Deformable) -> float:
     """Relative change of the force at a held depth between two surfaces, one of which lifts the contact by a constant.
 
     A lift of c force/(modulus radius) changes the force by 2 c of it, whatever the profile, since dF/d(depth) = 2 E* a;
@@ -57,7 +57,7 @@ def compliance_change(first: ScaledSurface, second: ScaledSurface) -> float:
     return 1.2 * abs(after / before - 1.0)
 
 
-def _work(surface: ScaledSurface) -> float:
+def _work(surface: Deformable) -> float:
     """Work of the pressure sqrt(1 - r^2) on the displacement that it causes."""
     operator = surface.operator
     load = operator.trace.T @ (operator.weights * np.sqrt(np.maximum(1.0 - operator.points**2, 0.0)))

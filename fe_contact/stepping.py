@@ -88,6 +88,18 @@ class Stepper:
         found_at = self._radius_time(moved.velocity, state.time, length)
         return Step(length, moved, force, radius, found_at, axis, solution, scale, work)
 
+    def modulus(self, length: float) -> float:
+        """Contact modulus against new strain in a step of a length, s; Pa."""
+        return step_law(self.strike.relaxation, self.scheme, length).now
+
+    def stored(self, memory: SurfaceMemory) -> float:
+        """Elastic energy, J."""
+        return memory.stored(self.strike.relaxation)
+
+    def dissipated(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
+        """Heat of a step of a length, s; J."""
+        return before.dissipated(after, self.strike.relaxation, length)
+
     def _settle(
         self,
         state: State,

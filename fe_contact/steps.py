@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from fe_contact.bodies.memory import SurfaceMemory
 from fe_contact.contact import ContactSolution
 from fe_contact.march import Work
 
 
 class State(NamedTuple):
-    """Striker and surface at an instant: s, m, m/s, N s since touch."""
+    """Striker and body at an instant: s, m, m/s, N s since touch; ``memory`` is the body's own."""
 
     time: float
     depth: float
     velocity: float
     impulse: float
-    memory: SurfaceMemory
+    memory: Any
 
 
 class Step(NamedTuple):

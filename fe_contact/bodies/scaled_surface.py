@@ -12,13 +12,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from types import ModuleType
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
+from fe_contact.bodies.surface_body import SurfaceBody
 from fe_contact.contact import ContactProblem, PressedSurface
 from fe_contact.forms import Array
 from fe_contact.operators import SurfaceOperator, monomials
+from lumped.materials import Relaxation
 
 
 @dataclass(frozen=True)
@@ -30,9 +34,19 @@ class ScaledSurface:
 
     operator: SurfaceOperator
     breathes: bool = True
+    factorizations: ClassVar[int] = 1
+
+    @property
+    def solves(self) -> int:
+        """Back-substitutions that made it: one a node of the contact zone."""
+        return len(self.operator.stiffness)
+
+    def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> SurfaceBody:
+        """The body on a mesh that stays, of unit length ``scale``, m: contact modulus E*(t), Pa, and time scheme."""
+        return SurfaceBody(self.operator, self.pressed, relaxation, scheme, scale)
 
     @cached_property
-    def _pressed(self) -> PressedSurface:
+    def pressed(self) -> PressedSurface:
         """What contact knows of it: one object, since the answers to a surface are kept by its identity."""
         operator = self.operator
         return PressedSurface(operator.stiffness, operator.trace, operator.weights, self.breathes)
@@ -46,7 +60,7 @@ class ScaledSurface:
         penalty : dimensionless penalty stiffness, in units of modulus over contact radius.
         yielding : striker's displacement times modulus per unit-mesh force; 0 holds it fixed, (q,) counts by place.
         """
-        return ContactProblem(self._pressed, overlap, penalty, yielding)
+        return ContactProblem(self.pressed, overlap, penalty, yielding)
 
     def response(self, pressure: Array) -> Array:
         """Displacement times modulus of all surface nodes, (n_s,), under a unit-mesh pressure (q,)."""

@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.bodies.offer import Deformable
 from fe_contact.certify import Certified, TotalWork, certify
 from fe_contact.forms import Array
 from fe_contact.numerics import Numerics
@@ -78,7 +78,7 @@ def tradeoff(scene: Scene, given: Mapping[str, Any], quick: bool, progress: Prog
     return (*points, *_rows(scene, exact), *_laws(scene, exact, quick))
 
 
-def operations(work: TotalWork, surface: ScaledSurface) -> float:
+def operations(work: TotalWork, surface: Deformable) -> float:
     """Leading terms of the arithmetic behind the counted work, with the sizes of the finest mesh.
 
     N unknowns in the plane cost N^(3/2) a factorisation and N log2 N a back-substitution (George 1973,

@@ -1,0 +1,68 @@
+"""What a body on a mesh that stays offers contact for one time step, and what it makes of the pressure found."""
+
+from __future__ import annotations
+
+from types import ModuleType
+from typing import Any, NamedTuple, Protocol
+
+from fe_contact.contact import PressedSurface
+from fe_contact.forms import Array
+from fe_contact.operators import SurfaceOperator
+from lumped.materials import Relaxation
+
+
+class Offer(NamedTuple):
+    """A step of a ``length``, s, as contact sees it: displacement x ``now`` = unit compliance x forces - ``past``.
+
+    ``now``: contact modulus of the step, Pa; ``past`` (q,) at the quadrature points; ``surface``: for unit modulus.
+    """
+
+    length: float
+    now: float
+    past: Array
+    surface: PressedSurface
+
+
+class Body(Protocol):
+    """A deformable body; its memory is its own affair, and passed in and out."""
+
+    def at_rest(self) -> Any:
+        """Memory of a relaxed, undeformed body."""
+
+    def modulus(self, length: float) -> float:
+        """Contact modulus against new strain in a step of a length, s; Pa."""
+
+    def offer(self, memory: Any, length: float) -> Offer:
+        """What contact meets in a step of a length, s."""
+
+    def after(self, memory: Any, offer: Offer, pressure: Array) -> tuple[Any, float]:
+        """The memory after the step under a pressure (q,), and the axis' elastic displacement times modulus."""
+
+    def stored(self, memory: Any) -> float:
+        """Elastic energy in all springs, J."""
+
+    def dissipated(self, before: Any, after: Any, length: float) -> float:
+        """Heat of a step, J."""
+
+
+class Deformable(Protocol):
+    """A struck body before the impact: ``operator`` of one elastic body on its mesh, for places, weights and scale.
+
+    ``breathes``: whether the mesh is scaled with the contact; ``factorizations`` and back-substitutions,
+    ``solves``, that it took.
+    """
+
+    @property
+    def operator(self) -> SurfaceOperator: ...
+
+    @property
+    def breathes(self) -> bool: ...
+
+    @property
+    def factorizations(self) -> int: ...
+
+    @property
+    def solves(self) -> int: ...
+
+    def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> Body:
+        """The body with a contact modulus E*(t), Pa, marched by a scheme, on a mesh whose unit is ``scale``, m."""

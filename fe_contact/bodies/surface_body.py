@@ -1,0 +1,64 @@
+"""A body whose surface alone remembers: constant Poisson's ratio, whatever its lengths.
+
+The memory is that of the contact zone's nodes: displacement u and the nodal forces f that hold it elastically with
+unit modulus, so that energies are sums of f u.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import ModuleType
+
+import numpy as np
+
+from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
+from fe_contact.bodies.offer import Offer
+from fe_contact.contact import PressedSurface
+from fe_contact.forms import Array
+from fe_contact.operators import SurfaceOperator
+from lumped.materials import Relaxation
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceBody:
+    """Contract of :class:`fe_contact.bodies.offer.Body`; ``scale``, m, is the mesh's unit of length."""
+
+    operator: SurfaceOperator
+    pressed: PressedSurface
+    relaxation: Relaxation
+    scheme: ModuleType
+    scale: float
+
+    def at_rest(self) -> SurfaceMemory:
+        """A relaxed, undeformed body."""
+        nodes = np.ones(len(self.operator.stiffness))
+        return SurfaceMemory.at_rest(nodes, self.relaxation, fields=2)
+
+    def modulus(self, length: float) -> float:
+        """Contact modulus against new strain in a step of a length, s; Pa."""
+        return self._law(length).now
+
+    def offer(self, memory: SurfaceMemory, length: float) -> Offer:
+        """What contact meets in a step of a length, s."""
+        law = self._law(length)
+        return Offer(length, law.now, self.operator.trace @ memory.carried(law)[0], self.pressed)
+
+    def after(self, memory: SurfaceMemory, offer: Offer, pressure: Array) -> tuple[SurfaceMemory, float]:
+        """The memory after the step under a pressure (q,), and the axis' elastic displacement times modulus."""
+        law, operator = self._law(offer.length), self.operator
+        load = operator.trace.T @ (operator.weights * pressure)
+        displacement = operator.response[: len(load)] @ load
+        force = load * self.scale ** (operator.dimension - 2)
+        strain = (np.array([displacement, force]) - memory.carried(law)) / law.now
+        return memory.advanced(law, strain), float(displacement[0])
+
+    def stored(self, memory: SurfaceMemory) -> float:
+        """Elastic energy in all springs, J."""
+        return memory.stored(self.relaxation)
+
+    def dissipated(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
+        """Heat of a step, J."""
+        return before.dissipated(after, self.relaxation, length)
+
+    def _law(self, length: float) -> StepLaw:
+        return step_law(self.relaxation, self.scheme, length)
