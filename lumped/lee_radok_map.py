@@ -1,7 +1,8 @@
 """How far the paper's clipped correspondence law errs in a rebound: Lee-Radok against Ting, over material and time.
 
-A rigid paraboloid strikes a half-space of the 3-parameter solid. Without dimension only two numbers are left: the
-instantaneous over the relaxed modulus, and the relaxation time over the elastic contact time T_E of the relaxed one.
+A rigid striker with F ~ depth^alpha, a paraboloid (3/2), cone (2) or flat punch (1), strikes a half-space of the
+3-parameter solid. Without dimension only two numbers are left beside alpha: the instantaneous over the relaxed modulus,
+and the relaxation time over the elastic contact time T_E of the relaxed one.
 """
 
 from __future__ import annotations
@@ -16,10 +17,10 @@ from lumped.laws import correspondence, ting
 from lumped.materials import Material, Relaxation
 from lumped.result import Result
 from lumped.scene import Model, Scene
-from lumped.shapes import Sphere
+from lumped.shapes import Shape, Sphere
 
-# Any paraboloid will do, shallow enough to be one: the answers are without dimension.
-RADIUS, MASS, VELOCITY, MODULUS = 1.0, 1.0, 1e-3, 1e6
+# Any mass, velocity and size will do, the answers are without dimension.
+PARABOLOID, MASS, VELOCITY, MODULUS = Sphere(1.0), 1.0, 1e-3, 1e6
 
 
 @dataclass(frozen=True)
@@ -56,11 +57,14 @@ class MapPoint:
         return (1.0 - self.restitution**2) / (1.0 - self.exact_restitution**2) - 1.0
 
 
-def point(stiffening: float, tau: float, tolerance: float = 1e-6) -> MapPoint:
-    """The errors for one material: E_i/E_inf > 1, relaxation time in T_E > 0. Raises BadInput, NotReached."""
-    elastic = Sphere(RADIUS).hertz_impact(MODULUS, MASS, VELOCITY)
+def point(stiffening: float, tau: float, tolerance: float = 1e-6, striker: Shape = PARABOLOID) -> MapPoint:
+    """The errors for one material: E_i/E_inf > 1, relaxation time in T_E > 0; a sphere counts as its paraboloid.
+
+    Raises BadInput, NotReached.
+    """
+    elastic = striker.hertz_impact(MODULUS, MASS, VELOCITY)
     contact = Relaxation(1.0, (stiffening - 1.0,), (tau * elastic.duration,)).scaled(MODULUS)
-    scene = Scene(Sphere(RADIUS), MASS, VELOCITY, Material(contact, nu=0.0), model=Model(profile="parabola"))
+    scene = Scene(striker, MASS, VELOCITY, Material(contact, nu=0.0), model=Model(profile="parabola"))
     clipped = correspondence.of(scene).simulate(scene, tolerance)
     exact = ting.of(scene).simulate(scene, tolerance)
     return MapPoint(
@@ -76,10 +80,12 @@ def point(stiffening: float, tau: float, tolerance: float = 1e-6) -> MapPoint:
     )
 
 
-def error_map(stiffenings: Iterable[float], taus: Iterable[float], tolerance: float = 1e-6) -> tuple[MapPoint, ...]:
+def error_map(
+    stiffenings: Iterable[float], taus: Iterable[float], tolerance: float = 1e-6, striker: Shape = PARABOLOID
+) -> tuple[MapPoint, ...]:
     """A point for every pair, relaxation times running fastest. Raises BadInput, NotReached."""
     times = tuple(taus)
-    return tuple(point(stiffening, tau, tolerance) for stiffening in stiffenings for tau in times)
+    return tuple(point(stiffening, tau, tolerance, striker) for stiffening in stiffenings for tau in times)
 
 
 def _value(result: Result, name: str) -> float:

@@ -6,7 +6,7 @@ It is followed over r = sqrt(t): depth, load and memories are smooth in r at tou
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,8 @@ FIRST = 0.4
 # A force that the accuracy is counted in at least, in units of the problem, whose own is about one: where a load starts
 # like depth over its logarithm, no first piece however short is smooth on its own scale.
 FAINT = 1e-3
+# Where the force rises steeply the velocity is taken as that of touch, up to this share of the stiffest contact time.
+TOUCH = 1e-12
 
 
 @dataclass(frozen=True)
@@ -71,9 +73,7 @@ def follow(
     return found
 
 
-def approach(
-    problem: Hereditary, end_time: float, settings: Settings, before: Approach | None = None
-) -> Approach:
+def approach(problem: Hereditary, end_time: float, settings: Settings, before: Approach | None = None) -> Approach:
     """Follow the motion to its turn, to rest, or to `end_time`, in units of the problem. Raises NotReached.
 
     `before` is the same approach found with fewer nodes: its pieces are kept, and it is where Newton starts.
@@ -97,9 +97,20 @@ def _to_velocity(
     def over(values: Array) -> bool:
         return bool(values[VELOCITY].min() <= slow)
 
-    span, first = (0.0, end_time**0.5), FIRST * problem.shortest**0.5
-    found = follow(problem, span, problem.start(), first, over, settings, FAINT, before)
+    touch = _touch(problem, settings) if problem.rises_steeply else None
+    begin = touch.end if touch else 0.0
+    first = 3.0 * begin or FIRST * problem.shortest**0.5
+    start = problem.early(np.array([begin**2]))[:, 0]
+    found = follow(problem, (begin, end_time**0.5), start, first, over, settings, FAINT, before)
+    if touch:
+        found = replace(found, path=touch.joined(found.path))
     if not found.over:
         return found, found.path.end
     place = found.path.fall(VELOCITY, slow)
     return found, found.path.end if place is None else place
+
+
+def _touch(problem: Hereditary, settings: Settings) -> Path:
+    """The very first piece, at the velocity of touch."""
+    end = (TOUCH * problem.shortest) ** 0.5
+    return Path.of([0.0, end], [problem.early((end * settings.table.places) ** 2)], settings.table)

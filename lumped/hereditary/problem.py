@@ -14,6 +14,8 @@ from lumped.materials import Relaxation
 Array = NDArray[np.float64]
 # A relative step for a difference, and a depth too small to matter.
 NEARBY, TINY = 1e-6, 1e-150
+# A share of the shortest contact time, to see how a load starts; a power is whole that is as near to a whole number.
+SHALLOW, WHOLE = 1e-9, 1e-3
 
 
 @dataclass(frozen=True)
@@ -109,9 +111,27 @@ class Hereditary:
         """Contact radius of the elastic load curve, m."""
         return np.asarray(self.curve.contact_radius(depth * self.scales.depth))
 
-    def start(self) -> Array:
-        """State at touch, (4 + 2K,): depth, velocity, work done, force, memories z_k of load, x_k of depth."""
-        state = np.zeros(4 + 2 * self.terms)
-        state[1] = 1.0
-        state[3] = self.modulus.viscosity * float(self.loads(state[:1])[1][0])
-        return state
+    @cached_property
+    def rises_steeply(self) -> bool:
+        """Whether the force at touch rises with a power of r = sqrt(t) that is no whole number.
+
+        It does where a viscosity meets dy/d depth ~ depth^beta and 2 beta is none: profiles c r^n, n neither 1 nor 2.
+        """
+        if not self.modulus.viscosity:
+            return False
+        _, (near, far) = self.loads(SHALLOW * np.array([1.0, 4.0]) * self.shortest)
+        power = float(np.log2(far / near))
+        return abs(power - round(power)) > WHOLE
+
+    def early(self, times: Array) -> Array:
+        """States so soon after touch, times (n,), that the velocity is still that of touch; shape (4 + 2K, n).
+
+        Depth, velocity, work done, force, memories z_k of load, x_k of depth.
+        """
+        load, slope = self.loads(times)
+        states = np.empty((4 + 2 * self.terms, times.size))
+        states[0], states[1] = times, 1.0
+        states[2] = self.modulus.viscosity * load
+        states[3] = self.modulus.glassy * load + self.modulus.viscosity * slope
+        states[4 : 4 + self.terms], states[4 + self.terms :] = load, times
+        return states

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from lumped import Material, Model, Motion, Relaxation, Scene, Sphere
+from lumped.shapes import Shape
 
 RADIUS, MASS, VELOCITY, MODULUS = 0.006, 0.05, 0.02, 1e6
 
@@ -21,7 +22,7 @@ def unit_time() -> float:
 
 @pytest.fixture(scope="session")
 def impact(unit_time: float) -> Build:
-    """Builds a scene whose moduli count in MODULUS (as E* at constant nu) and whose times in T."""
+    """Builds a scene whose moduli count in MODULUS (as E* at constant nu) and whose times in T; a sphere by default."""
 
     def build(
         relaxed: float = 1.0,
@@ -35,12 +36,13 @@ def impact(unit_time: float) -> Build:
         gravity: float = 0.0,
         velocity: float = VELOCITY,
         end_time: float | None = None,
+        shape: Shape | None = None,
     ) -> Scene:
         contact = Relaxation(relaxed, moduli, tuple(t * unit_time for t in times), viscosity * unit_time)
         young = contact.scaled(MODULUS * (1.0 - nu**2))
         end = None if end_time is None else end_time * unit_time
         return Scene(
-            Sphere(RADIUS),
+            shape or Sphere(RADIUS),
             MASS,
             velocity,
             Material(young, nu, constant=constant),

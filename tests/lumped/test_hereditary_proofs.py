@@ -20,7 +20,11 @@ from lumped.interpolation import local, peak
 from lumped.laws import correspondence, ting
 from lumped.laws._hereditary import problem_of
 from lumped.laws.correspondence import Correspondence
-from lumped.lee_radok_map import error_map
+from lumped.lee_radok_map import error_map, point
+from lumped.shapes import Shape
+from lumped.shapes.cone import Cone
+from lumped.shapes.power import PowerProfile
+from lumped.shapes.punch import Punch
 
 Array = NDArray[np.float64]
 Build = Callable[..., Scene]
@@ -93,9 +97,7 @@ SUMMED: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize("case", SUMMED)
-def test_the_correspondence_law_is_the_sum_over_the_past(case: str, impact: Build) -> None:
-    scene = impact(**SUMMED[case])
+def is_the_sum_over_the_past(scene: Scene) -> None:
     exact = values("correspondence", scene)
     until = 1.02 * exact["duration"]
     levels = [first_exit(summed_impact(scene, steps, until), scene) for steps in (300, 600, 1200)]
@@ -104,6 +106,21 @@ def test_the_correspondence_law_is_the_sum_over_the_past(case: str, impact: Buil
         assert (coarse - middle) / (middle - fine) == pytest.approx(4.0, abs=0.5), f"{name}: the sum errs by h^2"
         limit = fine + (fine - middle) / 3.0
         assert exact[name] == pytest.approx(limit, rel=1e-6), name
+
+
+@pytest.mark.parametrize("case", SUMMED)
+def test_the_correspondence_law_is_the_sum_over_the_past(case: str, impact: Build) -> None:
+    is_the_sum_over_the_past(impact(**SUMMED[case]))
+
+
+def test_the_correspondence_law_is_the_sum_over_the_past_for_any_shape_and_material(
+    impact: Build, campaign_size: Callable[[int], int]
+) -> None:
+    random = np.random.default_rng(1960)
+    for _ in range(campaign_size(60)):
+        terms = int(random.integers(1, 4))
+        moduli, times = 10.0 ** random.uniform(-1.0, 1.0, terms), 10.0 ** random.uniform(-1.0, 1.0, terms)
+        is_the_sum_over_the_past(impact(1.0, tuple(moduli), tuple(times), shape=random_shape(random)))
 
 
 # Ting against the row of springs.
@@ -120,6 +137,17 @@ def random_scene(random: np.random.Generator, impact: Build) -> Scene:
         profile=str(random.choice(["exact", "parabola"])),
         velocity=float(10.0 ** random.uniform(-3.0, 0.0)),
     )
+
+
+def random_shape(random: np.random.Generator) -> Shape:
+    """A sphere, cone, power profile or punch about as large as the dent."""
+    exponent = float(random.uniform(1.0, 6.0))
+    return [
+        Sphere(0.006),
+        Cone(float(random.uniform(2.0, 70.0))),
+        PowerProfile(float(10.0 ** random.uniform(-1.0, 1.0)) * 0.006 ** (1.0 - exponent), exponent),
+        Punch(float(random.uniform(0.0005, 0.005))),
+    ][int(random.integers(4))]
 
 
 def test_ting_and_the_row_of_springs_agree_on_random_materials(
@@ -201,25 +229,46 @@ def units(printed: str, value: float) -> float:
 def test_the_error_map_is_reproduced_to_its_printed_digits() -> None:
     points = error_map(STIFFENINGS, TAUS)
     assert len(points) == len(MAP) == 54
-    for row, point in zip(MAP, points, strict=True):
-        assert (point.stiffening, point.tau) == (float(row["stiffening"]), float(row["tau_over_T_E"]))
+    for row, at in zip(MAP, points, strict=True):
+        assert (at.stiffening, at.tau) == (float(row["stiffening"]), float(row["tau_over_T_E"]))
         found = {
-            "tau_over_T": point.tau / point.exact_duration,
-            "F_over_F_E": point.peak_force,
-            "T_LR": point.duration,
-            "T_Ting": point.exact_duration,
-            "T_error_percent": 100.0 * point.duration_error,
-            "e_LR": point.restitution,
-            "e_Ting": point.exact_restitution,
-            "e_error_percent": 100.0 * point.restitution_error,
-            "loss_error_percent": 100.0 * point.loss_error,
+            "tau_over_T": at.tau / at.exact_duration,
+            "F_over_F_E": at.peak_force,
+            "T_LR": at.duration,
+            "T_Ting": at.exact_duration,
+            "T_error_percent": 100.0 * at.duration_error,
+            "e_LR": at.restitution,
+            "e_Ting": at.exact_restitution,
+            "e_error_percent": 100.0 * at.restitution_error,
+            "loss_error_percent": 100.0 * at.loss_error,
         }
         for name, value in found.items():
-            assert units(row[name], value) <= PRINTED, f"{name} of {point}"
-        assert units(row["L2_error_percent"], 100.0 * point.history_error) <= SUMMED_DIGIT, point
-        assert abs(point.peak_error) < 1e-8
-        assert point.duration_error < 0.0
-        assert point.restitution_error < 0.0
+            assert units(row[name], value) <= PRINTED, f"{name} of {at}"
+        assert units(row["L2_error_percent"], 100.0 * at.history_error) <= SUMMED_DIGIT, at
+        assert abs(at.peak_error) < 1e-8
+        assert at.duration_error < 0.0
+        assert at.restitution_error < 0.0
+
+
+@pytest.mark.parametrize(
+    ("stiffening", "tau", "duration_error", "restitution_error"),
+    [(1.5, 0.2, "10.3", "4.0"), (6.0, 0.05, "21.7", "13.3")],
+)
+def test_a_cone_s_error_is_the_audit_s_at_any_angle(
+    stiffening: float, tau: float, duration_error: str, restitution_error: str
+) -> None:
+    for angle in (3.0, 60.0):
+        found = point(stiffening, tau, striker=Cone(angle))
+        assert units(duration_error, -100.0 * found.duration_error) <= PRINTED
+        assert units(restitution_error, -100.0 * found.restitution_error) <= PRINTED
+        assert abs(found.peak_error) < 1e-8
+
+
+def test_under_a_punch_the_clipped_law_is_exact() -> None:
+    for found in error_map(STIFFENINGS[::2], TAUS[::3], striker=Punch(0.3)):
+        assert abs(found.duration_error) < 1e-8
+        assert abs(found.restitution_error) < 1e-8
+        assert found.history_error < 1e-6
 
 
 @pytest.mark.parametrize(("stiffening", "tau", "e", "duration"), [(2.0, 0.2, ".539", ".974"), (6.0, 0.1, ".017", "")])
