@@ -32,6 +32,7 @@ from fe_contact.surface import Surface, flat
 
 ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 FACET_POINTS = 4  # quadrature points a facet beyond the element order: the contact edge is a kink
+SOLVED_AT_ONCE = 32  # right-hand sides: more of them leave the processor's cache
 
 
 @dataclass(frozen=True)
@@ -141,8 +142,7 @@ def condensed(
         answer[free] = factor.solve(load[free])
         return answer if floating is None else floating.centred(answer)
 
-    moved = displacement(np.eye(loaded))
-    response = -(normal.T @ moved)
+    response, watched = _influence(displacement, normal, watch, loaded)
     compliance = response[:loaded]
     condensed = np.linalg.inv((compliance + compliance.T) / 2)
     points, lengths, trace = _contact_quadrature(zone, order)
@@ -160,8 +160,19 @@ def condensed(
         basis=basis,
         poisson=poisson,
         dimension=surface.dimension,
-        watched=None if watch is None else np.asarray(watch @ moved)[0],
+        watched=watched,
     )
+
+
+def _influence(
+    displacement: Callable[[Array], Array], normal: Any, watch: Any, loaded: int
+) -> tuple[Array, Array | None]:
+    """Inward displacement of the surface nodes, (n_s, loaded), and of what is watched, (loaded,), under unit forces."""
+    seen = -normal.T if watch is None else sparse.vstack([-normal.T, watch])
+    parts = np.array_split(np.eye(loaded), -(-loaded // SOLVED_AT_ONCE), axis=1)
+    answers = np.hstack([seen @ displacement(part) for part in parts])
+    surface = normal.shape[1]
+    return answers[:surface], None if watch is None else answers[surface]
 
 
 def _normals(surface: Surface, size: int) -> sparse.csc_matrix:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import ModuleType
 
 import numpy as np
@@ -13,12 +13,10 @@ from fe_contact.errors import IndentationNotSettled
 from fe_contact.forms import Array
 from fe_contact.numerics import ENFORCEMENTS, Numerics
 from fe_contact.operators import SurfaceOperator, lagrange
-from fe_contact.pressing import BEYOND, EDGE_ORDER, Pressed
+from fe_contact.pressing import BEYOND, EDGE_ORDER, Pressed, contact_end
 from lumped.indenter import Indenter
 from lumped.members import get
 
-INSIDE = 0.95  # share of the contact whose pressure tells where it ends
-DEGREE = 4  # of the polynomial through the pressure's square
 STIFFER = 6.0  # penalty where the contact ends at a rim, over that where it may move: no edge asks for softness
 
 
@@ -52,41 +50,26 @@ class BodyStill:
         problem = ContactProblem(self.surface, np.maximum(overlap, -BEYOND * self.scale), penalty)
         enforcement: ModuleType = get(ENFORCEMENTS, self.numerics.enforcement)
         solution = enforcement.enforce(problem, np.abs(self.places) < guess)
-        radius = fixed or half_width(self.places, self.operator.weights, solution, self._felt(solution.pressure))
+        radius = fixed or half_width(self.places, solution)
         if not solution.converged or not 0.0 < radius < np.inf:
             raise IndentationNotSettled(depth)
         force = self.operator.force(self.scale, solution.pressure)
         return Pressed(force, radius, enforcement.SOLVES, solution.iterations)
 
-    def _felt(self, pressure: Array) -> Array:
-        """The pressure without the roughness that the body's shape functions do not see."""
-        root = np.sqrt(self.operator.weights)
-        nodal, *_ = np.linalg.lstsq(root[:, None] * self.operator.trace, root * pressure, rcond=None)
-        return np.asarray(self.operator.trace @ nodal)
 
+def half_width(places: Array, solution: ContactSolution) -> float:
+    """From the first touch to where the surfaces part; where there is a left side too, half from end to end.
 
-def half_width(places: Array, weights: Array, solution: ContactSolution, felt: Array) -> float:
-    """From the first touch to where the pressure ends; where there is a left side too, half from end to end.
-
-    The square of the pressure ``felt`` is smooth and falls to zero like a straight line: it is read from all of the
-    inside, each place with its weight, since near the end the pressure rings. Infinite where the contact reaches the
-    last place, 0 without contact.
+    Infinite where the contact reaches the last place, 0 without contact.
     """
-    right = solution.edge(places)
-    turned = replace(solution, signed_pressure=solution.signed_pressure[::-1])
-    left = -right if places[0] > 0.0 else -turned.edge(-places[::-1])
-    if not 0.0 < right - left < np.inf:
-        return 0.0 if right == left else np.inf
-    half = 0.5 * (right - left)
-    x = (places - 0.5 * (left + right)) / half
-    inside = np.abs(x) < INSIDE
-    x, square, measure = x[inside], felt[inside] ** 2, np.sqrt(weights[inside])
-    if places[0] > 0.0:  # the other side is its mirror
-        x, square, measure = np.concatenate([-x, x]), np.tile(square, 2), np.tile(measure, 2)
-    roots = np.polynomial.Polynomial.fit(x, square, DEGREE, w=measure).roots()
-    real = np.real(roots[np.abs(np.imag(roots)) < 1e-9])
-    ends = [real[np.abs(real - side) < 1.0 - INSIDE] for side in (-1.0, 1.0)]
-    return half * 0.5 * float(ends[1][0] - ends[0][0]) if all(end.size == 1 for end in ends) else half
+    right = _end(places, solution.signed_pressure)
+    return right if places[0] > 0.0 else 0.5 * (right + _end(-places[::-1], solution.signed_pressure[::-1]))
+
+
+def _end(places: Array, signed_pressure: Array) -> float:
+    """Where the surfaces part on the side of the places, ascending, that are positive."""
+    side = places > 0.0
+    return contact_end(places[side], ContactSolution(signed_pressure[side], 0, True, ()))
 
 
 def stacked(
