@@ -35,6 +35,15 @@ FORCE_BOUND, FORCE_TOLERANCE, FORCE_SAMPLES, FORCE_STUDY = 5e-3 / 0.4, 1e-3, 21,
 LAW_BOUNDS = {"correspondence": 5e-3 / 0.4, "ting": 30e-3 / 0.4, "mdr": 30e-3 / 0.4}
 LAW_TOLERANCE, LAW_REPEATS = 1e-5, 15
 
+# The deepest of twenty slow indentations of every row of Table 1 and what lies between them, m.
+ROW_DEPTHS = {
+    "polymer-sphere": 3e-4, "polymer-cone": 3e-4, "polymer-power": 3e-4, "polymer-punch": 3e-4,
+    "polymer-prism": 1e-3, "polymer-plate": 3e-4, "polymer-half-plane": 3e-4, "polymer-layer": 3e-4,
+    "polymer-layer-line": 3e-4, "polymer-layer-sliding": 3e-4, "polymer-o-ring": 5e-4, "polymer-washer": 3e-4,
+    "rod-in-ring": 3e-4, "two-spheres": 1e-4, "two-cylinders": 1e-4, "two-finite-spheres": 1e-4,
+}  # fmt: skip
+ROW_BOUND, ROW_MEMORY, ROW_REPEATS, ROW_SHALLOWEST = 3.0, 500, 3, 0.02
+
 
 def child(arguments: list[str]) -> tuple[float, float]:
     """CPU seconds and peak memory, MB, of a Python process of its own."""
@@ -85,6 +94,28 @@ def cold() -> float:
             f"(bound {BOUNDS[tolerance]:g}), {memory[tolerance]:.0f} MB (bound 300)"
         )
     return cpu["imports"]
+
+
+def indent_rows() -> None:
+    """Twenty slow indentations of every row, a whole process each, against bare imports between them."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, deepest in ROW_DEPTHS.items():
+            imports, rows = [], []
+            for _ in range(ROW_REPEATS):
+                imports.append(child(["-c", IMPORTS])[0])
+                rows.append(indent_once(name, deepest, folder))
+            ratio = statistics.median(cpu for cpu, _ in rows) / statistics.median(imports)
+            memory = max(memory for _, memory in rows)
+            say(
+                f"fe-contact indent, 20 depths, {name:22} {ratio:.2f} x imports (bound {ROW_BOUND:g}), "
+                f"{memory:.0f} MB (bound {ROW_MEMORY})"
+            )
+
+
+def indent_once(name: str, deepest: float, folder: str) -> tuple[float, float]:
+    shallowest = ROW_SHALLOWEST * random.SystemRandom().uniform(1.0, 1.1)
+    depths = ",".join(repr(deepest * shallowest ** (share / 19.0)) for share in range(20))
+    return child(["-m", "fe_contact", "indent", name, "--depths", depths, "--out", folder, "--quiet"])
 
 
 def marginal(imports: float) -> None:
@@ -178,6 +209,7 @@ def force_laws() -> None:
 
 if __name__ == "__main__":
     imports = cold()
+    indent_rows()
     marginal(imports)
     lumped_laws(imports)
     force_laws()

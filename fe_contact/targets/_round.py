@@ -19,7 +19,7 @@ from fe_contact.operators import ELEMENTS, SurfaceOperator, condensed
 from fe_contact.pressing import Still
 from fe_contact.surface import crown
 from fe_contact.targets._body import BodyStill, stacked
-from fe_contact.targets._zone import ROUND_REFINEMENT, Zone
+from fe_contact.targets._zone import LINE_REFINEMENT, SPHERE_REFINEMENT, Zone
 from lumped.indenter import Indenter
 from lumped.materials import Material
 from lumped.targets._round import Round
@@ -37,7 +37,8 @@ class _Body:
 
     def operator(self, radii: Array, numerics: Numerics, plane: bool) -> SurfaceOperator:
         """Condensed in units of its radius; ``radii``, m: where the contacts to come may end."""
-        zone, elements = Zone.round(radii, self.radius), ROUND_REFINEMENT * numerics.elements_per_contact
+        zone, refinement = Zone.round(radii, self.radius), LINE_REFINEMENT if plane else SPHERE_REFINEMENT
+        elements = refinement * numerics.elements_per_contact
         return _operator(self.material.nu, elements, numerics.order, zone.smallest, zone.reference, self.held, plane)
 
     @property

@@ -17,7 +17,7 @@ from lumped.shapes import Shape
 REFINEMENT, LINE_REFINEMENT = 2.5, 2.0
 STRUCK_REFINEMENT = 4.0  # the same in an impact: its force must be smooth in time
 FAINT = 1e-4  # share of the peak force below which an impact's contact may be resolved less
-ROUND_REFINEMENT = 3.0  # the same on round bodies, of which two may touch whose meshes do not match
+SPHERE_REFINEMENT = 3.0  # the same on spheres, of which two may touch whose meshes do not match
 WIDEST = 1.2  # rad from the first touch: a contact on a circle ends before
 MARGIN = 1.35  # largest radius of the fine mesh over that of the contacts expected
 

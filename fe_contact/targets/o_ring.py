@@ -15,7 +15,7 @@ from fe_contact.operators import ELEMENTS, SurfaceOperator, condensed
 from fe_contact.pressing import Still
 from fe_contact.surface import crown
 from fe_contact.targets._body import BodyStill
-from fe_contact.targets._zone import ROUND_REFINEMENT, Zone, held
+from fe_contact.targets._zone import LINE_REFINEMENT, Zone, held
 from lumped.indenter import Indenter
 from lumped.targets.o_ring import ORing
 
@@ -27,7 +27,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     zone = Zone.round(radii, target.section_radius)
     operator, surface = _surface(
         indenter.material.nu,
-        ROUND_REFINEMENT * numerics.elements_per_contact,
+        LINE_REFINEMENT * numerics.elements_per_contact,
         numerics.order,
         zone.smallest,
         zone.reference,

@@ -19,13 +19,15 @@ from fe_contact.targets._zone import held
 from lumped.indenter import Indenter
 from lumped.targets.washer import Washer
 
+COARSER = 0.75  # elements along the shortest length over those along a contact that may end anywhere
+
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The washer at rest; ``radii``, m: where the contact ends, alike at every depth."""
     target = indenter.target
     assert isinstance(target, Washer)
     inner, outer, rim = (length / target.height for length in (target.inner_radius, target.outer_radius, radii.max()))
-    elements, bonded = numerics.elements_per_contact, target.base == "bonded"
+    elements, bonded = COARSER * numerics.elements_per_contact, target.base == "bonded"
     operator, surface = _surface(indenter.material.nu, elements, numerics.order, inner, outer, rim, bonded)
     return BodyStill(
         surface=surface,
