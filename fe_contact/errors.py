@@ -47,3 +47,10 @@ class ContactTooWide(NotReached):
     def __init__(self, depth: float) -> None:
         reason = f"contact at depth {depth:.3g} m leaves the fine mesh"
         super().__init__(f"{reason}; cure: raise numerics.elements_per_contact")
+
+
+class MotionUnbounded(NotReached):
+    """A time integrator lost its stability."""
+
+    def __init__(self, time: float) -> None:
+        super().__init__(f"the motion grows without bound at t = {time:.6g} s; cure: raise numerics.steps")

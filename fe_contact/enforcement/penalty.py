@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fe_contact.contact import ContactProblem, ContactSolution, Touching, solve
+from fe_contact.forms import Array
 
 SOLVES = 1
 
@@ -10,3 +13,8 @@ SOLVES = 1
 def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:
     """Solve once."""
     return solve(problem, guesses[0])
+
+
+def signed_pressure(overlap: Array, penalty: float) -> Array:
+    """The law itself, where the overlap (q,) is known: Pa, negative where open."""
+    return np.asarray(penalty * overlap)

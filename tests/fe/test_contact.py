@@ -12,7 +12,7 @@ from scipy.optimize import minimize
 
 from fe_contact import contact
 from fe_contact.contact import ContactProblem, ContactSolution, PressedSurface, solve
-from fe_contact.enforcement import corrected, penalty
+from fe_contact.enforcement import augmented, corrected, exact, penalty
 from fe_contact.numerics import ENFORCEMENTS
 from lumped.members import available, get
 
@@ -183,11 +183,15 @@ def test_every_enforcement_counts_its_contact_problems(name: str, monkeypatch: p
         calls.append(solve(problem, touching))
         return calls[-1]
 
-    monkeypatch.setattr(module, "solve", counted)
+    monkeypatch.setattr(module, "solve", counted, raising=name != "exact")  # which has a solver of its own
     problem = random_problem(3)
     solution = module.enforce(problem, np.zeros(len(problem.overlap), bool))
-    assert len(calls) == module.SOLVES
-    assert solution.iterations == sum(call.iterations for call in calls)
+    assert solution.converged
+    assert len(calls) <= module.SOLVES
+    if name in ("penalty", "corrected"):
+        assert len(calls) == module.SOLVES
+    if name != "exact":
+        assert solution.iterations == sum(call.iterations for call in calls)
 
 
 @given(SEEDS)
@@ -211,6 +215,35 @@ def test_one_augmented_update_is_closer_to_rigid_contact_than_the_raw_penalty(se
     raw = np.abs(penalty.enforce(problem, everywhere).pressure - rigid).max()
     mended = np.abs(corrected.enforce(problem, everywhere).pressure - rigid).max()
     assert mended < 0.2 * raw
+
+
+@given(SEEDS)
+def test_exact_contact_is_the_limit_of_the_augmented_lagrangian(seed: int) -> None:
+    """Two routes to a surface that nothing enters, and its conditions: no overlap, no tension, never both."""
+    rng = np.random.default_rng(seed)
+    unknowns, points = (int(n) for n in np.sort(rng.integers(1, 10, 2))[::-1])
+    chain = np.diag(rng.uniform(1, 3, unknowns)) - 0.4 * (np.eye(unknowns, k=1) + np.eye(unknowns, k=-1))
+    surface = PressedSurface(chain, np.eye(unknowns)[:points], rng.uniform(0.5, 2, points))
+    problem = ContactProblem(surface, rng.uniform(-1, 1, points), float(10 ** rng.uniform(1, 2)))
+    for start in starts(seed, problem):
+        found, wanted = exact.enforce(problem, start), augmented.enforce(problem, start)
+        assert found.converged
+        assert wanted.converged
+        left = problem.overlap - surface.trace @ displacement(surface, found.pressure)
+        np.testing.assert_allclose(found.pressure, wanted.pressure, atol=1e-7)
+        np.testing.assert_allclose(np.where(found.pressure > 0.0, left, np.maximum(left, 0.0)), 0.0, atol=1e-10)
+
+
+def test_exact_contact_knows_that_a_rigid_striker_is_no_shape_of_the_pressure() -> None:
+    """One more column, the same everywhere, is a second body's retreat: the same as that retreat in closed form."""
+    size = 4
+    surface = PressedSurface(np.eye(size) * 3.0, np.eye(size), np.ones(size))
+    problem = ContactProblem(surface, np.array([1.0, 0.5, 0.2, -1.0]), 1.0, yielding=0.3)
+    bordered = np.diag([*np.full(size, 3.0), 1 / 0.3])
+    whole = PressedSurface(bordered, np.column_stack([np.eye(size), np.ones(size)]), surface.weights)
+    start = problem.overlap > 0.0
+    found = exact.enforce(replace(problem, surface=whole, yielding=0.0), start)
+    np.testing.assert_allclose(found.pressure, exact.enforce(problem, start).pressure, atol=1e-12)
 
 
 def test_the_edge_lies_where_the_pressure_returns_to_zero() -> None:

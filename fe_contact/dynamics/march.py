@@ -1,0 +1,142 @@
+"""The loop: from a body and the choices of a run to its motion."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from fe_contact.dynamics import events, ledger
+from fe_contact.dynamics.body import Body
+from fe_contact.dynamics.explicit import ExplicitStepper
+from fe_contact.dynamics.implicit import ImplicitStepper
+from fe_contact.dynamics.ledger import Energies
+from fe_contact.dynamics.pressed import Enforced, Found
+from fe_contact.dynamics.schemes.base import Scheme
+from fe_contact.dynamics.state import State, undeformed
+from fe_contact.errors import MotionUnbounded, TooManySteps
+from fe_contact.forms import Array
+
+MOST_STEPS = 1_000_000
+UNBOUNDED = 1e6  # multiple of the fastest that gravity and the start explain
+
+
+@dataclass(frozen=True, eq=False)
+class Choices:
+    """How a motion is solved: scheme, enforcement, length of the steps, s."""
+
+    scheme: Scheme
+    enforced: Enforced
+    step: float
+
+
+class Sample(NamedTuple):
+    """What one step leaves behind, at its end: s, N, the step's share of the impulse, N s; overlaps, their rates and
+    signed pressures (q,); displacement and velocity of the watched places (k,), energies, Newton iterations.
+    """
+
+    time: float
+    force: float
+    impulse: float
+    overlap: Array
+    closing: Array
+    signed_pressure: Array
+    displacement: Array
+    velocity: Array
+    energies: Energies
+    iterations: int
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A march from its first sample, at the start, to its last; ``final`` state."""
+
+    samples: tuple[Sample, ...]
+    final: State
+
+    @cached_property
+    def time(self) -> Array:
+        """(n,) s."""
+        return np.array([sample.time for sample in self.samples])
+
+    @cached_property
+    def force(self) -> Array:
+        """(n,) N."""
+        return np.array([sample.force for sample in self.samples])
+
+    @cached_property
+    def contacts(self) -> tuple[tuple[float, float], ...]:
+        """First touch and separation of every contact, s; the last may end with the march."""
+        found, start = list[tuple[float, float]](), None
+        touching = self.force > 0.0
+        if touching[0]:
+            start = self.samples[0].time
+        for before, after, was, now in zip(self.samples, self.samples[1:], touching, touching[1:], strict=False):
+            step = after.time - before.time
+            if now and not was:
+                start = events.touched(before.time, step, before.overlap, before.closing)
+            elif was and not now and start is not None:
+                end = events.parted(before.time, step, before.signed_pressure, after.signed_pressure)
+                found.append((start, end))
+                start = None
+        return tuple(found if start is None else [*found, (start, self.samples[-1].time)])
+
+
+def march(
+    body: Body,
+    velocity: Array,
+    choices: Choices,
+    end_time: float,
+    watch: Array,
+    finished: Callable[[Sample], bool] = lambda sample: False,
+) -> Motion:
+    """Move an undeformed body with ``velocity`` (N,) until ``end_time``, s, or until a sample says it is finished.
+
+    ``watch`` (k, N): weights of the displacements that are recorded.
+
+    Raises ContactNotSettled, MotionUnbounded or TooManySteps.
+    """
+    steps = math.ceil(end_time / choices.step * (1 - 1e-12))
+    if steps > MOST_STEPS:
+        raise TooManySteps(MOST_STEPS, MOST_STEPS * choices.step)
+    kind: type[ExplicitStepper | ImplicitStepper] = ExplicitStepper if choices.scheme.explicit else ImplicitStepper
+    stepper = kind(body, choices.scheme, choices.enforced, choices.step)
+    state = undeformed(body, velocity)
+    fastest = UNBOUNDED * (np.abs(velocity).max() + np.abs(body.gravity).max() * end_time)
+    energies = ledger.opened(body, state)
+    samples = [_sample(body, state, 0.0, watch, energies, 0)]
+    for _ in range(steps):
+        before = state
+        state, found = stepper.advance(before)
+        if not np.abs(state.velocity).max() <= fastest:  # nan is no less
+            raise MotionUnbounded(state.time)
+        energies = ledger.entered(energies, body, choices.scheme, before, state)
+        samples.append(_sample(body, state, _impulse(body, choices, before, found), watch, energies, found.iterations))
+        if finished(samples[-1]):
+            break
+    return Motion(tuple(samples), state)
+
+
+def _impulse(body: Body, choices: Choices, before: State, found: Found) -> float:
+    """N s in a step."""
+    early = choices.scheme.alpha_f
+    return choices.step * float(body.pressing.weights @ ((1 - early) * found.pressure + early * before.pressure))
+
+
+def _sample(body: Body, state: State, impulse: float, watch: Array, energies: Energies, iterations: int) -> Sample:
+    return Sample(
+        time=state.time,
+        force=float(body.pressing.weights @ state.pressure),
+        impulse=impulse,
+        overlap=body.pressing.overlap(state.displacement),
+        closing=body.pressing.closing(state.velocity),
+        signed_pressure=state.signed_pressure,
+        displacement=watch @ state.displacement,
+        velocity=watch @ state.velocity,
+        energies=energies,
+        iterations=iterations,
+    )

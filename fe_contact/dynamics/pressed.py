@@ -1,0 +1,59 @@
+"""The contact problem of one step: what would overlap without new pressure, and how the body yields to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import ModuleType
+from typing import NamedTuple
+
+import numpy as np
+
+from fe_contact.contact import ContactProblem, ContactSolution, PressedSurface, Touching
+from fe_contact.errors import ContactNotSettled
+from fe_contact.forms import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Enforced:
+    """A way to keep the surfaces apart, and its penalty stiffness, Pa/m."""
+
+    member: ModuleType
+    penalty: float
+
+    @property
+    def is_law(self) -> bool:
+        """Whether pressure follows from the overlap alone, wherever that comes from."""
+        return hasattr(self.member, "signed_pressure")
+
+    def known(self, overlap: Array) -> Found:
+        """Pressure of an overlap (q,) that no pressure changes any more."""
+        return Found(np.asarray(self.member.signed_pressure(overlap, self.penalty)), 0)
+
+    def found(self, surface: PressedSurface, overlap: Array, touching: Touching, time: float) -> Found:
+        """Pressure that leaves of a free overlap (q,) what the member allows; raises ContactNotSettled."""
+        if not (touching.any() or (overlap > 0.0).any()):
+            return Found(self.penalty * overlap, 0)
+        problem = ContactProblem(surface, overlap, self.penalty)
+        solution: ContactSolution = self.member.enforce(problem, touching)
+        if not solution.converged:
+            raise ContactNotSettled(time)
+        return Found(solution.signed_pressure, solution.iterations)
+
+
+class Found(NamedTuple):
+    """Signed pressure (q,), negative where open, and Newton iterations."""
+
+    signed_pressure: Array
+    iterations: int
+
+    @property
+    def pressure(self) -> Array:
+        """Contact pressure (q,), >= 0."""
+        return np.maximum(self.signed_pressure, 0.0)
+
+
+def surface_of(compliance: Array, trace: Array, weights: Array) -> PressedSurface:
+    """What contact knows of a body whose surface moves by ``compliance`` (m, m) per force."""
+    symmetric = (compliance + compliance.T) / 2
+    stiffness = np.linalg.inv(symmetric)
+    return PressedSurface((stiffness + stiffness.T) / 2, trace, weights)

@@ -1,0 +1,260 @@
+"""The dynamic core: orders, limits, two routes, and a ledger that closes, on bodies without any geometry."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import scipy.sparse as sparse
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.linalg import expm
+
+from fe_contact.bodies.bar import Bar, falling
+from fe_contact.dynamics import explicit, implicit, mass, schemes
+from fe_contact.dynamics.body import Body, Part, Pressing
+from fe_contact.dynamics.factor import factorized
+from fe_contact.dynamics.march import Choices, Motion, march
+from fe_contact.dynamics.pressed import Enforced
+from fe_contact.enforcement import augmented, corrected, exact, penalty
+from fe_contact.errors import MotionUnbounded
+from lumped.errors import BadInput
+from lumped.materials import Relaxation
+from lumped.members import available, get
+
+MASSES, SCHEMES = mass.__name__, schemes.__name__
+SEEDS = st.integers(0, 2**32 - 1)
+ORDER = dict.fromkeys(available(SCHEMES), 2) | {"fully_implicit": 1}
+IMPLICIT = [name for name in available(SCHEMES) if not get(SCHEMES, name).of(0.8).explicit]
+AWAY = -1e9  # clearance of a body that never touches
+
+
+def oscillator(relaxation: Relaxation, clearance: float = AWAY, dashpot: float = 0.0) -> Body:
+    """A mass of one on a spring."""
+    one = sparse.csc_matrix([[1.0]])
+    pressing = Pressing(one, np.ones((1, 1)), np.ones(1), np.array([clearance]))
+    return Body(one, np.zeros(1), (Part(one, relaxation),), dashpot * one, np.zeros(1), pressing)
+
+
+def moved(body: Body, scheme: str, step: float, end: float, rho: float = 0.8, hard: float = 1.0) -> Motion:
+    choices = Choices(get(SCHEMES, scheme).of(rho), Enforced(penalty, hard), step)
+    return march(body, np.ones(body.size), choices, end, np.eye(body.size))
+
+
+# schemes
+
+
+@pytest.mark.parametrize("name", available(SCHEMES))
+def test_the_order_of_a_scheme(name: str) -> None:
+    """A damped oscillator against its matrix exponential, displacement and velocity."""
+    body, end = oscillator(Relaxation(2.0), dashpot=0.3), 4.0
+    wanted = expm(end * np.array([[0.0, 1.0], [-2.0, -0.3]])) @ [0.0, 1.0]
+    errors = []
+    for steps in (40, 80, 160, 320):
+        last = moved(body, name, end / steps, end).samples[-1]
+        errors.append(np.abs([last.displacement[0] - wanted[0], last.velocity[0] - wanted[1]]).max())
+    rates = np.log2(np.divide(errors[:-1], errors[1:]))
+    np.testing.assert_allclose(rates, ORDER[name], atol=0.2, err_msg=str(errors))
+
+
+@pytest.mark.parametrize("name", available(SCHEMES))
+def test_a_bulk_with_memory_keeps_the_order(name: str) -> None:
+    """A mass on a standard linear solid: u'' = -(u + 0.7 z), z' = u' - z/0.4, solved by its exponential."""
+    body, end = oscillator(Relaxation(1.0, (0.7,), (0.4,))), 4.0
+    rates_of = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, -0.7], [0.0, 1.0, -1 / 0.4]])
+    wanted = expm(end * rates_of) @ [0.0, 1.0, 0.0]
+    errors = [abs(moved(body, name, end / n, end).samples[-1].displacement[0] - wanted[0]) for n in (40, 80, 160)]
+    rates = np.log2(np.divide(errors[:-1], errors[1:]))
+    np.testing.assert_allclose(rates, ORDER[name], atol=0.2, err_msg=str(errors))
+
+
+@given(st.floats(0.0, 1.0))
+def test_generalised_alpha_damps_the_fastest_oscillations_by_rho(rho: float) -> None:
+    """One step of an oscillator a million times faster than the step: its amplification matrix's eigenvalues."""
+    dt, stiff = 1.0, 1e12
+    alpha_m, alpha_f, beta, gamma = get(SCHEMES, "generalised_alpha").of(rho)
+    # rows: Newmark's displacement, its velocity, the balance; columns u, v, a
+    new = np.array([[1, 0, -beta * dt**2], [0, 1, -gamma * dt], [(1 - alpha_f) * stiff, 0, 1 - alpha_m]])
+    old = np.array([[1, dt, (0.5 - beta) * dt**2], [0, 1, (1 - gamma) * dt], [-alpha_f * stiff, 0, -alpha_m]])
+    radius = np.abs(np.linalg.eigvals(np.linalg.solve(new, old))).max()
+    assert radius == pytest.approx(rho, abs=2e-4)  # a triple eigenvalue splits by the cube root of rounding
+
+
+def test_central_difference_is_stable_up_to_two_over_omega() -> None:
+    """The linear limit, from either side; beyond it the motion is refused, not returned."""
+    body = oscillator(Relaxation(1.0))
+    below = moved(body, "central_difference", 1.999, 2000.0)
+    assert max(abs(sample.displacement[0]) for sample in below.samples) < 100.0
+    with pytest.raises(MotionUnbounded, match="cure"):
+        moved(body, "central_difference", 2.01, 2000.0)
+
+
+def test_a_parallel_viscosity_asks_for_an_implicit_scheme() -> None:
+    with pytest.raises(BadInput, match="implicit"):
+        moved(oscillator(Relaxation(1.0, viscosity=0.1)), "central_difference", 0.1, 1.0)
+
+
+# mass
+
+
+def elements(seed: int) -> tuple[np.ndarray, np.ndarray, int]:
+    """A chain of elements of three nodes and random lengths: local masses, nodes, their number."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(2, 8))
+    quadratic = np.array([[4.0, 2.0, -1.0], [2.0, 16.0, 2.0], [-1.0, 2.0, 4.0]]) / 30
+    local = rng.uniform(0.5, 2.0, count)[:, None, None] * quadratic
+    return local, 2 * np.arange(count)[:, None] + np.arange(3), 2 * count + 1
+
+
+@pytest.mark.parametrize("name", available(MASSES))
+@given(SEEDS)
+def test_every_mass_matrix_keeps_the_mass(name: str, seed: int) -> None:
+    local, dofs, size = elements(seed)
+    matrix = get(MASSES, name).of(local, dofs, size, np.array([0])).toarray()
+    assert matrix.sum() == pytest.approx(local.sum(), rel=1e-12)
+    least = np.linalg.eigvalsh(matrix)[0]
+    assert least >= (0.0 if name == "redistributed" else 1e-6)
+
+
+@given(SEEDS)
+def test_only_the_contact_is_without_mass(seed: int) -> None:
+    local, dofs, size = elements(seed)
+    contact = np.array([0, size - 1])
+    diagonal = get(MASSES, "redistributed").of(local, dofs, size, contact).diagonal()
+    assert set(np.flatnonzero(diagonal == 0.0)) == set(contact)
+
+
+# the ledger
+
+
+def chain(seed: int, name: str, viscous: bool) -> tuple[Body, np.ndarray]:
+    """A random elastic chain with memory, dashpots, gravity and a rigid mass, about to touch; its velocity."""
+    rng = np.random.default_rng(seed)
+    count = int(rng.integers(3, 9))
+    bar = Bar(1.0, 1.0, 1.0, Relaxation(1.0, tuple(rng.uniform(0.2, 1, 2)), (0.02, 0.4)), end_mass=rng.uniform(0, 1))
+    body = falling(bar, count, get(MASSES, name), gravity=rng.uniform(0, 1), gap=rng.uniform(0, 0.1))
+    dashpots = sparse.diags(np.append(rng.uniform(0, 0.2, count), 0.0)[::-1]).tocsc()
+    relaxation = Relaxation(1.0, (0.3,), (0.2,), viscosity=0.01 if viscous else 0.0)
+    parts = (*body.parts, Part(body.parts[0].stiffness, relaxation))
+    whole = Body(body.mass, body.rigid, parts, dashpots, body.gravity, body.pressing)
+    return whole, -rng.uniform(0.1, 1, whole.size)
+
+
+@pytest.mark.parametrize("scheme", available(SCHEMES))
+@pytest.mark.parametrize("mass_name", available(MASSES))
+def test_the_ledger_closes_in_every_step(scheme: str, mass_name: str, campaign_size: Callable[[int], int]) -> None:
+    """Every term is computed on its own, the scheme's loss by its numbers: nothing may be left over."""
+    for seed in range(campaign_size(100)):
+        ledger_closes(scheme, mass_name, seed)
+
+
+def ledger_closes(scheme: str, mass_name: str, seed: int) -> None:
+    body, velocity = chain(seed, mass_name, viscous=scheme != "central_difference")
+    enforcement = (penalty, corrected, augmented, exact)[seed % 4]
+    choices = Choices(get(SCHEMES, scheme).of(0.7), Enforced(enforcement, 50.0), 0.02)
+    motion = march(body, velocity, choices, 0.6, np.eye(body.size))
+    ledgers = [sample.energies for sample in motion.samples]
+    size = max(e.work + abs(e.numerical) for e in ledgers)
+    assert max(abs(e.residual) for e in ledgers) < 1e-10 * size
+    for lost in ("viscous", "radiated"):
+        assert np.all(np.diff([getattr(e, lost) for e in ledgers]) >= 0.0)
+    assert ledgers[-1].viscous > 0.0
+    assert all(min(e.rigid, e.deformable, e.strain, e.contact) >= 0.0 for e in ledgers)
+
+
+def test_the_trapezoidal_rule_loses_nothing_and_a_damped_scheme_only_what_oscillates_fast() -> None:
+    """Free vibration of a bar: 0, a little, much, by the scheme's own formula and by what is left in the bar."""
+    bar = Bar(1.0, 1.0, 1.0, Relaxation(1.0))
+    body = falling(bar, 20, get(MASSES, "consistent"), gravity=0.0, gap=1e9)
+    velocity = np.cos(np.pi * np.linspace(0, 1, 21))
+    lost = {}
+    for name in IMPLICIT:
+        energies = (
+            march(body, velocity, Choices(get(SCHEMES, name).of(0.8), Enforced(penalty, 1.0), 0.02), 4.0, np.eye(21))
+            .samples[-1]
+            .energies
+        )
+        lost[name] = energies.numerical / energies.work
+        assert energies.total / energies.work == pytest.approx(1 - lost[name], abs=1e-12)
+    assert abs(lost["trapezoidal"]) < 1e-12
+    assert 0.0 < lost["generalised_alpha"] < lost["hht"] < 1e-3
+    assert lost["fully_implicit"] > 0.05
+
+
+# contact
+
+
+@pytest.mark.parametrize("name", available(SCHEMES))
+def test_a_mass_on_its_penalty_spring_bounces_by_half_a_sine(name: str) -> None:
+    """Duration pi sqrt(m/k), restitution one: touch and separation lie within the steps, not at their ends."""
+    hard, errors = 40.0, []
+    for step in (0.02, 0.01, 0.005, 0.0025):
+        body = oscillator(Relaxation(1e-12), clearance=-0.1037)
+        choices = Choices(get(SCHEMES, name).of(0.8), Enforced(penalty, hard), step)
+        motion = march(body, -np.ones(1), choices, 1.0, np.ones((1, 1)))
+        ((start, end),) = motion.contacts
+        assert start == pytest.approx(0.1037, abs=1e-9)
+        errors.append(abs(end - start - math.pi / math.sqrt(hard)) / step)
+    rate = np.log2(errors[0] * 8 / errors[-1]) / 3  # in shares of a step, which halves too
+    assert max(errors) < 1.0 if name == "fully_implicit" else max(errors) < 0.3
+    assert rate > 0.8 * ORDER[name]
+
+
+@pytest.mark.parametrize(("enforcement", "share"), [(corrected, 0.5), (augmented, 1e-6), (exact, 1e-6)])
+def test_every_enforcement_is_nearer_to_rigid_contact_than_the_raw_penalty(enforcement: object, share: float) -> None:
+    """A bar without gravity pressed by its rigid mass: the deepest overlap, of a soft penalty and of the others."""
+    bar = Bar(1.0, 1.0, 1.0, Relaxation(1.0), end_mass=3.0)
+    deepest = {}
+    for member in (penalty, enforcement):
+        body = falling(bar, 20, get(MASSES, "redistributed"), gravity=0.0)
+        choices = Choices(get(SCHEMES, "generalised_alpha").of(0.6), Enforced(member, 20.0), 0.025)
+        motion = march(body, -np.ones(21), choices, 2.0, np.eye(21))
+        deepest[member] = max(sample.overlap.max() for sample in motion.samples)
+    assert deepest[enforcement] < share * deepest[penalty]
+
+
+def test_a_light_bar_under_a_rigid_mass_is_a_spring() -> None:
+    """Density to zero: half a sine of the mass on E A/L, contact for pi sqrt(m L/(E A)), by every mass matrix."""
+    duration = math.pi * math.sqrt(2.0)
+    for name in available(MASSES):
+        bar = Bar(1.0, 1.0, 1e-8, Relaxation(1.0), end_mass=2.0)
+        body = falling(bar, 10, get(MASSES, name), gravity=0.0)
+        choices = Choices(get(SCHEMES, "generalised_alpha").of(0.0), Enforced(corrected, 1e3), duration / 400)
+        motion = march(body, -np.ones(11), choices, 1.2 * duration, np.eye(11))
+        start, end = motion.contacts[0]
+        assert end - start == pytest.approx(duration, rel=1e-4)
+        assert motion.force.max() == pytest.approx(math.sqrt(2.0), rel=1e-4)
+        assert motion.samples[-1].velocity[-1] == pytest.approx(1.0, rel=1e-4)
+
+
+def test_a_striker_is_one_more_degree_of_freedom() -> None:
+    """A rigid mass that strikes a bar, by its own depth, and the same bar striking a plane with the mass at rest."""
+    size, line = 11, falling(Bar(1.0, 1.0, 1.0, Relaxation(1.0)), 10, get(MASSES, "consistent"), gravity=0.0)
+    push = sparse.lil_matrix((size + 1, 2))
+    push[0, 0], push[size, 1] = 1.0, -1.0
+    whole = Body(
+        mass=sparse.block_diag([line.mass, sparse.csc_matrix((1, 1))]).tocsc(),
+        rigid=np.append(np.zeros(size), 1e9),
+        parts=(Part(sparse.block_diag([line.parts[0].stiffness, sparse.csc_matrix((1, 1))]).tocsc(), Relaxation(1.0)),),
+        dashpots=None,
+        gravity=np.zeros(size + 1),
+        pressing=Pressing(push.tocsc(), np.ones((1, 2)), np.ones(1), np.zeros(1)),
+    )
+    choices = Choices(get(SCHEMES, "generalised_alpha").of(0.6), Enforced(corrected, 30.0), 0.05)
+    struck = march(whole, np.append(np.zeros(size), 1.0), choices, 1.5, np.eye(size + 1))
+    striking = march(line, -np.ones(size), choices, 1.5, np.eye(size))
+    np.testing.assert_allclose(struck.force, striking.force, atol=1e-7)
+
+
+def test_one_factorisation_serves_a_whole_march(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = []
+    for module in (implicit, explicit):
+        monkeypatch.setattr(module, "factorized", lambda matrix: calls.append(matrix.shape) or factorized(matrix))
+    body = falling(Bar(1.0, 1.0, 1.0, Relaxation(1.0)), 10, get(MASSES, "redistributed"), gravity=0.0)
+    for name, wanted in (("trapezoidal", [(11, 11)]), ("central_difference", [(10, 10), (1, 1)])):
+        calls.clear()
+        choices = Choices(get(SCHEMES, name).of(1.0), Enforced(exact, 1.0), 0.05)
+        march(body, -np.ones(11), choices, 5.0, np.eye(11))
+        assert calls == wanted
