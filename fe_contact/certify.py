@@ -21,13 +21,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.bodies.chosen import struck
 from fe_contact.bodies.offer import Deformable
 from fe_contact.change import Change
 from fe_contact.curve import Curve, extrapolated
 from fe_contact.forms import Array
 from fe_contact.impact import march
 from fe_contact.march import March, Strike
-from fe_contact.numerics import SCHEMES, TARGETS, Numerics
+from fe_contact.numerics import SCHEMES, Numerics
 from fe_contact.softening import Softening, compliance_change
 from lumped.errors import NotReached
 from lumped.members import get
@@ -172,7 +173,7 @@ class _Runs:
 
     def surface(self, settings: Numerics) -> Deformable:
         """What contact sees of the struck body."""
-        surface: Deformable = get(TARGETS, self._geometry.target.name).struck(self._geometry, settings)
+        surface = struck(self._geometry, settings)
         self._surfaces[id(surface)] = surface
         return surface
 

@@ -25,6 +25,13 @@ def isotropic(young: float, poisson: float) -> Array:
     return law + shear * np.diag([2.0, 2.0, 2.0, 1.0])
 
 
+def elastic(bulk: float, shear: float) -> Array:
+    """As :func:`isotropic`, by bulk and shear modulus, Pa, of which one may be zero: K tr(eps) + 2 G dev(eps)."""
+    law = shear * np.diag([2.0, 2.0, 2.0, 1.0])
+    law[:3, :3] += bulk - 2.0 * shear / 3.0
+    return law
+
+
 def axisymmetric_strain(basis: Any) -> Array:
     """Strain of every vector shape function, shape (elements, points, 4, 2 x scalar functions).
 

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from fe_contact.bulk_scales import with_constant_nu
 from fe_contact.numerics import RANGES, Numerics
 from lumped.laws import mdr
 from lumped.laws._hereditary_force import estimate
@@ -73,7 +74,7 @@ def _scales(scene: Scene) -> mdr.ImpactScales:
     geometry = scene.geometry
     if isinstance(geometry.target, HalfSpace) and geometry.shape.fixed_radius is None and not geometry.shape.plane:
         return mdr.estimate(scene, SPRINGS)
-    return estimate(scene)
+    return estimate(scene if geometry.surface_remembers else with_constant_nu(scene))
 
 
 def _elements(scene: Scene, tolerance: float) -> float:

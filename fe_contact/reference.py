@@ -79,13 +79,15 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
 
 def check_target(scene: Scene) -> None:
     """Raise BadInput for a target which no impact is marched on."""
-    scene.check_memory()
     geometry = scene.geometry
     half_plane = geometry.shape.plane and isinstance(geometry.target, HalfSpace)
     if half_plane or not hasattr(get(TARGETS, geometry.target.name), "struck"):
         where = "the half-plane" if half_plane else geometry.target.name
         reason = f"no impact on {where} by finite elements in this version; accepted: indent, or another target"
         raise BadInput(Fault(scene.source, "target.shape", reason))
+    if not geometry.surface_remembers and not hasattr(get(TARGETS, geometry.target.name), "meshed"):
+        reason = f'"bulk": no impact on {geometry.target.name} with it in this version; accepted: "poisson"'
+        raise BadInput(Fault(scene.source, "target.material.constant", reason))
 
 
 def strike_of(scene: Scene) -> Strike:

@@ -83,6 +83,11 @@ class Geometry:
     target: Target
     material: Material
 
+    @property
+    def surface_remembers(self) -> bool:
+        """Whether the elastic body and E*(t) tell all: with a length of its own, only a body of constant nu."""
+        return self.material.constant == "poisson" or self.material.young.is_elastic or not self.target.has_length
+
 
 @dataclass(frozen=True)
 class Scene:
@@ -192,10 +197,11 @@ class Scene:
 
     def check_memory(self) -> None:
         """Raise BadInput where no surface alone remembers: of a body with lengths, nu(t) changes the load curve."""
-        material = self.geometry.material
-        if material.constant == "bulk" and not material.young.is_elastic and not isinstance(self.target, HalfSpace):
-            reason = f'"bulk" changes nu in time, which {self.target.name} does not follow in this version'
-            raise BadInput(Fault(self.source, "target.material.constant", f'{reason}; accepted: "poisson"'))
+        if not self.geometry.surface_remembers:
+            reason = '"bulk" changes nu in time, which no load curve follows'
+            raise BadInput(
+                Fault(self.source, "target.material.constant", f'{reason}; accepted: "poisson", or --method fe')
+            )
 
     @property
     def elastic_contact_time(self) -> float:

@@ -127,5 +127,8 @@ def area_weights(radii: Array) -> Array:
 
 
 def product(weights: Array, first: Array, second: Array) -> float:
-    """Work of one field's pressure on the other's displacement over the surface (symmetric), m^3 x Pa/Pa."""
-    return 0.5 * float(weights @ (first[0] * second[1] + first[1] * second[0]))
+    """Work of one field's pressure on the other's displacement over the surface (symmetric), m^3 x Pa/Pa.
+
+    Where pressure is displacement times the weight, one field is both.
+    """
+    return 0.5 * float(weights @ (first[0] * second[-1] + first[-1] * second[0]))

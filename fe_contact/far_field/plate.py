@@ -10,9 +10,9 @@ import scipy.sparse as sparse
 from fe_contact.far_field.static import on_boundary
 
 
-def robin(facets: Any, poisson: float) -> sparse.coo_matrix:
-    """Radial springs E/((1 + nu) r) on the layer's side for E* = 1, shape (2 N, 2 N)."""
+def robin(facets: Any, shear: float) -> sparse.coo_matrix:
+    """Radial springs E/((1 + nu) r) = 2 G/r on the layer's side, of the shear modulus alone, shape (2 N, 2 N)."""
     radius = np.asarray(facets.global_coordinates())[0]
     tensor = np.zeros((2, 2, *radius.shape))
-    tensor[0, 0] = (1.0 - poisson) / radius
+    tensor[0, 0] = 2.0 * shear / radius
     return on_boundary(facets, tensor, 2 * np.pi * radius)

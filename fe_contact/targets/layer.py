@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 from skfem import Basis, FacetBasis, MeshTri
 
 import meshes
 from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.elastic_body import ElasticBody
 from fe_contact.far_field import plate
-from fe_contact.forms import Array, isotropic, plane_stiffness, stiffness
+from fe_contact.forms import Array, elastic, plane_stiffness, stiffness
 from fe_contact.numerics import Numerics
-from fe_contact.operators import ELEMENTS, condensed
+from fe_contact.operators import ELEMENTS
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
 from fe_contact.targets._zone import LINE_REFINEMENT, REFINEMENT, STRUCK_REFINEMENT, Zone, held, smallest_struck
@@ -20,6 +21,7 @@ from lumped.indenter import Indenter
 from lumped.scene import Geometry
 from lumped.targets.layer import Layer
 
+Sizes = tuple[float, float | None, float, float]  # elements, smallest contact, thickness, width: see _mesh
 SIDES = 0.4  # distance of the sides in thicknesses, per far radius of the settings
 
 
@@ -39,26 +41,36 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 
 def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
     """The layer in an impact whose contact grows from nothing to the radius that the settings expect."""
+    return _surface(geometry.material.nu, *_shape(geometry, numerics))
+
+
+def meshed(geometry: Geometry, numerics: Numerics) -> ElasticBody:
+    """The same for every Poisson's ratio."""
+    return _body(*_shape(geometry, numerics))
+
+
+def _shape(geometry: Geometry, numerics: Numerics) -> tuple[Sizes, int, bool, bool]:
+    """Sizes of the mesh in an impact, order of its elements, whether bonded, whether in plane strain."""
     target = geometry.target
     assert isinstance(target, Layer)
     thickness = target.thickness / numerics.contact_radius
     smallest = None if geometry.shape.fixed_radius is not None else smallest_struck(geometry.shape)
     elements, width = STRUCK_REFINEMENT * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
-    sizes, bonded = (elements, smallest, thickness, width), target.base == "bonded"
-    return _surface(geometry.material.nu, sizes, numerics.order, bonded, geometry.shape.plane)
+    return (elements, smallest, thickness, width), numerics.order, target.base == "bonded", geometry.shape.plane
 
 
 @lru_cache(maxsize=32)
-def _surface(
-    poisson: float, sizes: tuple[float, float | None, float, float], order: int, bonded: bool, plane: bool
-) -> ScaledSurface:
+def _surface(poisson: float, sizes: Sizes, order: int, bonded: bool, plane: bool) -> ScaledSurface:
     """Condensed for unit reference radius."""
-    mesh = _mesh(*sizes)
-    basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
+    return ScaledSurface(_body(sizes, order, bonded, plane).operator(poisson), breathes=False)
+
+
+@lru_cache(maxsize=32)
+def _body(sizes: Sizes, order: int, bonded: bool, plane: bool) -> ElasticBody:
+    """In units of the reference radius."""
+    basis = Basis(_mesh(*sizes), ELEMENTS[order](), intorder=2 * order)
     fixed = held(basis, along=("axis", "side", "base") if bonded else ("axis",), across=("base",))
-    matrix = _matrix(basis, poisson, bonded, plane).tocsc()
-    operator = condensed(basis, matrix, fixed, poisson, flat(basis, 2 if plane else 3))
-    return ScaledSurface(operator, breathes=False)
+    return ElasticBody(basis, partial(_matrix, basis, bonded, plane), fixed, flat(basis, 2 if plane else 3))
 
 
 def _mesh(elements: float, smallest: float | None, thickness: float, width: float) -> MeshTri:
@@ -68,12 +80,12 @@ def _mesh(elements: float, smallest: float | None, thickness: float, width: floa
     return meshes.layer(elements, smallest, thickness, width)
 
 
-def _matrix(basis: Any, poisson: float, bonded: bool, plane: bool) -> Any:
+def _matrix(basis: Any, bonded: bool, plane: bool, bulk: float, shear: float) -> Any:
     """Stiffness of the layer, and of what lies beyond its sides: a sliding one gives way to the end of the world."""
-    law = isotropic(1.0 - poisson**2, poisson)
+    law = elastic(bulk, shear)
     if plane:
         return plane_stiffness(basis, law)
     if bonded:
         return stiffness(basis, law)
     sides = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["side"], intorder=2 * basis.elem.maxdeg)
-    return stiffness(basis, law) + plate.robin(sides, poisson)
+    return stiffness(basis, law) + plate.robin(sides, shear)

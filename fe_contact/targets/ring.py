@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from skfem import Basis
 
 import meshes
 from fe_contact.bodies.scaled_surface import ScaledSurface
-from fe_contact.forms import Array, isotropic, polar_stiffness
+from fe_contact.elastic_body import ElasticBody
+from fe_contact.forms import Array, elastic, polar_stiffness
 from fe_contact.numerics import Numerics
-from fe_contact.operators import ELEMENTS, condensed
+from fe_contact.operators import ELEMENTS
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
 from fe_contact.targets._zone import LINE_REFINEMENT, MARGIN, STRUCK_REFINEMENT, Zone, held, smallest_struck
@@ -39,12 +41,22 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 
 def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
     """The ring in an impact whose contact grows from nothing to the arc that the settings expect."""
+    return _surface(geometry.material.nu, *_shape(geometry, numerics))
+
+
+def meshed(geometry: Geometry, numerics: Numerics) -> ElasticBody:
+    """The same for every Poisson's ratio."""
+    return _body(*_shape(geometry, numerics))
+
+
+def _shape(geometry: Geometry, numerics: Numerics) -> tuple[float, int, float, float, float]:
+    """Elements along the zone, their order, the smallest contact, thickness and angle in units of the zone."""
     target = geometry.target
     assert isinstance(target, Ring)
     reference = min(numerics.contact_radius, WIDEST * target.inner_radius)
     elements = STRUCK_REFINEMENT * numerics.elements_per_contact
     angle, thickness = reference / target.inner_radius, target.thickness / reference
-    return _surface(geometry.material.nu, elements, numerics.order, smallest_struck(geometry.shape), thickness, angle)
+    return elements, numerics.order, smallest_struck(geometry.shape), thickness, angle
 
 
 @lru_cache(maxsize=32)
@@ -52,9 +64,17 @@ def _surface(
     poisson: float, elements: float, order: int, smallest: float, thickness: float, angle: float
 ) -> ScaledSurface:
     """Condensed for a contact zone of unit arc length, which spans ``angle``, rad; ``thickness`` in its units."""
-    mesh = meshes.ring(elements, smallest, thickness, math.pi / angle)
-    basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
-    matrix = polar_stiffness(basis, isotropic(1.0 - poisson**2, poisson), 1.0 / angle).tocsc()
+    return ScaledSurface(_body(elements, order, smallest, thickness, angle).operator(poisson), breathes=False)
+
+
+@lru_cache(maxsize=32)
+def _body(elements: float, order: int, smallest: float, thickness: float, angle: float) -> ElasticBody:
+    """In units of the zone's arc length."""
+    basis = Basis(meshes.ring(elements, smallest, thickness, math.pi / angle), ELEMENTS[order](), intorder=2 * order)
     fixed = held(basis, along=("axis", "side", "base"), across=("base",))
     surface = flat(basis, 2, lambda place: np.cos(angle * place))
-    return ScaledSurface(condensed(basis, matrix, fixed, poisson, surface), breathes=False)
+
+    def matrix(bulk: float, shear: float) -> Any:
+        return polar_stiffness(basis, elastic(bulk, shear), 1.0 / angle)
+
+    return ElasticBody(basis, matrix, fixed, surface)

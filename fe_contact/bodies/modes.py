@@ -1,0 +1,109 @@
+"""Motions of a body in which volume and shape do no work on one another, and its compliance at every ratio of moduli.
+
+With the stiffnesses V of unit bulk modulus and S of unit shear modulus, K V + G S is a pencil in G/K: condensed to the
+contact surface it is a rational function, with which the motions of the body under surface loads at a few ratios agree,
+and its slope too (rational Krylov space, both sides alike). Its poles lie at G/K <= 0, so that on an interval of
+positive ratios the error falls by an order of magnitude and more with every ratio (Druskin, Knizhnerman and Zaslavsky
+2009, doi:10.1137/080742403); it enters like rounding.
+
+Projected on one another the motions need no interior: with C_i the surface compliance at ratio i and X_i the motions
+there, X_i^T (K_j V + G_j S) X_j = C_i, two equations for every pair. On the diagonal X_i^T S X_i is computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy.linalg import eigh
+
+from fe_contact.elastic_body import ElasticBody, moduli
+from fe_contact.forms import Array
+from fe_contact.operators import SurfaceOperator
+
+FEWEST, PER_E_FOLD = 3, 0.55  # ratios, at least and for every factor e of the interval: errors below 1e-7
+LEAST_HALF_WIDTH = 0.3  # of the interval's logarithm: closer ratios would cancel
+INDEPENDENT = 1e-12  # share of the largest energy below which a direction is rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """Surface displacement ``shape`` (n, m) of m motions; ``volume``, ``shear`` (m,) their stiffness per modulus.
+
+    ``operator``: the elastic body's at one Poisson's ratio of the interval; ``ratios``: how many were factorised.
+    """
+
+    shape: Array
+    volume: Array
+    shear: Array
+    operator: SurfaceOperator
+    ratios: int
+
+    def compliance(self, bulk: float, shear: float) -> Array:
+        """Normal displacement of the contact zone's nodes under unit forces there, (n, n), symmetric."""
+        return np.asarray((self.shape / (bulk * self.volume + shear * self.shear)) @ self.shape.T)
+
+
+@lru_cache(maxsize=32)
+def modes(body: ElasticBody, lowest: float, highest: float) -> Modes:
+    """Of a body whose ratio of shear to bulk modulus, G/K > 0, stays within an interval."""
+    operators = [body.operator(poisson(ratio)) for ratio in _ratios(lowest, highest)]
+    middle = operators[len(operators) // 2]
+    bulk, shear = moduli(middle.poisson)
+    volume_work, shear_work = _projected(body, operators)
+    free = _independent(bulk * volume_work + shear * shear_work)
+    share, turned = eigh(free.T @ (shear * shear_work) @ free)
+    share = np.clip(share, 0.0, 1.0)  # of the stiffness at the middle ratio
+    shape = np.hstack([_compliance(operator) for operator in operators]) @ (free @ turned)
+    return Modes(shape, (1.0 - share) / bulk, share / shear, middle, len(operators))
+
+
+def poisson(ratio: float) -> float:
+    """Poisson's ratio where shear over bulk modulus is a ratio."""
+    return (3.0 - 2.0 * ratio) / (2.0 * (3.0 + ratio))
+
+
+def _ratios(lowest: float, highest: float) -> Array:
+    """Chebyshev's points in the logarithm."""
+    ends = np.log([lowest, highest])
+    half = max(0.5 * float(ends[1] - ends[0]), LEAST_HALF_WIDTH)
+    count = FEWEST + round(PER_E_FOLD * 2.0 * (half - LEAST_HALF_WIDTH))
+    places = np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    return np.asarray(np.exp(ends.mean() + half * places))
+
+
+def _projected(body: ElasticBody, operators: Sequence[SurfaceOperator]) -> tuple[Array, Array]:
+    """Work on one another, of unit bulk and of unit shear modulus, of the motions under unit nodal forces."""
+    shear_stiffness = body.stiffness(0.0, 1.0).tocsr()
+    n, count = len(operators[0].stiffness), len(operators)
+    volume, shear = (np.empty((count, n, count, n)) for _ in range(2))
+    for i, first in enumerate(operators):
+        bulk_i, shear_i = moduli(first.poisson)
+        moved = first.solve(np.eye(n))
+        shear[i, :, i] = _symmetric(moved.T @ (shear_stiffness @ moved))
+        volume[i, :, i] = (_compliance(first) - shear_i * shear[i, :, i]) / bulk_i
+        for j, second in enumerate(operators[:i]):
+            bulk_j, shear_j = moduli(second.poisson)
+            lead, determinant = (_compliance(first), _compliance(second)), bulk_j * shear_i - bulk_i * shear_j
+            volume[i, :, j] = volume[j, :, i] = (shear_i * lead[0] - shear_j * lead[1]) / determinant
+            shear[i, :, j] = shear[j, :, i] = (bulk_j * lead[1] - bulk_i * lead[0]) / determinant
+    return volume.reshape(count * n, -1), shear.reshape(count * n, -1)
+
+
+def _independent(work: Array) -> Array:
+    """Combinations (all, m) of the motions that do unit work on themselves and none on one another."""
+    scale = 1.0 / np.sqrt(np.diag(work))
+    energy, directions = eigh(scale[:, None] * work * scale)
+    kept = energy > INDEPENDENT * energy[-1]
+    return np.asarray(scale[:, None] * directions[:, kept] / np.sqrt(energy[kept]))
+
+
+def _compliance(operator: SurfaceOperator) -> Array:
+    """Of the contact zone, (n, n)."""
+    return _symmetric(operator.response[: len(operator.stiffness)])
+
+
+def _symmetric(matrix: Array) -> Array:
+    return np.asarray(0.5 * (matrix + matrix.T))

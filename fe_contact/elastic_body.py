@@ -1,0 +1,37 @@
+"""A body with its mesh and its supports, for any isotropic material: a new Poisson's ratio needs no new mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy.typing as npt
+
+from fe_contact.operators import SurfaceOperator, condensed
+from fe_contact.surface import Surface
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticBody:
+    """``basis`` scalar scikit-fem basis with N functions; ``stiffness`` sparse (2 N, 2 N), of bulk and shear modulus.
+
+    ``fixed`` degrees of freedom held at zero; ``surface`` where contact may happen. What lies beyond the mesh is part
+    of the stiffness, hence linear in both moduli too.
+    """
+
+    basis: Any
+    stiffness: Callable[[float, float], Any]
+    fixed: npt.NDArray[Any]
+    surface: Surface
+
+    def operator(self, poisson: float) -> SurfaceOperator:
+        """What the contact surface knows of it with this Poisson's ratio, for E* = 1."""
+        matrix = self.stiffness(*moduli(poisson)).tocsc()
+        return condensed(self.basis, matrix, self.fixed, poisson, self.surface)
+
+
+def moduli(poisson: float) -> tuple[float, float]:
+    """Bulk and shear modulus for E* = 1, that is E = 1 - nu^2."""
+    young = 1.0 - poisson**2
+    return young / (3.0 * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson))
