@@ -148,7 +148,7 @@ class BulkBody:
     def _carried(self, memory: BulkMemory, law: BulkLaw) -> Array:
         """Force on the modes, (m,), that the past fixes."""
         volume, shear = memory.volume.carried(law.bulk)[0], memory.shear.carried(law.shear)[0]
-        return self.modes.volume * volume + self.modes.shear * shear
+        return np.asarray(self.modes.volume * volume + self.modes.shear * shear)
 
 
 @lru_cache(maxsize=OFFERS_KEPT)

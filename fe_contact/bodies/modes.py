@@ -23,8 +23,9 @@ from fe_contact.elastic_body import ElasticBody, moduli
 from fe_contact.forms import Array
 from fe_contact.operators import SurfaceOperator
 
-FEWEST, PER_E_FOLD = 3, 0.55  # ratios, at least and for every factor e of the interval: errors below 1e-7
+FEWEST, PER_E_FOLD = 3, 0.5  # ratios, at least and for every factor e of the interval: errors below 1e-7
 LEAST_HALF_WIDTH = 0.3  # of the interval's logarithm: closer ratios would cancel
+STIFFEST = 30.0  # ratio from which on volume is so soft beside shape that the answer bends no more
 INDEPENDENT = 1e-12  # share of the largest energy below which a direction is rounding
 
 
@@ -66,8 +67,8 @@ def poisson(ratio: float) -> float:
 
 
 def _ratios(lowest: float, highest: float) -> Array:
-    """Chebyshev's points in the logarithm."""
-    ends = np.log([lowest, highest])
+    """Chebyshev's points in the logarithm, within what bends the answer."""
+    ends = np.log(np.minimum([lowest, highest], STIFFEST))
     half = max(0.5 * float(ends[1] - ends[0]), LEAST_HALF_WIDTH)
     count = FEWEST + round(PER_E_FOLD * 2.0 * (half - LEAST_HALF_WIDTH))
     places = np.cos(np.pi * (np.arange(count) + 0.5) / count)

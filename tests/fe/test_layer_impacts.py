@@ -95,11 +95,5 @@ def test_what_cannot_be_struck_says_so() -> None:
         fe_contact.run(half_plane)
     with pytest.raises(BadInput, match="datum_depth"):
         Scene(Cylinder(0.01, 0.02), 0.1, 0.01, material, model=Model())
-    bulk = Material(Relaxation(1e6, (1e6,), (0.01,)), 0.3, constant="bulk")
-    for law in (laws.ting, laws.correspondence):
-        with pytest.raises(BadInput, match="does not follow"):
-            law.of(replace(random_scene(0), material=bulk)).simulate(replace(random_scene(0), material=bulk), 1e-3)
-    with pytest.raises(BadInput, match="does not follow"):
-        fe_contact.run(replace(random_scene(0), material=bulk))
     with pytest.raises(BadInput, match="mdr is for the half-space"):
         laws.mdr.of(random_scene(0))

@@ -1,0 +1,226 @@
+"""Bodies whose bulk remembers: against direct solves, the Laplace domain, exact columns, and limits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.sparse.linalg as linalg
+from skfem import Basis
+
+import fe_contact
+import meshes
+from fe_contact.bodies.bulk_memory import BulkBody, BulkMemory, Moduli, relaxing
+from fe_contact.bodies.chosen import struck
+from fe_contact.bodies.modes import modes, poisson
+from fe_contact.curve import Curve
+from fe_contact.elastic_body import ElasticBody, moduli
+from fe_contact.forms import elastic, stiffness
+from fe_contact.impact import march
+from fe_contact.operators import ELEMENTS
+from fe_contact.plan import plan
+from fe_contact.reference import strike_of
+from fe_contact.schemes import backward_euler, galerkin
+from fe_contact.surface import flat
+from fe_contact.targets import layer, ring
+from fe_contact.targets._zone import held
+from lumped import BadInput, Material, Relaxation, Scene, laws
+from lumped.materials.laplace import inverse
+from lumped.targets.layer import Layer
+
+BULK = {"target.material.constant": "bulk"}
+SIZES = (3.0, 0.3, 1.0, 3.0)  # a coarse layer as thick as its contact is wide
+BODIES: dict[str, Callable[[], ElasticBody]] = {
+    "bonded": lambda: layer._body(SIZES, 3, True, False),
+    "sliding": lambda: layer._body(SIZES, 3, False, False),
+    "line": lambda: layer._body(SIZES, 3, True, True),
+    "ring": lambda: ring._body(3.0, 3, 0.3, 1.0, 0.6),
+}
+K, G = Relaxation(2.0), Relaxation(0.2, (0.5, 0.9), (0.07, 0.6), 0.02)
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_the_modes_have_the_compliance_at_every_ratio(name: str) -> None:
+    body, rng = BODIES[name](), np.random.default_rng(20261122)
+    narrow, wide = modes(body, 0.02, 2.0), modes(body, 0.02, 1e4)
+    for ratio in [0.02, 2.0, 30.0, 300.0, 1e4, *(10.0 ** rng.uniform(np.log10(0.02), np.log10(2.0), 4))]:
+        found = narrow if ratio <= 2.0 else wide
+        operator = body.operator(poisson(ratio))
+        direct = operator.response[: len(operator.stiffness)]
+        error = np.linalg.norm(found.compliance(*moduli(operator.poisson)) - direct, 2) / np.linalg.norm(direct, 2)
+        assert error < 1e-7
+
+
+def test_more_ratios_make_the_modes_better_by_orders(monkeypatch: pytest.MonkeyPatch) -> None:
+    body = BODIES["bonded"]()
+    operator = body.operator(poisson(0.2))
+    direct = operator.response[: len(operator.stiffness)]
+    errors = []
+    for fewest in (1, 2, 3):
+        monkeypatch.setattr("fe_contact.bodies.modes.FEWEST", fewest)
+        monkeypatch.setattr("fe_contact.bodies.modes.PER_E_FOLD", 0.0)
+        found = modes.__wrapped__(body, 0.05, 0.5).compliance(*moduli(operator.poisson))
+        errors.append(np.linalg.norm(found - direct, 2))
+    assert errors[0] > 30 * errors[1] > 900 * errors[2]
+
+
+def ramped(body: BulkBody, steps: int, end: float, pressure: np.ndarray) -> tuple[np.ndarray, float, list[BulkMemory]]:
+    """Amplitudes under a pressure that grows with time, steps growing too; work done on the unit mesh; memories."""
+    ends = end * (np.arange(steps + 1) / steps) ** 1.5
+    operator = body.modes.operator
+    memories, work = [body.at_rest()], 0.0
+    for before, after in pairwise(ends):
+        now = 0.5 * (before + after) * pressure if body.scheme is galerkin else after * pressure
+        offer = body.offer(memories[-1], after - before)
+        memory, _ = body.after(memories[-1], offer, now)
+        load = operator.trace.T @ (operator.weights * now)
+        change = memory.shear.strain[0] - memories[-1].shear.strain[0]
+        work += float(load @ (body.modes.shape @ change))
+        memories.append(memory)
+    return memories[-1].shear.strain[0], work, memories
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_the_march_converges_to_the_laplace_domain(name: str) -> None:
+    """The whole mesh at complex moduli, without modes and time steps; order two, and one where that is asked."""
+    body, end = BODIES[name](), 0.5
+    found = modes(body, 0.05, 5.0)
+    operator = found.operator
+    pressure = np.where(operator.points < 0.5, 1.0, 0.0)
+    load = operator.trace.T @ (operator.weights * pressure)
+    loose = np.setdiff1d(np.arange(2 * body.basis.N), body.fixed)
+    down = np.zeros(2 * body.basis.N)
+    down[2 * body.surface.dofs[: load.size] + 1] = -load
+    parts = [body.stiffness(*pair).tocsc()[loose][:, loose] for pair in ((1.0, 0.0), (0.0, 1.0))]
+    watched = int(np.searchsorted(loose, 2 * body.surface.dofs[0] + 1))
+
+    def sinking(s: complex) -> complex:
+        matrix = complex(K.operational(s)) * parts[0] + complex(G.operational(s)) * parts[1]
+        return complex(-linalg.spsolve(matrix, down[loose].astype(complex))[watched] / s**2)
+
+    exact = inverse(np.vectorize(sinking), [end]).value[0]
+    for scheme, order in ((galerkin, 2), (backward_euler, 1)):
+        answers = [ramped(BulkBody(found, Moduli(K, G), scheme, 1.0), n, end, pressure)[0] for n in (24, 48)]
+        errors = [abs(float(found.shape[0] @ answer) / exact - 1.0) for answer in answers]
+        assert errors[1] < {2: 1e-4, 1: 2e-2}[order]
+        assert errors[0] > 0.85 * 2**order * errors[1]
+
+
+def column() -> ElasticBody:
+    """A plate whose sides may not move: uniaxial strain."""
+    basis = Basis(meshes.layer(3.0, 0.5, 0.7, 0.4), ELEMENTS[2](), intorder=4)
+    fixed = held(basis, along=("axis", "side"), across=("base",))
+    whole = replace(flat(basis), zone=np.inf)
+    return ElasticBody(basis, lambda bulk, shear: stiffness(basis, elastic(bulk, shear)), fixed, whole)
+
+
+def test_a_confined_column_creeps_with_the_modulus_of_the_pressure_wave() -> None:
+    body, end, height = column(), 0.5, 0.7
+    found = modes(body, 0.05, 5.0)
+    pressed = np.ones_like(found.operator.points)
+    wave = replace(G.scaled(4.0 / 3.0), equilibrium=4.0 / 3.0 * G.equilibrium + K.equilibrium)
+    creep = wave.creep()
+    times, weights = np.array(creep.times), np.array(creep.compliances)
+    lag = times * np.expm1(-end / times)
+    exact = height * (creep.instantaneous * end + float(weights @ (end + lag)))
+    errors = []
+    for steps in (24, 48):
+        amplitude, _, _ = ramped(BulkBody(found, Moduli(K, G), galerkin, 1.0), steps, end, pressed)
+        sunk = found.shape @ amplitude
+        np.testing.assert_allclose(sunk, sunk[0], rtol=1e-7)
+        errors.append(abs(float(sunk[0]) / exact - 1.0))
+    assert errors[1] < 1e-4
+    assert errors[0] > 3.4 * errors[1]
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_work_is_stored_or_heat(name: str) -> None:
+    """To rounding, whatever the step: displacement is linear and pressure constant over it."""
+    found = modes(BODIES[name](), 0.05, 5.0)
+    body = BulkBody(found, Moduli(replace(K, moduli=(0.3,), times=(0.1,)), G), galerkin, 1.0)
+    _, work, memories = ramped(body, 7, 0.5, np.where(found.operator.points < 0.5, 1.0, 0.0))
+    lengths = 0.5 * np.diff((np.arange(8) / 7) ** 1.5)
+    heat = sum(body.dissipated(*pair, dt) for pair, dt in zip(pairwise(memories), lengths, strict=True))
+    assert body.stored(memories[-1]) > 0.0
+    assert heat > 0.1 * work
+    assert body.stored(memories[-1]) + heat == pytest.approx(work, rel=1e-9)
+
+
+IMPACTS = ("polymer-layer", "polymer-layer-line", "rod-in-ring")
+
+
+@pytest.mark.parametrize("name", IMPACTS)
+def test_where_both_moduli_relax_alike_the_surface_alone_remembers(name: str) -> None:
+    """Constant Poisson's ratio, by the bulk and by the surface: the same history."""
+    scene = Scene.load(name)
+    numerics, material, length = plan(scene, {}).numerics, scene.geometry.material, scene.geometry.shape.total
+    target = {"layer": layer, "ring": ring}[scene.target.name]
+    alike = material.young.scaled(length / (3.0 * (1.0 - 2.0 * material.nu)))
+    body = relaxing(target.meshed(scene.geometry, numerics), Moduli(alike, material.shear.scaled(length)), numerics)
+    surface, bulk = (march(strike_of(scene), b, numerics) for b in (struck(scene.geometry, numerics), body))
+    for field in ("time", "depth", "impulse", "radius"):
+        one, other = getattr(surface, field), getattr(bulk, field)
+        np.testing.assert_allclose(other, one, rtol=0.0, atol=1e-9 * np.abs(one).max())
+    for term, value in surface.energy.items():
+        assert bulk.energy[term] == pytest.approx(value, abs=1e-9 * surface.energy["in"])
+
+
+@pytest.mark.parametrize(("name", "tau", "instant"), [("polymer-layer", 1e3, True), ("rod-in-ring", 1e-8, False)])
+def test_at_once_and_in_the_end_the_body_is_elastic(name: str, tau: float, instant: bool) -> None:
+    """With the Poisson's ratio of that time: relaxation much slower, or much faster, than the impact."""
+    young = Relaxation(1.2e6, (0.6e6, 0.9e6), (tau, 2.0 * tau))
+    scene = replace(Scene.load(name), material=Material(young, 0.45, constant="bulk"))
+    still = replace(scene, material=scene.geometry.material.elastic(instant))
+    numerics = plan(still, {}).numerics
+    curves = [
+        Curve.of(march(strike_of(s), struck(s.geometry, numerics), numerics), strike_of(s)).quantities
+        for s in (scene, still)
+    ]
+    assert not scene.geometry.surface_remembers
+    for key in ("peak_force", "peak_depth", "duration", "restitution", "impulse"):
+        assert curves[0][key] == pytest.approx(curves[1][key], rel=5e-5), key
+
+
+def test_a_thick_layer_is_the_half_space_of_the_same_bulk_modulus() -> None:
+    """There the surface knows E*(t) alone, 4 G (3 K + G)/(3 K + 4 G): another memory, another far field."""
+    scene = Scene.load("polymer-sphere", BULK)
+    deep = replace(scene, target=Layer(4.0, "bonded"))
+    surface, bulk = fe_contact.run(scene, 1e-3), fe_contact.run(deep, 1e-3)
+    share = float(surface.history.contact_radius.max()) / 4.0  # what the base still holds back
+    for key in ("peak_force", "peak_depth", "duration", "restitution", "impulse"):
+        one, other = surface.quantities[key], bulk.quantities[key]
+        assert abs(other.value - one.value) <= one.error + other.error + 1.2 * share * one.value, key
+
+
+def test_factorisations_do_not_grow_with_the_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    counts, factorise = {"factorizations": 0, "solves": 0}, linalg.splu
+
+    class Counted:
+        def __init__(self, *args: Any, **options: Any) -> None:
+            counts["factorizations"] += 1
+            self.factor = factorise(*args, **options)
+
+        def solve(self, load: np.ndarray) -> np.ndarray:
+            counts["solves"] += load.shape[1]
+            return self.factor.solve(load)
+
+    monkeypatch.setattr(linalg, "splu", Counted)
+    scene = Scene.load("polymer-layer", BULK | {"target.material.nu": 0.4321})
+    numerics = plan(scene, {}).numerics
+    for steps in (20, 80):
+        body = struck(scene.geometry, numerics.varied(steps=steps))
+        done = march(strike_of(scene), body, numerics.varied(steps=steps))
+        assert len(done.time) > steps
+        assert counts == {"factorizations": body.factorizations, "solves": body.solves}
+    assert body.factorizations <= 4
+
+
+def test_what_bulk_memory_is_not_for_says_so() -> None:
+    scene = Scene.load("polymer-layer", BULK)
+    for law in (laws.ting, laws.correspondence):
+        with pytest.raises(BadInput, match="no load curve follows"):
+            law.of(scene).simulate(scene, 1e-3)
