@@ -1,0 +1,103 @@
+"""The bouncing bar: published closed forms, and the theorems of momentum and energy on random bars."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lumped.bar_waves import Bounces, StraightBar, bounces
+
+# Doyen, Ern and Piperno 2011, doi:10.1137/100791440: L = 10, E = 900, density 1, area 1; transit time 1/3
+BAR = StraightBar(length=10.0, speed=30.0, impedance=30.0)
+TRANSIT = 1 / 3
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+def random_bounces(seed: int) -> Bounces:
+    rng = np.random.default_rng(seed)
+    bar = StraightBar(*10 ** rng.uniform(-1, 1, 3))
+    speed = 10 ** rng.uniform(-1, 1)
+    gravity = rng.choice([0.0, 1.0]) * speed / bar.echo * 10 ** rng.uniform(-2, 0.5)
+    return bounces(bar, speed, gravity, rng.choice([0.0, 1.0]) * rng.uniform(0, 3) * speed * bar.echo, 20 * bar.echo)
+
+
+def knots(found: Bounces, start: float, end: float) -> np.ndarray:
+    """Between these times force and momentum are smooth."""
+    starts = np.array([piece.start for piece in found.pieces])
+    every = np.concatenate([starts, starts + found.bar.echo])
+    return np.unique([start, *every[(every > start) & (every < end)], end])
+
+
+def integral(function: object, edges: np.ndarray) -> float:
+    """By two Gauss points an interval: exact for cubics."""
+    middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
+    nodes = np.concatenate([middle + half * x for x in (-(3**-0.5), 3**-0.5)])
+    return float(np.tile(half, 2) @ [float(function(t)) for t in nodes])  # type: ignore[operator] # a plain callable
+
+
+def test_the_bouncing_bar_touches_every_eight_transit_times_for_two() -> None:
+    """From rest 5 m above the plane: period 16 transit times, in which it touches twice."""
+    contacts = bounces(BAR, 0.0, 10.0, 5.0, 160.5 * TRANSIT).contacts
+    wanted = [(3 + 8 * k, 5 + 8 * k) for k in range(20)]
+    np.testing.assert_allclose(np.array(contacts) / TRANSIT, wanted, rtol=1e-9)
+
+
+def test_the_bouncing_bar_presses_in_a_ramp_and_in_its_mirror() -> None:
+    """density c (v + g t), 300 to 500 N; the next contact runs backwards, as mechanics without loss must."""
+    found = bounces(BAR, 10.0, 10.0, 0.0, 17 * TRANSIT)
+    t = np.linspace(0.001, 1.999, 57) * TRANSIT
+    np.testing.assert_allclose(found.force(t), 30.0 * (10.0 + 10.0 * t), rtol=1e-12)
+    np.testing.assert_allclose(found.force(10 * TRANSIT - t), found.force(t), rtol=1e-11)
+    np.testing.assert_allclose(found.force(16 * TRANSIT + t[:20]), found.force(t[:20]), rtol=1e-11)
+
+
+def test_the_far_end_of_the_bouncing_bar_follows_the_published_series() -> None:
+    """In the first contact u(L, t) = -v min(L/c, ...) + sum a_n sin(nu_n L)(1 - cos(c nu_n t))."""
+    t = np.linspace(0.0, 2 * TRANSIT, 41)
+    nu = (np.arange(1, 20001) - 0.5) * np.pi / 10.0
+    a = -2 * 10.0 / (900.0 * 10.0 * nu**3)
+    series = ((a * np.sin(10.0 * nu))[:, None] * (1 - np.cos(30.0 * np.outer(nu, t)))).sum(axis=0)
+    wave = -10.0 * np.minimum(10.0 / 30.0, TRANSIT - np.abs(t - TRANSIT))
+    np.testing.assert_allclose(bounces(BAR, 10.0, 10.0, 0.0, 1.0).depth(t), -(series + wave), atol=1e-9)
+
+
+def test_the_impact_of_a_bar_on_a_wall() -> None:
+    """No gravity, 5 m away at 10 m/s: touch at 0.5 s, 300 N for two transit times, and away as it came."""
+    found = bounces(BAR, 10.0, 0.0, 5.0, 3.0)
+    np.testing.assert_allclose(found.contacts, [(0.5, 0.5 + 2 * TRANSIT)], rtol=1e-12)
+    np.testing.assert_allclose(found.force([0.49, 0.51, 0.8, 1.16, 1.17]), [0, 300, 300, 300, 0])
+    np.testing.assert_allclose(found.approach([0.4, 0.8, 0.9, 2.0]), [10, 10, -10, -10])
+    assert found.depth(2.0) == pytest.approx(10.0 * (0.5 + TRANSIT) - 10.0 * (1.5 - TRANSIT))
+
+
+@given(SEEDS)
+def test_the_force_gives_the_bar_its_momentum(seed: int) -> None:
+    found = random_bounces(seed)
+    end, mass = found.end * 0.9999, found.bar.mass
+    impulse = integral(found.force, knots(found, 0.0, end))
+    gained = found.momentum(end) + mass * found.velocity + mass * found.gravity * end
+    assert impulse == pytest.approx(gained, rel=1e-9, abs=1e-9 * mass * float(found.fall(end)))
+
+
+@given(SEEDS)
+def test_only_gravity_works_on_the_bar(seed: int) -> None:
+    found = random_bounces(seed)
+    times = np.linspace(0.0, found.end * 0.9999, 7)
+    for before, after in pairwise(times):
+        work = -found.gravity * integral(found.momentum, knots(found, before, after))
+        size = found.energy(after) + 0.5 * found.bar.mass * float(found.fall(after)) ** 2
+        assert found.energy(after) - found.energy(before) == pytest.approx(work, abs=1e-9 * size)
+
+
+@given(SEEDS)
+def test_pressure_only_where_the_gap_is_closed_and_never_tension(seed: int) -> None:
+    found = random_bounces(seed)
+    rng = np.random.default_rng(seed)
+    times = rng.uniform(0.0, found.end, 50)
+    assert np.all(found.force(times) >= -1e-9 * found.bar.impedance * found.fall(found.end))
+    assert all(piece.gap >= 0.0 and (piece.gap == 0.0 or not piece.closed) for piece in found.pieces)
+    assert found.contacts
