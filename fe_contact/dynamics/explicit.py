@@ -9,7 +9,7 @@ and Piperno 2011, doi:10.1137/100791440, section 6.2).
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
+from functools import cache, cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -37,6 +37,15 @@ class ExplicitStepper:
         self.laws = [memory.part_law(part, step) for part in body.parts]
         inertia = body.inertia if body.damping is None else body.inertia + step / 2 * body.damping
         self.accelerate = factorized(inertia[body.massive][:, body.massive])
+
+    def begun(self, state: State) -> State:
+        """The first state with the pressure that a constraint on a surface with mass needs at once."""
+        if self.body.massless.size or self.enforced.is_law:
+            return state
+        ahead = state.displacement + self.step * (state.velocity + self.step / 2 * state.acceleration)
+        found = self._constrained(state, ahead, self.step**2 / 2)
+        pushed = state.acceleration + self._accelerated(self.body.pressing.load(found.pressure))
+        return state._replace(acceleration=pushed, signed_pressure=found.signed_pressure)
 
     def advance(self, state: State) -> tuple[State, Found]:
         """The state a step later; raises ContactNotSettled."""
@@ -73,15 +82,18 @@ class ExplicitStepper:
         if self.enforced.is_law:
             return self.enforced.known(self.body.pressing.overlap(displacement))
         ahead = displacement + self.step * (middle + self.step * self._accelerated(driving))
-        overlap = self.body.pressing.overlap(ahead)
-        return self.enforced.found(self._heavy, overlap, state.signed_pressure > 0.0, state.time)
+        return self._constrained(state, ahead, self.step**2)
 
-    @cached_property
-    def _heavy(self) -> PressedSurface:
-        """How the next displacement of a surface with mass yields."""
+    def _constrained(self, state: State, ahead: Array, lever: float) -> Found:
+        """Pressure that keeps the next displacement closed, which it moves by ``lever``, s^2, times acceleration."""
+        overlap = self.body.pressing.overlap(ahead)
+        return self.enforced.found(self._heavy(lever), overlap, state.signed_pressure > 0.0, state.time)
+
+    @cache  # noqa: B019 - a stepper lives as long as its march
+    def _heavy(self, lever: float) -> PressedSurface:
         pressing = self.body.pressing
         moved = self._accelerated(pressing.push.toarray())
-        return surface_of(self.step**2 * (pressing.push.T @ moved), pressing.trace, pressing.weights)
+        return surface_of(lever * (pressing.push.T @ moved), pressing.trace, pressing.weights)
 
     def _settled(self, state: State, change: Array) -> tuple[Array, Found]:
         """The increment with that of the surface without mass, and the pressure on it."""

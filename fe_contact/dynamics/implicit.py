@@ -35,6 +35,10 @@ class ImplicitStepper:
         self.moved = (1 - scheme.alpha_f) * self.solve(pressing.push.toarray())  # (N, m) per surface force
         self.surface: PressedSurface = surface_of(pressing.push.T @ self.moved, pressing.trace, pressing.weights)
 
+    def begun(self, state: State) -> State:
+        """The first state: the pressure of a first step belongs to its end."""
+        return state
+
     def advance(self, state: State) -> tuple[State, Found]:
         """The state a step later; raises ContactNotSettled."""
         pressing = self.body.pressing

@@ -105,7 +105,7 @@ def march(
         raise TooManySteps(MOST_STEPS, MOST_STEPS * choices.step)
     kind: type[ExplicitStepper | ImplicitStepper] = ExplicitStepper if choices.scheme.explicit else ImplicitStepper
     stepper = kind(body, choices.scheme, choices.enforced, choices.step)
-    state = undeformed(body, velocity)
+    state = stepper.begun(undeformed(body, velocity))
     fastest = UNBOUNDED * (np.abs(velocity).max() + np.abs(body.gravity).max() * end_time)
     energies = ledger.opened(body, state)
     samples = [_sample(body, state, 0.0, watch, energies, 0)]
