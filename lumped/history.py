@@ -26,6 +26,8 @@ LEAST_ROWS = 201
 MOST_ROWS = 100_001
 # Relative to the time at the end of an interval, and of the first one to the whole: what halving stops at.
 SHORTEST, FIRST = 2.0**-50, 1e-150
+# In so many parts at most an interval is divided at once; a peak force that divides without harm.
+MOST_PARTS, TINY = 16.0, 1e-300
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,29 +113,43 @@ def densified(times: ArrayLike, force: Callable[[Array], Array], tolerance: floa
     """Times between which linear interpolation of `force` errs by less than `tolerance` times its peak.
 
     `times` is where to start, shape (n,), n >= 2; `force` maps times, s, to forces, N. At least 201 rows come
-    back; an interval stops being halved when it is 2^-50 of the time there (a step in the force), the first one,
+    back; an interval stops being divided when it is 2^-50 of the time there (a step in the force), the first one,
     where a force may rise with a small power of time, when it is 1e-150 of the whole, or at 100001 rows.
     """
     t = np.unique(np.asarray(times, dtype=float))
-    while t.size < LEAST_ROWS:
-        t = np.sort(np.concatenate([t, 0.5 * (t[:-1] + t[1:])]))
-    f = force(t)
+    t = divided(t, np.ceil(np.diff(t) * ((LEAST_ROWS - 1) / (t[-1] - t[0]))))[0]
+    f, rough = force(t), np.ones(t.size - 1, dtype=bool)
     start, first = t[0], FIRST * (t[-1] - t[0])
-    rough = np.ones(t.size - 1, dtype=bool)
     while rough.any() and t.size < MOST_ROWS:
+        lengths = np.diff(t)
         middle = 0.5 * (t[:-1] + t[1:])[rough]
-        at_middle = force(middle)
-        off = np.abs(at_middle - 0.5 * (f[:-1] + f[1:])[rough])
+        off = np.abs(force(middle) - 0.5 * (f[:-1] + f[1:])[rough])
         # A smooth arc deviates most at its middle; half of the allowance covers one that does not.
-        long = np.diff(t)[rough] > np.maximum(SHORTEST * np.maximum(t[1:][rough] - start, abs(start)), first)
-        again = (off > 0.5 * tolerance * np.abs(f).max()) & long
-        t, f, rough = _refined(t, f, middle[again], at_middle[again])
+        allowed = 0.5 * tolerance * np.abs(f).max()
+        long = lengths[rough] > np.maximum(SHORTEST * np.maximum(t[1:][rough] - start, abs(start)), first)
+        parts = np.ones(lengths.size)
+        # The deviation falls with the square of the length.
+        parts[rough] += long * np.minimum(np.ceil(np.sqrt(off / max(allowed, TINY)) - 1.0), MOST_PARTS - 1.0)
+        t, f, rough = _refined(t, f, parts, force)
     return t
 
 
-def _refined(t: Array, f: Array, middle: Array, at_middle: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """The rows with the middles of the marked intervals put in, and which intervals are new."""
-    order = np.argsort(np.concatenate([t, middle]), kind="stable")
-    new = np.concatenate([np.zeros(t.size, dtype=bool), np.ones(middle.size, dtype=bool)])[order]
-    rough = new[:-1] | new[1:]
-    return np.concatenate([t, middle])[order], np.concatenate([f, at_middle])[order], rough
+def divided(t: Array, parts: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Ascending times with every interval in so many equal parts, shape (n - 1,), zero as one; which are new."""
+    counts = np.maximum(parts, 1.0).astype(np.intp)
+    which = np.repeat(np.arange(counts.size), counts)
+    nth = np.arange(which.size) - np.repeat(np.cumsum(counts) - counts, counts)
+    found = t[which] + np.diff(t)[which] * (nth / counts[which])
+    return np.append(found, t[-1]), np.append(nth > 0, False)
+
+
+def _refined(
+    t: Array, f: Array, parts: Array, force: Callable[[Array], Array]
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """The rows with their intervals divided, and which intervals are new."""
+    rows, new = divided(t, parts)
+    forces = np.empty(rows.size)
+    forces[~new] = f
+    if new.any():
+        forces[new] = force(rows[new])
+    return rows, forces, new[:-1] | new[1:]

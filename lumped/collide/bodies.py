@@ -91,6 +91,9 @@ class PointLaw(Protocol):
     def returned(self, bodies: Bodies, last: State) -> tuple[float, State] | None:
         """How long the bodies are apart after a contact, s, and the state when they meet again; None: for ever."""
 
+    def carried(self, depth: float, stage: Stage) -> float:
+        """The weight, N, under which a striker stays at rest at a depth; NaN of what creeps under every one."""
+
     def lost(self, depth: Any, rate: Any, stage: Stage) -> Any:
         """The part of the force whose work is not stored, N."""
 

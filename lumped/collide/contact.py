@@ -74,26 +74,37 @@ def contact(
         start, time, length = phase.last.end, phase.end_time, phase.last.length
         if phase.event is None:
             return Contact(tuple(phases), End.TIME)
+        if phase.event == "rest":
+            return Contact(tuple(phases), End.REST)
         if phase.event == "exit":
             faint = abs(start.rate) < FAINTEST_EXIT * bodies.velocity
             return Contact(tuple(phases), End.REST if faint else End.SEPARATED)
         if phase.event == "corner":
             corners = corners[1:]
             continue
-        kept = law.kept(start.depth, stage)
-        stage = Stage(not stage.approaching, max(stage.deepest, start.depth), stage.speed, start.depth, kept)
+        stage = following(law, stage, start.depth)
         start, corners = start._replace(rate=0.0), law.corners(stage)
         if abs(phase.last.last_acceleration) * scale < AT_REST * bodies.velocity:
             return Contact(tuple(phases), End.REST)
     raise TooManySteps(f"contact: {MOST_TURNS} turns without separation; accepted: an earlier motion.end_time")
 
 
+def following(law: PointLaw, stage: Stage, depth: float) -> Stage:
+    """The stage after one which turns at a depth, m."""
+    deepest, kept = max(stage.deepest, depth), law.kept(depth, stage)
+    return Stage(not stage.approaching, deepest, stage.speed, depth, kept)
+
+
+def leaving(law: PointLaw, exit_rule: str) -> Event:
+    """What ends a contact: the force where the law can pull and must not, else the depth."""
+    return FORCE_LEFT if law.tensile and exit_rule == "force" else DEPTH_LEFT
+
+
 def _events(law: PointLaw, stage: Stage, exit_rule: str) -> dict[str, Event]:
     """What ends a stage: the turn of the motion, and in the rebound the end of contact."""
     if stage.approaching:
         return {"turn": TURN}
-    pulls = law.tensile and exit_rule == "force"
-    return {"exit": FORCE_LEFT if pulls else DEPTH_LEFT, "turn": TURN_BACK}
+    return {"exit": leaving(law, exit_rule), "turn": TURN_BACK}
 
 
 def _corner(stage: Stage, corners: tuple[float, ...]) -> dict[str, Event]:

@@ -26,6 +26,11 @@ class Motion:
         """How the last contact ended."""
         return self.contacts[-1].end
 
+    @property
+    def steps(self) -> int:
+        """How many it took."""
+        return sum(len(phase.steps) for one in self.contacts for phase in one.phases)
+
 
 def motion(law: PointLaw, bodies: Bodies, exit_rule: str, impacts: int, until: float, tolerance: float) -> Motion:
     """Up to `impacts` contacts, the first at time zero, followed until `until`, s. Raises TooManySteps."""

@@ -9,7 +9,7 @@ that of the time left, in which it is smooth.
 from __future__ import annotations
 
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -44,11 +44,7 @@ class Nodes(NamedTuple):
 
     def graded(self, power: int, begun: float = 0.0, mirrored: bool = False) -> Nodes:
         """The same places, run through at another pace."""
-        low, high = begun ** (1.0 / power), (1.0 + begun) ** (1.0 / power)
-        root = low + (high - low) * (1.0 - self.places if mirrored else self.places)
-        points, pace = root**power - begun, power * (high - low) * root ** (power - 1)
-        if mirrored:
-            points = 1.0 - points
+        points, pace = paced(self.places, power, begun, mirrored)
         points[-1] = 1.0
         twice = self.once @ (pace[:, None] * self.once)
         return self._replace(power=power, begun=begun, mirrored=mirrored, points=points, pace=pace, twice=twice)
@@ -91,6 +87,14 @@ def radau(count: int) -> Nodes:
     pace = np.ones(count)
     last, leaving = np.array(once[-1]), np.array(ends @ series)
     return Nodes(1, 0.0, False, points, pace, once, once @ once, last, series, first, leaving, points)
+
+
+def paced(place: Array, power: Any, begun: Any, mirrored: Any) -> tuple[Array, Array]:
+    """Shares of a step's time at places in it, and the time's slope over the place there; all of one shape."""
+    low, high = begun ** (1.0 / power), (1.0 + begun) ** (1.0 / power)
+    root = low + (high - low) * np.where(mirrored, 1.0 - place, place)
+    share = root**power - begun
+    return np.where(mirrored, 1.0 - share, share), np.asarray(power * (high - low) * root ** (power - 1))
 
 
 def place_of(share: Array, power: Array, begun: Array, mirrored: NDArray[np.bool_]) -> Array:

@@ -13,8 +13,11 @@ from lumped.collide.track import Track
 from lumped.ending import End
 
 Array = NDArray[np.float64]
-# Half the widths of the parabolas through which a peak is found, in that of its surroundings.
-CLOSER = (0.5, 0.1, 0.02, 0.004, 0.0008)
+# Half the widths of the quartics through which a peak is found, in that of its surroundings, and their points.
+CLOSER = (0.5, 0.1, 0.03)
+FIVE = np.linspace(0.0, 1.0, 5)
+QUARTIC = np.linalg.inv(np.vander(FIVE, increasing=True))
+NEWTONS = 8
 
 
 class Outcome(NamedTuple):
@@ -53,25 +56,33 @@ def peak_of(track: Track, one: Contact) -> tuple[float, float]:
     rising = force.argmax() == force.size - 1 and steps[i][1].last_slope(force) > 0.0
     k = i + 1 if rising and i + 1 < len(steps) else i
     phase, step = steps[k]
-    touch = float(track.pressed(one.phases[0], np.array([one.start_time]))[2, 0])
+    touch = track.touching(one)
     places = ends[k] - step.length * (1.0 - np.append(0.0, step.nodes.points))
     return max((one.start_time, touch), _vertex(track, phase, places), key=lambda peak: peak[1])
 
 
 def _vertex(track: Track, phase: Phase, places: Array) -> tuple[float, float]:
-    """The highest force between the first and the last of ascending places: the vertex of ever smaller parabolas."""
+    """The highest force between the first and the last of ascending places: the top of ever narrower quartics."""
     values = track.pressed(phase, places)[2]
     i = int(np.argmax(values))
-    time, height = float(places[i]), float(values[i])
-    width = float(places[min(i + 1, places.size - 1)] - places[max(i - 1, 0)])
+    first, last = float(places[max(i - 1, 0)]), float(places[min(i + 1, places.size - 1)])
+    time, height = 0.5 * (first + last), 0.0
     for share in CLOSER:
-        left, right = max(time - share * width, float(places[0])), min(time + share * width, float(places[-1]))
-        trio = np.array([left, 0.5 * (left + right), right])
-        low, middle, high = (float(force) for force in track.pressed(phase, trio)[2])
-        bent, tilt = low - 2.0 * middle + high, low - high
-        if bent < 0.0 and abs(tilt) < -2.0 * bent:
-            shift, height = 0.5 * tilt / bent, middle - 0.125 * tilt**2 / bent
-        else:
-            shift, height = (-1.0, low) if tilt > 0.0 else (1.0, high)
-        time = 0.5 * (left + right) + 0.5 * shift * (right - left)
+        left, right = max(time - share * (last - first), first), min(time + share * (last - first), last)
+        place, height = _top(track.pressed(phase, left + (right - left) * FIVE)[2])
+        time = left + (right - left) * place
     return time, height
+
+
+def _top(values: Array) -> tuple[float, float]:
+    """The place in [0, 1] and the height of the top of the quartic with these values at FIVE, by Newton's method."""
+    c = (QUARTIC @ values).tolist()
+    place, height = float(FIVE[values.argmax()]), float(values.max())
+    for _ in range(NEWTONS):
+        tilt = c[1] + place * (2.0 * c[2] + place * (3.0 * c[3] + place * 4.0 * c[4]))
+        bent = 2.0 * c[2] + place * (6.0 * c[3] + place * 12.0 * c[4])
+        following = min(max(place - tilt / bent, 0.0), 1.0) if bent < 0.0 else place
+        if following == place:
+            break
+        place = following
+    return place, max(height, c[0] + place * (c[1] + place * (c[2] + place * (c[3] + place * c[4]))))

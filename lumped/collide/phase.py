@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from lumped.collide.bodies import Bodies, PointLaw, Stage, State
 from lumped.collide.nodes import STAGES, Nodes
 from lumped.collide.step import NODES, Step, roughness, solved
+from lumped.ending import AT_REST
 from lumped.errors import TooManySteps
 
 Array = NDArray[np.float64]
@@ -83,6 +84,7 @@ class March:
                 continue
             steps.append(step)
             now, state = now + step.length, step.end
+            event = event or ("rest" if self._rests(state) else None)
             if event is not None or now >= self.until * (1.0 - PRECISE):
                 return Phase(self.stage, time, tuple(steps), event)
             length = step.length * nodes.following(_ratio(rough, power))
@@ -91,6 +93,13 @@ class March:
             f"contact: {MOST_STEPS} time steps reach {now:.3g} s of {self.until:.3g} s; "
             "accepted: an earlier motion.end_time, or a law less stiff"
         )
+
+    def _rests(self, state: State) -> bool:
+        """Whether gravity has pressed the striker to where the law carries it."""
+        weight = self.bodies.mass * self.bodies.gravity
+        if weight <= 0.0 or state.depth <= 0.0 or abs(state.rate) > AT_REST * self.bodies.velocity:
+            return False
+        return abs(self.law.carried(state.depth, self.stage) - weight) <= AT_REST * weight
 
     def _solved(self, state: State, length: float, guess: Array, nodes: Nodes) -> Step | None:
         return solved(self.law, self.stage, self.bodies, state, length, guess, nodes)

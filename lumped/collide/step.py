@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dgesv
 
 from lumped.collide.bodies import TINY, Bodies, PointLaw, Stage, State
 from lumped.collide.nodes import STAGES as STAGES
@@ -78,7 +79,7 @@ def solved(
         jacobian = push[:, None] * (over_depth @ twice) if over_depth.ndim == 2 else over_depth[:, None] * bending
         jacobian += damping[:, None] * turning
         jacobian.flat[:: STAGES + 1] += 1.0
-        correction = np.linalg.solve(jacobian, excess)
+        correction = dgesv(jacobian, excess)[2]
         gain = gain - correction
         size = float(np.abs(correction).max())
         scale = abs(gain[0]) + abs(gain[-1]) + (abs(start.rate) + abs(rate[-1])) / length

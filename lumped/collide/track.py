@@ -20,10 +20,10 @@ from lumped.ending import End
 
 Array = NDArray[np.float64]
 # How near to a touch the rows begin, as a power of 1/2, in the length of its step.
-NEAREST = 48.0
+NEAREST = 96.0
 IN_FLIGHT = 17
 # Share of a step within which its first depth and the mean rate tell the depth better than its polynomial.
-EARLY = 1e-8
+EARLY = 1e-6
 
 
 class Row(NamedTuple):
@@ -104,6 +104,16 @@ class Track:
     def _phases(self) -> list[Phase]:
         return [phase for contact in self.motion.contacts for phase in contact.phases]
 
+    def touching(self, one: Contact) -> float:
+        """The force when a contact begins, N."""
+        phase, start = one.phases[0], np.zeros(1)
+        depth, rate = start + max(one.first.depth, 0.0), start + one.first.rate
+        return float(self.law.between(phase.steps, np.zeros(1, dtype=np.intp), start, depth, rate, phase.stage)[0])
+
+    def row(self, phase: Phase) -> Row:
+        """The steps of one of its phases."""
+        return self._rows[id(phase)]
+
     @cached_property
     def _rows(self) -> dict[int, Row]:
         return {id(phase): Row.of(phase) for phase in self._phases}
@@ -124,7 +134,7 @@ class Track:
 
     def pressed(self, phase: Phase, times: Array) -> Array:
         """The columns at times within one of its phases, shape (3, n)."""
-        row = self._rows[id(phase)]
+        row = self.row(phase)
         which = np.maximum(np.searchsorted(row.starts, times, side="right") - 1, 0)
         elapsed = times - row.starts[which]
         share = np.minimum(elapsed / row.lengths[which], 1.0)

@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 
 from lumped import laws
 from lumped.collide.motion import motion
+from lumped.collide.outcome import peak_of
 from lumped.collide.track import Track
 from lumped.interpolation import local
-from lumped.laws._force_law import ForceLaw, bodies_of, peak_of
+from lumped.laws._force_law import ForceLaw
 from lumped.laws._hereditary import Solve, once
+from lumped.laws._impacts import bodies_of
 from lumped.result import Result
 from lumped.scene import END_IN_CONTACT_TIMES, Scene
 

@@ -11,7 +11,7 @@ from lumped.collide.bodies import Stage
 from lumped.fit import network
 from lumped.fit.measured import Measured
 from lumped.fit.space import TOUCH, Space, damping_names, own_keys
-from lumped.laws._force_law import bodies_of
+from lumped.laws._impacts import bodies_of
 from lumped.laws._power_law import spring_contact_time, spring_of_peak
 from lumped.scene import LawChoice
 

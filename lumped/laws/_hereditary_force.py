@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
@@ -32,6 +33,7 @@ class HereditaryForce(ForceLaw):
     within_step: StepLoad | None = None
     name: ClassVar[str] = "correspondence"
     tensile: ClassVar[bool] = True
+    remembers: ClassVar[bool] = True
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -57,6 +59,10 @@ class HereditaryForce(ForceLaw):
     def tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
         """Slopes at the points of the step."""
         return self._step.tangents(depth, rate)
+
+    def carried(self, depth: float, stage: Stage) -> float:
+        """Not known: it creeps."""
+        return math.nan
 
     def lost(self, depth: Any, rate: Any, stage: Stage) -> Any:
         """All of it: what a memory of the load gives back is no potential of the depth."""

@@ -10,7 +10,7 @@ from typing import Any
 from lumped import restitution
 from lumped.errors import BadInput, Fault
 from lumped.keys import Choice, Key, Number
-from lumped.laws._force_law import bodies_of
+from lumped.laws._impacts import bodies_of
 from lumped.laws._power_law import spring_of_peak
 from lumped.load_curves.base import LoadCurve
 from lumped.scene import Scene

@@ -20,7 +20,8 @@ from lumped.collide.bodies import Bodies, Stage
 from lumped.errors import Fault
 from lumped.keys import Choice, Key, Number
 from lumped.laws import _bilinear
-from lumped.laws._force_law import ForceLaw, bodies_of
+from lumped.laws._force_law import ForceLaw
+from lumped.laws._impacts import bodies_of
 from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters
 from lumped.scene import Scene
 

@@ -1,0 +1,167 @@
+"""The impacts of a scene under a force between two masses: the march, its bars, the Result, the same for every law."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.collide.bodies import Bodies, State
+from lumped.collide.half_widths import half_widths
+from lumped.collide.motion import Motion, motion
+from lumped.collide.outcome import Outcome, outcome_of
+from lumped.collide.phase import Phase
+from lumped.collide.track import Track
+from lumped.ending import End
+from lumped.laws._assembly import Answer, Clock, assemble, bars, impulse_of
+from lumped.result import UNITS, Quantity, Result, meets
+from lumped.scene import END_IN_CONTACT_TIMES, Scene
+
+if TYPE_CHECKING:
+    from lumped.laws._force_law import ForceLaw
+
+Array = NDArray[np.float64]
+# Errors of the rate allowed in one step, relative to the velocity at touch: the history errs far less, its end less
+# again. The first one is that asked of the result, if it is not beyond these; every next one is finer by FINER.
+COARSEST, FINEST, FINER = 1e-5, 1e-12, 1e-2
+# Whatever is asked, a contact's duration, relative, and restitution are known to this.
+END = 1e-11
+# Two marches may agree by chance.
+SAFETY = 2.0
+
+
+class Judged(NamedTuple):
+    """A march: what it says, its quantities with bars, the bar of the force, N, and how many steps it all took."""
+
+    answer: Answer
+    quantities: Mapping[str, Quantity]
+    force_error: float
+    steps: int
+
+
+def bodies_of(scene: Scene) -> Bodies:
+    """The relative motion of a scene."""
+    return Bodies(scene.reduced_mass, scene.velocity, scene.gravity)
+
+
+def simulate(law: ForceLaw, scene: Scene, tolerance: float) -> Result:
+    """The impacts of a scene to this tolerance. Raises TooManySteps."""
+    clock = Clock()
+    judge = _compared if scene.motion.impacts > 1 or law.remembers else _estimated
+    step_tolerance, steps = _first(tolerance), 0
+    while True:
+        judged = judge(law, scene, step_tolerance)
+        steps += judged.steps
+        if step_tolerance <= FINEST or (meets(judged.quantities, tolerance) and _ends_well(judged.quantities)):
+            break
+        step_tolerance *= FINER
+    answer, quantities, force_error, _ = judged
+    numerics = {"integrator": "Radau collocation", "step_tolerance": step_tolerance, "law": law.parameters}
+    work, model = {"steps": steps}, law.resolved(scene)
+    return assemble(law.name, scene, tolerance, answer, quantities, force_error, clock, numerics, work, model)
+
+
+def outcome(law: ForceLaw, scene: Scene, tolerance: float) -> Outcome:
+    """The first contact, by one march and without bars. Raises TooManySteps."""
+    track = _track(law, scene, 1, _first(tolerance))
+    return outcome_of(track, track.motion.contacts[0])
+
+
+def _first(tolerance: float) -> float:
+    return min(max(tolerance, FINEST), COARSEST)
+
+
+def _estimated(law: ForceLaw, scene: Scene, step_tolerance: float) -> Judged:
+    """One contact, whose bars are what its march still lacks, estimated from its defect."""
+    track = _track(law, scene, 1, step_tolerance)
+    said = outcome_of(track, track.motion.contacts[0])
+    answer, widths = _answer(law, scene, track, [said]), half_widths(track, bodies_of(scene), law.exit, said)
+    values = {**answer.values, "history_l2": 0.0}
+    quantities = {
+        name: Quantity(values[name], None if values[name] is None else getattr(widths, name), unit)
+        for name, unit in UNITS.items()
+    }
+    return Judged(answer, quantities, widths.force, track.motion.steps)
+
+
+def _compared(law: ForceLaw, scene: Scene, step_tolerance: float) -> Judged:
+    """Contacts whose bars are their distance from those of a march a hundred times less fine."""
+    finer = max(step_tolerance * FINER, FINEST)
+    tracks = [_track(law, scene, scene.motion.impacts, step) for step in (finer, finer / FINER)]
+    fine, coarse = (
+        _answer(law, scene, track, [outcome_of(track, one) for one in track.motion.contacts]) for track in tracks
+    )
+    return Judged(fine, *bars(fine, coarse, SAFETY), sum(track.motion.steps for track in tracks))
+
+
+def _ends_well(quantities: Mapping[str, Quantity]) -> bool:
+    """Whether a contact that ends is known to END there."""
+    duration, restitution = quantities["duration"], quantities["restitution"]
+    return (duration.error or 0.0) <= END * (duration.value or 0.0) and (restitution.error or 0.0) <= END
+
+
+def _until(law: ForceLaw, scene: Scene) -> float:
+    contact_time = law.time_scale(bodies_of(scene))
+    return scene.motion.end_time or END_IN_CONTACT_TIMES * contact_time * scene.motion.impacts
+
+
+def _track(law: ForceLaw, scene: Scene, impacts: int, step_tolerance: float) -> Track:
+    return Track(law, motion(law, bodies_of(scene), law.exit, impacts, _until(law, scene), step_tolerance))
+
+
+def _answer(law: ForceLaw, scene: Scene, track: Track, outcomes: Sequence[Outcome]) -> Answer:
+    """What a march says."""
+    moved, until = track.motion, _until(law, scene)
+    said = "" if moved.end is End.SEPARATED else moved.end.value
+    return Answer(
+        track.rows,
+        lambda times: _columns(law, track, times),
+        _values(scene, moved, outcomes, until),
+        moved.end,
+        _energy(law, scene, moved),
+        "; ".join(part for part in (law.source, said) if part),
+        until,
+        tuple(outcome._asdict() for outcome in outcomes) if scene.motion.impacts > 1 else (),
+    )
+
+
+def _columns(law: ForceLaw, track: Track, times: Array) -> Array:
+    depth, rate, force = track(times)
+    if law.exit == "force":
+        force = np.maximum(force, 0.0)
+    pressed = np.where(force > 0.0, np.maximum(depth, 0.0), 0.0)
+    radius = np.zeros_like(depth) if law.load_curve is None else law.load_curve.contact_radius(pressed)
+    return np.array([depth, rate, force, radius])
+
+
+def _values(scene: Scene, moved: Motion, outcomes: Sequence[Outcome], until: float) -> Mapping[str, float | None]:
+    highest = max(outcomes, key=lambda outcome: outcome.peak_force)
+    last = moved.contacts[-1]
+    return {
+        "peak_force": highest.peak_force,
+        "peak_time": highest.peak_time,
+        "peak_depth": max(outcome.peak_depth for outcome in outcomes),
+        "duration": outcomes[0].duration,
+        "restitution": outcomes[0].restitution,
+        "impulse": impulse_of(scene, moved.end, last.last.rate, last.end_time, until),
+    }
+
+
+def _energy(law: ForceLaw, scene: Scene, moved: Motion) -> dict[str, float | None]:
+    """Energies at the end of the last contact, J, each on its own."""
+    last, mass = moved.contacts[-1].last, scene.reduced_mass
+    given = 0.5 * mass * scene.velocity**2 + mass * scene.gravity * last.depth
+    out = 0.5 * mass * last.rate**2
+    stored = [_stored(law, one.last, one.phases[-1]) for one in moved.contacts]
+    found = [_stored(law, one.first, one.phases[0]) for one in moved.contacts[1:]]
+    # What a contact leaves behind and the next one does not find is lost: the surface recovers in between.
+    lost = last.lost + sum(stored[:-1]) - sum(found)
+    residual = given - out - stored[-1] - lost
+    return {"in": given, "out": out, "stored": stored[-1], law.loss: lost, "residual": residual}
+
+
+def _stored(law: ForceLaw, state: State, phase: Phase) -> float:
+    """What is stored where a phase begins or ends, J."""
+    return float(law.stored(max(state.depth, 0.0), phase.stage))

@@ -1,0 +1,160 @@
+"""Error bars of force laws against closed forms: never below the error, and not far above it."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import beta
+
+from lumped import Model, Scene, laws
+from lumped.scene import LawChoice
+
+CASES = 600
+# Where an error is rounding its size is an accident.
+ROUNDING = 2e-15
+# The bars may be this much too wide in the median.
+WIDE = 100.0
+
+
+def impact(rng: np.random.Generator, name: str, gravity: float = 0.0, **values: Any) -> Scene:
+    values = {"k": 10.0 ** rng.uniform(3.0, 11.0), **values}
+    mass, velocity = 10.0 ** rng.uniform(-3.0, 5.0), 10.0 ** rng.uniform(-2.0, 1.0)
+    return Scene(None, mass, velocity, law=LawChoice(name, values), model=Model(gravity=gravity))
+
+
+def spring(rng: np.random.Generator) -> tuple[Scene, dict[str, float]]:
+    """k depth^alpha: the depth by its energy, the duration by the beta function."""
+    alpha = rng.choice([1.0, 1.5, 2.0, rng.uniform(1.0, 4.0)])
+    scene = impact(rng, "hertz", alpha=float(alpha))
+    k, power = scene.law.values["k"], alpha + 1.0
+    depth = (0.5 * power * scene.mass / k * scene.velocity**2) ** (1.0 / power)
+    duration = 2.0 * depth / scene.velocity * beta(1.0 / power, 0.5) / power
+    return scene, {
+        "peak_depth": depth,
+        "peak_force": k * depth**alpha,
+        "peak_time": 0.5 * duration,
+        "duration": duration,
+        "restitution": 1.0,
+    }
+
+
+def kelvin(rng: np.random.Generator) -> tuple[Scene, dict[str, float]]:
+    """The linear oscillator, to the return of its force or of its depth, "(5)" to "(7)"."""
+    xi, exit = rng.uniform(0.01, 0.95), rng.choice(["force", "depth"])
+    scene = impact(rng, "kelvin", xi=float(xi), exit=str(exit))
+    omega, root = math.sqrt(scene.law.values["k"] / scene.mass), math.sqrt(1.0 - xi**2)
+    turn = math.acos(xi) / (omega * root)
+    end = 2.0 * turn if exit == "force" else math.pi / (omega * root)
+    slower = math.exp(-xi * omega * end)
+    return scene, {
+        "peak_depth": scene.velocity / omega * math.exp(-xi * omega * turn),
+        "duration": end,
+        "restitution": slower,
+        "impulse": scene.mass * scene.velocity * (1.0 + slower),
+    }
+
+
+def mahmoud(rng: np.random.Generator) -> tuple[Scene, dict[str, float]]:
+    """The oscillator until it turns, the spring alone from there."""
+    xi = rng.uniform(0.01, 0.95)
+    scene = impact(rng, "mahmoud", xi=float(xi))
+    omega, root = math.sqrt(scene.law.values["k"] / scene.mass), math.sqrt(1.0 - xi**2)
+    turn = math.acos(xi) / root
+    return scene, {
+        "peak_depth": scene.velocity / omega * math.exp(-xi * turn),
+        "duration": (turn + 0.5 * math.pi) / omega,
+        "restitution": math.exp(-xi * turn),
+    }
+
+
+def jankowski(rng: np.random.Generator) -> tuple[Scene, dict[str, float]]:
+    """At alpha = 3/2 a linear oscillator of ratio 2 xi/sqrt 5 in depth^(5/4): restitution exp(-ratio turn)."""
+    xi = rng.uniform(0.05, 1.0)
+    scene = impact(rng, "jankowski", xi=float(xi))
+    ratio = 2.0 * xi / math.sqrt(5.0)
+    slower = math.exp(-ratio * math.acos(ratio) / math.sqrt(1.0 - ratio**2))
+    energy = 0.5 * scene.mass * (slower * scene.velocity) ** 2
+    return scene, {"restitution": slower, "peak_depth": (2.5 * energy / scene.law.values["k"]) ** 0.4}
+
+
+def hunt_crossley(rng: np.random.Generator) -> tuple[Scene, dict[str, float]]:
+    """ln((1 + d)/(1 - e d)) = d (1 + e); the depth from the same integral, until the turn."""
+    d, alpha = rng.uniform(0.05, 4.0), rng.uniform(1.0, 3.0)
+    scene = impact(rng, "hertzdamp", xi=float(d), alpha=float(alpha))
+
+    def lack(e: float) -> float:
+        return math.log1p(d) - math.log1p(-e * d) - d * (1.0 + e)
+
+    slower = brentq(lack, 1e-9, min(1.0, 1.0 / d) * (1.0 - 1e-15), xtol=1e-16, rtol=1e-15)
+    work = scene.mass * scene.velocity**2 * (d - math.log1p(d)) / d**2
+    return scene, {
+        "restitution": slower,
+        "peak_depth": ((alpha + 1.0) * work / scene.law.values["k"]) ** (1.0 / (alpha + 1.0)),
+    }
+
+
+def weighed_spring(rng: np.random.Generator) -> tuple[Scene, dict[str, float]]:
+    """The linear spring under gravity swings about m g/k."""
+    gravity = rng.uniform(0.1, 10.0)
+    scene = impact(rng, "linear_spring", float(gravity))
+    k = scene.law.values["k"]
+    omega, sunk = math.sqrt(k / scene.mass), scene.mass * gravity / k
+    swing = math.hypot(scene.velocity / omega, sunk)
+    half = math.pi - math.atan2(scene.velocity / omega, sunk)
+    return scene, {
+        "peak_depth": sunk + swing,
+        "peak_force": k * (sunk + swing),
+        "peak_time": half / omega,
+        "duration": 2.0 * half / omega,
+        "restitution": 1.0,
+    }
+
+
+CLOSED = (spring, kelvin, mahmoud, jankowski, hunt_crossley, weighed_spring)
+
+
+def test_bars_cover_closed_forms_and_are_not_far_above(campaign_size: Callable[[int], int]) -> None:
+    rng, wide = np.random.default_rng(20), defaultdict(list)
+    for i in range(campaign_size(CASES)):
+        scene, exact = CLOSED[i % len(CLOSED)](rng)
+        assert scene.law is not None
+        found = laws.get(scene.law.name).of(scene).simulate(scene, 10.0 ** rng.uniform(-7.0, -2.0)).quantities
+        for name, value in exact.items():
+            quantity = found[name]
+            off = abs(quantity.value - value)
+            assert off <= quantity.error, (scene.law, name, off, quantity.error)
+            wide[name].append(quantity.error / max(off, ROUNDING * abs(value)))
+    for name, ratios in wide.items():
+        assert float(np.median(ratios)) < WIDE, name
+
+
+def test_an_end_is_known_to_1e_10_whatever_is_asked(campaign_size: Callable[[int], int]) -> None:
+    rng = np.random.default_rng(21)
+    for i in range(campaign_size(300)):
+        scene, exact = CLOSED[i % len(CLOSED)](rng)
+        assert scene.law is not None
+        found = laws.get(scene.law.name).of(scene).simulate(scene, 1e-2).quantities
+        assert abs(found["restitution"].value - exact["restitution"]) < 1e-10
+        if "duration" in exact:
+            assert abs(found["duration"].value / exact["duration"] - 1.0) < 1e-10
+
+
+def test_what_creeps_to_rest_under_its_weight_is_said_to_rest() -> None:
+    """Overdamped about its place of rest, it never turns: the force law alone carries the weight there."""
+    rng = np.random.default_rng(22)
+    for name in ("jankowski", "hertzdamp", "tsuji", "kelvin", "mahmoud"):
+        scene = Scene(
+            None, 200.0, float(rng.uniform(0.5, 1.5)), law=LawChoice(name, {"k": 2e4, "e": 0.15}),
+            model=Model(gravity=float(rng.uniform(3.0, 9.0))),
+        )  # fmt: skip
+        law = laws.get(name).of(scene)
+        result = law.simulate(scene, 1e-4)
+        assert "rest" in result.message
+        depth = (scene.mass * scene.gravity / law.k) ** (1.0 / law.alpha)
+        assert abs(result.history.depth[-1] / depth - 1.0) < 1e-6
+        assert abs(result.energy["residual"]) < 1e-6 * result.energy["in"]
