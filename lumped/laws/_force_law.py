@@ -106,6 +106,10 @@ class ForceLaw(ABC):
         """Its numbers by the names of the scene file."""
         return {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("load_curve", "source")}
 
+    def elastic_contact_time(self, scene: Scene) -> float:
+        """Contact time without damping, s."""
+        return self.time_scale(_impacts.bodies_of(scene))
+
     def simulate(self, scene: Scene, tolerance: float) -> Result:
         """The impacts of a scene to this tolerance. Raises TooManySteps."""
         return _impacts.simulate(self, scene, tolerance)

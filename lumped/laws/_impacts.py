@@ -103,8 +103,7 @@ def _ends_well(quantities: Mapping[str, Quantity]) -> bool:
 
 
 def _until(law: ForceLaw, scene: Scene) -> float:
-    contact_time = law.time_scale(bodies_of(scene))
-    return scene.motion.end_time or END_IN_CONTACT_TIMES * contact_time * scene.motion.impacts
+    return scene.motion.end_time or END_IN_CONTACT_TIMES * law.elastic_contact_time(scene) * scene.motion.impacts
 
 
 def _track(law: ForceLaw, scene: Scene, impacts: int, step_tolerance: float) -> Track:
