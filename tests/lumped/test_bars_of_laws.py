@@ -15,8 +15,8 @@ from lumped import Model, Scene, laws
 from lumped.scene import LawChoice
 
 CASES = 600
-# Where an error is rounding its size is an accident.
-ROUNDING = 2e-15
+# Where an error is rounding its size is an accident; the time of a flat peak is known to the root of rounding.
+ROUNDING, ROUNDING_OF = 2e-15, {"peak_time": 1e-10}
 # The bars may be this much too wide in the median.
 WIDE = 100.0
 
@@ -128,7 +128,7 @@ def test_bars_cover_closed_forms_and_are_not_far_above(campaign_size: Callable[[
             quantity = found[name]
             off = abs(quantity.value - value)
             assert off <= quantity.error, (scene.law, name, off, quantity.error)
-            wide[name].append(quantity.error / max(off, ROUNDING * abs(value)))
+            wide[name].append(quantity.error / max(off, ROUNDING_OF.get(name, ROUNDING) * abs(value)))
     for name, ratios in wide.items():
         assert float(np.median(ratios)) < WIDE, name
 
