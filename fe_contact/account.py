@@ -7,14 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from fe_contact.fixed_stepping import FixedStepper
-from fe_contact.march import March, Snapshot, Work
-from fe_contact.stepping import Stepper
-from fe_contact.steps import State, Step
+from fe_contact.march import March, Work
+from fe_contact.steps import State, Step, Stepping
 
 
 def record(
-    stepper: Stepper | FixedStepper, states: Sequence[State], steps: Sequence[Step], separated: bool, end_spread: float
+    stepper: Stepping, states: Sequence[State], steps: Sequence[Step], separated: bool, end_spread: float
 ) -> March:
     """Gather what a march leaves behind; ``end_spread`` as in :class:`fe_contact.march.March`."""
     works = [step.work for step in steps]
@@ -22,34 +20,20 @@ def record(
         time=np.array([state.time for state in states]),
         depth=np.array([state.depth for state in states]),
         impulse=np.array([state.impulse for state in states]),
+        first_force=stepper.first_force,
         radius_time=np.array([step.radius_time for step in steps]),
         radius=np.array([step.radius for step in steps]),
         separated=separated,
-        snapshots=_snapshots(stepper, steps) if stepper.accounted else (),
+        snapshots=stepper.snapshots(steps) if stepper.accounted else (),
         energy=_energy(stepper, states, steps) if stepper.accounted else {},
         end_spread=end_spread,
         work=Work(len(steps), sum(w.contact_problems for w in works), sum(w.iterations for w in works)),
     )
 
 
-def _snapshots(stepper: Stepper | FixedStepper, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
-    points, early = stepper.surface.operator.points, 1 - stepper.scheme.SAMPLE
-    return tuple(
-        Snapshot(
-            time=step.state.time - early * step.length,
-            contact_radius=step.radius,
-            radii=step.scale * points,
-            pressure=step.solution.pressure / step.scale,
-        )
-        for step in steps
-    )
-
-
-def _energy(stepper: Stepper | FixedStepper, states: Sequence[State], steps: Sequence[Step]) -> dict[str, float]:
+def _energy(stepper: Stepping, states: Sequence[State], steps: Sequence[Step]) -> dict[str, float]:
     """Terms in J; ``contact`` is what the penalty's springs hold if the bodies have not separated."""
-    strike, final, last = stepper.strike, steps[-1], states[-1]
-    stiffness = stepper.numerics.penalty * stepper.modulus(final.length)
-    springs = 0.5 * final.scale * float(stepper.surface.operator.weights @ final.solution.pressure**2) / stiffness
+    strike, last = stepper.strike, states[-1]
     memories = [state.memory for state in states[: len(steps) + 1]]
     heats = [
         stepper.dissipated(before, after, step.length)
@@ -61,7 +45,7 @@ def _energy(stepper: Stepper | FixedStepper, states: Sequence[State], steps: Seq
         "stored": stepper.stored(last.memory),
         "viscous": sum(heats),
         "radiated": 0.0,
-        "contact": springs if last is final.state else 0.0,
+        "contact": stepper.springs(steps[-1]) if last is steps[-1].state else 0.0,
         "numerical": 0.0,
     }
     terms["residual"] = 2 * terms["in"] - sum(terms.values())

@@ -22,13 +22,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.bodies.chosen import struck
-from fe_contact.bodies.offer import Deformable
+from fe_contact.bodies.flat_end import FlatEnd
+from fe_contact.bodies.struck import Deformable, Struck
 from fe_contact.change import Change
 from fe_contact.curve import Curve, extrapolated
 from fe_contact.forms import Array
 from fe_contact.impact import march
 from fe_contact.march import March, Strike
 from fe_contact.numerics import SCHEMES, Numerics
+from fe_contact.plan import SETTING
 from fe_contact.softening import Softening, compliance_change
 from lumped.errors import NotReached
 from lumped.members import get
@@ -44,6 +46,7 @@ AS_EXPECTED = (0.6, 2.5)  # shares of the expected ratio of changes that show th
 ASYMPTOTIC = 1e-2  # share of the duration by which the fewest steps may err where orders are to be believed
 NEARLY = 0.8  # share of the expected ratio that the durations must show: they stand for themselves alone
 CAUSES = ("mesh", "penalty", "time_step", "far_field")
+ROUNDING = 1e-9  # of a solve of nearly incompressible bodies
 
 
 @dataclass(frozen=True)
@@ -70,7 +73,7 @@ class Certified:
 
     curve: Curve
     march: March
-    surface: Deformable
+    surface: Struck
     changes: Mapping[str, tuple[Change | Softening | None, ...]]
     work: TotalWork
 
@@ -95,10 +98,14 @@ def certify(strike: Strike, geometry: Geometry, numerics: Numerics) -> Certified
     finest = runs.march(numerics)
     steps = _time_steps(runs, Curve.of(finest, strike), numerics)
     cheap = numerics.varied(steps=steps.cheap)
+    surface = runs.surface(numerics)
+    if isinstance(surface, FlatEnd):
+        held = _by_stiffness(runs, steps.value, surface, numerics)
+        changes = held | {"time_step": (steps.change, *steps.jitter)}
+        return Certified(steps.value, finest, surface, changes, runs.work(surface))
     base = runs.curve(cheap)
     mesh, finer_mesh = _other(cheap, "elements_per_contact")
     penalty, stiffer = _other(cheap, "penalty")
-    surface = runs.surface(numerics)
     order = MESH_ORDER[numerics.order] if surface.breathes else MESH_ORDER_ANYWHERE
     changes = {
         "mesh": (_change(base, runs.curve(mesh), order, finer_mesh), *steps.jitter),
@@ -109,13 +116,30 @@ def certify(strike: Strike, geometry: Geometry, numerics: Numerics) -> Certified
     return Certified(steps.value, finest, surface, changes, runs.work(surface))
 
 
+def _by_stiffness(
+    runs: _Runs, value: Curve, end: FlatEnd, numerics: Numerics
+) -> dict[str, tuple[Change | Softening | None, ...]]:
+    """What the other causes change of the one stiffness under a flat end, without a march."""
+    orders = {"mesh": min(MESH_ORDER[numerics.order], end.mesh_order)} | LEAST_ORDER
+    found: dict[str, tuple[Change | Softening | None, ...]] = {}
+    for cause, order in orders.items():
+        settings, finer = _other(numerics, SETTING[cause])
+        other = runs.surface(settings)
+        assert isinstance(other, FlatEnd)
+        share = _factor(order, finer) * abs(other.stiffness / end.stiffness - 1.0)
+        found[cause] = (Softening(value, share + ROUNDING),)
+    return found
+
+
 def _far_field(runs: _Runs, value: Curve, cheap: Numerics, mesh: Numerics) -> Change | Softening | None:
     """By one press of either surface where they breathe with the contact; else by a march more, on the varied mesh."""
     order = LEAST_ORDER["far_field"]
     far, farther = _other(cheap, "far_radius")
-    surface = runs.surface(cheap)
+    surface, other = runs.surface(cheap), runs.surface(far)
     if surface.breathes:
-        return Softening(value, _factor(order, farther) * compliance_change(surface, runs.surface(far)))
+        assert isinstance(surface, Deformable)
+        assert isinstance(other, Deformable)
+        return Softening(value, _factor(order, farther) * compliance_change(surface, other))
     return _change(runs.curve(mesh), runs.curve(mesh.varied(far_radius=far.far_radius)), order, farther)
 
 
@@ -160,7 +184,7 @@ class _Runs:
         self._strike, self._geometry = strike, geometry
         self._marches: list[March] = []
         self._radii: dict[int, Array] = {}
-        self._surfaces: dict[int, Deformable] = {}
+        self._surfaces: dict[int, Struck] = {}
         self._curves: dict[Numerics, Curve | None] = {}
 
     def march(self, settings: Numerics) -> March:
@@ -171,7 +195,7 @@ class _Runs:
         self._radii.setdefault(settings.steps, self._marches[-1].radius)
         return self._marches[-1]
 
-    def surface(self, settings: Numerics) -> Deformable:
+    def surface(self, settings: Numerics) -> Struck:
         """What contact sees of the struck body."""
         surface = struck(self._geometry, settings)
         self._surfaces[id(surface)] = surface
@@ -189,11 +213,11 @@ class _Runs:
                 self._curves[settings] = None
         return self._curves[settings]
 
-    def work(self, finest: Deformable) -> TotalWork:
+    def work(self, finest: Struck) -> TotalWork:
         """What all runs cost together."""
         works = [m.work for m in self._marches]
         return TotalWork(
-            degrees_of_freedom=finest.operator.degrees_of_freedom,
+            degrees_of_freedom=finest.degrees_of_freedom,
             factorizations=sum(s.factorizations for s in self._surfaces.values()),
             solves=sum(s.solves for s in self._surfaces.values()),
             marches=len(works),

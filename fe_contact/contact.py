@@ -15,7 +15,7 @@ line search on ``J`` makes it converge from anywhere; an exhausted budget is rep
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -49,6 +49,12 @@ class PressedSurface:
     def held(self, springs: Array) -> Array:
         """Stiffness with springs (q,) at the points, (n, n), in the order of columns that LAPACK needs."""
         return np.asarray(self.stiffness + (self._squares @ springs).reshape(self.stiffness.shape)).T
+
+    def stiffened(self, stiffness: Array) -> PressedSurface:
+        """The same points on another stiffness; what is known of the points alone is shared."""
+        other = replace(self, stiffness=stiffness)
+        vars(other)["_squares"] = self._squares
+        return other
 
     @cached_property
     def _squares(self) -> Any:

@@ -58,7 +58,7 @@ class Curve:
             duration=duration,
             separated=march.separated,
             x=np.sqrt(march.time / duration),
-            mean_force=np.concatenate([[0.0], march.impulse[1:] / march.time[1:]]),
+            mean_force=np.concatenate([[march.first_force], march.impulse[1:] / march.time[1:]]),
             depth=march.depth,
             radius_x=np.sqrt(shares),
             radius_squared=squares,
@@ -77,7 +77,7 @@ class Curve:
 
     def read(self, time: Array) -> Reading:
         """Force, zero outside the contact, impulse and depth up to its end."""
-        inside = (time > 0) & ((time < self.duration) if self.separated else (time <= self.duration))
+        inside = (time >= 0) & ((time < self.duration) if self.separated else (time <= self.duration))
         x = self.share(time)
         (mean, depth), (slope, _) = self.polynomials.at(x)
         return Reading(np.where(inside, np.maximum(mean + 0.5 * x * slope, 0.0), 0.0), mean * time, depth)

@@ -81,6 +81,7 @@ def fields_at_peak(scene: Scene, solved: Solved) -> Fields:
     """The fields in the step in which the force peaks. Raises BadInput, see :func:`check_fields`."""
     check_fields(scene)
     certified, march = solved.certified, solved.certified.march
+    assert isinstance(certified.surface, ScaledSurface)
     operator, step = certified.surface.operator, peak_step(certified)
     share = float(get(SCHEMES, solved.numerics.scheme).SAMPLE)
     depth = float((1 - share) * march.depth[step] + share * march.depth[step + 1])

@@ -4,35 +4,47 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fe_contact.bodies.offer import Deformable, Offer
+from fe_contact.bodies.offer import Offer
 from fe_contact.contact import ContactProblem, ContactSolution, Touching
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
 from fe_contact.forms import Array
-from fe_contact.march import Strike, Work
+from fe_contact.march import Snapshot, Strike, Work
 from fe_contact.numerics import ENFORCEMENTS, SCHEMES, Numerics
-from fe_contact.pressing import contact_end
+from fe_contact.pressing import half_width
+from fe_contact.stepping import extrapolated
 from fe_contact.steps import State, Step
 from lumped.members import get
 
+if TYPE_CHECKING:
+    from fe_contact.bodies.struck import Deformable
+
 BEYOND = 1e3  # overlap, in reference radii, that radii past the striker's rim lack
-FIRST = 0.1  # share of the contact zone that is guessed to touch first
+FIRST = 0.5  # share of the first overlap up to which the profile is guessed to touch
+LEAST_KEPT = 0.05  # share of its area that a contact is guessed to keep over a step
+WIDTH = 0.1  # of the first contact, in the mesh's unit, for the penalty alone
 SECANTS, PRECISE = 20, 1e-13
+
+Guesses = tuple[Touching, ...]
 
 
 class FixedStepper:
-    """Takes steps on one mesh: the interface of :class:`fe_contact.stepping.Stepper`."""
+    """Takes steps on one mesh: the contract of :class:`fe_contact.steps.Stepping`."""
+
+    shortest = 2e-4  # the trend bends more than on a mesh that breathes
+    first_force = 0.0
 
     def __init__(self, strike: Strike, surface: Deformable, numerics: Numerics, accounted: bool) -> None:
         self.strike, self.surface, self.numerics = strike, surface, numerics
         self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
         self.enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
-        self.scale = numerics.contact_radius
+        self.scale = surface.unit(numerics.contact_radius)
         self.body = surface.body(strike.relaxation, self.scheme, self.scale)
-        self.heights = np.minimum(strike.height(self.scale * surface.operator.points), BEYOND * self.scale)
+        self.places = surface.places(self.scale)
+        self.heights = np.minimum(strike.height(self.places), BEYOND * self.scale)
         self.accounted = accounted
 
     def touch(self) -> State:
@@ -49,8 +61,8 @@ class FixedStepper:
         lever = self.scheme.LEVER * length**2
         free_depth = state.depth + length * state.velocity + lever * strike.gravity
         settle = self._settled if strike.overlap is None else self._settled_by_secants
-        solution, work = settle(offer, free_depth, lever / strike.mass, steps, state.time)
-        edge = contact_end(operator.points, solution)
+        guesses = self._guesses(steps, state.time + length, free_depth)
+        solution, work = settle(offer, free_depth, lever / strike.mass, steps, guesses, state.time)
         force = operator.force(self.scale, solution.pressure)
         memory, axis = self.body.after(state.memory, offer, solution.pressure)
         moved = State(
@@ -61,11 +73,21 @@ class FixedStepper:
             memory=memory,
         )
         found_at = state.time + length * (1.0 if moved.velocity > 0 else self.scheme.SAMPLE)
-        return Step(length, moved, force, self.scale * edge, found_at, axis, solution, self.scale, work)
+        return Step(length, moved, force, half_width(self.places, solution), found_at, axis, solution, self.scale, work)
 
-    def modulus(self, length: float) -> float:
-        """Contact modulus against new strain in a step of a length, s; Pa."""
-        return self.body.modulus(length)
+    def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
+        """Places and pressure at the quadrature points."""
+        early = 1 - self.scheme.SAMPLE
+        return tuple(
+            Snapshot(
+                time=step.state.time - early * step.length,
+                force=step.force,
+                contact_radius=step.radius,
+                radii=self.places,
+                pressure=step.solution.pressure / self.scale,
+            )
+            for step in steps
+        )
 
     def stored(self, memory: Any) -> float:
         """Elastic energy, J."""
@@ -75,45 +97,68 @@ class FixedStepper:
         """Heat of a step of a length, s; J."""
         return self.body.dissipated(before, after, length)
 
+    def springs(self, step: Step) -> float:
+        """What the penalty's springs hold, J."""
+        operator = self.surface.operator
+        stiffness = self.numerics.penalty * self.scale / step.radius * self.body.modulus(step.length)
+        squares = float(operator.weights @ step.solution.pressure**2)
+        return 0.5 * self.scale ** (operator.dimension - 2) * squares / stiffness
+
     def _settled(
-        self, offer: Offer, free_depth: float, give: float, steps: Sequence[Step], time: float
+        self, offer: Offer, free_depth: float, give: float, steps: Sequence[Step], guesses: Guesses, time: float
     ) -> tuple[ContactSolution, Work]:
         """Contact with the striker that retreats by ``give``, m/N, and every overlap with it."""
         overlap = offer.now * (free_depth - self.heights) + offer.past
-        yielding = offer.now * give * self.scale ** (self.surface.operator.dimension - 2)
-        solution = self._solved(offer, overlap, yielding, steps[-1] if steps else None, time)
+        operator = self.surface.operator
+        yielding = offer.now * give * self.scale ** (operator.dimension - 2) + operator.yielding
+        solution = self._solved(offer, overlap, yielding, steps[-1] if steps else None, guesses, time)
         return solution, Work(1, self.enforcement.SOLVES, solution.iterations)
 
     def _settled_by_secants(
-        self, offer: Offer, free_depth: float, give: float, steps: Sequence[Step], time: float
+        self, offer: Offer, free_depth: float, give: float, steps: Sequence[Step], guesses: Guesses, time: float
     ) -> tuple[ContactSolution, Work]:
         """The same where a place's overlap does not grow as the depth does: depth + give force = free depth."""
         overlap, operator = self.strike.overlap, self.surface.operator
         assert overlap is not None
-        arcs, last = self.scale * operator.points, steps[-1] if steps else None
+        last = steps[-1] if steps else None
         depth, known, solves, iterations = free_depth - give * (last.force if last else 0.0), (0.0, -free_depth), 0, 0
         for _ in range(SECANTS):
-            free = offer.now * np.maximum(overlap(arcs, depth), -BEYOND * self.scale) + offer.past
-            solution = self._solved(offer, free, 0.0, last, time)
+            free = offer.now * np.maximum(overlap(self.places, depth), -BEYOND * self.scale) + offer.past
+            solution = self._solved(offer, free, 0.0, last, guesses, time)
             solves, iterations = solves + self.enforcement.SOLVES, iterations + solution.iterations
             excess = depth + give * operator.force(self.scale, solution.pressure) - free_depth
             if abs(excess) <= PRECISE * free_depth:
                 return solution, Work(1, solves, iterations)
+            guesses = solution.sets
             slope = (excess - known[1]) / (depth - known[0])
             known, depth = (depth, excess), depth - excess / slope
         raise ContactNotSettled(time)
 
-    def _solved(self, offer: Offer, overlap: Array, yielding: float, last: Step | None, time: float) -> ContactSolution:
-        points = self.surface.operator.points
-        guesses: tuple[Touching, ...] = last.solution.sets if last else (points < FIRST * points[-1],)
-        radius = last.radius / self.scale if last and last.radius > 0.0 else FIRST
+    def _guesses(self, steps: Sequence[Step], until: float, free_depth: float) -> Guesses:
+        """Points that may touch in the coming step: those of the last one, and what its contact gains or loses."""
+        if not steps:
+            return (self.heights < FIRST * free_depth,)
+        known = [(0.0, 0.0), *((step.radius_time, step.radius**2) for step in steps[-3:])][-3:]
+        last, square = steps[-1], extrapolated(known, until)
+        distance = np.abs(self.places)
+        if square > last.radius**2:
+            gained = (distance > last.radius) & (distance**2 < square)
+            return tuple(touching | gained for touching in last.solution.sets)
+        kept = distance**2 < max(square, LEAST_KEPT * last.radius**2)
+        return tuple(touching & kept for touching in last.solution.sets)
+
+    def _solved(
+        self, offer: Offer, overlap: Array, yielding: float | Array, last: Step | None, guesses: Guesses, time: float
+    ) -> ContactSolution:
+        places = self.places
+        radius = last.radius / self.scale if last and last.radius > 0.0 else WIDTH
         problem = ContactProblem(offer.surface, overlap, self.numerics.penalty / radius, yielding)
         solution: ContactSolution = self.enforcement.enforce(problem, *guesses)
         if not solution.converged:
             raise ContactNotSettled(time)
-        edge = solution.edge(points)
+        edge = solution.edge(places)
         if edge == 0.0:
             raise ContactLost(time)
         if not np.isfinite(edge):
-            raise MemoryTooSmall(self.scale * points[-1])
+            raise MemoryTooSmall(places[-1])
         return solution

@@ -7,20 +7,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_contact.account import record
-from fe_contact.bodies.offer import Deformable
-from fe_contact.bodies.scaled_surface import ScaledSurface
+from fe_contact.bodies.struck import Struck
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall, TooManySteps
-from fe_contact.fixed_stepping import FixedStepper
 from fe_contact.forms import Array
 from fe_contact.march import March, Strike
 from fe_contact.numerics import Numerics
 from fe_contact.separation import time_left
-from fe_contact.stepping import Stepper
-from fe_contact.steps import State, Step
+from fe_contact.steps import State, Step, Stepping
 from fe_contact.time_grid import share_of_rest, step_length
 
-END_REACHED = 1e-3  # time left over contact time at which separation is read off the trend
-END_REACHED_IN_LINES = 2e-4  # in plane strain and on meshes that stay, where the trend bends more
 PREDICTIONS = 2  # of the separation: how far they lie apart tells how well its time can be read
 NOISE = 1e-4  # share of the peak force below which a contact problem may drown in the mesh's error
 AT_REST = 1e-4  # share of the velocity at touch below which a fluid has stopped the striker
@@ -31,7 +26,7 @@ STEPS_ALLOWED = 20  # multiple of the settings' steps after which the march give
 
 def march(
     strike: Strike,
-    surface: Deformable,
+    struck: Struck,
     numerics: Numerics,
     accounted: bool = True,
     expected: Sequence[float] | Array = (),
@@ -43,21 +38,15 @@ def march(
 
     Raises the named failures of :mod:`fe_contact.errors` where a step does not converge.
     """
-    stepper: Stepper | FixedStepper
-    if isinstance(surface, ScaledSurface) and surface.breathes:
-        stepper = Stepper(strike, surface, numerics, accounted, expected)
-    else:
-        stepper = FixedStepper(strike, surface, numerics, accounted)
-    return _Marcher(stepper).run()
+    return _Marcher(struck.stepper(strike, numerics, accounted, expected)).run()
 
 
 class _Marcher:
     """The loop: what stays the same through an impact is held here, what changes is passed and returned."""
 
-    def __init__(self, stepper: Stepper | FixedStepper) -> None:
+    def __init__(self, stepper: Stepping) -> None:
         self.stepper, self.strike, self.numerics = stepper, stepper.strike, stepper.numerics
-        share = END_REACHED if stepper.surface.breathes else END_REACHED_IN_LINES
-        self.shortest = share * self.numerics.contact_time
+        self.shortest = stepper.shortest * self.numerics.contact_time
 
     def run(self) -> March:
         strike = self.strike

@@ -15,7 +15,7 @@ import numpy as np
 from fe_contact.certify import LEAST_HALVED_SETTING, LEAST_ORDER, MESH_ORDER, SAFETY
 from fe_contact.forms import Array
 from fe_contact.numerics import RANGES, TARGETS, Numerics
-from fe_contact.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, SETTING, refined
+from fe_contact.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, RIM_PENALTY, SETTING, refined
 from fe_contact.pressing import Still
 from fe_contact.progress import Progress, silent
 from lumped.indentation import Indentation
@@ -30,7 +30,6 @@ SMALL = 1e-3  # radius, in depths, from which the search for the overlap's end b
 ROUNDS = 5  # refinements before giving up
 SCOUTING, SCOUTING_ORDER = 2.0, 2  # elements along the contact radius that tell how large contacts will be
 LEAST_SHARE, LARGEST_SHARE = 0.4, 2.0  # contact radius over the one at which the undeformed surfaces overlap
-RIM_PENALTY = 16.0  # penalty under a rim over the usual: the pressure is infinite there
 FEWEST = 12  # depths that tell an error bar
 SPREAD = 0.6  # of them at least, smallest over largest: contact edges over an element of the coarser mesh
 DOMINANT = 0.5  # causes above this share of the largest one are refined together

@@ -27,9 +27,10 @@ class Strike:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Surface in one step: time, s; contact radius, m; radii and pressure at the quadrature points, m, Pa."""
+    """Surface in one step: time, s; force, N; contact radius, m; radii and pressure at the quadrature points, m, Pa."""
 
     time: float
+    force: float
     contact_radius: float
     radii: Array
     pressure: Array
@@ -48,7 +49,8 @@ class March:
     """History of one impact with one set of settings.
 
     ``time``, ``depth``, ``impulse`` (n,) at the ends of the steps, the first row at touch, the last at
-    separation or ``end_time``; ``radius_time``, ``radius`` (n,) of the contact; ``snapshots`` one a step;
+    separation or ``end_time``; ``first_force``, N, right at touch; ``radius_time``, ``radius`` (n,) of the contact;
+    ``snapshots`` one a step;
     ``energy`` J, each term computed on its own; ``end_spread`` s, how far the last predictions of the
     separation lie apart.
     """
@@ -56,6 +58,7 @@ class March:
     time: Array
     depth: Array
     impulse: Array
+    first_force: float
     radius_time: Array
     radius: Array
     separated: bool

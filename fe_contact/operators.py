@@ -81,6 +81,17 @@ class SurfaceOperator:
         return forces if self.watched is None else forces / (1.0 + self.watched[:reached] @ forces)
 
     @property
+    def compliance(self) -> Array:
+        """Displacement of the zone's nodes relative to that place under unit nodal forces there, (n, n)."""
+        own = self.response[: len(self.stiffness)]
+        return own if self.watched is None else own + self.watched
+
+    def projected(self, pressure: Array) -> Array:
+        """Nodal values (n,) whose moments against the shape functions are those of a pressure (q,)."""
+        mass = self.trace.T @ (self.weights[:, None] * self.trace)
+        return np.asarray(np.linalg.solve(mass, self.trace.T @ (self.weights * pressure)))
+
+    @property
     def yielding(self) -> float | Array:
         """How far the place from which depth is measured comes up under unit forces at the points, (q,) or 0."""
         return 0.0 if self.watched is None else np.asarray(self.trace @ self.watched)

@@ -1,7 +1,7 @@
 """Scene and tolerance -> settings and model ledger, without running anything.
 
-The exact row of springs tells how large the contact becomes and how long it lasts; that places the mesh,
-the memory and the time steps. Nothing of it enters a value or an error bar.
+An estimate tells how large the contact becomes and how long it lasts; that places the mesh, the memory and the time
+steps. Nothing of it enters a value or an error bar.
 """
 
 from __future__ import annotations
@@ -11,19 +11,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from fe_contact.bulk_scales import with_constant_nu
 from fe_contact.numerics import RANGES, Numerics
-from lumped.laws import mdr
-from lumped.laws._hereditary_force import estimate
+from fe_contact.scales import scales
 from lumped.model_ledger import Peak, model_ledger
 from lumped.result import LedgerEntry
 from lumped.scene import Scene
-from lumped.targets import HalfSpace
 
 DEFAULT_TOLERANCE = 1e-3
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-3 and 1e-4: see `fe-contact tradeoff`
-SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
 FIXED_ELEMENTS = 2.0  # the same on a mesh that stays, four times refined where the contact may end
+RIM_PENALTY = 16.0  # penalty under a rim over the usual: the pressure is infinite there
 VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
 STEPS_AT_DEFAULT = 40
 STEPS_ORDER = 0.176  # steps grow with tolerance to this power: 60 at 1e-4
@@ -50,37 +47,42 @@ class Plan:
 def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     """Choose what ``given`` (checked settings, see :func:`fe_contact.numerics.checked`) leaves open.
 
-    Raises NotReached where even the coarse row of springs does not come to an end.
+    Raises NotReached where even a coarse estimate does not come to an end.
     """
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
-    scales = _scales(scene)
-    contact_time = scales.duration or scene.end_time
-    peak_share = min(max(scales.peak_time / contact_time, SOONEST_PEAK), 1.0)
+    chosen = _settings(scene, tolerance)
+    size = scales(scene, chosen)
+    contact_time = size.duration or scene.end_time
+    peak_share = min(max(size.peak_time / contact_time, SOONEST_PEAK), 1.0)
+    placed = chosen.varied(
+        steps=_steps(tolerance, peak_share),
+        contact_radius=size.contact_radius,
+        contact_time=contact_time,
+        peak_share=peak_share,
+    )
+    peak = Peak(size.peak_force, size.peak_depth, size.contact_radius, 2 * size.peak_time)
+    return Plan(placed.varied(**given), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
+
+
+def _settings(scene: Scene, tolerance: float) -> Numerics:
+    """What does not depend on how large the impact is."""
+    target, shape = scene.geometry.target, scene.geometry.shape
+    flat = target.fixed_radius(shape) is not None
     chosen = {
         **DEFAULTS,
         "tolerance": tolerance,
         "elements_per_contact": _elements(scene, tolerance),
-        "steps": _steps(tolerance, peak_share),
-        "contact_radius": scales.contact_radius,
-        "contact_time": contact_time,
-        "peak_share": peak_share,
+        "penalty": DEFAULTS["penalty"] * (RIM_PENALTY if flat else 1.0),
+        "steps": RANGES["steps"][0],
     }
-    peak = Peak(scales.peak_force, scales.peak_depth, scales.contact_radius, 2 * scales.peak_time)
-    return Plan(Numerics(**{**chosen, **given}), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
-
-
-def _scales(scene: Scene) -> mdr.ImpactScales:
-    """By the row of springs, or where it has no answer by the target's load curve."""
-    geometry = scene.geometry
-    if isinstance(geometry.target, HalfSpace) and geometry.shape.fixed_radius is None and not geometry.shape.plane:
-        return mdr.estimate(scene, SPRINGS)
-    return estimate(scene if geometry.surface_remembers else with_constant_nu(scene))
+    return Numerics(**chosen, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
 
 
 def _elements(scene: Scene, tolerance: float) -> float:
     """Elements along the contact radius; a dashpot asks for more, since it differentiates the mesh's error."""
     order = VISCOUS_ORDER if scene.contact_modulus.viscosity > 0 else 0.0
-    fewest = ELEMENTS if isinstance(scene.target, HalfSpace) else FIXED_ELEMENTS
+    target, shape = scene.geometry.target, scene.geometry.shape
+    fewest = FIXED_ELEMENTS if target.has_length and target.fixed_radius(shape) is None else ELEMENTS
     return fewest * max(1.0, math.pow(1e-4 / tolerance, 0.25), math.pow(DEFAULT_TOLERANCE / tolerance, order))
 
 

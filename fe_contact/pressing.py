@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from types import ModuleType
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.contact import ContactSolution, Touching
 from fe_contact.errors import ContactTooWide, IndentationNotSettled
 from fe_contact.forms import Array
 from fe_contact.numerics import ENFORCEMENTS, Numerics
 from lumped.indenter import Indenter
 from lumped.members import get
+
+if TYPE_CHECKING:
+    from fe_contact.bodies.scaled_surface import ScaledSurface
 
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
 RESCALINGS = 60
@@ -161,3 +163,18 @@ def contact_end(points: Array, solution: ContactSolution, thickness: float = np.
     real = np.real(roots[np.abs(np.imag(roots)) < 1e-9 * edge])
     near = real[np.abs(real - edge) < reach]
     return float(near[np.argmin(np.abs(near - edge))]) if near.size else edge
+
+
+def half_width(places: Array, solution: ContactSolution) -> float:
+    """From the first touch to where the surfaces part; where there is a left side too, half from end to end.
+
+    Infinite where the contact reaches the last place, 0 without contact.
+    """
+    right = _end(places, solution.signed_pressure)
+    return right if places[0] > 0.0 else 0.5 * (right + _end(-places[::-1], solution.signed_pressure[::-1]))
+
+
+def _end(places: Array, signed_pressure: Array) -> float:
+    """Where the surfaces part on the side of the places, ascending, that are positive."""
+    side = places > 0.0
+    return contact_end(places[side], ContactSolution(signed_pressure[side], 0, True, ()))

@@ -20,7 +20,6 @@ from lumped.history import History, densified
 from lumped.members import get
 from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity, Result, meets, provenance, unmet
 from lumped.scene import Scene
-from lumped.targets import HalfSpace
 
 CURE = "cure: a larger tolerance, or fewer numerics of your own"
 ROUNDS = 4  # refinements before giving up
@@ -80,10 +79,9 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
 def check_target(scene: Scene) -> None:
     """Raise BadInput for a target which no impact is marched on."""
     geometry = scene.geometry
-    half_plane = geometry.shape.plane and isinstance(geometry.target, HalfSpace)
-    if half_plane or not hasattr(get(TARGETS, geometry.target.name), "struck"):
-        where = "the half-plane" if half_plane else geometry.target.name
-        reason = f"no impact on {where} by finite elements in this version; accepted: indent, or another target"
+    fixed = geometry.target.fixed_radius(geometry.shape) is not None
+    if not fixed and not hasattr(get(TARGETS, geometry.target.name), "struck"):
+        reason = f"no impact on {geometry.target.name} by finite elements in this version; accepted: indent"
         raise BadInput(Fault(scene.source, "target.shape", reason))
     if not geometry.surface_remembers and not hasattr(get(TARGETS, geometry.target.name), "meshed"):
         reason = f'"bulk": no impact on {geometry.target.name} with it in this version; accepted: "poisson"'
@@ -93,11 +91,11 @@ def check_target(scene: Scene) -> None:
 def strike_of(scene: Scene) -> Strike:
     """What the march needs of a scene; forces in plane strain are totals, so the modulus counts with the length."""
     target, profile = scene.target, scene.profile
-    place = target.length_of_place
+    place, lead = target.length_of_place, target.lead
     bent = None if place == 1.0 else lambda arc, depth: target.overlap(profile, arc / place, depth)
     return Strike(
         overlap=bent,
-        height=scene.profile.height,
+        height=lambda r: -target.overlap(profile, r / place, 0.0) / lead,
         mass=scene.reduced_mass,
         velocity=scene.velocity,
         gravity=scene.gravity,

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fe_contact.bodies.offer import Deformable
+from fe_contact.bodies.struck import Deformable
 from fe_contact.curve import Curve
 from fe_contact.forms import Array
 

@@ -7,18 +7,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from types import ModuleType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, area_weights, interpolate, step_law
-from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.contact import ContactSolution, Touching, count, moved
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
 from fe_contact.forms import Array
-from fe_contact.march import Strike, Work
+from fe_contact.march import Snapshot, Strike, Work
 from fe_contact.numerics import ENFORCEMENTS, SCHEMES, Numerics
 from fe_contact.steps import State, Step
 from lumped.members import get
+
+if TYPE_CHECKING:
+    from fe_contact.bodies.scaled_surface import ScaledSurface
 
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
 RESCALINGS = 60
@@ -36,6 +39,9 @@ class Stepper:
     ``accounted``: the memory also keeps the pressure that each of its branches carries, for the energies.
     ``expected``: contact radii, m, of the first steps where a like march has told them, for as many as it did.
     """
+
+    shortest = 1e-3
+    first_force = 0.0
 
     def __init__(
         self,
@@ -88,9 +94,19 @@ class Stepper:
         found_at = self._radius_time(moved.velocity, state.time, length)
         return Step(length, moved, force, radius, found_at, axis, solution, scale, work)
 
-    def modulus(self, length: float) -> float:
-        """Contact modulus against new strain in a step of a length, s; Pa."""
-        return step_law(self.strike.relaxation, self.scheme, length).now
+    def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
+        """Radii and pressure at the quadrature points, on the mesh of each step."""
+        points, early = self.surface.operator.points, 1 - self.scheme.SAMPLE
+        return tuple(
+            Snapshot(
+                time=step.state.time - early * step.length,
+                force=step.force,
+                contact_radius=step.radius,
+                radii=step.scale * points,
+                pressure=step.solution.pressure / step.scale,
+            )
+            for step in steps
+        )
 
     def stored(self, memory: SurfaceMemory) -> float:
         """Elastic energy, J."""
@@ -99,6 +115,11 @@ class Stepper:
     def dissipated(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
         """Heat of a step of a length, s; J."""
         return before.dissipated(after, self.strike.relaxation, length)
+
+    def springs(self, step: Step) -> float:
+        """What the penalty's springs hold, J."""
+        stiffness = self.numerics.penalty * step_law(self.strike.relaxation, self.scheme, step.length).now
+        return 0.5 * step.scale * float(self.surface.operator.weights @ step.solution.pressure**2) / stiffness
 
     def _settle(
         self,
@@ -155,7 +176,7 @@ class Stepper:
         known = [(step.radius_time, step.radius**2) for step in steps[-3:]]
         if len(known) < 3:
             known.insert(0, (0.0, 0.0))
-        square = _extrapolated(known, self._radius_time(state.velocity, state.time, length))
+        square = extrapolated(known, self._radius_time(state.velocity, state.time, length))
         return float(np.sqrt(max(square, 0.05 * known[-1][1])))
 
     def _radius_time(self, velocity: float, time: float, length: float) -> float:
@@ -180,7 +201,7 @@ class Stepper:
         return strain
 
 
-def _extrapolated(known: Sequence[tuple[float, float]], at: float) -> float:
+def extrapolated(known: Sequence[tuple[float, float]], at: float) -> float:
     """The polynomial through two or three points, Newton's form."""
     (before, previous), (last, value) = known[-2:]
     slope = (value - previous) / (last - before)

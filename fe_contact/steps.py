@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from types import ModuleType
+from typing import Any, NamedTuple, Protocol
 
 from fe_contact.contact import ContactSolution
-from fe_contact.march import Work
+from fe_contact.march import Snapshot, Strike, Work
+from fe_contact.numerics import Numerics
 
 
 class State(NamedTuple):
@@ -34,3 +37,37 @@ class Step(NamedTuple):
     solution: ContactSolution
     scale: float
     work: Work
+
+
+class Stepping(Protocol):
+    """Takes the steps of one body.
+
+    ``shortest``: time left, in expected contact times, at which separation is read off the trend; ``accounted``:
+    whether pressures and energies are kept; ``first_force`` right at touch, N: not zero where a dashpot meets an area
+    at once.
+    """
+
+    strike: Strike
+    numerics: Numerics
+    scheme: ModuleType
+    accounted: bool
+    shortest: float
+    first_force: float
+
+    def touch(self) -> State:
+        """The striker at the surface at rest."""
+
+    def step(self, state: State, steps: Sequence[Step], length: float) -> Step:
+        """The step of a length, s, from a state reached by ``steps``; raises ContactLost and its like."""
+
+    def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
+        """The pressure of every step, where it is known."""
+
+    def stored(self, memory: Any) -> float:
+        """Elastic energy, J."""
+
+    def dissipated(self, before: Any, after: Any, length: float) -> float:
+        """Heat of a step of a length, s; J."""
+
+    def springs(self, step: Step) -> float:
+        """What the penalty's springs hold in a step, J."""

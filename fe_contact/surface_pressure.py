@@ -33,20 +33,8 @@ class Pressure:
 
 def felt(certified: Certified, step: int) -> Pressure:
     """Pressure in a step of the finest march."""
-    operator, snapshot = certified.surface.operator, certified.march.snapshots[step]
-    return Pressure(
-        time=snapshot.time,
-        contact_radius=snapshot.contact_radius,
-        radii=scale(operator, snapshot) * operator.nodes[: operator.trace.shape[1]],
-        values=projected(operator, snapshot.pressure),
-    )
-
-
-def projected(operator: SurfaceOperator, pressure: Array) -> Array:
-    """Nodal values (n,) whose moments against the shape functions are those of the pressure (q,)."""
-    moments = operator.trace.T @ (operator.weights * pressure)
-    mass = operator.trace.T @ (operator.weights[:, None] * operator.trace)
-    return np.asarray(np.linalg.solve(mass, moments))
+    snapshot = certified.march.snapshots[step]
+    return Pressure(snapshot.time, snapshot.contact_radius, *certified.surface.felt(snapshot))
 
 
 def scale(operator: SurfaceOperator, snapshot: Snapshot) -> float:
@@ -56,9 +44,7 @@ def scale(operator: SurfaceOperator, snapshot: Snapshot) -> float:
 
 def peak_step(certified: Certified) -> int:
     """Index of the step of largest force."""
-    weights = certified.surface.operator.weights
-    forces = [s.radii[0] ** 2 * float(weights @ s.pressure) for s in certified.march.snapshots]
-    return int(np.argmax(forces))
+    return int(np.argmax([snapshot.force for snapshot in certified.march.snapshots]))
 
 
 def nearest_step(certified: Certified, time: float) -> int:

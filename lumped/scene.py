@@ -16,6 +16,7 @@ from lumped.pair import check_striker_material, contact_modulus
 from lumped.pair import tables as bodies
 from lumped.scales import stiffest_impact
 from lumped.shapes import Shape
+from lumped.shapes._block import Block
 from lumped.targets import HalfSpace, Target
 
 END_IN_CONTACT_TIMES = 50.0
@@ -77,16 +78,23 @@ class LawChoice:
 
 @dataclass(frozen=True)
 class Geometry:
-    """What finite elements and the laws of the half-space need: striker's shape, target, its material."""
+    """What finite elements and the laws of the half-space need: striker's shape, target, its material.
+
+    `striker_material`: of a striker which yields as the target does, None: rigid.
+    """
 
     shape: Shape
     target: Target
     material: Material
+    striker_material: Material | None = None
 
     @property
     def surface_remembers(self) -> bool:
-        """Whether the elastic body and E*(t) tell all: with a length of its own, only a body of constant nu."""
-        return self.material.constant == "poisson" or self.material.young.is_elastic or not self.target.has_length
+        """Whether elastic bodies and E*(t) tell all: of a body with lengths, where nu stays or strain is uniform."""
+        materials = [self.material] if self.striker_material is None else [self.material, self.striker_material]
+        steady = all(one.constant == "poisson" or one.young.is_elastic for one in materials)
+        uniform = isinstance(self.shape, Block) and self.shape.uniform
+        return steady or uniform or not self.target.has_length
 
 
 @dataclass(frozen=True)
@@ -167,7 +175,7 @@ class Scene:
         if self.shape is None or self.material is None:
             reason = "missing; only the law of [law] runs without a shape and a material"
             raise BadInput(Fault(self.source, "striker.shape", reason))
-        return Geometry(self.shape, self.target, self.material)
+        return Geometry(self.shape, self.target, self.material, self.striker_material)
 
     @property
     def reduced_mass(self) -> float:

@@ -20,7 +20,7 @@ from fe_contact.operators import ELEMENTS
 from fe_contact.reference import Solved, result_of, solve
 from fe_contact.report.history import plot_history
 from fe_contact.report.style import prefixed, with_error
-from fe_contact.surface_pressure import felt, peak_step, projected
+from fe_contact.surface_pressure import felt, peak_step
 from lumped.errors import BadInput
 from lumped.scene import Scene
 
@@ -120,7 +120,7 @@ def test_projection_keeps_the_moments_and_drops_what_the_elements_cannot_feel(st
     operator = solved.certified.surface.operator
     step = peak_step(solved.certified)
     raw = solved.certified.march.snapshots[step]
-    nodal = projected(operator, raw.pressure)
+    nodal = operator.projected(raw.pressure)
     assert operator.weights @ (operator.trace @ nodal) == pytest.approx(operator.weights @ raw.pressure, rel=1e-9)
     smooth = felt(solved.certified, step)
     radii = np.linspace(0.0, 0.9 * smooth.contact_radius, 50)

@@ -14,13 +14,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from types import ModuleType
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
 from fe_contact.bodies.modes import Modes, modes
 from fe_contact.bodies.offer import Offer
+from fe_contact.bodies.struck import Deformable
 from fe_contact.contact import PressedSurface
 from fe_contact.elastic_body import ElasticBody
 from fe_contact.forms import Array
@@ -63,12 +64,12 @@ class BulkLaw(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class BulkSurface:
-    """A body before the impact, seen through its surface; contract of :class:`fe_contact.bodies.offer.Deformable`."""
+class BulkSurface(Deformable):
+    """A body before the impact, seen through its surface."""
 
     modes: Modes
     moduli: Moduli
-    breathes: ClassVar[bool] = False
+    breathes: bool = False
 
     @property
     def operator(self) -> SurfaceOperator:

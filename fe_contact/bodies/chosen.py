@@ -1,20 +1,24 @@
-"""Which body stands for a target in an impact: one whose surface remembers where that is all, else its bulk."""
+"""Which body stands for a target in an impact: one whose surface remembers where that is all, else its bulk.
+
+Under an end that no depth widens one stiffness is enough.
+"""
 
 from __future__ import annotations
 
 from fe_contact.bodies.bulk_memory import Moduli, relaxing
-from fe_contact.bodies.offer import Deformable
+from fe_contact.bodies.flat_end import FlatEnd
+from fe_contact.bodies.struck import Struck
 from fe_contact.numerics import TARGETS, Numerics
 from lumped.materials import Relaxation
 from lumped.members import get
 from lumped.scene import Geometry
 
 
-def struck(geometry: Geometry, numerics: Numerics) -> Deformable:
+def struck(geometry: Geometry, numerics: Numerics) -> Struck:
     """The target with these settings; it has to be one that :func:`fe_contact.reference.check_target` lets pass."""
-    target = get(TARGETS, geometry.target.name)
+    target, flat = get(TARGETS, geometry.target.name), geometry.target.fixed_radius(geometry.shape)
     if geometry.surface_remembers:
-        body: Deformable = target.struck(geometry, numerics)
+        body: Struck = target.struck(geometry, numerics) if flat is None else FlatEnd.of(geometry, flat, numerics)
         return body
     material, length = geometry.material, geometry.shape.total
     moduli = Moduli(Relaxation(material.bulk).scaled(length), material.shear.scaled(length))

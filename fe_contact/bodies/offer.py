@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from types import ModuleType
 from typing import Any, NamedTuple, Protocol
 
 from fe_contact.contact import PressedSurface
 from fe_contact.forms import Array
-from fe_contact.operators import SurfaceOperator
-from lumped.materials import Relaxation
 
 
 class Offer(NamedTuple):
@@ -43,26 +40,3 @@ class Body(Protocol):
 
     def dissipated(self, before: Any, after: Any, length: float) -> float:
         """Heat of a step, J."""
-
-
-class Deformable(Protocol):
-    """A struck body before the impact: ``operator`` of one elastic body on its mesh, for places, weights and scale.
-
-    ``breathes``: whether the mesh is scaled with the contact; ``factorizations`` and back-substitutions,
-    ``solves``, that it took.
-    """
-
-    @property
-    def operator(self) -> SurfaceOperator: ...
-
-    @property
-    def breathes(self) -> bool: ...
-
-    @property
-    def factorizations(self) -> int: ...
-
-    @property
-    def solves(self) -> int: ...
-
-    def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> Body:
-        """The body with a contact modulus E*(t), Pa, marched by a scheme, on a mesh whose unit is ``scale``, m."""

@@ -10,23 +10,28 @@ and the pressure in units of the unit mesh,
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import ModuleType
-from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
+from fe_contact.bodies.struck import Deformable
 from fe_contact.bodies.surface_body import SurfaceBody
 from fe_contact.contact import ContactProblem, PressedSurface
 from fe_contact.forms import Array
+from fe_contact.march import Strike
+from fe_contact.numerics import Numerics
 from fe_contact.operators import SurfaceOperator, monomials
+from fe_contact.stepping import Stepper
+from fe_contact.steps import Stepping
 from lumped.materials import Relaxation
 
 
 @dataclass(frozen=True)
-class ScaledSurface:
+class ScaledSurface(Deformable):
     """Contact surface of the half-space; ``operator`` is condensed for contact radius 1 and E* = 1.
 
     ``breathes``: whether the mesh follows the contact; where it stays, the same points seldom touch twice.
@@ -34,12 +39,14 @@ class ScaledSurface:
 
     operator: SurfaceOperator
     breathes: bool = True
-    factorizations: ClassVar[int] = 1
 
-    @property
-    def solves(self) -> int:
-        """Back-substitutions that made it: one a node of the contact zone."""
-        return len(self.operator.stiffness)
+    def stepper(
+        self, strike: Strike, numerics: Numerics, accounted: bool, expected: Sequence[float] | Array
+    ) -> Stepping:
+        """Steps on the mesh that follows the contact, or that stays."""
+        if self.breathes:
+            return Stepper(strike, self, numerics, accounted, expected)
+        return super().stepper(strike, numerics, accounted, expected)
 
     def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> SurfaceBody:
         """The body on a mesh that stays, of unit length ``scale``, m: contact modulus E*(t), Pa, and time scheme."""

@@ -47,7 +47,7 @@ class SurfaceBody:
         """The memory after the step under a pressure (q,), and the axis' elastic displacement times modulus."""
         law, operator = self._law(offer.length), self.operator
         load = operator.trace.T @ (operator.weights * pressure)
-        displacement = operator.response[: len(load)] @ load
+        displacement = operator.compliance @ load
         force = load * self.scale ** (operator.dimension - 2)
         strain = (np.array([displacement, force]) - memory.carried(law)) / law.now
         return memory.advanced(law, strain), float(displacement[0])

@@ -6,14 +6,13 @@ from dataclasses import dataclass
 from types import ModuleType
 
 import numpy as np
-from scipy.linalg import block_diag
 
-from fe_contact.contact import ContactProblem, ContactSolution, PressedSurface
+from fe_contact.contact import ContactProblem, PressedSurface
 from fe_contact.errors import IndentationNotSettled
 from fe_contact.forms import Array
 from fe_contact.numerics import ENFORCEMENTS, Numerics
 from fe_contact.operators import SurfaceOperator, lagrange
-from fe_contact.pressing import BEYOND, EDGE_ORDER, Pressed, contact_end
+from fe_contact.pressing import BEYOND, EDGE_ORDER, Pressed, half_width
 from lumped.indenter import Indenter
 from lumped.members import get
 
@@ -55,34 +54,6 @@ class BodyStill:
             raise IndentationNotSettled(depth)
         force = self.operator.force(self.scale, solution.pressure)
         return Pressed(force, radius, enforcement.SOLVES, solution.iterations)
-
-
-def half_width(places: Array, solution: ContactSolution) -> float:
-    """From the first touch to where the surfaces part; where there is a left side too, half from end to end.
-
-    Infinite where the contact reaches the last place, 0 without contact.
-    """
-    right = _end(places, solution.signed_pressure)
-    return right if places[0] > 0.0 else 0.5 * (right + _end(-places[::-1], solution.signed_pressure[::-1]))
-
-
-def _end(places: Array, signed_pressure: Array) -> float:
-    """Where the surfaces part on the side of the places, ascending, that are positive."""
-    side = places > 0.0
-    return contact_end(places[side], ContactSolution(signed_pressure[side], 0, True, ()))
-
-
-def stacked(
-    first: SurfaceOperator, second: SurfaceOperator, ratio: float, shares: tuple[float, float]
-) -> PressedSurface:
-    """Two round bodies under one pressure, given at the points of the first: their displacements add.
-
-    ``ratio``: radius of the first over that of the second, at least as large; points are angles. ``shares``: stiffness
-    of each body's operator over that of the common one.
-    """
-    angles = np.arcsin(np.minimum(ratio * np.sin(first.points), 1.0))
-    stiffness = block_diag(shares[0] * first.stiffness, shares[1] * second.stiffness)
-    return PressedSurface(stiffness, np.hstack([first.trace, trace_at(second, angles)]), first.weights, False)
 
 
 def trace_at(operator: SurfaceOperator, points: Array) -> Array:

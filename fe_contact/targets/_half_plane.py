@@ -17,8 +17,9 @@ from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, condensed, lagrange
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
-from fe_contact.targets._zone import LINE_REFINEMENT, Zone, held
+from fe_contact.targets._zone import LINE_REFINEMENT, STRUCK_REFINEMENT, Zone, held, smallest_struck
 from lumped.indenter import Indenter
+from lumped.scene import Geometry
 
 DATUM = 0.15  # size of the mesh over the datum's depth, per far radius of the settings
 
@@ -31,6 +32,15 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     size = numerics.far_radius * max(1.0, DATUM * depth)
     surface = _surface(indenter.material.nu, elements, numerics.order, zone.smallest, depth, size)
     return FixedStill(surface, indenter, numerics, zone.reference, zone.reference, np.inf)
+
+
+def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
+    """The half-plane in an impact whose contact grows from nothing to the half-width that the settings expect."""
+    datum = getattr(geometry.target, "datum_depth", None)
+    assert datum is not None
+    depth = datum / numerics.contact_radius
+    elements, size = STRUCK_REFINEMENT * numerics.elements_per_contact, numerics.far_radius * max(1.0, DATUM * depth)
+    return _surface(geometry.material.nu, elements, numerics.order, smallest_struck(geometry.shape), depth, size)
 
 
 @lru_cache(maxsize=32)

@@ -11,17 +11,25 @@ import numpy.typing as npt
 from skfem import Basis
 
 import meshes
-from fe_contact.contact import PressedSurface
+from fe_contact.bodies.stacked import Side, Stacked, stacked
 from fe_contact.floating import Floating
 from fe_contact.forms import Array, isotropic, plane_stiffness, stiffness
 from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, SurfaceOperator, condensed
 from fe_contact.pressing import Still
 from fe_contact.surface import crown
-from fe_contact.targets._body import BodyStill, stacked
-from fe_contact.targets._zone import LINE_REFINEMENT, SPHERE_REFINEMENT, Zone
+from fe_contact.targets._body import BodyStill, trace_at
+from fe_contact.targets._zone import (
+    LINE_REFINEMENT,
+    MARGIN,
+    SPHERE_REFINEMENT,
+    STRUCK_REFINEMENT,
+    Zone,
+    smallest_struck,
+)
 from lumped.indenter import Indenter
 from lumped.materials import Material
+from lumped.scene import Geometry
 from lumped.targets._round import Round
 
 SPARE = 1.05  # the larger body's fine mesh over what the contact may reach on the smaller
@@ -29,62 +37,69 @@ SPARE = 1.05  # the larger body's fine mesh over what the contact may reach on t
 
 @dataclass(frozen=True)
 class _Body:
-    """One of the two: its radius, m, elastic material, and whether it is held from its middle plane on."""
+    """One of the two: its radius, m, material, and whether it is held from its middle plane on."""
 
     radius: float
     material: Material
     held: bool
 
-    def operator(self, radii: Array, numerics: Numerics, plane: bool) -> SurfaceOperator:
-        """Condensed in units of its radius; ``radii``, m: where the contacts to come may end."""
-        zone, refinement = Zone.round(radii, self.radius), LINE_REFINEMENT if plane else SPHERE_REFINEMENT
-        elements = refinement * numerics.elements_per_contact
-        return _operator(self.material.nu, elements, numerics.order, zone.smallest, zone.reference, self.held, plane)
-
-    @property
-    def modulus(self) -> float:
-        """E*, Pa."""
-        return self.material.contact_modulus().relaxed
+    def operator(self, zone: Zone, elements: float, order: int, plane: bool) -> SurfaceOperator:
+        """Condensed in units of its radius; ``elements`` along a contact's half-width."""
+        return _operator(self.material.nu, elements, order, zone.smallest, zone.reference, self.held, plane)
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """Both bodies at rest; ``radii``, m: where their undeformed surfaces overlap. A striker with a material is free."""
-    first, *others = _bodies(indenter)
-    plane = indenter.shape.plane
-    own = first.operator(radii, numerics, plane)
-    surface, unknowns = PressedSurface(own.stiffness, own.trace, own.weights, recurring=False), own.degrees_of_freedom
-    for other in others:
-        larger = other.operator(SPARE * radii, numerics, plane)
-        surface = stacked(own, larger, first.radius / other.radius, _shares(first, other, own.dimension))
-        unknowns += larger.degrees_of_freedom
+    shape = indenter.shape
+    geometry = Geometry(shape, indenter.target, indenter.material, indenter.striker_material)
+    refinement = LINE_REFINEMENT if shape.plane else SPHERE_REFINEMENT
+    ends = (float(radii.min()), float(radii.max()))
+    bodies = _together(geometry, ends, refinement * numerics.elements_per_contact, numerics.order)
+    moduli = [side.relaxation.relaxed for side in bodies.sides]
+    common = 1.0 / sum(1.0 / modulus for modulus in moduli)
     return BodyStill(
-        surface=surface,
-        operator=own,
-        places=first.radius * np.sin(own.points),
-        scale=first.radius,
+        surface=stacked(bodies.operator, bodies.sides, tuple(modulus / common for modulus in moduli)),
+        operator=bodies.operator,
+        places=bodies.places(bodies.radius),
+        scale=bodies.radius,
         indenter=indenter,
         numerics=numerics,
-        degrees_of_freedom=unknowns,
+        degrees_of_freedom=bodies.degrees_of_freedom,
     )
 
 
-def _bodies(indenter: Indenter) -> list[_Body]:
+def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
+    """Both bodies in an impact whose contact grows from nothing to the radius that the settings expect."""
+    largest = numerics.contact_radius / MARGIN
+    ends = (smallest_struck(geometry.shape) * largest, largest)
+    return _together(geometry, ends, STRUCK_REFINEMENT * numerics.elements_per_contact, numerics.order)
+
+
+@lru_cache(maxsize=32)
+def _together(geometry: Geometry, ends: tuple[float, float], elements: float, order: int) -> Stacked:
+    """All bodies that yield, on meshes fine for contacts that end between these radii, m."""
+    radii = np.array(ends)
+    first, *others = _bodies(geometry)
+    shape = geometry.shape
+    own = first.operator(Zone.round(radii, first.radius), elements, order, shape.plane)
+    sides = [Side(own, shape.modulus(first.material).scaled(shape.total), own.trace)]
+    for other in others:
+        larger = other.operator(Zone.round(SPARE * radii, other.radius), elements, order, shape.plane)
+        ratio = first.radius / other.radius
+        trace = trace_at(larger, np.arcsin(np.minimum(ratio * np.sin(own.points), 1.0)))
+        relaxation = shape.modulus(other.material).scaled(shape.total)
+        sides.append(Side(larger, relaxation, trace, ratio ** (2 - own.dimension)))
+    return Stacked(own, tuple(sides), first.radius)
+
+
+def _bodies(geometry: Geometry) -> list[_Body]:
     """The bodies that yield, the smaller one first: its surface ends first."""
-    target = indenter.target
+    target = geometry.target
     assert isinstance(target, Round)
-    bodies = [_Body(target.radius, indenter.material, target.support == "held")]
-    if indenter.striker_material is not None:
-        bodies.append(_Body(indenter.shape.tip_radius or target.radius, indenter.striker_material, False))
+    bodies = [_Body(target.radius, geometry.material, target.support == "held")]
+    if geometry.striker_material is not None:
+        bodies.append(_Body(geometry.shape.tip_radius or target.radius, geometry.striker_material, False))
     return sorted(bodies, key=lambda body: body.radius)
-
-
-def _shares(first: _Body, second: _Body, dimension: int) -> tuple[float, float]:
-    """Stiffness of each over that of the common modulus, in units of the first one's radius.
-
-    A body's stiffness grows with its radius; per unit length in plane strain it does not.
-    """
-    common = 1.0 / (1.0 / first.modulus + 1.0 / second.modulus)
-    return first.modulus / common, second.modulus / common * (second.radius / first.radius) ** (dimension - 2)
 
 
 @lru_cache(maxsize=32)

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from fe_contact.bodies.stacked import Stacked
 from fe_contact.forms import Array
 from fe_contact.numerics import Numerics
 from fe_contact.pressing import Still
 from fe_contact.targets import _round
 from lumped.indenter import Indenter
+from lumped.scene import Geometry
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """Both bodies at rest; ``radii``, m: half-width up to which their undeformed surfaces overlap."""
     return _round.still(indenter, radii, numerics)
+
+
+def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
+    """Both bodies in an impact."""
+    return _round.struck(geometry, numerics)

@@ -22,7 +22,9 @@ def surface(poisson: float, numerics: Numerics) -> ScaledSurface:
 
 
 def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
-    """The half-space in an impact."""
+    """The half-space in an impact, or the half-plane relative to its datum."""
+    if geometry.shape.plane:
+        return half_plane.struck(geometry, numerics)
     return surface(geometry.material.nu, numerics)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from skfem import Basis
 
 import meshes
+from fe_contact.bodies.stacked import Side, Stacked
 from fe_contact.contact import PressedSurface
 from fe_contact.forms import Array, isotropic, stiffness
 from fe_contact.numerics import Numerics
@@ -15,8 +16,9 @@ from fe_contact.operators import ELEMENTS, SurfaceOperator, condensed
 from fe_contact.pressing import Still
 from fe_contact.surface import crown
 from fe_contact.targets._body import BodyStill
-from fe_contact.targets._zone import LINE_REFINEMENT, Zone, held
+from fe_contact.targets._zone import LINE_REFINEMENT, MARGIN, STRUCK_REFINEMENT, Zone, held, smallest_struck
 from lumped.indenter import Indenter
+from lumped.scene import Geometry
 from lumped.targets.o_ring import ORing
 
 
@@ -42,6 +44,25 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
         numerics=numerics,
         degrees_of_freedom=operator.degrees_of_freedom,
     )
+
+
+def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
+    """The O-ring in an impact; its other half moves alike, so that both together are half as stiff as one."""
+    elements = STRUCK_REFINEMENT * numerics.elements_per_contact
+    return _struck(geometry, elements, numerics.order, numerics.contact_radius / MARGIN)
+
+
+@lru_cache(maxsize=32)
+def _struck(geometry: Geometry, elements: float, order: int, largest: float) -> Stacked:
+    """For contacts up to a half-width, m."""
+    target = geometry.target
+    assert isinstance(target, ORing)
+    section = target.section_radius
+    zone = Zone.round(largest * np.array([smallest_struck(geometry.shape), 1.0]), section)
+    sizes = (elements, order, zone.smallest, zone.reference, target.mean_radius / section)
+    operator, _ = _surface(geometry.material.nu, *sizes)
+    relaxation = geometry.shape.modulus(geometry.material)
+    return Stacked(operator, (Side(operator, relaxation, operator.trace, target.lead),), section)
 
 
 @lru_cache(maxsize=32)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from fe_contact.bodies.struck import Deformable
 from fe_contact.forms import Array
 from fe_contact.numerics import Numerics
 from fe_contact.pressing import ScaledStill, Still
 from fe_contact.targets import _round, half_space
 from lumped.indenter import Indenter
+from lumped.scene import Geometry
 from lumped.targets.sphere import Sphere
 
 
@@ -19,3 +21,11 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     if indenter.target.support is not None:
         return _round.still(indenter, radii, numerics)
     return ScaledStill(half_space.surface(indenter.material.nu, numerics), indenter, numerics)
+
+
+def struck(geometry: Geometry, numerics: Numerics) -> Deformable:
+    """Both bodies in an impact: one half-space of the common modulus, or each of its true size."""
+    assert isinstance(geometry.target, Sphere)
+    if geometry.target.support is not None:
+        return _round.struck(geometry, numerics)
+    return half_space.surface(geometry.material.nu, numerics)

@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from fe_contact.bodies.offer import Deformable
+from fe_contact.bodies.struck import Deformable
 from fe_contact.certify import Certified, TotalWork, certify
 from fe_contact.forms import Array
 from fe_contact.numerics import Numerics
@@ -99,6 +99,7 @@ def _fe(scene: Scene, numerics: Numerics, exact: Result, default_for: float | No
     errors = _errors(exact, curve.quantities, curve.dense_time, curve.dense_force)
     bars = [certified.total("history_l2"), certified.total("restitution") if "restitution" in errors else 0.0]
     bars += [certified.total(name) / abs(curve.quantities[name] or np.inf) for name in ("peak_force", "duration")]
+    assert isinstance(certified.surface, Deformable)
     work = asdict(certified.work) | {"operations": operations(certified.work, certified.surface)}
     return Point("fe", settings, cpu, errors, max(bars), work, default_for)
 

@@ -45,6 +45,10 @@ class Round(Target):
         """depth - height(r) of both profiles; where the striker's is a parabola, the target's is one too."""
         return np.asarray(np.asarray(depth, dtype=float) - shape.height(r) - self.matching(shape).height(r))
 
+    def round_radius(self, shape: Shape) -> float:
+        """The smaller of both."""
+        return min(self.radius, super().round_radius(shape))
+
     def matching(self, shape: Shape) -> Shape:
         """Its own profile, exact or a parabola as the striker's."""
         return self.outline.resolved("exact" if shape.name == self.strikers[0] else "parabola")

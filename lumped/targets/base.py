@@ -45,6 +45,15 @@ class Target(ABC):
         `r` is the place on the surface, zero at first touch: a radius, m, or what else the target counts in.
         """
 
+    @property
+    def lead(self) -> float:
+        """How much an overlap at the first touch grows per depth: half of it where both sides are alike."""
+        return 1.0
+
+    def round_radius(self, shape: Shape) -> float:
+        """Radius, m, of the smallest round surface that a contact may lie on, infinite where all are flat."""
+        return shape.tip_radius or float("inf")
+
     def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
         """The elastic answer to this shape, exact, per unit E* (and per unit length in plane strain).
 

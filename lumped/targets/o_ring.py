@@ -40,7 +40,16 @@ class ORing(Target):
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
         """depth/2 - (s - sqrt(s^2 - x^2)), s the section's radius and `r` the distance x from its top."""
         section = Sphere(self.section_radius)
-        return np.asarray(0.5 * np.asarray(depth, dtype=float) - section.height(r))
+        return np.asarray(self.lead * np.asarray(depth, dtype=float) - section.height(r))
+
+    @property
+    def lead(self) -> float:
+        """1/2: the other half is the other contact's."""
+        return 0.5
+
+    def round_radius(self, shape: Shape) -> float:
+        """That of the section."""
+        return self.section_radius
 
     def fixed_radius(self, shape: Shape) -> float | None:
         """None: both contacts widen with the depth."""

@@ -1,0 +1,97 @@
+"""What is struck: what the march and its error budget ask of it, and what all bodies with a mesh share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import ModuleType
+from typing import TYPE_CHECKING, Protocol
+
+from fe_contact.bodies.offer import Body
+from fe_contact.fixed_stepping import FixedStepper
+from fe_contact.forms import Array
+from fe_contact.march import Snapshot, Strike
+from fe_contact.numerics import Numerics
+from fe_contact.operators import SurfaceOperator
+from fe_contact.steps import Stepping
+from lumped.materials import Relaxation
+
+
+class Struck(Protocol):
+    """What is struck, with one setting of everything: ``breathes`` where its mesh follows the contact.
+
+    ``factorizations`` and back-substitutions, ``solves``, that it took; unknowns of its meshes.
+    """
+
+    @property
+    def breathes(self) -> bool: ...
+
+    @property
+    def factorizations(self) -> int: ...
+
+    @property
+    def solves(self) -> int: ...
+
+    @property
+    def degrees_of_freedom(self) -> int: ...
+
+    def stepper(
+        self, strike: Strike, numerics: Numerics, accounted: bool, expected: Sequence[float] | Array
+    ) -> Stepping:
+        """What takes its time steps: ``accounted`` also for the energies; ``expected`` radii, m, of a like march."""
+
+    def felt(self, snapshot: Snapshot) -> tuple[Array, Array]:
+        """Places on its surface, m, and the pressure there that it feels in a step, Pa, each (n,)."""
+
+
+class Deformable:
+    """A struck body before the impact: ``operator`` of one elastic body on its mesh, for places, weights and scale.
+
+    The contract of :class:`Struck`, of which only what differs has to be said.
+    """
+
+    if TYPE_CHECKING:  # members have them as fields or as properties
+
+        @property
+        def operator(self) -> SurfaceOperator: ...
+
+        @property
+        def breathes(self) -> bool: ...
+
+    def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> Body:
+        """The body with a contact modulus E*(t), Pa, marched by a scheme, on a mesh whose unit is ``scale``, m."""
+        raise NotImplementedError
+
+    @property
+    def factorizations(self) -> int:
+        """One for one mesh."""
+        return 1
+
+    @property
+    def solves(self) -> int:
+        """Back-substitutions that made it: one a node of the contact zone."""
+        return len(self.operator.stiffness)
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Unknowns of the one mesh."""
+        return self.operator.degrees_of_freedom
+
+    def unit(self, contact_radius: float) -> float:
+        """The mesh's unit of length, m, where contacts up to this radius, m, are expected."""
+        return contact_radius
+
+    def places(self, unit: float) -> Array:
+        """Distance of the quadrature points from the first touch as the striker's profile counts it, m; (q,)."""
+        return unit * self.operator.points
+
+    def stepper(
+        self, strike: Strike, numerics: Numerics, accounted: bool, expected: Sequence[float] | Array
+    ) -> Stepping:
+        """Steps on the mesh that stays, for which no radius has to be expected."""
+        return FixedStepper(strike, self, numerics, accounted)
+
+    def felt(self, snapshot: Snapshot) -> tuple[Array, Array]:
+        """At the nodes, without the roughness that the shape functions do not see."""
+        operator = self.operator
+        nodes = float(snapshot.radii[0] / operator.points[0]) * operator.nodes[: operator.trace.shape[1]]
+        return nodes, operator.projected(snapshot.pressure)

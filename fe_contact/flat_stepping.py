@@ -1,0 +1,80 @@
+"""One time step of an impact by a flat end: its area touches at once, so that depth alone remembers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import ModuleType
+
+import numpy as np
+
+from fe_contact.bodies.memory import SurfaceMemory, step_law
+from fe_contact.contact import ContactSolution
+from fe_contact.errors import ContactLost
+from fe_contact.march import Snapshot, Strike, Work
+from fe_contact.numerics import SCHEMES, Numerics
+from fe_contact.steps import State, Step
+from lumped.members import get
+
+TOUCHING = ContactSolution(np.ones(1), 0, True, (np.ones(1, dtype=bool),))
+
+
+class FlatStepper:
+    """Takes steps, each in closed form: the contract of :class:`fe_contact.steps.Stepping`.
+
+    ``stiffness``: force per depth for unit modulus, m; ``radius`` of the contact, m.
+    """
+
+    shortest = 2e-4
+    accounted = True
+
+    def __init__(self, strike: Strike, stiffness: float, radius: float, numerics: Numerics) -> None:
+        self.strike, self.stiffness, self.radius, self.numerics = strike, stiffness, radius, numerics
+        self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
+        self.first_force = strike.relaxation.viscosity * stiffness * strike.velocity
+
+    def touch(self) -> State:
+        """The striker at the body at rest."""
+        memory = SurfaceMemory.at_rest(np.ones(1), self.strike.relaxation, fields=2)
+        return State(0.0, 0.0, self.strike.velocity, 0.0, memory)
+
+    def step(self, state: State, steps: Sequence[Step], length: float) -> Step:
+        """The step of a length, s: force = stiffness (now depth + past), depth = free depth - lever force / mass.
+
+        Raises ContactLost where the body would have to pull.
+        """
+        strike = self.strike
+        law = step_law(strike.relaxation, self.scheme, length)
+        carried = state.memory.carried(law)
+        lever = self.scheme.LEVER * length**2
+        free_depth = state.depth + length * state.velocity + lever * strike.gravity
+        yielding = 1.0 + self.stiffness * law.now * lever / strike.mass
+        response = (law.now * free_depth + float(carried[0, 0])) / yielding
+        if response <= 0.0:
+            raise ContactLost(state.time)
+        force = self.stiffness * response
+        depth = free_depth - lever * force / strike.mass
+        moved = State(
+            time=strike.end_time if length >= strike.end_time - state.time else state.time + length,
+            depth=depth,
+            velocity=state.velocity + length * (strike.gravity - force / strike.mass),
+            impulse=state.impulse + length * force,
+            memory=state.memory.advanced(law, depth * np.array([[1.0], [self.stiffness]])),
+        )
+        found_at = state.time + length * self.scheme.SAMPLE
+        return Step(length, moved, force, self.radius, found_at, response, TOUCHING, self.radius, Work(1, 1, 1))
+
+    def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
+        """None: the pressure is that of the indentation, infinite at a rim."""
+        return ()
+
+    def stored(self, memory: SurfaceMemory) -> float:
+        """Elastic energy, J."""
+        return memory.stored(self.strike.relaxation)
+
+    def dissipated(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
+        """Heat of a step of a length, s; J."""
+        return before.dissipated(after, self.strike.relaxation, length)
+
+    def springs(self, step: Step) -> float:
+        """None: the penalty's softness is in the stiffness."""
+        return 0.0

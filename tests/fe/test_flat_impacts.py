@@ -1,0 +1,107 @@
+"""Impacts over an area that no depth changes: Lee and Radok's answer is exact, whatever is pressed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fe_contact
+from fe_contact.reference import solve
+from lumped import Material, Relaxation, Result, Scene, laws, simulate
+from lumped.shapes import plate, prism
+from lumped.shapes.punch import Punch
+from lumped.targets import HalfSpace
+from lumped.targets.layer import Layer
+from lumped.targets.plane import Plane
+from lumped.targets.washer import Washer
+
+TOLERANCE, MASS, YOUNG = 1e-3, 0.02, 1e6
+RULED = ("peak_force", "peak_depth", "duration", "impulse", "restitution")
+IMPACTS = 30
+
+
+def material(rng: np.random.Generator, period: float) -> Material:
+    """Elastic, Prony terms or a dashpot in parallel, relaxing within 0.01 to 10 periods."""
+    kind = rng.integers(4)
+    nu = float(rng.uniform(0.0, 0.49))
+    if kind == 3:
+        return Material(Relaxation(YOUNG, viscosity=YOUNG * period * float(rng.uniform(0.02, 0.2))), nu)
+    times = tuple(float(t) for t in period * 10.0 ** rng.uniform(-2.0, 1.0, kind))
+    return Material(Relaxation(YOUNG, tuple(float(m) for m in YOUNG * rng.uniform(0.1, 2.0, kind)), times), nu)
+
+
+def random_scene(seed: int) -> Scene:
+    """A punch on the half-space or a layer, a prism or a plate on the plane, in turn."""
+    rng = np.random.default_rng([20261123, seed])
+    radius, length = 10.0 ** rng.uniform(-3.0, -1.0), 10.0 ** rng.uniform(-3.0, -1.0)
+    stiffness = YOUNG * radius * max(2.0, radius / length)
+    soft = material(rng, math.sqrt(MASS / stiffness))
+    shape, target = (
+        (Punch(radius), HalfSpace()),
+        (Punch(radius), Layer(max(length, 0.3 * radius), str(rng.choice(["bonded", "sliding"])))),
+        (prism.of(math.pi * radius**2, length), Plane()),
+        (plate.of(math.pi * radius**2, length), Plane()),
+    )[seed % 4]
+    return Scene(shape, MASS, float(10.0 ** rng.uniform(-3.0, -2.0)), soft, target=target)
+
+
+def agree(found: Result, truth: Result) -> None:
+    """Converged, within the tolerance and its bars."""
+    assert found.converged, found.message
+    for name in RULED:
+        value, true = found.quantities[name], truth.quantities[name]
+        assert value.value is not None
+        assert value.error is not None
+        assert true.value is not None
+        scale = 1.0 if name == "restitution" else abs(true.value)
+        error = abs(value.value - true.value)
+        assert error <= TOLERANCE * scale, name
+        assert error <= value.error + (true.error or 0.0), name
+
+
+def exact(scene: Scene) -> Result:
+    return simulate(laws.correspondence.of(scene), scene, 1e-7)
+
+
+def test_lee_and_radok_are_within_bar_and_tolerance(campaign_size: Callable[[int], int]) -> None:
+    for seed in range(4 * campaign_size(IMPACTS) // 3):  # each of the four at least once
+        scene = random_scene(seed)
+        found = fe_contact.run(scene, TOLERANCE)
+        agree(found, exact(scene))
+        assert abs(found.energy["residual"] or 0.0) <= 1e-9 * (found.energy["in"] or 0.0)
+
+
+def test_the_dashpot_is_felt_at_first_touch() -> None:
+    """F(0+) = 2 a eta v/(1 - nu^2) stands in the first row, and is the peak where the dashpot is strong."""
+    sticky = Material(Relaxation(YOUNG, viscosity=2e3), 0.3)
+    scene = Scene(Punch(0.01), MASS, 0.01, sticky)
+    found = fe_contact.run(scene, TOLERANCE)
+    first = 2.0 * 0.01 * 2e3 * 0.01 / (1.0 - 0.3**2)
+    assert found.history.force[0] == pytest.approx(first, rel=1e-3)
+    agree(found, exact(scene))
+
+
+def test_a_covered_washer_on_a_sliding_base_is_a_prism() -> None:
+    soft = Material(Relaxation(YOUNG, (YOUNG,), (2e-3,)), 0.4)
+    washer = Scene(Punch(0.02), MASS, 0.05, soft, target=Washer(0.005, 0.01, 0.004, "sliding"))
+    block = prism.of(math.pi * (0.01**2 - 0.005**2), 0.004)
+    agree(fe_contact.run(washer, TOLERANCE), exact(replace(washer, shape=block, target=Plane())))
+
+
+@pytest.mark.parametrize("base", ["bonded", "sliding"])
+def test_the_bars_of_a_washer_cover_what_finer_settings_find(base: str) -> None:
+    soft = Material(Relaxation(YOUNG, (0.5 * YOUNG,), (2e-3,)), 0.45)
+    scene = Scene(Punch(0.0083), MASS, 0.05, soft, target=Washer(0.005, 0.01, 0.004, base))
+    finer = {"elements_per_contact": 9.0, "penalty": 1e6, "steps": 160}
+    agree(fe_contact.run(scene, TOLERANCE), fe_contact.run(scene, TOLERANCE, numerics=finer))
+
+
+def test_three_marches_tell_all() -> None:
+    """Mesh, penalty and far field change one stiffness: each is one more press, and no march."""
+    work = solve(random_scene(0), {"tolerance": TOLERANCE}).certified.work
+    assert work.marches == 3
+    assert work.contact_problems == work.steps

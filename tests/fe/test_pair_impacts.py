@@ -1,0 +1,143 @@
+"""Impacts of two deformable bodies, of O-rings and on the half-plane, each against a route of its own.
+
+Two half-spaces and the half-plane: Ting on their exact curves. Bodies of true size, whose surfaces remember alike:
+Ting on the curve of a slow indentation, which shares no time step with the march. Different memories: equal bodies of
+one nu move alike whatever they are made of, so that Ting with the compliances added is exact there too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fe_contact
+from fe_contact.indentation import indent
+from lumped import Material, Relaxation, Result, Scene, Sphere, laws, simulate
+from lumped.answered import Answered
+from lumped.indenter import Indenter
+from lumped.load_curves.sampled import SampledCurve
+from lumped.shapes.cylinder import Cylinder as Roller
+from lumped.shapes.punch import Punch
+from lumped.targets import HalfSpace
+from lumped.targets.cylinder import Cylinder
+from lumped.targets.o_ring import ORing
+from lumped.targets.sphere import Sphere as Ball
+
+TOLERANCE, YOUNG = 1e-3, 1e6
+RULED = ("peak_force", "peak_depth", "duration", "impulse", "restitution")
+IMPACTS = 30
+CURVE_DEPTHS, CURVE_TOLERANCE = 16, 3e-4
+
+
+def solid(rng: np.random.Generator, period: float, nu: float | None = None) -> Material:
+    """Elastic, or one or two Prony terms that relax within 0.03 to 3 periods."""
+    terms = int(rng.integers(3))
+    times = tuple(float(t) for t in period * 10.0 ** rng.uniform(-1.5, 0.5, terms))
+    young = YOUNG * float(10.0 ** rng.uniform(-0.5, 0.5))
+    network = Relaxation(young, tuple(float(m) for m in young * rng.uniform(0.1, 1.5, terms)), times)
+    return Material(network, float(rng.uniform(0.0, 0.48)) if nu is None else nu)
+
+
+def agree(found: Result, truth: Result, curve: float = 0.0) -> None:
+    """Converged, within the tolerance and its bars; ``curve``: what the truth's own load curve may err by."""
+    assert found.converged, found.message
+    for name in RULED:
+        value, true = found.quantities[name], truth.quantities[name]
+        assert value.value is not None
+        assert value.error is not None
+        assert true.value is not None
+        scale = 1.0 if name == "restitution" else abs(true.value)
+        error = abs(value.value - true.value)
+        assert error <= (TOLERANCE + curve) * scale, name
+        assert error <= value.error + (true.error or 0.0) + curve * scale, name
+
+
+def ting(scene: Scene) -> Result:
+    return simulate(laws.ting.of(scene), scene, 1e-6)
+
+
+def random_spheres(seed: int) -> Scene:
+    """Two half-spaces under the gap of two spheres, each of a material of its own; every fourth striker is rigid."""
+    rng = np.random.default_rng([20261124, seed])
+    mass, velocity = 0.005, float(10.0 ** rng.uniform(-2.0, -1.0))
+    striker = None if seed % 4 == 3 else solid(rng, 5e-3)
+    target = Ball(float(10.0 ** rng.uniform(-2.3, -1.0)), None)
+    return Scene(Sphere(0.01), mass, velocity, solid(rng, 5e-3), target=target, striker_material=striker)
+
+
+def random_half_plane(seed: int) -> Scene:
+    """The datum 10 to 300 radii below the first touch."""
+    rng = np.random.default_rng([20261125, seed])
+    velocity, datum = float(10.0 ** rng.uniform(-2.3, -1.3)), 0.01 * float(10.0 ** rng.uniform(1.0, 2.5))
+    return Scene(Roller(0.01, 0.02), 0.02, velocity, solid(rng, 5e-3), target=HalfSpace(datum))
+
+
+@pytest.mark.parametrize("random_scene", [random_spheres, random_half_plane])
+def test_ting_is_within_bar_and_tolerance(
+    random_scene: Callable[[int], Scene], campaign_size: Callable[[int], int]
+) -> None:
+    for seed in range(campaign_size(IMPACTS) // 2):
+        scene = random_scene(seed)
+        agree(fe_contact.run(scene, TOLERANCE), ting(scene))
+
+
+def random_true_size(seed: int) -> Scene:
+    """A rigid striker on a sphere, a cylinder or an O-ring, or equal bodies of two materials of one nu."""
+    rng = np.random.default_rng([20261126, seed])
+    velocity, radius, nu = float(10.0 ** rng.uniform(-2.0, -1.2)), float(rng.uniform(0.008, 0.03)), 0.4
+    support = str(rng.choice(["free", "held"]))
+    scenes = (
+        (Punch(0.05), 0.05, ORing(radius, 0.003), None),
+        (Sphere(0.01), 0.005, Ball(0.01, "free"), solid(rng, 5e-3, nu)),
+        (Roller(0.01, 0.02), 0.02, Cylinder(0.01, "free"), solid(rng, 5e-3, nu)),
+        (Sphere(0.01), 0.005, Ball(radius, support), None),
+        (Roller(0.01, 0.02), 0.02, Cylinder(radius, support), None),
+    )
+    shape, mass, target, striker = scenes[seed % len(scenes)]
+    return Scene(shape, mass, velocity, solid(rng, 5e-3, nu), target=target, striker_material=striker)
+
+
+def with_curve(scene: Scene, deepest: float) -> tuple[Scene, float]:
+    """The scene with the curve of a slow indentation, and what that may err by."""
+    depths = tuple(float(depth) for depth in np.geomspace(1e-2 * deepest, 1.02 * deepest, CURVE_DEPTHS))
+    slow = Indenter(scene.profile, scene.geometry.material, scene.target, scene.striker_material)
+    pressed = indent(slow, depths, {"tolerance": CURVE_TOLERANCE})
+    forces = tuple(float(force) for force in pressed.force / (pressed.modulus * scene.geometry.shape.total))
+    curve = SampledCurve(depths, forces, tuple(float(radius) for radius in pressed.contact_radius))
+    return Answered.by(scene, curve), float(np.max(pressed.force_error / pressed.force))
+
+
+def test_bodies_of_true_size_follow_ting_on_their_own_curve(campaign_size: Callable[[int], int]) -> None:
+    for seed in range(2 * campaign_size(IMPACTS) // 3):
+        scene = random_true_size(seed)
+        found = fe_contact.run(scene, TOLERANCE)
+        answered, error = with_curve(scene, found.quantities["peak_depth"].value or 0.0)
+        agree(found, ting(answered), error)
+        assert abs(found.energy["residual"] or 0.0) <= 5e-3 * (found.energy["in"] or 0.0)
+
+
+def test_two_materials_of_different_nu_agree_with_finer_settings(campaign_size: Callable[[int], int]) -> None:
+    """No law knows bodies of two shapes that remember differently: the bars must cover what finer settings find."""
+    for seed in range(campaign_size(IMPACTS) // 3):
+        rng = np.random.default_rng([20261127, seed])
+        round_ones = ((Ball(0.017, "held"), Sphere(0.01)), (Cylinder(0.017, "held"), Roller(0.01, 0.02)))
+        target, shape = round_ones[seed % 2]
+        scene = Scene(shape, 0.01, 0.05, solid(rng, 5e-3), target=target, striker_material=solid(rng, 5e-3))
+        finer = {"elements_per_contact": 3.3, "penalty": 4e3, "steps": 80, "tolerance": 0.1}
+        agree(fe_contact.run(scene, TOLERANCE), fe_contact.run(scene, numerics=finer))
+
+
+def test_action_is_reaction() -> None:
+    """The smaller body struck by the larger one, both free: only the names change."""
+    soft, stiff = Material(Relaxation(YOUNG, (YOUNG,), (3e-3,)), 0.3), Material(Relaxation(3.0 * YOUNG), 0.45)
+    there = Scene(Sphere(0.01), 0.005, 0.05, soft, target=Ball(0.02, "free"), striker_material=stiff)
+    back = replace(there, shape=Sphere(0.02), material=stiff, target=Ball(0.01, "free"), striker_material=soft)
+    settings = {"tolerance": 3.0 * TOLERANCE, "steps": 40}
+    first, second = (fe_contact.run(scene, numerics=settings) for scene in (there, back))
+    for name in RULED:
+        one, other = first.quantities[name], second.quantities[name]
+        assert abs((one.value or 0.0) - (other.value or 0.0)) <= (one.error or 0.0) + (other.error or 0.0), name
+    assert first.work["factorizations"] == 4, "two bodies on two meshes each, whatever the steps"
