@@ -16,15 +16,15 @@ from lumped.laws._half_space import KEYS as KEYS
 from lumped.laws._half_space import check
 from lumped.result import Result, meets
 from lumped.scene import Scene
-from lumped.spring_row.coarse import coarse, problem_of
-from lumped.spring_row.nest import Level, Nest, limit, predicted_ends
+from lumped.spring_row.coarse import coarse, pace_of, problem_of
+from lumped.spring_row.nest import Level, Nest, limit, predicted_turn
 
 Array = NDArray[np.float64]
-# Steps in each phase of the first march: three levels of 20 reach 1e-5 for most materials, of 32 reach 1e-6.
-INTERVALS, MORE_INTERVALS, MORE_BELOW = 20, 32, 1e-5
+# Limits of two marches err by the fourth power of the steps: so many of the first march, of three, suffice mostly.
+INTERVALS, FEWEST, MOST = 0.9, 8, 90
 MOST_PARTS = 64
-# The difference of two limits bounds the error of the better one where errors fall at least as 1/n.
-SAFETY = 1.5
+# Did limits of two err by h^2 alone, that of three would err by a third of what it differs from the first; twice that.
+SAFETY = 2.0 / 3.0
 
 
 @dataclass(frozen=True)
@@ -53,22 +53,22 @@ class SpringRow:
         """One impact, the steps cut until every bar is within the tolerance. Raises NotReached."""
         clock = Clock()
         problem = problem_of(scene)
-        intervals = INTERVALS if tolerance >= MORE_BELOW else MORE_INTERVALS
+        intervals = min(max(FEWEST, round(INTERVALS * tolerance**-0.25)), MOST)
         track = coarse(problem, scene.end_time, intervals)
-        nest = Nest.around(problem, scene.end_time, track, intervals)
-        start = nest.level(1, (track.approach[-1].time, (track.rebound or track.approach)[-1].time))
-        levels, answers, parts = [start], [], 1
+        nest = Nest.around(problem, scene.end_time, track, pace_of(problem, scene.end_time, intervals), intervals)
+        levels, limits, parts = [nest.level(1, track.approach[-1].time)], list[Level](), 1
         while parts < MOST_PARTS:
             parts *= 2
-            levels.append(nest.level(parts, predicted_ends(levels)))
-            answers.append(_answer(scene, track.end, limit(levels[-2], levels[-1])))
-            if len(answers) > 1:
-                quantities, force_error = bars(answers[-1], answers[-2], SAFETY)
+            levels.append(nest.level(parts, predicted_turn(levels)))
+            limits.append(limit(levels[-2], levels[-1], 2))
+            if len(limits) > 1:
+                answer = _answer(scene, limit(limits[-2], limits[-1], 4))
+                quantities, force_error = bars(answer, _answer(scene, limits[-2]), SAFETY)
                 if meets(quantities, tolerance):
                     break
         work = {"steps": sum(level.steps for level in levels), "springs": levels[-1].approach.shape[1]}
         numerics = {"levels": len(levels), "parts": parts}
-        return assemble(self.name, scene, tolerance, answers[-1], quantities, force_error, clock, numerics, work)
+        return assemble(self.name, scene, tolerance, answer, quantities, force_error, clock, numerics, work)
 
 
 def of(scene: Scene) -> SpringRow:
@@ -97,9 +97,9 @@ def estimate(scene: Scene, elements: int = 70) -> ImpactScales:
     )
 
 
-def _answer(scene: Scene, end: End, level: Level) -> Answer:
+def _answer(scene: Scene, level: Level) -> Answer:
     """The dense answer of one level."""
-    separated = end is End.SEPARATED
+    end, separated = level.end, level.end is End.SEPARATED
     whole = np.hstack([level.approach, level.rebound[:, 1:]]) if level.rebound.size else level.approach
     time, depth, velocity, _, force, _ = whole
     peak_time, peak_force = peak(time, force)
@@ -123,7 +123,7 @@ class _Dense:
     separated: bool
 
     def __call__(self, times: Array) -> Array:
-        approach, rebound = self.level.approach, self.level.rebound
+        approach, rebound = self.level.approach, _ascending(self.level.rebound)
         turn, last = self.level.ends
         columns = np.empty((4, times.size))
         early = times <= turn
@@ -139,15 +139,22 @@ class _Dense:
         return columns
 
 
+def _ascending(fields: Array) -> Array:
+    """Those rows whose time is later than that of all before: springs may leave at one time but for rounding."""
+    if not fields.size:
+        return fields
+    return fields[:, np.diff(np.maximum.accumulate(fields[0]), prepend=-1.0) > 0.0]
+
+
 def _seen(fields: Array) -> Array:
     """Depth, velocity, force and edge of the fields of Instant."""
     return fields[[1, 2, 4, 5]]
 
 
 def _energy(scene: Scene, level: Level) -> dict[str, float | None]:
-    """Energies at the end, J; `stored`: in springs, pressed or released with what they could not give back."""
-    last = level.rebound[:, -1] if level.rebound.size else level.approach[:, -1]
-    given = 0.5 * scene.reduced_mass * scene.velocity**2 + scene.reduced_mass * scene.gravity * float(last[1])
-    out = 0.5 * scene.reduced_mass * float(last[2]) ** 2
-    spent, held = level.energies.tolist()
+    """Energies at the end, J, the limits of what every march counts step by step; `stored`: in springs, pressed or
+    released with what they could not give back.
+    """
+    fallen, out, spent, held = level.energies.tolist()
+    given = 0.5 * scene.reduced_mass * scene.velocity**2 + fallen
     return {"in": given, "out": out, "viscous": spent, "stored": held, "residual": given - out - spent - held}

@@ -46,6 +46,8 @@ class SneddonSphere(HalfSpaceCurve):
 
     def depth(self, contact_radius: ArrayLike) -> Any:
         """a artanh(a/R), m; infinite at a = R, nan beyond."""
+        if isinstance(contact_radius, float) and abs(contact_radius) < self.radius:
+            return contact_radius * math.atanh(contact_radius / self.radius)
         a = np.asarray(contact_radius)
         with np.errstate(divide="ignore", invalid="ignore"):
             return a * np.arctanh(a / self.radius)

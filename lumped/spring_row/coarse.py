@@ -6,7 +6,7 @@ from lumped.scales import stiffest_impact
 from lumped.scene import Scene
 from lumped.spring_row.march import Track, march
 from lumped.spring_row.pace import Adaptive
-from lumped.spring_row.row import Instant, Problem
+from lumped.spring_row.row import Problem
 
 MOST_STEPS = 10_000
 
@@ -18,11 +18,12 @@ def problem_of(scene: Scene) -> Problem:
 
 def coarse(problem: Problem, end_time: float, elements: int) -> Track:
     """One march with steps by their error and by the travel of the edge, 1/elements. Raises NotReached."""
+    return march(problem, end_time, pace_of(problem, end_time, elements), MOST_STEPS)
+
+
+def pace_of(problem: Problem, end_time: float, elements: int) -> Adaptive:
+    """Its pace."""
     reach = stiffest_impact(problem.shape, problem.modulus, problem.mass, problem.velocity).contact_radius
     first = float(problem.shape.load_curve.depth(reach / elements)) / problem.velocity
 
-    def pace(start: Instant) -> Adaptive:
-        h = first if start.time == 0.0 else start.time / elements
-        return Adaptive(min(h, end_time), elements, max(reach, start.edge), problem.velocity)
-
-    return march(problem, end_time, pace, MOST_STEPS)
+    return Adaptive(min(first, end_time), elements, reach, problem.velocity)

@@ -2,68 +2,69 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from lumped.ending import AT_REST, End
+from lumped.spring_row.growing import grown
 from lumped.spring_row.pace import Pace
 from lumped.spring_row.phase import Phase
-from lumped.spring_row.row import Instant, Problem, Row, Trial
+from lumped.spring_row.retreat import retreat
+from lumped.spring_row.row import Instant, Problem, Row
+
+
+@dataclass(frozen=True)
+class Inward:
+    """The row after an approach, its instants, and how the impact ended in it; None: with the turn."""
+
+    row: Row
+    instants: list[Instant]
+    end: End | None
 
 
 @dataclass(frozen=True)
 class Track:
-    """Instants of the approach, and of the rebound, which starts with the last of them; and the end."""
+    """Instants of the approach, and of the rebound, which starts with the last of them; the end; energies there.
+
+    `spent` in dashpots and `held` in springs, pressed or released, J.
+    """
 
     approach: list[Instant]
     rebound: list[Instant]
     end: End
+    spent: float
+    held: float
 
 
-def march(
-    problem: Problem,
-    end_time: float,
-    pace: Callable[[Instant], Pace],
-    most: int,
-    at_rest: float = AT_REST,
-    observe: Callable[[Row, Instant], None] | None = None,
-) -> Track:
-    """Follow one impact until separation or `end_time`, s. Raises NotReached, TooManySteps after `most`
-    steps.
+def march(problem: Problem, end_time: float, pace: Pace, most: int, at_rest: float = AT_REST) -> Track:
+    """Follow one impact until separation or `end_time`, s.
 
-    `pace` makes the pace of the phase that starts at an instant; `observe` sees the row after every step. The
-    approach ends where the velocity is zero; the rebound where the spring at the axis carries no force, or
-    where gravity makes the striker turn again.
+    `pace` is that of the approach. Raises NotReached, TooManySteps after `most` steps of it.
     """
+    return rebound(approach(problem, end_time, pace, most, at_rest), end_time)
+
+
+def approach(problem: Problem, end_time: float, pace: Pace, most: int, at_rest: float = AT_REST) -> Inward:
+    """The approach, to where the velocity is zero, or has died away in a fluid. Raises as `march` does."""
     row = Row(problem)
     touch = Instant(0.0, 0.0, problem.velocity, problem.gravity, 0.0, 0.0)
     slow = at_rest * problem.velocity if problem.is_fluid and problem.gravity == 0.0 else 0.0
+    growing = Phase(lambda now, h: grown(row, now, h), row.take, lambda step: step.now.velocity)
+    instants, turned = growing.run(touch, pace, end_time, slow, most)
+    rests = turned is None and instants[-1].velocity < slow
+    return Inward(row, instants, None if turned else End.REST if rests else End.TIME)
 
-    def taken(take: Callable[[Trial], None]) -> Callable[[Trial], None]:
-        def both(trial: Trial) -> None:
-            take(trial)
-            if observe:
-                observe(row, trial.now)
 
-        return both
-
-    growing = Phase(row.try_growing, taken(row.grow), lambda trial: trial.now.velocity)
-    inward, turned = growing.run(touch, pace(touch), end_time, slow, most)
-    turn = inward[-1]
-    if turned is None:
-        return Track(inward, [], End.REST if turn.velocity < slow else End.TIME)
-
+def rebound(inward: Inward, end_time: float) -> Track:
+    """What follows an approach: until the spring at the axis carries no force, or gravity turns the striker again."""
+    row, turn = inward.row, inward.instants[-1]
+    if inward.end:
+        return _track(inward, [], inward.end)
     if turn.acceleration >= 0.0:
-        return Track(inward, [], End.SECOND_APPROACH)
+        return _track(inward, [], End.SECOND_APPROACH)
+    return _track(inward, *retreat(row, turn, end_time))
 
-    def pressed(trial: Trial) -> float:
-        return trial.axis * turn.edge / turn.force
 
-    def leaving(trial: Trial) -> float:
-        return -trial.now.velocity / problem.velocity
-
-    shrinking = Phase(row.try_shrinking, taken(row.shrink), lambda trial: min(pressed(trial), leaving(trial)))
-    outward, last = shrinking.run(turn, pace(turn), end_time, 0.0, most)
-    if last is None:
-        return Track(inward, outward, End.TIME)
-    return Track(inward, outward, End.SEPARATED if pressed(last) < leaving(last) else End.SECOND_APPROACH)
+def _track(inward: Inward, outward: list[Instant], end: End) -> Track:
+    row, last = inward.row, (outward or inward.instants)[-1]
+    held = row.springs.held(row.problem.modulus, last.depth, row.even)
+    return Track(inward.instants, outward, end, 2.0 * row.spent, 2.0 * (row.released + held))

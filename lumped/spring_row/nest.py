@@ -1,12 +1,11 @@
-"""Nested marches, the steps cut into 1, 2, 4, ... parts, and their limit by Richardson's rule.
+"""Nested marches, the steps cut into 1, 2, 4, ... parts, and their limits by Richardson's rule.
 
-The row of springs errs by h^2, so the difference of two marches tells the limit, and the difference of two
-such limits is a true bar for the better one.
+The row of springs errs by even powers of h: the limit of two marches errs by h^4, that of three by h^6.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,26 +13,28 @@ from numpy.typing import NDArray
 
 from lumped.ending import End
 from lumped.errors import NotReached
-from lumped.spring_row.energy import Meter
+from lumped.interpolation import local
 from lumped.spring_row.grid import Grid
-from lumped.spring_row.march import Track, march
-from lumped.spring_row.pace import Pace, Prescribed
-from lumped.spring_row.row import Instant, Problem, Row
+from lumped.spring_row.march import Track, approach, rebound
+from lumped.spring_row.pace import Adaptive, Prescribed
+from lumped.spring_row.row import Instant, Problem
 
 Array = NDArray[np.float64]
 ALIGNING_TRIES = 8
-NEARLY = 0.05
+NEARLY = 1e-3
 
 
 @dataclass(frozen=True)
 class Level:
-    """One march, or the limit of two.
+    """One march, or a limit of several.
 
-    The fields of Instant over the steps of approach and rebound, shape (6, n); steps marched for it; energies, J.
+    The fields of Instant over the steps of approach and rebound, shape (6, n); how it ended; steps marched for it;
+    energies at the end, J: that of the motion, (2,) as work of gravity and left, spent in dashpots, held in springs.
     """
 
     approach: Array
     rebound: Array
+    end: End
     steps: int
     energies: Array
 
@@ -45,88 +46,88 @@ class Level:
 
 @dataclass(frozen=True)
 class Nest:
-    """A problem, when to stop (s), and the grids of its phases (no rebound: None)."""
+    """A problem, when to stop (s), the grid of its approach."""
 
     problem: Problem
     end_time: float
-    approach: Grid
-    rebound: Grid | None
+    grid: Grid
 
     @classmethod
-    def around(cls, problem: Problem, end_time: float, track: Track, intervals: int) -> Nest:
-        """The grids of a coarse march, at least `intervals` for each phase, and no fewer than its steps."""
+    def around(cls, problem: Problem, end_time: float, track: Track, pace: Adaptive, intervals: int) -> Nest:
+        """The grid of a coarse march, of at least `intervals`, denser where the rebound needs it. Raises NotReached."""
         if track.end is End.REST:
             end_time = track.approach[-1].time
+        weights = np.ones(len(track.approach) - 1)
+        back = track.rebound
+        for i in range(2, len(back)):
+            share = pace.error(back[i - 2], back[i - 1], back[i])
+            weights[-i] = max(1.0, share ** (1.0 / 3.0))
+        return cls(problem, end_time, Grid.of(track.approach, weights, intervals))
 
-        def grid(instants: list[Instant], from_end: bool) -> Grid:
-            return Grid.of(instants, max(intervals, len(instants)), from_end)
+    def level(self, parts: int, turn: float) -> Level:
+        """March with every step cut into `parts`, again with a better time of the turn, s, until that is met.
 
-        rebound = grid(track.rebound, track.end is End.SEPARATED) if track.rebound else None
-        return cls(problem, end_time, grid(track.approach, False), rebound)
-
-    def level(self, parts: int, ends: tuple[float, float]) -> Level:
-        """March with every step cut into `parts`, again with better `ends` (s) until the phases end as planned.
-
-        Raises NotReached when they never do.
+        Raises NotReached when it never is.
         """
         steps = 0
         for _ in range(ALIGNING_TRIES):
-            meter = Meter(self.problem)
-            track = self._march(parts, ends, meter.observe)
-            steps += len(track.approach) + len(track.rebound)
-            level = Level(_columns(track.approach), _columns(track.rebound), steps, meter.energies)
-            if self._aligned(level, parts, ends):
-                return level
-            ends = level.ends
+            times = self.grid.times(turn, parts)
+            inward = approach(self.problem, self.end_time, Prescribed(times), 2 * len(times), at_rest=0.0)
+            steps += len(inward.instants)
+            *_, before, last = (instant.time for instant in inward.instants)
+            if len(inward.instants) == len(times) + 1 and abs(last - turn) <= NEARLY * (last - before):
+                return self._level(rebound(inward, self.end_time), steps)
+            turn = last
         raise NotReached("finer and coarser steps of the spring row do not follow the same course of events")
 
-    def _march(self, parts: int, ends: tuple[float, float], observe: Callable[[Row, Instant], None]) -> Track:
-        turn, last = ends
-
-        def pace(start: Instant) -> Pace:
-            grid = self.approach if start.time == 0.0 or self.rebound is None else self.rebound
-            return Prescribed(grid.times(start.time, turn if start.time == 0.0 else last, parts))
-
-        most = 10 * parts * max(self.approach.places.size, self.rebound.places.size if self.rebound else 0)
-        return march(self.problem, self.end_time, pace, most, at_rest=0.0, observe=observe)
-
-    def _aligned(self, level: Level, parts: int, ends: tuple[float, float]) -> bool:
-        """Whether each phase has the planned number of steps, and its last one nearly the planned length."""
-        phases = [(level.approach, self.approach, ends[0]), (level.rebound, self.rebound, ends[1])]
-        for fields, grid, end in phases:
-            if fields.size == 0 or grid is None:
-                if fields.size or grid:
-                    return False
-                continue
-            time = fields[0]
-            if time.size != parts * (grid.places.size - 1) + 1 or abs(time[-1] - end) > NEARLY * (time[-1] - time[-2]):
-                return False
-        return True
+    def _level(self, track: Track, steps: int) -> Level:
+        mass, last = self.problem.mass, (track.rebound or track.approach)[-1]
+        motion = [mass * self.problem.gravity * last.depth, 0.5 * mass * last.velocity**2]
+        steps += len(track.rebound)
+        energies = np.array([*motion, track.spent, track.held])
+        return Level(_columns(track.approach), _columns(track.rebound), track.end, steps, energies)
 
 
-def predicted_ends(levels: Sequence[Level]) -> tuple[float, float]:
-    """When the phases of the next level will end, s: the difference of the last two falls by 4."""
-    last = levels[-1].ends
-    before = levels[-2].ends if len(levels) > 1 else last
-    turn, end = (now + 0.25 * (now - earlier) for now, earlier in zip(last, before, strict=True))
-    return turn, end
+def predicted_turn(levels: Sequence[Level]) -> float:
+    """When the approach of the next level will end, s: the difference of the last two falls by 4."""
+    last = levels[-1].ends[0]
+    before = levels[-2].ends[0] if len(levels) > 1 else last
+    return last + 0.25 * (last - before)
 
 
-def limit(coarse: Level, fine: Level) -> Level:
-    """Richardson's limit of two marches, the finer of twice the steps, on the rows of the finer.
+def limit(coarse: Level, fine: Level, order: int) -> Level:
+    """Richardson's limit of two which err by this power of h, the finer of twice the steps, on the rows of the finer.
 
-    The correction is known on every second row, and is smooth: between them it is the mean of its neighbours.
+    The correction is known on every second row, and is smooth. Raises NotReached where the two end differently.
     """
-    energies = (4.0 * fine.energies - coarse.energies) / 3.0
-    return Level(_limit(coarse.approach, fine.approach), _limit(coarse.rebound, fine.rebound), fine.steps, energies)
+    if coarse.end is not fine.end:
+        raise NotReached("finer and coarser steps of the spring row end differently")
+    gain = 1.0 / (2.0**order - 1.0)
+    one, finer = coarse.rebound, fine.rebound
+    if fine.end is not End.SEPARATED and finer.size:
+        one, finer = _cut(one, finer)
+    energies = fine.energies + gain * (fine.energies - coarse.energies)
+    approach = _limit(coarse.approach, fine.approach, gain)
+    return Level(approach, _limit(one, finer, gain), fine.end, fine.steps, energies)
 
 
-def _limit(coarse: Array, fine: Array) -> Array:
+def _cut(coarse: Array, fine: Array) -> tuple[Array, Array]:
+    """Two rebounds that end within a step: the last rows, and of those before as many as both have."""
+    both = min(coarse.shape[1] - 1, fine.shape[1] // 2)
+    return np.delete(coarse, np.s_[both:-1], axis=1), np.delete(fine, np.s_[2 * both - 1 : -1], axis=1)
+
+
+def _limit(coarse: Array, fine: Array, gain: float) -> Array:
+    """The limit on the rows of the finer, of which the coarser has every second, and the last."""
     if not fine.size:
         return fine
+    known = np.append(np.arange(0, fine.shape[1] - 1, 2), fine.shape[1] - 1)
+    if known.size != coarse.shape[1]:
+        raise NotReached("finer and coarser steps of the spring row do not follow the same course of events")
     correction = np.empty_like(fine)
-    correction[:, ::2] = (fine[:, ::2] - coarse) / 3.0
-    correction[:, 1::2] = 0.5 * (correction[:, :-2:2] + correction[:, 2::2])
+    correction[:, known] = gain * (fine[:, known] - coarse)
+    between = known[1:][np.diff(known) > 1] - 1
+    correction[:, between] = local(known.astype(float), correction[:, known], between.astype(float))
     return np.asarray(fine + correction)
 
 

@@ -65,10 +65,14 @@ class Adaptive:
 
     def _error(self, now: Instant, then: Instant, h: float) -> float:
         """Estimated error of the step over the tolerance."""
-        if self.before is None:
+        return 0.0 if self.before is None else self.error(self.before, now, then)
+
+    def error(self, before: Instant, now: Instant, then: Instant) -> float:
+        """Estimated error of the step between the last two of three instants over the tolerance."""
+        h, back = then.time - now.time, now.time - before.time
+        if not h > 0.0 or not back > 0.0:
             return 0.0
-        back = now.time - self.before.time
-        bend = (then.acceleration - now.acceleration) / h - (now.acceleration - self.before.acceleration) / back
+        bend = (then.acceleration - now.acceleration) / h - (now.acceleration - before.acceleration) / back
         scale = max(abs(now.velocity), abs(then.velocity), REST * self.velocity)
         return abs(h**3 * bend / (6.0 * (h + back))) / (self.tolerance * scale)
 

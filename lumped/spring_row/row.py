@@ -1,29 +1,20 @@
-"""The row of springs and one step of it, in contact that grows or shrinks.
+"""The row of springs: what is pressed now, and where the edge of contact has been.
 
-Over a step the acceleration is linear in time, so the new acceleration is the one unknown, found by Newton
-steps on a = gravity - F/m. The springs stand where the edge of contact stood at the end of each step of the
-approach: none is touched within a step, and they crowd where the contact needs them.
+Within a step the depth grows evenly, at the mean of the velocities at its ends: the time integral of Newton's law tells
+this mean. Everything else follows in closed form, so the energy of mass, springs and dashpots is kept to rounding,
+however long the steps are. The springs between two places of the edge count as one, with their mean profile.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from lumped.errors import NotReached
 from lumped.materials import Relaxation
 from lumped.shapes import Shape
-from lumped.spring_row.edge import Growing, Shrinking
-from lumped.spring_row.memory import Ageing, ageing
-
-Array = NDArray[np.float64]
-NEWTON_STEPS = 60
-# Newton's last correction; what is left after it is smaller by another power of the edge cell.
-CONVERGED, ROUNDING = 1e-12, 2e-15
-FIRST_SPRINGS = 256
+from lumped.spring_row.memory import Fading
+from lumped.spring_row.springs import Springs, Values, none
 
 
 @dataclass(frozen=True)
@@ -53,97 +44,83 @@ class Instant(NamedTuple):
     edge: float
 
 
-class Trial(NamedTuple):
-    """A step not yet taken: where it leads, the force per length at the axis, how z falls and rises."""
+class Place(NamedTuple):
+    """Where the edge was in the approach at a time, and what the spring at the axis carried then, per branch.
+
+    `springs` is the one that stands for those touched in the step before, as it was then; `kept` as in Step.
+    """
+
+    time: float
+    depth: float
+    edge: float
+    axis: Values
+    springs: Springs
+    kept: Values
+
+
+class Step(NamedTuple):
+    """A step not yet taken: where it leads, the springs pressed then, energies spent in dashpots and released in it, J.
+
+    Of the motion whose velocity runs evenly from one end to the other `axis` is what the spring at the axis carries
+    then, per branch, and `kept` what all pressed ones lack to as much. `springs` and `even`, the former's twin, are of
+    the motion whose depth grows evenly, which the energy is kept for. `place`: the edge's, where it grows.
+    """
 
     now: Instant
-    axis: float
-    decays: list[float]
-    rises: list[float]
+    springs: Springs
+    even: Values
+    axis: Values
+    kept: Values
+    spent: float
+    released: float
+    place: Place | None = None
 
 
 class Row:
-    """Springs at `x`, ascending from the axis; `z` holds one row for every term of the relaxation series.
-
-    `rest` is equilibrium modulus times g(x); `weights` are those of the trapezoid over the springs.
-    """
+    """The state after the steps taken, the places that the edge has passed, and energies of one half so far, J."""
 
     def __init__(self, problem: Problem) -> None:
+        nothing = [0.0] * len(problem.modulus.moduli)
         self.problem = problem
-        self.curve = problem.shape.load_curve
-        self.count = 1
-        self.x = np.zeros(FIRST_SPRINGS)
-        self.weights = np.zeros(FIRST_SPRINGS)
-        self.rest = np.zeros(FIRST_SPRINGS)
-        self.z = np.zeros((len(problem.modulus.moduli), FIRST_SPRINGS))
+        self.springs = none(problem.modulus)
+        self.even = self.axis = self.kept = nothing
+        self.places = [Place(0.0, 0.0, 0.0, nothing, self.springs, nothing)]
+        self.spent = self.released = 0.0
 
-    def try_growing(self, now: Instant, h: float) -> Trial:
-        """One step of length h, s, of the approach, not yet taken. Raises NotReached."""
-        ageing, held = self._aged(now, h)
-        n = self.count
-        return self._try(now, h, ageing, held, Growing(self.curve, self.x[:n], self.weights[:n], held))
+    def take(self, step: Step) -> None:
+        """Take a step: of the approach where it has a place, else of the rebound."""
+        self.springs, self.even, self.axis, self.kept = step.springs, step.even, step.axis, step.kept
+        self.spent += step.spent
+        self.released += step.released
+        if step.place:
+            self.places.append(step.place)
+        else:
+            self.places.pop()
 
-    def try_shrinking(self, now: Instant, h: float) -> Trial:
-        """One step of length h, s, of the rebound, not yet taken. Raises NotReached."""
-        ageing, held = self._aged(now, h)
-        return self._try(now, h, ageing, held, Shrinking(self.x[: self.count], held))
+    def instant(
+        self, time: float, depth: float, velocity: float, edge: float, springs: Springs, axis: Values, kept: Values
+    ) -> Instant:
+        """The motion with its force: that of pressed springs which have kept as much."""
+        modulus, mass, gravity = self.problem.modulus, self.problem.mass, self.problem.gravity
+        force = 2.0 * springs._replace(kept=kept).force(modulus, depth, velocity, axis)
+        return Instant(time, depth, velocity, gravity - force / mass, force, edge)
 
-    def grow(self, trial: Trial) -> None:
-        """Take a step of the approach: the springs age, and one without force joins at the new edge."""
-        self._age(trial)
-        n = self.count
-        gap = trial.now.edge - self.x[n - 1]
-        if gap <= 0.0:
-            return
-        if n == self.x.size:
-            self._extend()
-        self.x[n] = trial.now.edge
-        self.rest[n] = self.problem.modulus.equilibrium * trial.now.depth
-        self.weights[n - 1 : n + 1] += 0.5 * gap
-        self.count = n + 1
 
-    def shrink(self, trial: Trial) -> None:
-        """Take a step of the rebound: the springs age, and those beyond the edge leave.
+def followed(modulus: Relaxation, memory: Values, faded: list[Fading], begin: float, end: float, h: float) -> Values:
+    """Memories z' = E q - z/tau after a time in which q runs evenly from one value to the other."""
+    branches, change = zip(modulus.moduli, memory, faded, strict=True), (end - begin) / h
+    return [z * fade.left + e * (begin * fade.filled + change * fade.grown) for e, z, fade in branches]
 
-        The next two stay in the arrays, without force, for the edge to be interpolated.
-        """
-        self._age(trial)
-        self.count = min(self.count, int(self.x[: self.count].searchsorted(trial.now.edge)) + 2)
 
-    def _aged(self, now: Instant, h: float) -> tuple[Ageing, Array]:
-        """How the springs age, and what each then carries of itself."""
-        aged = ageing(self.problem.modulus, h, now.velocity, now.acceleration)
-        return aged, np.dot(aged.decays, self.z[:, : self.count]) - self.rest[: self.count]
+def followed_bend(
+    modulus: Relaxation, memory: Values, faded: list[Fading], begin: float, mean: float, end: float, h: float
+) -> Values:
+    """The same where q is a parabola between them with this mean."""
+    slope, bend = (6.0 * mean - 4.0 * begin - 2.0 * end) / h, 3.0 * (begin + end - 2.0 * mean) / h
+    branches = zip(modulus.moduli, memory, faded, strict=True)
+    return [z * f.left + e * (begin * f.filled + slope * f.grown + bend * f.bent) for e, z, f in branches]
 
-    def _age(self, trial: Trial) -> None:
-        z = self.z[:, : self.count]
-        z *= np.array(trial.decays)[:, None]
-        z += np.array(trial.rises)[:, None]
 
-    def _try(self, now: Instant, h: float, aged: Ageing, held: Array, measure: Growing | Shrinking) -> Trial:
-        """Newton steps on a = gravity - F/m for the acceleration `a` at the end of the step."""
-        modulus, mass = self.problem.modulus, self.problem.mass
-        common, change = sum(aged.increments), sum(aged.changes)
-        yielding = 2.0 / mass * (modulus.equilibrium * h * h / 6.0 + change + 0.5 * modulus.viscosity * h)
-        small = CONVERGED * (abs(now.acceleration) + 1e-3 * abs(now.velocity) / h)
-        a = now.acceleration
-        for _ in range(NEWTON_STEPS):
-            velocity = now.velocity + 0.5 * h * (now.acceleration + a)
-            depth = now.depth + h * (now.velocity + h * (2.0 * now.acceleration + a) / 6.0)
-            viscous = modulus.viscosity * velocity
-            lift = modulus.equilibrium * depth + common + change * (a - now.acceleration) + viscous
-            half, edge = measure(lift, depth, viscous)
-            give = 1.0 + yielding * edge
-            correction = (a - self.problem.gravity + 2.0 * half / mass) / give
-            a -= correction
-            # The force may be a small difference of large terms: then their rounding is all that is left.
-            terms = modulus.equilibrium * abs(depth) + abs(common) + abs(viscous)
-            if abs(correction) <= small + CONVERGED * abs(a) + ROUNDING * terms * edge / (mass * give):
-                instant = Instant(now.time + h, depth, velocity, a, 2.0 * half, edge)
-                return Trial(instant, float(held[0]) + lift, aged.decays, aged.rises(a - now.acceleration))
-        raise NotReached("the force within one step of the spring row did not converge")
-
-    def _extend(self) -> None:
-        """Room for as many springs again."""
-        self.x, self.weights, self.rest = (np.append(c, np.zeros_like(c)) for c in (self.x, self.weights, self.rest))
-        self.z = np.hstack([self.z, np.zeros_like(self.z)])
+def left(modulus: Relaxation, h: float) -> Values:
+    """The share exp(-h/tau_k) that is left of every branch."""
+    return [math.exp(-h / tau) for tau in modulus.times]
