@@ -140,10 +140,13 @@ class _Dense:
 
 
 def _ascending(fields: Array) -> Array:
-    """Those rows whose time is later than that of all before: springs may leave at one time but for rounding."""
+    """The last row and those before which ascend to it: springs may leave at one time but for rounding."""
     if not fields.size:
         return fields
-    return fields[:, np.diff(np.maximum.accumulate(fields[0]), prepend=-1.0) > 0.0]
+    time = fields[0]
+    later = (np.diff(np.maximum.accumulate(time), prepend=-1.0) > 0.0) & (time < time[-1])
+    later[-1] = True
+    return fields[:, later]
 
 
 def _seen(fields: Array) -> Array:

@@ -46,11 +46,12 @@ class Level:
 
 @dataclass(frozen=True)
 class Nest:
-    """A problem, when to stop (s), the grid of its approach."""
+    """A problem, when to stop (s), the grid of its approach, and whether the striker counts as at rest then."""
 
     problem: Problem
     end_time: float
     grid: Grid
+    rests: bool = False
 
     @classmethod
     def around(cls, problem: Problem, end_time: float, track: Track, pace: Adaptive, intervals: int) -> Nest:
@@ -62,7 +63,7 @@ class Nest:
         for i in range(2, len(back)):
             share = pace.error(back[i - 2], back[i - 1], back[i])
             weights[-i] = max(1.0, share ** (1.0 / 3.0))
-        return cls(problem, end_time, Grid.of(track.approach, weights, intervals))
+        return cls(problem, end_time, Grid.of(track.approach, weights, intervals), track.end is End.REST)
 
     def level(self, parts: int, turn: float) -> Level:
         """March with every step cut into `parts`, again with a better time of the turn, s, until that is met.
@@ -85,7 +86,8 @@ class Nest:
         motion = [mass * self.problem.gravity * last.depth, 0.5 * mass * last.velocity**2]
         steps += len(track.rebound)
         energies = np.array([*motion, track.spent, track.held])
-        return Level(_columns(track.approach), _columns(track.rebound), track.end, steps, energies)
+        end = End.REST if self.rests else track.end
+        return Level(_columns(track.approach), _columns(track.rebound), end, steps, energies)
 
 
 def predicted_turn(levels: Sequence[Level]) -> float:

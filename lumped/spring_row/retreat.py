@@ -11,8 +11,8 @@ from lumped.spring_row.row import Instant, Row
 from lumped.spring_row.shrinking import Shrinking
 
 TRIES, CLOSE, WIDER, BEYOND = 100, 1e-12, 4.0, 1.2
-# A step that takes no time.
-LEAST = 1e-200
+# What to try first at least, of the time so far; and a step that takes no time, s.
+SHORT, LEAST = 1e-14, 1e-200
 
 
 class Bracket(NamedTuple):
@@ -48,7 +48,7 @@ def retreat(row: Row, start: Instant, end_time: float) -> tuple[list[Instant], E
 
 def _length(shrinking: Shrinking, guess: float) -> tuple[float, End]:
     """After how long nothing is left of the force at the next place; or gravity turns the striker before."""
-    low, left, h = 0.0, shrinking.pull(0.0), max(guess, LEAST)
+    low, left, h = 0.0, shrinking.pull(0.0), max(guess, SHORT * shrinking.now.time)
     if left <= 0.0:
         return 0.0, End.SEPARATED
     for _ in range(TRIES):
