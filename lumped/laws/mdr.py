@@ -20,8 +20,9 @@ from lumped.spring_row.coarse import coarse, pace_of, problem_of
 from lumped.spring_row.nest import Level, Nest, limit, predicted_turn
 
 Array = NDArray[np.float64]
-# Limits of two marches err by the fourth power of the steps: so many of the first march, of three, suffice mostly.
-INTERVALS, FEWEST, MOST = 0.9, 8, 90
+# Limits of two marches err by the fourth power of the steps: over the fourth root of the tolerance, so many steps of
+# the first of three marches suffice mostly.
+INTERVALS, FEWEST, MOST = 1.1, 8, 90
 MOST_PARTS = 64
 # Did limits of two err by h^2 alone, that of three would err by a third of what it differs from the first; twice that.
 SAFETY = 2.0 / 3.0

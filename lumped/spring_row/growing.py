@@ -10,7 +10,8 @@ from lumped.spring_row.row import Instant, Place, Row, Step, followed, followed_
 from lumped.spring_row.springs import Springs, Values, none, stretched, yielding
 
 SECANTS = 60
-CONVERGED = 1e-13
+# The last correction of the rate; what is left after it is the product of two such.
+CONVERGED = 1e-9
 # Gauss' two points on (0, 1).
 GAUSS = (0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0))
 
@@ -19,8 +20,8 @@ def grown(row: Row, now: Instant, h: float) -> Step:
     """A step of length h, s, not yet taken. Raises NotReached."""
     modulus = row.problem.modulus
     faded = fadings(modulus, h)
-    rate = _rate(row, now, h, faded)
-    width, rest, pressed = _touched(row, now, h, rate)
+    rate, width, pressed = _rate(row, now, h, faded)
+    rest = now.depth + rate * (h - pressed)
     shortly, fresh = fadings(modulus, pressed), [0.0] * len(faded)
     even, own = stretched(modulus, row.even, faded, rate), stretched(modulus, fresh, shortly, rate)
     joined = Springs.one(width, rest, [z - mine for z, mine in zip(even, own, strict=True)])
@@ -48,15 +49,18 @@ def _kept(
     return [edge * z - y for z, y in zip(axis, load, strict=True)]
 
 
-def _rate(row: Row, now: Instant, h: float, faded: list[Fading]) -> float:
-    """The rate at which the depth grows: m (v1 - v0) = m g h - int F dt with v0 + v1 twice the rate."""
+def _rate(row: Row, now: Instant, h: float, faded: list[Fading]) -> tuple[float, float, float]:
+    """The rate at which the depth grows: m (v1 - v0) = m g h - int F dt with v0 + v1 twice the rate.
+
+    With it what `_touched` says.
+    """
     modulus, mass, width = row.problem.modulus, row.problem.mass, row.springs.width
     coasting = now.velocity + 0.5 * h * row.problem.gravity
     coasting -= row.springs.impulse(modulus, now.depth, row.even, faded, h) / mass
     give = yielding(modulus, faded, h) / mass
     rate, before, missed = now.velocity + 0.5 * h * now.acceleration, 0.0, 0.0
     for secant in range(SECANTS):
-        wider, _, pressed = _touched(row, now, h, rate)
+        wider, pressed = _touched(row, now, h, rate)
         own = wider * yielding(modulus, fadings(modulus, pressed), pressed) / mass if wider else 0.0
         miss = rate * (1.0 + width * give + own) - coasting
         slope = 1.0 + (width + wider) * give
@@ -65,16 +69,15 @@ def _rate(row: Row, now: Instant, h: float, faded: list[Fading]) -> float:
         before, missed = rate, miss
         rate -= miss / slope
         if abs(rate - before) <= CONVERGED * (abs(now.velocity) + abs(rate)):
-            return rate
+            return rate, wider, pressed
     raise NotReached("the velocity within one step of the spring row did not converge")
 
 
-def _touched(row: Row, now: Instant, h: float, rate: float) -> tuple[float, float, float]:
-    """Width of the springs that a step touches, m, their mean profile, m, and for how long they are pressed, s."""
+def _touched(row: Row, now: Instant, h: float, rate: float) -> tuple[float, float]:
+    """Width of the springs that a step touches, m, and for how long they are pressed, s, by their mean profile."""
     curve, depth = row.problem.shape.load_curve, now.depth + h * rate
     width = float(curve.contact_radius(depth)) - now.edge if rate > 0.0 else 0.0
     if width <= 0.0:
-        return 0.0, now.depth, 0.0
+        return 0.0, 0.0
     low, high = (float(curve.depth(now.edge + share * width)) for share in GAUSS)
-    rest = min(max(0.5 * (low + high), now.depth), depth)
-    return width, rest, min((depth - rest) / rate, h)
+    return width, min(max((depth - 0.5 * (low + high)) / rate, 0.0), h)

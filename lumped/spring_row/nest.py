@@ -20,7 +20,7 @@ from lumped.spring_row.pace import Adaptive, Prescribed
 from lumped.spring_row.row import Instant, Problem
 
 Array = NDArray[np.float64]
-ALIGNING_TRIES = 8
+ALIGNING_TRIES, LEAST_SLOPE = 12, -0.3
 NEARLY = 1e-3
 
 
@@ -70,7 +70,7 @@ class Nest:
 
         Raises NotReached when it never is.
         """
-        steps = 0
+        steps, tried, missed = 0, 0.0, 0.0
         for _ in range(ALIGNING_TRIES):
             times = self.grid.times(turn, parts)
             inward = approach(self.problem, self.end_time, Prescribed(times), 2 * len(times), at_rest=0.0)
@@ -78,7 +78,10 @@ class Nest:
             *_, before, last = (instant.time for instant in inward.instants)
             if len(inward.instants) == len(times) + 1 and abs(last - turn) <= NEARLY * (last - before):
                 return self._level(rebound(inward, self.end_time), steps)
-            turn = last
+            # The turn hardly depends on where it was expected, mostly: the slope is -1, else the secant's.
+            slope = min((last - turn - missed) / (turn - tried), LEAST_SLOPE) if tried else -1.0
+            tried, missed = turn, last - turn
+            turn -= missed / slope
         raise NotReached("finer and coarser steps of the spring row do not follow the same course of events")
 
     def _level(self, track: Track, steps: int) -> Level:

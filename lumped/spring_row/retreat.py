@@ -10,7 +10,7 @@ from lumped.errors import NotReached
 from lumped.spring_row.row import Instant, Row
 from lumped.spring_row.shrinking import Shrinking
 
-TRIES, CLOSE, WIDER, BEYOND = 100, 1e-12, 4.0, 1.2
+TRIES, CLOSE, WIDER, BEYOND = 100, 1e-9, 4.0, 1.2
 # What to try first at least, of the time so far; and a step that takes no time, s.
 SHORT, LEAST = 1e-14, 1e-200
 
