@@ -32,6 +32,8 @@ from fe_contact.surface_pressure import felt, peak_step, scale
 from lumped.errors import BadInput, Fault
 from lumped.members import get
 from lumped.scene import Scene
+from lumped.targets import HalfSpace
+from lumped.targets.layer import Layer
 
 STRESSES = ("stress_rr", "stress_zz", "stress_hoop", "stress_rz")
 
@@ -56,8 +58,14 @@ class Fields:
 
 
 def check_fields(scene: Scene) -> None:
-    """Raises BadInput where the interior does not follow from the surface: a relaxing body of constant bulk modulus."""
-    material = scene.geometry.material
+    """Raises BadInput where the interior does not follow from the surface, or has another section than (r, z).
+
+    That is a relaxing body of constant bulk modulus; plane strain, flat ends, and what is no half-space and no layer.
+    """
+    shape, target, material = scene.geometry.shape, scene.target, scene.geometry.material
+    if shape.plane or target.fixed_radius(shape) is not None or not isinstance(target, HalfSpace | Layer):
+        reason = f"{shape.name} on {target.name}: accepted with --fields: a round profile on half_space or layer"
+        raise BadInput(Fault(scene.source, "target.shape", reason))
     if material.constant == "bulk" and not material.young.is_elastic:
         reason = "'bulk': the interior does not follow from the surface; accepted with --fields: \"poisson\""
         raise BadInput(Fault(scene.source, "target.material.constant", reason))

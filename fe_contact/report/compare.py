@@ -145,7 +145,9 @@ def _pressure(axes: Axes, comparison: Comparison) -> None:
     steps = rebound_steps(comparison.solved)
     if not steps:
         axes.set_axis_off()
-        axes.text(0.0, 0.9, "no rebound before the end of the history", transform=axes.transAxes)
+        told = comparison.solved.certified.march.snapshots
+        said = "no rebound before the end of the history" if told else "under a flat end: that of the indentation"
+        axes.text(0.0, 0.9, said, transform=axes.transAxes)
         return
     truth = felt(comparison.solved.certified, steps[-1])
     radii = surface_radii(comparison.solved)

@@ -14,6 +14,7 @@ from fe_contact.report import style
 from fe_contact.report.style import prefixed, readable, with_error
 from fe_contact.surface_pressure import Pressure, felt, peak_step
 from lumped.history import History
+from lumped.keys import Key, Number
 from lumped.result import Result
 from lumped.scene import Scene
 
@@ -30,7 +31,7 @@ def plot_history(result: Result, solved: Solved, where: Path) -> tuple[Path, Pat
         grid.update(left=0.15, right=0.965, top=0.845, bottom=0.175)
         _force(figure.add_subplot(grid[0, :]), result)
         _motion(figure.add_subplot(grid[1, 0]), result.history)
-        _pressure(figure.add_subplot(grid[1, 1]), felt(solved.certified, peak_step(solved.certified)))
+        _pressure(figure.add_subplot(grid[1, 1]), _at_peak(solved))
         style.heading(figure, result.scene.name, [_subtitle(result)], 100)
         figure.text(0.023, 0.016, caption(result.scene), fontsize=6.0, color="#4d4d4d", linespacing=1.4)
         return style.save(figure, where, "history")
@@ -39,7 +40,8 @@ def plot_history(result: Result, solved: Solved, where: Path) -> tuple[Path, Pat
 def caption(scene: Scene) -> str:
     """The scene's parameters in two lines or more."""
     material, shape, young = scene.geometry.material, scene.geometry.shape, scene.geometry.material.young
-    lengths = ", ".join(f"{key} {readable(float(getattr(shape, key)), 'm')}" for key in shape.keys)
+    sizes = {key: value for key, value in shape.to_dict().items() if isinstance(value, float)}
+    lengths = ", ".join(f"{key} {_size(shape.keys[key], value)}" for key, value in sizes.items())
     terms = [readable(young.equilibrium, "Pa")] if young.equilibrium else []
     pairs = zip(young.moduli, young.times, strict=True)
     terms += [f"{readable(modulus, 'Pa')} exp(−t/{readable(tau, 's')})" for modulus, tau in pairs]
@@ -50,6 +52,12 @@ def caption(scene: Scene) -> str:
         f"on {scene.target.name.replace('_', '-')}: E(t) = {' + '.join(terms)}, ν = {material.nu:g}{bulk}",
     )
     return "\n".join(part for line in lines for part in textwrap.wrap(line, CAPTION_WIDTH))
+
+
+def _size(key: Key, value: float) -> str:
+    """A length with a prefixed unit, anything else as it stands in the scene file."""
+    unit = key.unit if isinstance(key, Number) else ""
+    return readable(value, unit) if unit == "m" else f"{value:.3g} {unit}".rstrip()
 
 
 def _subtitle(result: Result) -> str:
@@ -109,7 +117,18 @@ def _motion(axes: Axes, history: History) -> None:
     style.label(axes, "b", "depth and radius")
 
 
-def _pressure(axes: Axes, pressure: Pressure) -> None:
+def _at_peak(solved: Solved) -> Pressure | None:
+    """Pressure at peak force, None where the march tells none."""
+    certified = solved.certified
+    return felt(certified, peak_step(certified)) if certified.march.snapshots else None
+
+
+def _pressure(axes: Axes, pressure: Pressure | None) -> None:
+    style.label(axes, "c", "pressure at peak")
+    if pressure is None:
+        axes.set_axis_off()
+        axes.text(0.0, 0.8, "under a flat end:\nthat of the indentation", transform=axes.transAxes)
+        return
     pascal, unit = prefixed(pressure.values.max(), "Pa")
     edge = pressure.contact_radius
     metre, length_unit = prefixed(edge, "m")
@@ -120,4 +139,3 @@ def _pressure(axes: Axes, pressure: Pressure) -> None:
     axes.plot(metre * radii, values, color=style.BLUE)
     axes.set(xlabel=f"radius, {length_unit}", ylabel=f"pressure, {unit}", xlim=(0, 1.12 * metre * edge))
     axes.set_ylim(0, 1.12 * values.max())
-    style.label(axes, "c", "pressure at peak")

@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_contact.reference import Solved
 from fe_contact.validation.deviations import force_bars, force_errors, pressure_error, radius_error
+from fe_contact.validation.slow_curve import known
 from lumped import simulate
 from lumped.errors import FeContactError
 from lumped.laws import get
@@ -60,25 +61,28 @@ class Comparison:
 def compare(solved: Solved, reference: Result, names: tuple[str, ...], measured: Measured | None = None) -> Comparison:
     """Judge laws by their names, and a measured curve where there is one. Raises BadInput for an unknown law."""
     members = {name: get(name) for name in names}
+    scene, curve_error = known(reference.scene, reference.quantities["peak_depth"].value or 0.0)
     laws: dict[str, Result] = {}
     refused: dict[str, str] = {}
     for name, member in members.items():
         try:
-            laws[name] = simulate(member.of(reference.scene), reference.scene, LAW_TOLERANCE)
+            laws[name] = simulate(member.of(scene), scene, LAW_TOLERANCE)
         except FeContactError as failure:  # what has no answer is told, and the others go on
             refused[name] = str(failure)
-    judged = [_law(solved, reference, law) for law in laws.values()]
+    judged = [_law(solved, reference, law, curve_error) for law in laws.values()]
     judged += [] if measured is None else [_curve(solved, reference, measured)]
     return Comparison(solved, reference, laws, measured, tuple(judged), refused)
 
 
-def _law(solved: Solved, reference: Result, law: Result) -> Judgement:
+def _law(solved: Solved, reference: Result, law: Result, curve_error: float) -> Judgement:
+    """``curve_error``: relative, of the forces on the load curve that the law follows."""
     errors = {name: _error(reference, law, name) for name in QUANTITIES}
     errors |= {"contact_radius_rebound": radius_error(solved, law), "pressure_rebound": pressure_error(solved, law)}
     scored = score(reference.history, law.history)
     errors |= force_errors(solved, law.history) | {name: getattr(scored, name) for name in DISTANCES}
-    own = float(law.history.force_error.max()) / (reference.quantities["peak_force"].value or np.inf)
-    bars = {name: _bar(reference, name) + _bar(law, name) for name in QUANTITIES} | force_bars(solved, own)
+    own = curve_error + float(law.history.force_error.max()) / (reference.quantities["peak_force"].value or np.inf)
+    bars = {name: _bar(reference, name) + _bar(law, name) + curve_error for name in QUANTITIES}
+    bars |= force_bars(solved, own)
     return Judgement(law.method, 100 * scored.normalized_error, errors, bars)
 
 

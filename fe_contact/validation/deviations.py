@@ -81,7 +81,12 @@ def surface_radii(solved: Solved) -> Array:
 
 
 def rebound_steps(solved: Solved) -> tuple[int, ...]:
-    """Steps of the finest march where the force has fallen to the ``REBOUND_SHARES`` of that at maximum depth."""
+    """Steps of the finest march where the force has fallen to the ``REBOUND_SHARES`` of that at maximum depth.
+
+    None where the march tells no pressure.
+    """
+    if not solved.certified.march.snapshots:
+        return ()
     curve = solved.certified.curve
     rebound = curve.dense_time >= deepest(solved)
     force = curve.dense_force[rebound]

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.forms import Array
+from lumped.answered import Answered
 from lumped.load_curves import LoadCurve
 from lumped.materials import Relaxation
 from lumped.result import Result
@@ -43,8 +44,11 @@ class LawPressure:
 
     @classmethod
     def of(cls, result: Result) -> LawPressure | None:
-        """The pressure of a law's result; None where it is not known: other laws, fixed areas, dashpots on a layer."""
-        if result.method not in FOLLOWING + EXACT:
+        """The pressure of a law's result; None where it is not known.
+
+        That is for other laws, fixed areas, dashpots on a layer, and where only forces on the load curve are known.
+        """
+        if result.method not in FOLLOWING + EXACT or isinstance(result.scene, Answered):
             return None
         geometry, modulus = result.scene.geometry, result.scene.contact_modulus
         grows = geometry.shape.fixed_radius is None

@@ -14,11 +14,8 @@ import numpy as np
 import pytest
 
 import fe_contact
-from fe_contact.indentation import indent
+from fe_contact.validation.slow_curve import known
 from lumped import Material, Relaxation, Result, Scene, Sphere, laws, simulate
-from lumped.answered import Answered
-from lumped.indenter import Indenter
-from lumped.load_curves.sampled import SampledCurve
 from lumped.shapes.cylinder import Cylinder as Roller
 from lumped.shapes.punch import Punch
 from lumped.targets import HalfSpace
@@ -29,7 +26,6 @@ from lumped.targets.sphere import Sphere as Ball
 TOLERANCE, YOUNG = 1e-3, 1e6
 RULED = ("peak_force", "peak_depth", "duration", "impulse", "restitution")
 IMPACTS = 30
-CURVE_DEPTHS, CURVE_TOLERANCE = 16, 3e-4
 
 
 def solid(rng: np.random.Generator, period: float, nu: float | None = None) -> Material:
@@ -100,21 +96,11 @@ def random_true_size(seed: int) -> Scene:
     return Scene(shape, mass, velocity, solid(rng, 5e-3, nu), target=target, striker_material=striker)
 
 
-def with_curve(scene: Scene, deepest: float) -> tuple[Scene, float]:
-    """The scene with the curve of a slow indentation, and what that may err by."""
-    depths = tuple(float(depth) for depth in np.geomspace(1e-2 * deepest, 1.02 * deepest, CURVE_DEPTHS))
-    slow = Indenter(scene.profile, scene.geometry.material, scene.target, scene.striker_material)
-    pressed = indent(slow, depths, {"tolerance": CURVE_TOLERANCE})
-    forces = tuple(float(force) for force in pressed.force / (pressed.modulus * scene.geometry.shape.total))
-    curve = SampledCurve(depths, forces, tuple(float(radius) for radius in pressed.contact_radius))
-    return Answered.by(scene, curve), float(np.max(pressed.force_error / pressed.force))
-
-
 def test_bodies_of_true_size_follow_ting_on_their_own_curve(campaign_size: Callable[[int], int]) -> None:
     for seed in range(2 * campaign_size(IMPACTS) // 3):
         scene = random_true_size(seed)
         found = fe_contact.run(scene, TOLERANCE)
-        answered, error = with_curve(scene, found.quantities["peak_depth"].value or 0.0)
+        answered, error = known(scene, found.quantities["peak_depth"].value or 0.0)
         agree(found, ting(answered), error)
         assert abs(found.energy["residual"] or 0.0) <= 5e-3 * (found.energy["in"] or 0.0)
 
