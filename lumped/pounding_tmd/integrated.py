@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from lumped.errors import NotReached
 from lumped.pounding_tmd.equations import Equations, Stages
+from lumped.pounding_tmd.graze import NEAR, first_graze
 from lumped.pounding_tmd.phase import Follow, Phase, fastest
 from lumped.pounding_tmd.switches import Switch, switches
 from lumped.pounding_tmd.system import Start
@@ -17,6 +19,7 @@ from lumped.pounding_tmd.system import Start
 Array = NDArray[np.float64]
 RTOL, ATOL = 1e-12, 1e-14  # the second relative to the largest values that the energy of the start allows
 INTEGRALS = 6
+TINY = 1e-300
 
 
 def route(equations: Equations, start: Start, spacing: float, end_time: float) -> Follow:
@@ -36,7 +39,8 @@ def _follow(
     from scipy import integrate
 
     size, known = equations.size, switches(equations, stages)
-    events = [_terminal(switch.level, size, span[0]) for switch in known]
+    ahead = state + NEAR * spacing * equations.rates(stages, state)
+    events = [_terminal(switch.level, size, span[0], float(switch.level(ahead)) > 0.0) for switch in known]
 
     def rate(_: float, y: Array) -> Array:
         return np.concatenate([equations.rates(stages, y[:size]), equations.integrands(stages, y[:size])])
@@ -49,7 +53,19 @@ def _follow(
     if solution.status < 0:
         raise NotReached(f"the integration stopped: {solution.message}")
     fallen = [i for i, hits in enumerate(solution.t_events or []) if hits.size]
-    return _phase(stages, solution, size), known[fallen[0]] if fallen else None
+    phase = _phase(stages, solution, size)
+    levels = [switch.level for switch in known]
+    graze = first_graze(levels, phase.times, phase.states, lambda y: equations.rates(stages, y), phase.at)
+    if graze is not None:
+        return _cut(phase, graze.time), known[graze.level]
+    return phase, known[fallen[0]] if fallen else None
+
+
+def _cut(phase: Phase, end: float) -> Phase:
+    """The phase up to a time, s."""
+    kept = phase.times < end
+    states = np.column_stack([phase.states[:, kept], phase.at(end)])
+    return replace(phase, times=np.append(phase.times[kept], end), states=states)
 
 
 def _phase(stages: Stages, solution: Any, size: int) -> Phase:
@@ -74,12 +90,18 @@ def _scales(equations: Equations, start: Start) -> Array:
     return np.array([*bodies, *surfaces, *squares, *[energy] * (INTEGRALS - len(squares))])
 
 
-def _terminal(level: Callable[[Array], Array], size: int, start: float) -> Callable[[float, Array], float]:
-    """The level in scipy's manner: attributes of the function say that it ends the run, and only falling."""
+def _terminal(
+    level: Callable[[Array], Array], size: int, start: float, rises: bool
+) -> Callable[[float, Array], float]:
+    """The level in scipy's manner: attributes of the function say that it ends the run, and only falling.
+
+    `rises`: from the start on. Then a fall within the first step is not that at the start.
+    """
+    least = TINY if rises else 0.0
 
     def marked(time: float, y: Array) -> float:
         # No level is below zero when a phase begins; what rounding says there would hide a fall from zero.
-        return max(float(level(y[:size])), 0.0) if time == start else float(level(y[:size]))
+        return max(float(level(y[:size])), least) if time == start else float(level(y[:size]))
 
     marked.terminal = True  # type: ignore[attr-defined]
     marked.direction = -1.0  # type: ignore[attr-defined]
