@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -24,7 +25,7 @@ def record(
         radius_time=np.array([step.radius_time for step in steps]),
         radius=np.array([step.radius for step in steps]),
         separated=separated,
-        snapshots=stepper.snapshots(steps) if stepper.accounted else (),
+        photograph=partial(stepper.snapshots, steps) if stepper.accounted else tuple,
         energy=_energy(stepper, states, steps) if stepper.accounted else {},
         end_spread=end_spread,
         work=Work(len(steps), sum(w.contact_problems for w in works), sum(w.iterations for w in works)),

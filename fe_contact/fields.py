@@ -25,7 +25,7 @@ from skfem import Basis
 
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.forms import Array, isotropic
-from fe_contact.numerics import ENFORCEMENTS, SCHEMES
+from fe_contact.numerics import ENFORCEMENTS
 from fe_contact.reference import Solved
 from fe_contact.stepping import BEYOND
 from fe_contact.surface_pressure import felt, peak_step, scale
@@ -91,9 +91,8 @@ def fields_at_peak(scene: Scene, solved: Solved) -> Fields:
     certified, march = solved.certified, solved.certified.march
     assert isinstance(certified.surface, ScaledSurface)
     operator, step = certified.surface.operator, peak_step(certified)
-    share = float(get(SCHEMES, solved.numerics.scheme).SAMPLE)
-    depth = float((1 - share) * march.depth[step] + share * march.depth[step + 1])
     pressure = felt(certified, step)
+    depth = float(np.interp(pressure.time, march.time, march.depth))
     length = scale(operator, march.snapshots[step])
     points = length * operator.basis.doflocs.T
     touching = (points[:, 1] == 0.0) & (points[:, 0] <= pressure.contact_radius)

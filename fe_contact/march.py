@@ -1,9 +1,10 @@
-"""What goes into an impact and what comes out of it: frozen records without behaviour."""
+"""What goes into an impact and what comes out of it: frozen records."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 from fe_contact.forms import Array
@@ -50,9 +51,8 @@ class March:
 
     ``time``, ``depth``, ``impulse`` (n,) at the ends of the steps, the first row at touch, the last at
     separation or ``end_time``; ``first_force``, N, right at touch; ``radius_time``, ``radius`` (n,) of the contact;
-    ``snapshots`` one a step;
-    ``energy`` J, each term computed on its own; ``end_spread`` s, how far the last predictions of the
-    separation lie apart.
+    ``photograph`` makes a snapshot a step; ``energy`` J, each term computed on its own; ``end_spread`` s, how far
+    the last predictions of the separation lie apart.
     """
 
     time: Array
@@ -62,7 +62,12 @@ class March:
     radius_time: Array
     radius: Array
     separated: bool
-    snapshots: tuple[Snapshot, ...]
+    photograph: Callable[[], tuple[Snapshot, ...]]
     energy: dict[str, float]
     end_spread: float
     work: Work
+
+    @cached_property
+    def snapshots(self) -> tuple[Snapshot, ...]:
+        """The surface in every step, where it is known; read when first asked for: few impacts ever show it."""
+        return self.photograph()

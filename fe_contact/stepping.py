@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fe_contact import instants
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, area_weights, interpolate, step_law
 from fe_contact.contact import ContactSolution, Touching, count, moved
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
@@ -95,18 +96,8 @@ class Stepper:
         return Step(length, moved, force, radius, found_at, axis, solution, scale, work)
 
     def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
-        """Radii and pressure at the quadrature points, on the mesh of each step."""
-        points, early = self.surface.operator.points, 1 - self.scheme.SAMPLE
-        return tuple(
-            Snapshot(
-                time=step.state.time - early * step.length,
-                force=step.force,
-                contact_radius=step.radius,
-                radii=step.scale * points,
-                pressure=step.solution.pressure / step.scale,
-            )
-            for step in steps
-        )
+        """Pressures at instants: at the end of a step while the contact grows, else where it is sampled."""
+        return instants.read(self, steps)
 
     def stored(self, memory: SurfaceMemory) -> float:
         """Elastic energy, J."""

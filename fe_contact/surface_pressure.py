@@ -2,7 +2,8 @@
 
 The march keeps pressure at quadrature points, where the surface's memory leaves a roughness of some per cent
 that has no moment against any shape function: force and displacement do not feel it. Projected onto the
-surface's own shape functions the pressure is smooth, and its integral unchanged.
+surface's own shape functions the pressure is smooth, and its integral unchanged. Where the mesh follows the contact
+it is read otherwise, see :mod:`fe_contact.instants`, and has no such roughness.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from fe_contact.operators import SurfaceOperator
 
 @dataclass(frozen=True, eq=False)
 class Pressure:
-    """Pressure (n,), Pa, at the radii (n,), m, of the surface's nodes in one step; time, s; contact radius, m."""
+    """Pressure (n,), Pa, at radii (n,), m, of the surface in one step; time, s; contact radius, m."""
 
     time: float
     contact_radius: float
@@ -27,7 +28,7 @@ class Pressure:
     values: Array
 
     def at(self, radii: Array) -> Array:
-        """Pressure at other radii, linear between the nodes, zero beyond the contact."""
+        """Pressure at other radii, linear in between, zero beyond the contact."""
         return np.where(radii <= self.contact_radius, np.interp(radii, self.radii, self.values), 0.0)
 
 

@@ -22,7 +22,7 @@ from fe_contact.bodies.struck import Deformable
 from fe_contact.bodies.surface_body import SurfaceBody
 from fe_contact.contact import ContactProblem, PressedSurface
 from fe_contact.forms import Array
-from fe_contact.march import Strike
+from fe_contact.march import Snapshot, Strike
 from fe_contact.numerics import Numerics
 from fe_contact.operators import SurfaceOperator, monomials
 from fe_contact.stepping import Stepper
@@ -57,6 +57,10 @@ class ScaledSurface(Deformable):
         """What contact knows of it: one object, since the answers to a surface are kept by its identity."""
         operator = self.operator
         return PressedSurface(operator.stiffness, operator.trace, operator.weights, self.breathes)
+
+    def felt(self, snapshot: Snapshot) -> tuple[Array, Array]:
+        """Where the mesh follows the contact, what the snapshot says: it has no roughness to be freed of."""
+        return (snapshot.radii, snapshot.pressure) if self.breathes else super().felt(snapshot)
 
     def problem(self, overlap: Array, penalty: float, yielding: float | Array) -> ContactProblem:
         """Contact problem on the unit mesh.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
 import lumped
@@ -13,6 +14,9 @@ from fe_contact.numerics import Numerics
 from lumped.load_curves.hertz import hertz_impact
 from lumped.materials import Relaxation
 from lumped.shapes import Parabola
+
+LAWS = ("elastic", "prony of one term", "prony of three terms", "kelvin_voigt")
+POISSON_OFTEN = (0.0, 0.3, 0.45, 0.49, 0.499, 0.4999)
 
 SETTINGS: dict[str, Any] = {
     "tolerance": 1e-3,
@@ -68,3 +72,37 @@ def scene_of() -> Callable[..., lumped.Scene]:
         return lumped.Scene.from_dict({"name": "test", "striker": striker, "target": target, **tables})
 
     return build
+
+
+def material(rng: np.random.Generator, law: str, young: float, contact_time: float) -> dict[str, Any]:
+    """Instantaneous over relaxed modulus to 11; relaxation times from 0.01 to 10 contact times."""
+    if law == "elastic":
+        return {"law": "elastic", "E": young}
+    taus = contact_time * 10 ** rng.uniform(-2, 1, 3)
+    if law == "kelvin_voigt":
+        return {"law": law, "E": young, "eta": young * taus[0]}
+    terms = 1 if law == LAWS[1] else 3
+    branches = rng.uniform(0.1, 10.0) * young * rng.dirichlet(np.ones(terms))
+    return {"law": "prony", "E_inf": young, "E": branches.tolist(), "tau": taus[:terms].tolist()}
+
+
+def impact(rng: np.random.Generator, number: int) -> lumped.Scene:
+    """One impact: size, stiffness and mass over decades, contact radius up to 0.3 striker radii."""
+    law = LAWS[number % len(LAWS)]
+    nu = float(rng.choice(POISSON_OFTEN) if rng.random() < 0.5 else rng.uniform(0, 0.4999))
+    radius, young = 10 ** rng.uniform(-3, -1), 10 ** rng.uniform(5, 11)
+    depth = radius * 10 ** (2 * rng.uniform(-2, np.log10(0.3)))
+    mass = rng.uniform(0.5, 2) * rng.uniform(800, 8000) * 4 / 3 * np.pi * radius**3
+    velocity = np.sqrt(16 / 15 * young / (1 - nu**2) * np.sqrt(radius) * depth**2.5 / mass)
+    table = material(rng, law, young, 2.943275 * depth / velocity) | {"nu": nu}
+    if law != "elastic" and number % 12 < len(LAWS):  # a quarter of the impacts
+        table["constant"] = "bulk"
+    striker = {"shape": "sphere", "radius": radius, "mass": mass, "velocity": velocity}
+    target = {"shape": "half_space", "material": table}
+    return lumped.Scene.from_dict({"name": f"impact-{number}", "striker": striker, "target": target})
+
+
+@pytest.fixture(scope="session")
+def random_impact() -> Callable[[np.random.Generator, int], lumped.Scene]:
+    """A sphere on a half-space drawn from a generator, by the ``LAWS`` in turn."""
+    return impact
