@@ -311,14 +311,14 @@ def swing_of_the_damper(start: Start, end: float) -> tuple[float, float]:
 @pytest.mark.parametrize("start", [BOTH, STRUCTURE])
 def test_a_graze_between_two_steps_is_not_stepped_over(start: Start, exponent: float) -> None:
     """The ring stands a hair inside the widest swing: for c t^2/8 the damper is in it for the time t."""
-    widest, curvature = swing_of_the_damper(start, 2.0)
+    widest, curvature = swing_of_the_damper(start, 0.7)
     for lasting in (3e-4, 1e-3, 1.5e-3):
         ring = replace(lining(), gap=widest - curvature * lasting**2 / 8.0, exponent=exponent)
-        (contact,) = simulate(with_ring(ring), start, 2.0, route="integrated").contacts
+        (contact,) = simulate(with_ring(ring), start, 0.7, route="integrated").contacts
         # the ring hardly pushes, and relaxes meanwhile: it lets go a little earlier than the flight without it does
-        assert 0.97 * lasting < contact.end - contact.start < lasting
+        assert 0.96 * lasting < contact.end - contact.start < lasting
         if exponent == 1.0:
-            (exact,) = simulate(with_ring(ring), start, 2.0, route="exact").contacts
+            (exact,) = simulate(with_ring(ring), start, 0.7, route="exact").contacts
             assert contact.end - contact.start == pytest.approx(exact.end - exact.start, rel=1e-7)
 
 
