@@ -41,11 +41,11 @@ class Pressing:
 
     def overlap(self, displacement: Array) -> Array:
         """Interpenetration at the points, (q,), m, positive inside."""
-        return np.asarray(self.clearance - self.trace @ (self.push.T @ displacement))
+        return np.asarray(self.clearance - self._seen @ displacement)
 
     def closing(self, velocity: Array) -> Array:
         """Rate of the overlap, (q,), m/s."""
-        return np.asarray(-(self.trace @ (self.push.T @ velocity)))
+        return np.asarray(-(self._seen @ velocity))
 
     def forces(self, pressure: Array) -> Array:
         """Surface forces (m,), N, of a pressure (q,), Pa."""
@@ -54,6 +54,11 @@ class Pressing:
     def load(self, pressure: Array) -> Array:
         """Nodal forces (N,), N, of a pressure (q,), Pa."""
         return np.asarray(self.push @ self.forces(pressure))
+
+    @cached_property
+    def _seen(self) -> Any:
+        """Displacement at the points of that of the body, sparse (q, N)."""
+        return sparse.csr_matrix(self.trace) @ self.push.T.tocsr()
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +81,11 @@ class Body:
     def size(self) -> int:
         """Number of degrees of freedom."""
         return int(self.rigid.size)
+
+    @property
+    def is_elastic(self) -> bool:
+        """Whether no part has a memory or a viscosity."""
+        return all(part.relaxation.is_elastic for part in self.parts)
 
     @cached_property
     def inertia(self) -> Any:

@@ -75,8 +75,10 @@ def _standing(body: Body, state: State) -> tuple[float, float, float, float]:
     v = state.velocity
     overlap = np.maximum(body.pressing.overlap(state.displacement), 0.0)
     springs = 0.5 * float((body.pressing.weights * state.pressure) @ overlap)
-    parts = zip(body.parts, state.branches, strict=True)
-    strain = sum(memory.stored(part, state.displacement, own) for part, own in parts)
+    strain = 0.5 * float(state.displacement @ state.internal)
+    if not body.is_elastic:
+        parts = zip(body.parts, state.branches, strict=True)
+        strain = sum(memory.stored(part, state.displacement, own) for part, own in parts)
     return 0.5 * float(body.rigid @ v**2), 0.5 * float(v @ (body.mass @ v)), strain, springs
 
 
@@ -93,12 +95,19 @@ def _of_inertia(body: Body, scheme: Scheme, before: State, after: State, step: f
 def _of_stress(body: Body, scheme: Scheme, before: State, after: State, step: float, change: Array) -> float:
     """Loss by stress and damping that are not averages over the step."""
     late, early = 1 - scheme.alpha_f, scheme.alpha_f
-    forces = late * after.internal + early * before.internal
-    for part, own in zip(body.parts, before.branches, strict=True):
-        forces = forces - part.stiffness @ memory.averaged(part, step, before.displacement, change, own)
+    forces = late * after.internal + early * before.internal - _average(body, before, after, step, change)
     if body.damping is not None:
         forces = forces + body.damping @ (late * after.velocity + early * before.velocity - change / step)
     return float(change @ forces)
+
+
+def _average(body: Body, before: State, after: State, step: float, change: Array) -> Array:
+    """Nodal forces (N,) of the stress, over a step in which the displacement changes linearly."""
+    if body.is_elastic:
+        return 0.5 * (before.internal + after.internal)
+    parts = zip(body.parts, before.branches, strict=True)
+    means = [p.stiffness @ memory.averaged(p, step, before.displacement, change, own) for p, own in parts]
+    return np.asarray(sum(means, np.zeros(body.size)))
 
 
 def _contact_work(body: Body, scheme: Scheme, before: State, after: State, change: Array) -> float:

@@ -64,6 +64,8 @@ def stored(part: Part, displacement: Array, branches: Array) -> float:
 
 def heat(part: Part, step: float, change: Array, branches: Array) -> float:
     """Heat of the dashpots over a step in which the displacement changes linearly, J."""
+    if part.relaxation.is_elastic:
+        return 0.0
     relaxation, pulled = part.relaxation, part.stiffness @ change
     pull = float(change @ pulled)
     lost = relaxation.viscosity * pull / step

@@ -7,22 +7,24 @@ and Kunisch 2002, doi:10.1137/S1052623401383558). Single points would be too man
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from fe_contact import contact
-from fe_contact.contact import ContactProblem, ContactSolution, Touching
+from fe_contact.contact import ContactProblem, ContactSolution, PressedSurface, Touching
 from fe_contact.forms import Array
 
 SOLVES = 1
+SURFACES_KEPT = 8
 
 
 def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:
     """Solve; a set of nodes that cycles is reported as not converged."""
-    surface, shapes = problem.surface, independent(problem.surface.trace)
-    test = shapes.T * surface.weights  # (n, q)
-    loads = surface.trace.T @ test.T
+    surface = problem.surface
+    shapes, test, yielding = _system(surface)
     retreat = test @ np.broadcast_to(problem.yielding, surface.weights.shape)
-    yielding = loads.T @ np.linalg.solve(surface.stiffness, loads) + np.outer(test.sum(axis=1), retreat)
+    yielding = yielding + np.outer(test.sum(axis=1), retreat)
     free = test @ problem.overlap
     size = np.abs(np.diag(yielding))  # pressure and overlap in one unit
     reach = np.abs(test)
@@ -37,6 +39,15 @@ def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:
             return _solution(shapes @ (pressure + left / size), iteration, True)
         held = wanted
     return _solution(shapes @ (pressure + left / size), iteration, False)
+
+
+@lru_cache(maxsize=SURFACES_KEPT)
+def _system(surface: PressedSurface) -> tuple[Array, Array, Array]:
+    """Shape functions of the pressure (q, n), the same as weighted tests (n, q), and how they yield, (n, n)."""
+    shapes = independent(surface.trace)
+    test = shapes.T * surface.weights
+    loads = surface.trace.T @ test.T
+    return shapes, test, loads.T @ np.linalg.solve(surface.stiffness, loads)
 
 
 def independent(trace: Array) -> Array:

@@ -1,0 +1,55 @@
+"""``fe-contact stability``: where methods break, and why the defaults do not."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections import Counter
+from typing import TYPE_CHECKING, NamedTuple
+
+from fe_contact.commands import base
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fe_contact.validation.stability.base import Row
+
+SUMMARY = "maps of energy, ripple, penetration and failures over scheme, mass, enforcement, penalty and time step"
+
+
+class Bars(NamedTuple):
+    """What the folder of results is called after."""
+
+    name: str = "bars"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """[--quick] [--jobs N] [--out DIR] [--json] [--quiet]."""
+    base.output_arguments(parser)
+    parser.add_argument("--quick", action="store_true", help="fewer elements, steps and penalties")
+    parser.add_argument("--jobs", type=int, default=2, choices=range(1, 65), metavar="N", help="processes; default 2")
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Measure what is not yet measured, write, draw; 0."""
+    from fe_contact.report.stability import plot_stability
+    from fe_contact.validation.stability_files import rows_of, write_stability
+
+    where = base.folder(args, "stability", Bars())
+    progress = base.progress_of(args)
+    rows = rows_of(args.quick, args.jobs, where, progress)
+    content = write_stability(rows, where)
+    progress("charts")
+    plot_stability(rows, where)
+    print(json.dumps(content, allow_nan=False) if args.json else "\n".join([*_lines(rows), f"written to {where}"]))
+    return base.DONE
+
+
+def _lines(rows: Sequence[Row]) -> list[str]:
+    """A line a study."""
+    counted = Counter(row["study"] for row in rows)
+    failed = Counter(row["study"] for row in rows if row["failure"])
+    lines = [f"{study:16s} {count} cases, {failed[study]} of them named failures" for study, count in counted.items()]
+    kept = [row for row in rows if row.get("all_kept")]
+    held = [f"{row['scheme']} {row['mass']} {row['enforcement']}, CFL {row['cfl']:g}" for row in kept]
+    return [*lines, f"all limits kept over ten periods: {'; '.join(held) or 'by no scheme'}"]

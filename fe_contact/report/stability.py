@@ -1,0 +1,90 @@
+"""Maps of where methods break: one chart a study, one panel a measure."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import TwoSlopeNorm
+from matplotlib.figure import Figure
+
+from fe_contact.report import style
+from fe_contact.validation.stability.base import STUDIES, Chart, Measure, Row
+from lumped.members import available, get
+
+CELL, LETTER = 0.16, 0.062  # height of a row, width of a letter of its name, in
+DECADES = 2.0  # either side of the limit that the colours span
+TITLE_WIDTH = 132
+LINES = [
+    "White: at its limit; green: below it, to a hundredth; red: above it, to a hundredfold. Cross: a named failure.",
+]
+
+
+def plot_stability(rows: Sequence[Row], where: Path) -> list[Path]:
+    """Write ``<study>.svg`` and ``.png`` of every study into the folder ``where``; their paths."""
+    found = list[Path]()
+    for study in available(STUDIES):
+        own = [row for row in rows if row["study"] == study]
+        module = get(STUDIES, study)
+        with style.look():
+            figure = _map(own, module.TITLE, module.CHART)
+            found += style.save(figure, where, study)
+    return found
+
+
+def _map(rows: Sequence[Row], title: str, chart: Chart) -> Figure:
+    names, columns = _labels(rows, chart.rows), _labels(rows, chart.columns)
+    above = style.heading_height(LINES, TITLE_WIDTH) + 0.3
+    left, below = 0.3 + LETTER * max(map(len, names)), 0.2 + LETTER * max(map(len, columns))
+    panel = CELL * len(names)
+    height = above + len(chart.measures) * (panel + 0.35) + below
+    figure = Figure(figsize=(style.PAGE, height))
+    for place, (name, measure) in enumerate(chart.measures.items()):
+        bottom = height - above - (place + 1) * (panel + 0.35) + 0.35
+        box = (left / style.PAGE, bottom / height, 0.985 - left / style.PAGE, panel / height)
+        axes = figure.add_axes(box)
+        _panel(axes, _table(rows, chart, names, columns, name), measure)
+        style.label(axes, "abcdefgh"[place], f"{measure.label}, limit {measure.limit:g}")
+        axes.set_yticks(range(len(names)), names, fontsize=5.6)
+        last = place == len(chart.measures) - 1
+        axes.set_xticks(range(len(columns)), columns if last else [""] * len(columns), rotation=90, fontsize=5.6)
+    style.heading(figure, title, LINES, TITLE_WIDTH)
+    return figure
+
+
+def _panel(axes: Axes, table: Mapping[tuple[int, int], float | None], measure: Measure) -> None:
+    """Colours by the decades from the limit; a cross where there is no number."""
+    shape = tuple(1 + max(place[axis] for place in table) for axis in (0, 1))
+    colours = np.full(shape, np.nan)
+    for place, value in table.items():
+        if value is None:
+            axes.plot(place[1], place[0], marker="x", markersize=3.5, color=style.BLACK, markeredgewidth=0.7)
+        else:
+            size = max(abs(value), measure.limit * 10.0**-DECADES)
+            colours[place] = min(math.log10(size / measure.limit), DECADES)
+    axes.imshow(colours, cmap="RdYlGn_r", norm=TwoSlopeNorm(0.0, -DECADES, DECADES), aspect="auto")
+
+
+def _table(
+    rows: Sequence[Row], chart: Chart, names: Sequence[str], columns: Sequence[str], measure: str
+) -> dict[tuple[int, int], float | None]:
+    """Value of a measure by row and column of the map."""
+    return {
+        (names.index(_label(row, chart.rows)), columns.index(_label(row, chart.columns))): row.get(measure)
+        for row in rows
+    }
+
+
+def _labels(rows: Sequence[Row], keys: Sequence[str]) -> list[str]:
+    """In the order of their first row."""
+    return list(dict.fromkeys(_label(row, keys) for row in rows))
+
+
+def _label(row: Mapping[str, Any], keys: Sequence[str]) -> str:
+    found = [(key, row[key]) for key in keys]
+    words = [f"{key} {value:g}" if isinstance(value, float) else str(value) for key, value in found]
+    return ", ".join(words).replace("_", " ").replace("cfl", "CFL")

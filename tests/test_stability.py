@@ -1,0 +1,196 @@
+"""Where methods break: each failure as theory predicts it, the bar's default beside it holding; the command's files."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_contact.bodies.bar import falling
+from fe_contact.cli import main
+from fe_contact.dynamics.mass import redistributed
+from fe_contact.errors import MotionUnbounded
+from fe_contact.validation import stability_files
+from fe_contact.validation.stability import explicit_limit, table
+from fe_contact.validation.stability._bar import BAR, bounced, measured
+from fe_contact.validation.stability.base import STUDIES, row
+from lumped.members import available, get
+
+DEFAULT = {
+    "scheme": "central_difference",
+    "rho": 1.0,
+    "mass": "redistributed",
+    "enforcement": "exact",
+    "penalty": 1.0,
+    "cfl": 1.0,
+    "elements": 60,
+    "periods": 1,
+}
+
+
+def found(**changes: Any) -> dict[str, Any]:
+    return measured({**DEFAULT, **changes})
+
+
+@pytest.fixture(scope="module")
+def default() -> dict[str, Any]:
+    return found()
+
+
+def test_the_default_bounces_for_ten_periods() -> None:
+    """A hundred elements: no energy, no beat and no ripple is lost; the duration to little more than a step."""
+    kept = found(elements=100, periods=10)
+    assert abs(kept["drift"]) < 1e-3
+    assert kept["ripple"] < 0.02
+    assert abs(kept["start"]) < 0.01
+    assert abs(kept["duration_steps"]) < 1.5
+    assert 0.9 < kept["contacts"] <= 1.0
+    assert kept["penetration"] < 1e-12
+    assert kept["residual"] < 1e-6
+
+
+def test_the_default_converges_with_order_one() -> None:
+    """Impulse and beat err in proportion to the step; the duration by the same share of a step."""
+    coarse, fine = (found(elements=n) for n in (40, 160))
+    for name in ("restitution", "start"):
+        assert abs(fine[name]) < 0.4 * abs(coarse[name])
+    assert abs(fine["duration_steps"] - coarse["duration_steps"]) < 0.1
+
+
+def test_an_exact_constraint_on_a_surface_with_mass_chatters_implicitly(default: dict[str, Any]) -> None:
+    """The trapezoidal rule reverses the velocity of a node that it stops: contact every other step, never a plateau."""
+    broken = found(scheme="trapezoidal", mass="consistent")
+    assert broken["contacts"] > 10 * default["contacts"]
+    assert broken["duration_steps"] < -0.9 * 120
+    assert broken["ripple"] > 0.5
+    assert default["ripple"] < 0.02
+
+
+def test_a_surface_without_mass_stops_the_chatter() -> None:
+    assert found(scheme="trapezoidal", mass="redistributed")["ripple"] < 0.01
+
+
+def test_damping_the_chatter_costs_energy(default: dict[str, Any]) -> None:
+    """The fully implicit scheme has no chatter either, and loses more than a fifth of the energy in a period."""
+    damped = found(scheme="fully_implicit", mass="consistent", periods=2)
+    assert damped["contacts"] < 3
+    assert damped["drift"] < -0.2
+    assert abs(default["drift"]) < 0.01
+
+
+def test_a_penalty_lets_in_what_its_stiffness_says_and_the_default_nothing(default: dict[str, Any]) -> None:
+    """Largest force over stiffness, 500 N on 900 N/m^2 x area / element: in units of v L/c."""
+    soft = found(enforcement="penalty")
+    size = BAR.length / DEFAULT["elements"]
+    assert soft["penetration"] == pytest.approx(500.0 / (900.0 / size) / (10.0 / 3.0), rel=0.05)
+    assert found(enforcement="corrected")["penetration"] < 0.7 * soft["penetration"]
+    assert default["penetration"] < 1e-12
+
+
+@pytest.mark.parametrize("mass", ["lumped", "redistributed"])
+def test_two_over_omega_max_is_the_limit_of_a_linear_bar(mass: str) -> None:
+    """A bar pressed on for good, its contact always closed, is stable below it and not beyond."""
+    elements, penalty = 10, 10.0
+    limit = explicit_limit.linear_limit(mass, penalty, elements)
+    body = falling(BAR, elements, get("fe_contact.dynamics.mass", mass), 0.0)
+    case = {"scheme": "central_difference", "rho": 1.0, "mass": mass, "enforcement": "penalty", "penalty": penalty}
+    size = BAR.length / elements
+    assert body.inertia.diagonal().sum() == pytest.approx(10.0)
+    for share, stable in ((0.98, True), (1.05, False)):
+        held = {**case, "cfl": share * limit * 30.0 / size, "elements": elements, "periods": 2}
+        if stable and mass == "redistributed":
+            assert max(sample.force for sample in bounced(held).samples) < 2000.0
+        elif not stable:
+            gained = row("explicit_limit", {**case, "share": share, "elements": elements, "periods": 2})
+            assert gained["failure"] == MotionUnbounded.__name__ or gained["gain"] > 1.0
+
+
+def test_the_linear_limit_is_not_safe_for_contact_that_opens_and_closes() -> None:
+    """Central difference with a penalty on a surface with mass gains energy at 0.9 of it, and hardly any at 0.3."""
+    shares = {share: explicit_limit.measure(_limit("lumped", 10.0, share))["gain"] for share in (0.3, 0.9)}
+    assert shares[0.9] > 0.5
+    assert shares[0.3] < 0.05
+    assert explicit_limit.measure(_limit("redistributed", 10.0, 0.9))["gain"] < 0.05
+
+
+def _limit(mass: str, penalty: float, share: float) -> dict[str, Any]:
+    return {"mass": mass, "penalty": penalty, "share": share, "elements": 10, "periods": 1}
+
+
+def test_a_step_beyond_the_limit_is_a_named_failure_and_no_number() -> None:
+    broken = row("bouncing", {**DEFAULT, "cfl": 2.0})
+    assert broken["failure"] == "MotionUnbounded"
+    assert "drift" not in broken
+
+
+def test_every_study_names_its_settings_and_measures() -> None:
+    for study in available(STUDIES):
+        module = get(STUDIES, study)
+        quick, full = module.cases(True), module.cases(False)
+        assert 0 < len(quick) < len(full)
+        assert {*module.CHART.rows, *module.CHART.columns} <= set(quick[0])
+        keys = [json.dumps(case, sort_keys=True) for case in full]
+        assert len(set(keys)) == len(keys)
+
+
+# the command
+
+
+@pytest.fixture
+def few(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
+    """Two small cases of the table alone: one that holds, one that fails."""
+    small = {**DEFAULT, "elements": 10}
+    cases = [small, {**small, "cfl": 2.0}]
+    for study in available(STUDIES):
+        monkeypatch.setattr(get(STUDIES, study), "cases", lambda quick, own=study == "table": cases if own else [])
+    monkeypatch.setattr("fe_contact.report.stability.plot_stability", lambda rows, where: [])
+    return cases
+
+
+def test_the_command_writes_rows_and_counts(few: list[dict[str, Any]], tmp_path: Path) -> None:
+    assert main(["stability", "--quick", "--jobs", "1", "--out", str(tmp_path), "--quiet"]) == 0
+    with (tmp_path / "table.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [r["failure"] for r in rows] == ["", "MotionUnbounded"]
+    content = json.loads((tmp_path / "stability.json").read_text())
+    assert content["cases"] == len(few)
+    assert content["failures"] == {"MotionUnbounded": 1}
+    assert content["steps"] == 160
+
+
+def test_an_interrupted_study_resumes(
+    few: list[dict[str, Any]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first row is kept; a line that was cut short is measured again."""
+    calls = []
+    monkeypatch.setattr(stability_files, "row", lambda study, case: calls.append(case) or row(study, case))
+    whole = stability_files.rows_of(True, 1, tmp_path, lambda message: None)
+    assert len(calls) == 2
+    path = tmp_path / stability_files.KEPT
+    path.write_text(path.read_text()[:-20])
+    calls.clear()
+    again = stability_files.rows_of(True, 1, tmp_path, lambda message: None)
+    assert calls == [few[1]]
+    assert again == whole
+    assert np.isfinite(again[0]["drift"])
+
+
+def test_the_chart_shows_every_case(tmp_path: Path) -> None:
+    from fe_contact.report.stability import plot_stability
+
+    rows = [row("table", {**DEFAULT, "elements": 10, "cfl": cfl}) for cfl in (1.0, 2.0)]
+    limits = [{"study": "explicit_limit", **_limit("lumped", 1.0, 0.5), "gain": 0.1, "failure": ""}]
+    maps = [{**r, "study": "bouncing"} for r in rows]
+    paths = plot_stability([*rows, *limits, *maps], tmp_path)
+    assert {p.name for p in paths} == {f"{s}.{kind}" for s in available(STUDIES) for kind in ("svg", "png")}
+    assert "named failure" in (tmp_path / "table.svg").read_text()
+
+
+def test_the_table_has_the_default_and_its_rivals() -> None:
+    assert tuple(DEFAULT[key] for key in ("scheme", "rho", "mass", "enforcement")) in table.ROWS
+    assert len(table.ROWS) >= 12
+    assert redistributed.__name__.rpartition(".")[2] == DEFAULT["mass"]
