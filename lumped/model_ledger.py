@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from lumped.radiation import pulse_energy
 from lumped.result import LedgerEntry
@@ -92,16 +92,16 @@ def _deformed_gap(nu: float, peak: Peak) -> LedgerEntry:
 
 
 def _sideways(scene: Scene) -> LedgerEntry:
-    """At most what the instantaneous modulus changes by, to the power 2/5 of a peak force."""
+    """At most what the instantaneous modulus changes by, 4G(3K+G)/(3K+4G) over 2G/(1-nu), to the power 2/5."""
     effect, material = "constant nu against constant bulk modulus", scene.geometry.material
     treated = "constant nu" if material.constant == "poisson" else "constant bulk modulus"
     if material.young.is_elastic:
         return LedgerEntry(effect, treated, 0.0, "elastic: the same")
     if material.young.viscosity > 0.0 or material.young.relaxed == 0.0:
         return LedgerEntry(effect, treated, None, "no bound for a fluid or a dashpot in parallel")
-    poisson = replace(material, constant="poisson").contact_modulus().glassy
-    bulk = replace(material, constant="bulk").contact_modulus().glassy
-    return LedgerEntry(effect, treated, 1.0 - (bulk / poisson) ** 0.4, "bound; target.material.constant")
+    shear, bulk = material.young.glassy / (2.0 * (1.0 + material.nu)), material.bulk
+    softer = 2.0 * (1.0 - material.nu) * (3.0 * bulk + shear) / (3.0 * bulk + 4.0 * shear)
+    return LedgerEntry(effect, treated, 1.0 - softer**0.4, "bound; target.material.constant")
 
 
 def _series(scene: Scene, peak: Peak) -> LedgerEntry:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -192,7 +193,7 @@ class Scene:
         """The striker's shape as `model.profile` resolves it. Raises BadInput without geometry."""
         return self.geometry.shape.resolved(self.model.profile)
 
-    @property
+    @cached_property
     def contact_modulus(self) -> Relaxation:
         """E*(t) of the contact, Pa. Raises BadInput without geometry."""
         return contact_modulus(self.geometry.shape, self.geometry.material, self.striker_material)
@@ -211,7 +212,7 @@ class Scene:
                 Fault(self.source, "target.material.constant", f'{reason}; accepted: "poisson", or --method fe')
             )
 
-    @property
+    @cached_property
     def elastic_contact_time(self) -> float:
         """Hertz contact time with the relaxed modulus, or the glassy one of a fluid; or of the bare law, s."""
         if self.law is not None and not self.has_geometry:

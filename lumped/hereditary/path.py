@@ -8,10 +8,9 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from lumped.hereditary.radau import Radau
+from lumped.hereditary.radau import Radau, slopes
 
 Array = NDArray[np.float64]
 Curve = Callable[[float], float]
@@ -22,7 +21,7 @@ ROUNDING = 4e-16
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """`breaks` (m+1,) ascend; `coefficients` (m, fields, N+1) are those of Legendre polynomials in each piece.
+    """`breaks` (m+1,) ascend; `coefficients` (m, fields, N+1) are those of Chebyshev polynomials in each piece.
 
     `end` is the last place, at most the last break: what lies beyond an event is no part of the path.
     """
@@ -58,8 +57,7 @@ class Path:
         """One field and its derivative at places (n,)."""
         basis, piece = self._basis(places)
         own = self.coefficients[:, index]
-        rise = np.zeros_like(own)
-        rise[:, :-1] = legendre.legder(own, axis=1) * (2.0 / np.diff(self.breaks))[:, None]
+        rise = own @ slopes(own.shape[1]).T * (2.0 / np.diff(self.breaks))[:, None]
         return (own[piece] * basis).sum(axis=-1), (rise[piece] * basis).sum(axis=-1)
 
     def curve(self, index: int, near: float) -> tuple[Curve, Curve]:
@@ -67,10 +65,10 @@ class Path:
         piece = self._piece(near)
         low, high = (float(place) for place in self.breaks[piece : piece + 2])
         own = self.coefficients[piece, index]
-        rise = legendre.legder(own) * (2.0 / (high - low))
+        rise = slopes(own.size) @ own * (2.0 / (high - low))
 
         def function(series: list[float]) -> Curve:
-            return lambda place: legendre_sum(series, (2.0 * place - low - high) / (high - low))
+            return lambda place: chebyshev_sum(series, (2.0 * place - low - high) / (high - low))
 
         return function(own.tolist()), function(rise.tolist())
 
@@ -115,25 +113,20 @@ class Path:
         return np.minimum(np.searchsorted(self.breaks[1:-1], places, side="right"), len(self.coefficients) - 1)
 
     def _basis(self, places: Array | float) -> tuple[Array, Array]:
-        """Legendre polynomials at places (n,), shape (n, N+1), and the piece of each."""
+        """Chebyshev polynomials at places (n,), shape (n, N+1), and the piece of each."""
         piece = self._piece(places)
         low, high = self.breaks[piece], self.breaks[piece + 1]
         x = (2.0 * np.asarray(places) - low - high) / (high - low)
-        basis = np.empty((self.coefficients.shape[2], *x.shape))
-        basis[0], basis[1] = 1.0, x
-        for n in range(1, len(basis) - 1):
-            basis[n + 1] = x * basis[n]
-            basis[n + 1] *= (2 * n + 1) / (n + 1)
-            basis[n + 1] -= (n / (n + 1)) * basis[n - 1]
-        return np.moveaxis(basis, 0, -1), piece
+        angle = np.arccos(np.minimum(np.maximum(x, -1.0), 1.0))
+        return np.cos(angle[..., None] * np.arange(self.coefficients.shape[2])), piece
 
 
-def legendre_sum(series: list[float], x: float) -> float:
-    """sum_n series_n P_n(x) by Clenshaw's recurrence."""
-    above, value = 0.0, 0.0
-    for n in range(len(series) - 1, -1, -1):
-        above, value = value, series[n] + (2 * n + 1) / (n + 1) * x * value - (n + 1) / (n + 2) * above
-    return value
+def chebyshev_sum(series: list[float], x: float) -> float:
+    """sum_n series_n T_n(x) by Clenshaw's recurrence."""
+    above, value, twice = 0.0, 0.0, 2.0 * x
+    for coefficient in series[:0:-1]:
+        above, value = value, coefficient + twice * value - above
+    return series[0] + x * value - above
 
 
 def falling_zero(value: Curve, low: float, high: float) -> float:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.polynomial import legendre
+from numpy.polynomial import chebyshev, legendre
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -20,7 +20,7 @@ class Radau:
     """Collocation with N nodes on (0, 1], the last one at 1: stiff decays die out as they should.
 
     `nodes` (N,); `integral` (N, N) takes values at the nodes to integrals from 0 to them; `series` (N+1, N+1)
-    takes values at 0 and at the nodes to coefficients of Legendre polynomials over the interval.
+    takes values at 0 and at the nodes to coefficients of Chebyshev polynomials over the interval.
     """
 
     nodes: Array
@@ -41,5 +41,11 @@ def radau(points: int) -> Radau:
     degrees = np.eye(points)
     integrals = np.array([legendre.legval(x, legendre.legint(degree, lbnd=-1)) for degree in degrees]).T
     integral = 0.5 * integrals @ np.linalg.inv(legendre.legvander(x, points - 1))
-    series = np.linalg.inv(legendre.legvander(np.append(-1.0, x), points))
+    series = np.linalg.inv(chebyshev.chebvander(np.append(-1.0, x), points))
     return Radau(0.5 * (x + 1.0), integral, series)
+
+
+@cache
+def slopes(count: int) -> Array:
+    """The matrix (n, n) from `count` coefficients to those of the derivative over (-1, 1)."""
+    return np.pad(chebyshev.chebder(np.eye(count), axis=0), ((0, 1), (0, 0)))

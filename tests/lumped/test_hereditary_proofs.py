@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -136,18 +137,19 @@ def random_scene(random: np.random.Generator, impact: Build) -> Scene:
         nu=float(random.uniform(-0.9, 0.4999)),
         profile=str(random.choice(["exact", "parabola"])),
         velocity=float(10.0 ** random.uniform(-3.0, 0.0)),
+        shape=random_shape(random, curved=True),
     )
 
 
-def random_shape(random: np.random.Generator) -> Shape:
-    """A sphere, cone, power profile or punch about as large as the dent."""
+def random_shape(random: np.random.Generator, curved: bool = False) -> Shape:
+    """A sphere, cone, power profile or, unless `curved`, punch about as large as the dent."""
     exponent = float(random.uniform(1.0, 6.0))
     return [
         Sphere(0.006),
         Cone(float(random.uniform(2.0, 70.0))),
         PowerProfile(float(10.0 ** random.uniform(-1.0, 1.0)) * 0.006 ** (1.0 - exponent), exponent),
         Punch(float(random.uniform(0.0005, 0.005))),
-    ][int(random.integers(4))]
+    ][int(random.integers(3 if curved else 4))]
 
 
 def test_ting_and_the_row_of_springs_agree_on_random_materials(
@@ -339,6 +341,47 @@ def test_stiff_corners_end_and_have_the_right_limits(law: str, retardation: floa
     if retardation == 1e6:
         assert found["peak_force"] == pytest.approx(stiff.force, rel=1e-5)
         assert found["restitution"] == pytest.approx(1.0, abs=1e-5)
+
+
+def test_any_stiff_corner_ends_and_has_the_right_limit(campaign_size: Callable[[int], int]) -> None:
+    random = np.random.default_rng(20166)
+    for _ in range(campaign_size(200)):
+        ratio, retardation = 10.0 ** random.uniform(-6.0, 6.0), 10.0 ** random.uniform(-12.0, 6.0)
+        scene = replace(steel({"R1": repr(ratio), "R2_s": repr(retardation)}), shape=random_shape(random, curved=True))
+        soft, stiff = (scene.shape.hertz_impact(RELAXED * factor, MASS, SPEED) for factor in (1.0, 1.0 + ratio))
+        tau = retardation / (1.0 + ratio)
+        found = {law: values(law, scene, 1e-5) for law in ("ting", "correspondence", "mdr")}
+        for name in QUANTITIES:
+            near = 1e-5 * (1.0 if name == "restitution" else found["ting"][name])
+            assert found["mdr"][name] == pytest.approx(found["ting"][name], abs=2.0 * near), scene
+        for law, quantities in found.items():
+            assert 0.0 < quantities["restitution"] <= 1.0 + 1e-5, law
+            for limit, far in ((soft, ratio * tau / soft.duration), (stiff, ratio * stiff.duration / tau)):
+                if far < 1e-7:
+                    assert quantities["peak_force"] == pytest.approx(limit.force, rel=2e-5), law
+                    # Clipped, a cone's contact ends where depth^2 is of the order of what is lost.
+                    early = far**0.5 if law == "correspondence" else 0.0
+                    assert quantities["duration"] == pytest.approx(limit.duration, rel=2e-5 + early), law
+                    assert quantities["restitution"] == pytest.approx(1.0, abs=2e-5), law
+
+
+NAMES = ("peak_depth", "duration", "restitution")
+
+
+@pytest.mark.parametrize("law", ["ting", "correspondence"])
+def test_a_rigid_spring_in_series_leaves_kelvin_and_voigt_s_solid(law: str, impact: Build) -> None:
+    solid, apart = values(law, impact(viscosity=0.3), 1e-7), []
+    for ratio in (1e3, 1e4, 1e5, 1e6):
+        found = values(law, impact(1.0, (ratio,), (0.3 / ratio,)), 1e-7)
+        apart.append([abs(found[name] / solid[name] - 1.0) for name in NAMES])
+    assert np.all(np.array(apart[1:3]) < 0.15 * np.array(apart[:2])), "what is left goes as E1/E2"
+    assert max(apart[3]) < 3e-6
+
+
+def test_a_rigid_spring_in_series_with_every_dashpot_of_the_row(impact: Build) -> None:
+    found, solid = (values("mdr", impact(1.0, *more), 1e-5) for more in (((1e6,), (3e-7,)), ((), (), 0.3)))
+    for name in NAMES:
+        assert found[name] == pytest.approx(solid[name], rel=1e-5), name
 
 
 @pytest.mark.parametrize("law", [ting, correspondence])
