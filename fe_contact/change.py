@@ -69,6 +69,10 @@ class Change:
         factor = np.where(resolved, self.factor, max(self.factor, UNRESOLVED))
         return np.asarray(factor * np.interp(time, places, around))
 
+    def radius(self, time: Array) -> Array:
+        """How much the contact radius changes at times, m."""
+        return self.first.radius_at(time) - self.second.radius_at(time)
+
     @property
     def _pointwise(self) -> tuple[Array, Array]:
         """Times, dense and within every step, and how much the force changes there, N."""

@@ -72,8 +72,28 @@ class FixedStepper:
             impulse=state.impulse + length * force,
             memory=memory,
         )
-        found_at = state.time + length * (1.0 if moved.velocity > 0 else self.scheme.SAMPLE)
-        return Step(length, moved, force, half_width(self.places, solution), found_at, axis, solution, self.scale, work)
+        share = 1.0 if moved.velocity > 0 else self.scheme.SAMPLE
+        widest = np.inf if share == 1.0 else max((earlier.radius for earlier in steps), default=np.inf)
+        radius = half_width(self.places, solution.signed_pressure, self._gap(state, moved, share, solution), widest)
+        return Step(length, moved, force, radius, state.time + length * share, axis, solution, self.scale, work)
+
+    def _gap(self, before: State, after: State, share: float, solution: ContactSolution) -> Array:
+        """Of the deformed surfaces after a share of the step, (q,), m, which tells the contact radius.
+
+        Growing, the contact has its radius at the end of the step. Receding, it has it where the scheme samples the
+        pressure: what lies outside swings about that from one end of a step to the other. A datum that moves lifts all
+        places alike: where the surfaces touch there is no gap.
+        """
+        depth = before.depth + share * (after.depth - before.depth)
+        old, new = self.body.displacement(before.memory), self.body.displacement(after.memory)
+        gap = old + share * (new - old) - self._overlap(depth)
+        return np.asarray(gap - np.median(gap[solution.signed_pressure > 0.0]))
+
+    def _overlap(self, depth: float) -> Array:
+        """Of the undeformed surfaces at the points, (q,), m."""
+        if self.strike.overlap is None:
+            return depth - self.heights
+        return np.maximum(self.strike.overlap(self.places, depth), -BEYOND * self.scale)
 
     def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
         """Places and pressure at the quadrature points."""
@@ -108,7 +128,7 @@ class FixedStepper:
         self, offer: Offer, free_depth: float, give: float, steps: Sequence[Step], guesses: Guesses, time: float
     ) -> tuple[ContactSolution, Work]:
         """Contact with the striker that retreats by ``give``, m/N, and every overlap with it."""
-        overlap = offer.now * (free_depth - self.heights) + offer.past
+        overlap = offer.now * self._overlap(free_depth) + offer.past
         operator = self.surface.operator
         yielding = offer.now * give * self.scale ** (operator.dimension - 2) + operator.yielding
         solution = self._solved(offer, overlap, yielding, steps[-1] if steps else None, guesses, time)
@@ -118,12 +138,10 @@ class FixedStepper:
         self, offer: Offer, free_depth: float, give: float, steps: Sequence[Step], guesses: Guesses, time: float
     ) -> tuple[ContactSolution, Work]:
         """The same where a place's overlap does not grow as the depth does: depth + give force = free depth."""
-        overlap, operator = self.strike.overlap, self.surface.operator
-        assert overlap is not None
-        last = steps[-1] if steps else None
+        operator, last = self.surface.operator, steps[-1] if steps else None
         depth, known, solves, iterations = free_depth - give * (last.force if last else 0.0), (0.0, -free_depth), 0, 0
         for _ in range(SECANTS):
-            free = offer.now * np.maximum(overlap(self.places, depth), -BEYOND * self.scale) + offer.past
+            free = offer.now * self._overlap(depth) + offer.past
             solution = self._solved(offer, free, 0.0, last, guesses, time)
             solves, iterations = solves + self.enforcement.SOLVES, iterations + solution.iterations
             excess = depth + give * operator.force(self.scale, solution.pressure) - free_depth

@@ -20,6 +20,7 @@ from lumped.scene import Scene
 DEFAULT_TOLERANCE = 1e-3
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-3 and 1e-4: see `fe-contact tradeoff`
 FIXED_ELEMENTS = 2.0  # the same on a mesh that stays, four times refined where the contact may end
+SPARE = 1.2  # such a mesh is fine beyond the largest contact, where the gap tells how wide that is
 RIM_PENALTY = 16.0  # penalty under a rim over the usual: the pressure is infinite there
 VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
 STEPS_AT_DEFAULT = 40
@@ -56,7 +57,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     peak_share = min(max(size.peak_time / contact_time, SOONEST_PEAK), 1.0)
     placed = chosen.varied(
         steps=_steps(tolerance, peak_share),
-        contact_radius=size.contact_radius,
+        contact_radius=size.contact_radius * (SPARE if _stays(scene) else 1.0),
         contact_time=contact_time,
         peak_share=peak_share,
     )
@@ -81,9 +82,14 @@ def _settings(scene: Scene, tolerance: float) -> Numerics:
 def _elements(scene: Scene, tolerance: float) -> float:
     """Elements along the contact radius; a dashpot asks for more, since it differentiates the mesh's error."""
     order = VISCOUS_ORDER if scene.contact_modulus.viscosity > 0 else 0.0
-    target, shape = scene.geometry.target, scene.geometry.shape
-    fewest = FIXED_ELEMENTS if target.has_length and target.fixed_radius(shape) is None else ELEMENTS
+    fewest = FIXED_ELEMENTS if _stays(scene) else ELEMENTS
     return fewest * max(1.0, math.pow(1e-4 / tolerance, 0.25), math.pow(DEFAULT_TOLERANCE / tolerance, order))
+
+
+def _stays(scene: Scene) -> bool:
+    """Whether the mesh stays and the contact may end anywhere in it."""
+    target, shape = scene.geometry.target, scene.geometry.shape
+    return target.has_length and target.fixed_radius(shape) is None
 
 
 def _steps(tolerance: float, peak_share: float) -> int:

@@ -25,6 +25,7 @@ BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 # The gap tells where contact ends up to this distance from the edge, in contact radii and in thicknesses of the body,
 # but for the nearest share of it.
 GAP_REACH, GAP_REACH_OF_THICKNESS, GAP_NEAREST = 0.4, 0.6, 0.2
+GAP_POINTS = 16  # beyond the edge of a contact that has just begun to recede: two elements
 GAP_DEGREE = 2
 
 
@@ -120,9 +121,11 @@ class FixedStill:
         solution, solves = self._solved(depth, guess / self.reference)
         if not solution.converged:
             raise IndentationNotSettled(depth)
-        if fixed is None and not np.isfinite(solution.edge(operator.points)):
+        edge = solution.edge(operator.points)
+        if fixed is None and not np.isfinite(edge):
             raise ContactTooWide(depth)
-        radius = fixed or self.reference * contact_end(operator.points, solution, self.thickness)
+        end = contact_end(operator.points, edge, -solution.signed_pressure, self.thickness)
+        radius = fixed or self.reference * end
         return Pressed(operator.force(self.reference, solution.pressure), radius, solves, solution.iterations)
 
     def _solved(self, depth: float, expected: float) -> tuple[ContactSolution, int]:
@@ -147,34 +150,37 @@ def _enforced(
     return enforcement.enforce(problem, touching), enforcement.SOLVES
 
 
-def contact_end(points: Array, solution: ContactSolution, thickness: float = np.inf) -> float:
-    """Where the surfaces part, from the gap outside: beyond the edge it grows like the 3/2 power of the distance.
+def contact_end(points: Array, edge: float, gap: Array, thickness: float = np.inf, touched: float = np.inf) -> float:
+    """Where the surfaces part, from the gap (q,) outside: beyond the edge it grows like the 3/2 power of the distance.
 
-    The pressure rings at an edge anywhere in an element; the gap, a displacement, does not. In a body thinner than
-    the contact is wide the power holds less far: ``thickness``, in the unit of the points.
+    The pressure, which falls to zero at ``edge``, rings there if that is anywhere in an element; the gap, a
+    displacement, does not. In a body thinner than the contact is wide the power holds less far: ``thickness``, in the
+    unit of the points. So it does in a contact that has receded from where the surface was ``touched`` and remembers.
     """
-    edge = solution.edge(points)
-    reach = min(GAP_REACH * edge, GAP_REACH_OF_THICKNESS * thickness)
+    fewest = float(points[min(int(points.searchsorted(edge)) + GAP_POINTS, points.size - 1)])
+    reach = min(GAP_REACH * edge, GAP_REACH_OF_THICKNESS * thickness, max(touched, fewest) - edge)
     outside = (points > edge + GAP_NEAREST * reach) & (points < edge + reach)
     if np.count_nonzero(outside) <= 2 * GAP_DEGREE:
         return edge
-    gap = np.maximum(-solution.signed_pressure[outside], 0.0)
-    roots = np.polynomial.Polynomial.fit(points[outside], gap ** (2 / 3), GAP_DEGREE).roots()
+    roots = np.polynomial.Polynomial.fit(points[outside], np.maximum(gap[outside], 0.0) ** (2 / 3), GAP_DEGREE).roots()
     real = np.real(roots[np.abs(np.imag(roots)) < 1e-9 * edge])
     near = real[np.abs(real - edge) < reach]
     return float(near[np.argmin(np.abs(near - edge))]) if near.size else edge
 
 
-def half_width(places: Array, solution: ContactSolution) -> float:
+def half_width(places: Array, signed_pressure: Array, gap: Array, touched: float = np.inf) -> float:
     """From the first touch to where the surfaces part; where there is a left side too, half from end to end.
 
-    Infinite where the contact reaches the last place, 0 without contact.
+    Infinite where the contact reaches the last place, 0 without contact. See :func:`contact_end`.
     """
-    right = _end(places, solution.signed_pressure)
-    return right if places[0] > 0.0 else 0.5 * (right + _end(-places[::-1], solution.signed_pressure[::-1]))
+    right = _end(places, signed_pressure, gap, touched)
+    if places[0] > 0.0:
+        return right
+    return 0.5 * (right + _end(-places[::-1], signed_pressure[::-1], gap[::-1], touched))
 
 
-def _end(places: Array, signed_pressure: Array) -> float:
+def _end(places: Array, signed_pressure: Array, gap: Array, touched: float) -> float:
     """Where the surfaces part on the side of the places, ascending, that are positive."""
     side = places > 0.0
-    return contact_end(places[side], ContactSolution(signed_pressure[side], 0, True, ()))
+    edge = ContactSolution(signed_pressure[side], 0, True, ()).edge(places[side])
+    return contact_end(places[side], edge, gap[side], touched=touched)

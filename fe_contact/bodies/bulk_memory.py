@@ -130,6 +130,10 @@ class BulkBody:
         shear = memory.shear.advanced(law.shear, amplitude[None])
         return BulkMemory(volume, shear), float(operator.response[0] @ load)
 
+    def displacement(self, memory: BulkMemory) -> Array:
+        """Inward displacement of the surface at the quadrature points, (q,), m."""
+        return np.asarray(self.modes.operator.trace @ (self.modes.shape @ memory.shear.strain[0]))
+
     def stored(self, memory: BulkMemory) -> float:
         """Elastic energy in all springs of both networks, J."""
         return memory.volume.stored(self.moduli.bulk) + memory.shear.stored(self.moduli.shear)

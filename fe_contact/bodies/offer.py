@@ -35,6 +35,9 @@ class Body(Protocol):
     def after(self, memory: Any, offer: Offer, pressure: Array) -> tuple[Any, float]:
         """The memory after the step under a pressure (q,), and the axis' elastic displacement times modulus."""
 
+    def displacement(self, memory: Any) -> Array:
+        """Inward displacement of the surface at the quadrature points, (q,), m."""
+
     def stored(self, memory: Any) -> float:
         """Elastic energy in all springs, J."""
 

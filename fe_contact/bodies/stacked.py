@@ -130,6 +130,10 @@ class StackedBody:
         middle = int(np.abs(self.operator.nodes[: self.operator.trace.shape[1]]).argmin())
         return moved, float(answers[0][0, middle])
 
+    def displacement(self, memory: Memory) -> Array:
+        """Inward displacement of all surfaces at the quadrature points, (q,), m."""
+        return np.asarray(sum(side.trace @ own.strain[0] for side, own in zip(self.sides, memory, strict=True)))
+
     def stored(self, memory: Memory) -> float:
         """Elastic energy in all springs, J."""
         return sum(own.stored(side.relaxation) for side, own in zip(self.sides, memory, strict=True))

@@ -52,6 +52,10 @@ class SurfaceBody:
         strain = (np.array([displacement, force]) - memory.carried(law)) / law.now
         return memory.advanced(law, strain), float(displacement[0])
 
+    def displacement(self, memory: SurfaceMemory) -> Array:
+        """Inward displacement of the surface at the quadrature points, (q,), m."""
+        return np.asarray(self.operator.trace @ memory.strain[0])
+
     def stored(self, memory: SurfaceMemory) -> float:
         """Elastic energy in all springs, J."""
         return memory.stored(self.relaxation)

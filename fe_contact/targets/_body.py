@@ -49,7 +49,7 @@ class BodyStill:
         problem = ContactProblem(self.surface, np.maximum(overlap, -BEYOND * self.scale), penalty)
         enforcement: ModuleType = get(ENFORCEMENTS, self.numerics.enforcement)
         solution = enforcement.enforce(problem, np.abs(self.places) < guess)
-        radius = fixed or half_width(self.places, solution)
+        radius = fixed or half_width(self.places, solution.signed_pressure, -solution.signed_pressure)
         if not solution.converged or not 0.0 < radius < np.inf:
             raise IndentationNotSettled(depth)
         force = self.operator.force(self.scale, solution.pressure)

@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_contact.reference import Solved
 from fe_contact.validation.deviations import force_bars, force_errors, pressure_error, radius_error
+from fe_contact.validation.nested_areas import NestedAreas, nested_areas
 from fe_contact.validation.slow_curve import known
 from lumped import simulate
 from lumped.errors import FeContactError
@@ -48,7 +49,10 @@ class Judgement:
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """Reference, candidates and judgements; ``refused`` maps laws without an answer to the reason."""
+    """Reference, candidates and judgements; ``refused`` maps laws without an answer to the reason.
+
+    ``nested``: whether the contact goes back through the areas it came through, which Ting's solution supposes.
+    """
 
     solved: Solved
     reference: Result
@@ -56,6 +60,7 @@ class Comparison:
     measured: Measured | None
     judgements: tuple[Judgement, ...]
     refused: Mapping[str, str]
+    nested: NestedAreas | None
 
 
 def compare(solved: Solved, reference: Result, names: tuple[str, ...], measured: Measured | None = None) -> Comparison:
@@ -71,7 +76,8 @@ def compare(solved: Solved, reference: Result, names: tuple[str, ...], measured:
             refused[name] = str(failure)
     judged = [_law(solved, reference, law, curve_error) for law in laws.values()]
     judged += [] if measured is None else [_curve(solved, reference, measured)]
-    return Comparison(solved, reference, laws, measured, tuple(judged), refused)
+    nested = nested_areas(reference.scene, solved)
+    return Comparison(solved, reference, laws, measured, tuple(judged), refused, nested)
 
 
 def _law(solved: Solved, reference: Result, law: Result, curve_error: float) -> Judgement:

@@ -80,6 +80,7 @@ def comparison_content(comparison: Comparison) -> dict[str, Any]:
                 j.name: {"score_percent": j.score_percent, "errors": j.errors, "bars": j.bars}
                 for j in comparison.judgements
             },
+            "nested_areas": comparison.nested and vars(comparison.nested) | {"holds": comparison.nested.holds},
             "refused": comparison.refused,
         }
     )

@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 from fe_contact.validation.compare import Comparison, Judgement
+from fe_contact.validation.nested_areas import NestedAreas
 
 WITHIN = "within the reference's error bar"
 DECISIVE = ("history", "held_until_max_depth", "peak_force", "peak_depth", "duration", "restitution")
 
 
 def verdicts(comparison: Comparison) -> tuple[str, ...]:
-    """One line a candidate, those of equal verdict together; then the laws that gave no answer."""
+    """One line a candidate, those of equal verdict together; the areas; then the laws that gave no answer."""
     sentences: dict[str, list[str]] = {}
     for judgement in comparison.judgements:
         sentences.setdefault(_sentence(comparison, judgement), []).append(judgement.name)
     lines = [f"{', '.join(names)}: {sentence}" for sentence, names in sentences.items()]
+    lines += [] if comparison.nested is None else [_nested(comparison.nested)]
     return (*lines, *(f"{name}: no answer: {reason}" for name, reason in comparison.refused.items()))
+
+
+def _nested(areas: NestedAreas) -> str:
+    """Whether Ting's solution may be asked of this contact."""
+    says = "nest as Ting supposes" if areas.holds else "do not nest as Ting supposes"
+    return f"areas of contact {says}: paired radii differ by {percent(areas.deviation)}, bar {percent(areas.bar)}"
 
 
 def _sentence(comparison: Comparison, judgement: Judgement) -> str:
