@@ -3,25 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 from lumped.ending import End
 from lumped.errors import NotReached
 from lumped.spring_row.row import Instant, Row
-from lumped.spring_row.shrinking import Shrinking
+from lumped.spring_row.shrinking import Attempt, Shrinking
 
-TRIES, CLOSE, WIDER, BEYOND = 100, 1e-9, 4.0, 1.2
+TRIES, CLOSE, WIDER, BEYOND = 100, 1e-7, 4.0, 1.2
 # What to try first at least, of the time so far; and a step that takes no time, s.
 SHORT, LEAST = 1e-14, 1e-200
-
-
-class Bracket(NamedTuple):
-    """A length, s, after which something is left of what falls with it, and one after which less than nothing is."""
-
-    low: float
-    left: float
-    high: float
-    missing: float
 
 
 def retreat(row: Row, start: Instant, end_time: float) -> tuple[list[Instant], End]:
@@ -29,52 +19,60 @@ def retreat(row: Row, start: Instant, end_time: float) -> tuple[list[Instant], E
 
     Raises NotReached.
     """
-    track, guess = [start], start.time - row.places[-2].time
+    track, lengths = [start], [start.time - row.places[-2].time]
     while len(row.places) > 1:
         now = track[-1]
         shrinking = Shrinking(row, now)
-        h, end = _length(shrinking, guess)
-        if now.time + h > end_time:
-            h, end = end_time - now.time, End.TIME
-        step = shrinking.step(max(h, LEAST))
+        tried, end = _found(shrinking, _next(lengths))
+        if now.time + tried.h > end_time:
+            tried, end = shrinking.attempt(max(end_time - now.time, LEAST)), End.TIME
+        step = shrinking.step(tried)
         row.take(step)
         track.append(step.now)
+        lengths.append(tried.h)
         if end is not End.SEPARATED:
             return track, end
-        before = now.time - track[-3].time if len(track) > 2 else h
-        guess = h * min(max(h / before, 0.5), 2.0) if before > 0.0 else h
     return track, End.SEPARATED
 
 
-def _length(shrinking: Shrinking, guess: float) -> tuple[float, End]:
-    """After how long nothing is left of the force at the next place; or gravity turns the striker before."""
-    low, left, h = 0.0, shrinking.pull(0.0), max(guess, SHORT * shrinking.now.time)
+def _next(lengths: list[float]) -> float:
+    """How long a step will take, as the last three have; before them stands one of the approach."""
+    last = lengths[-1]
+    before = lengths[-2] if len(lengths) > 2 else last
+    once = lengths[-3] if len(lengths) > 3 else 2.0 * before - last
+    return min(max(3.0 * (last - before) + once, 0.5 * last), 2.0 * last)
+
+
+def _found(shrinking: Shrinking, guess: float) -> tuple[Attempt, End]:
+    """The step after which nothing is left of the force at the next place; or after which gravity turns the striker."""
+    low, left, h = 0.0, shrinking.pull, max(guess, SHORT * shrinking.now.time)
     if left <= 0.0:
-        return 0.0, End.SEPARATED
+        return shrinking.attempt(LEAST), End.SEPARATED
     for _ in range(TRIES):
-        pull = shrinking.pull(h)
-        if pull <= 0.0:
-            return _zero(shrinking.pull, Bracket(low, left, h, pull)), End.SEPARATED
-        speed = -shrinking.velocity(h)
-        if speed < 0.0:
-            still = Bracket(0.0, -shrinking.now.velocity or -speed, h, speed)
-            return _zero(lambda length: -shrinking.velocity(length), still), End.SECOND_APPROACH
-        further = h + BEYOND * pull * (h - low) / (left - pull) if pull < left else WIDER * h
-        low, left, h = h, pull, min(WIDER * h, further)
+        tried = shrinking.attempt(h)
+        if tried.pull <= 0.0:
+            return _zero(shrinking, lambda attempt: attempt.pull, low, left, tried), End.SEPARATED
+        if tried.velocity > 0.0:
+            fast = -shrinking.now.velocity or tried.velocity
+            return _zero(shrinking, lambda attempt: -attempt.velocity, 0.0, fast, tried), End.SECOND_APPROACH
+        further = h + BEYOND * tried.pull * (h - low) / (left - tried.pull) if tried.pull < left else WIDER * h
+        low, left, h = h, tried.pull, min(WIDER * h, further)
     raise NotReached(f"the springs at the edge did not leave after {shrinking.now.time:.6g} s")
 
 
-def _zero(left: Callable[[float], float], bracket: Bracket) -> float:
-    """The length with nothing left: false position, Illinois."""
-    low, at_low, high, at_high = bracket
-    side, h = 0, high
+def _zero(
+    shrinking: Shrinking, left: Callable[[Attempt], float], low: float, at_low: float, beyond: Attempt
+) -> Attempt:
+    """The step with nothing left, between a length with something left and a step beyond: false position, Illinois."""
+    tried, high, at_high, side = beyond, beyond.h, left(beyond), 0
     for _ in range(TRIES):
-        before, h = h, high - at_high * (high - low) / (at_high - at_low)
-        if abs(h - before) <= CLOSE * high:
+        h = high - at_high * (high - low) / (at_high - at_low)
+        if abs(h - tried.h) <= CLOSE * high:
             break
-        found = left(h)
+        tried = shrinking.attempt(h)
+        found = left(tried)
         if found > 0.0:
             low, at_low, at_high, side = h, found, at_high * (0.5 if side == 1 else 1.0), 1
         else:
             high, at_high, at_low, side = h, found, at_low * (0.5 if side == -1 else 1.0), -1
-    return h
+    return tried

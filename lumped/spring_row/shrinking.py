@@ -2,9 +2,26 @@
 
 from __future__ import annotations
 
-from lumped.spring_row.memory import fadings
+from typing import NamedTuple
+
+from lumped.spring_row.memory import Fading, fadings
 from lumped.spring_row.row import Instant, Row, Step, followed, left
-from lumped.spring_row.springs import stretched, yielding
+from lumped.spring_row.springs import Values, stretched, yielding
+
+
+class Attempt(NamedTuple):
+    """A step of length h: its rate, the fadings over it and until the springs leave, what the axis carries after it.
+
+    `pull`: force per length of the spring at the place to which the edge runs.
+    """
+
+    h: float
+    rate: float
+    velocity: float
+    faded: list[Fading]
+    shortly: list[Fading]
+    axis: Values
+    pull: float
 
 
 class Shrinking:
@@ -20,8 +37,13 @@ class Shrinking:
         ground = (last.depth - self.place.depth) * self.leaving.width
         self.share = (last.depth * self.leaving.width - self.leaving.rest) / ground if ground > 0.0 else 0.0
 
-    def rate(self, h: float) -> float:
-        """The rate at which the depth grows: m (v1 - v0) = m g h - int F dt with v0 + v1 twice the rate."""
+    @property
+    def pull(self) -> float:
+        """Force per length, now, of the spring at the place to which the edge runs."""
+        return self._pull(0.0, self.now.depth, self.now.velocity, self.row.axis)
+
+    def attempt(self, h: float) -> Attempt:
+        """A step of this length: m (v1 - v0) = m g h - int F dt with v0 + v1 twice the rate."""
         problem, modulus, now, even = self.row.problem, self.row.problem.modulus, self.now, self.row.even
         pressed = self.share * h
         faded, shortly = fadings(modulus, h), fadings(modulus, pressed)
@@ -29,37 +51,29 @@ class Shrinking:
         passed += self.leaving.impulse(modulus, now.depth, even, shortly, pressed)
         give = self.staying.width * yielding(modulus, faded, h)
         give += self.leaving.width * yielding(modulus, shortly, pressed)
-        return (now.velocity + 0.5 * h * problem.gravity - passed / problem.mass) / (1.0 + give / problem.mass)
+        rate = (now.velocity + 0.5 * h * problem.gravity - passed / problem.mass) / (1.0 + give / problem.mass)
+        velocity = 2.0 * rate - now.velocity
+        axis = followed(modulus, self.row.axis, faded, now.velocity, velocity, h)
+        return Attempt(h, rate, velocity, faded, shortly, axis, self._pull(h, now.depth + h * rate, velocity, axis))
 
-    def pull(self, h: float) -> float:
-        """Force per length, after a step, of the spring at the place to which the edge runs; of h = 0 now."""
-        modulus, now, axis = self.row.problem.modulus, self.now, self.row.axis
-        depth, velocity = now.depth, now.velocity
-        if h:
-            rate = self.rate(h)
-            depth, velocity = now.depth + h * rate, 2.0 * rate - now.velocity
-            axis = followed(modulus, axis, fadings(modulus, h), now.velocity, velocity, h)
-        lift = modulus.equilibrium * (depth - self.place.depth) + modulus.viscosity * velocity
-        shares = left(modulus, now.time + h - self.place.time)
-        return lift + sum(z - kept * share for z, kept, share in zip(axis, self.place.axis, shares, strict=True))
+    def _pull(self, h: float, depth: float, velocity: float, axis: Values) -> float:
+        modulus, place = self.row.problem.modulus, self.place
+        total = modulus.equilibrium * (depth - place.depth) + modulus.viscosity * velocity
+        for z, kept, share in zip(axis, place.axis, left(modulus, self.now.time + h - place.time), strict=True):
+            total += z - kept * share
+        return total
 
-    def velocity(self, h: float) -> float:
-        """The velocity after a step."""
-        return 2.0 * self.rate(h) - self.now.velocity if h else self.now.velocity
-
-    def step(self, h: float) -> Step:
-        """A step of this length, not yet taken."""
-        row, now, modulus, rate = self.row, self.now, self.row.problem.modulus, self.rate(h)
+    def step(self, tried: Attempt) -> Step:
+        """The step which was tried, not yet taken."""
+        row, now, (h, rate, velocity, faded, shortly, axis, _) = self.row, self.now, tried
+        modulus = row.problem.modulus
         pressed = self.share * h
-        faded, shortly = fadings(modulus, h), fadings(modulus, pressed)
         spent = self.staying.spent(modulus, row.even, faded, h, rate)
         spent += self.leaving.spent(modulus, row.even, shortly, pressed, rate)
         parted = self.leaving.aged([fade.left for fade in shortly])
         released = parted.held(modulus, now.depth + rate * pressed, stretched(modulus, row.even, shortly, rate))
         springs = self.staying.aged([fade.left for fade in faded])
         even = stretched(modulus, row.even, faded, rate)
-        velocity, depth = 2.0 * rate - now.velocity, now.depth + h * rate
-        axis = followed(modulus, row.axis, faded, now.velocity, velocity, h)
         kept = [k * fade.left for k, fade in zip(self.kept, faded, strict=True)]
-        instant = row.instant(now.time + h, depth, velocity, self.place.edge, springs, axis, kept)
+        instant = row.instant(now.time + h, now.depth + h * rate, velocity, self.place.edge, springs, axis, kept)
         return Step(instant, springs, even, axis, kept, spent, released)
