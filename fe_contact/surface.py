@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from fe_contact.forms import Array
 
+MIDDLE = 0.5 * np.pi - 1e-6  # rad from the top of a circle: just above its middle plane
 CONTACT_ZONE = 1.1  # contact is sought up to this multiple of the predicted contact radius
 
 
@@ -56,10 +57,11 @@ def crown(basis: Any, contact: float, mean_radius: float | None) -> Surface:
     dofs = basis.get_dofs("surface").flatten()
     places = basis.doflocs[:, dofs]
     angle = np.arctan2(places[0] - (mean_radius or 0.0), places[1] + 1.0)
-    ascending, zone = np.argsort(angle), CONTACT_ZONE * contact
-    order = basis.elem.maxdeg
+    ascending, order = np.argsort(angle), basis.elem.maxdeg
     corners = angle[ascending][::order]
-    first = max(int(np.searchsorted(corners, -zone)) - 1, 0)
+    above = np.flatnonzero(np.abs(corners) < MIDDLE)  # the middle plane may be held, and then gives way to no pressure
+    zone = min(CONTACT_ZONE * contact, float(corners[above[-1]]))
+    first = max(int(np.searchsorted(corners, -zone)) - 1, int(above[0]))
     chosen = ascending[first * order :]
     return Surface(
         dofs=dofs[chosen],

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from lumped.radiation import pulse_energy
 from lumped.result import LedgerEntry
 from lumped.scene import Model, Scene
+from lumped.shapes.base import Shape
+from lumped.targets.base import Target
 
 GRAVITY = 9.81
 # Hertz: the first yield lies below the surface, where the peak pressure is 1.6 Y (Johnson, ISBN
@@ -47,7 +49,21 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
         _plasticity(scene, peak),
         _adhesion(scene, peak),
     ]
+    if scene.geometry.shape.plane:
+        entries.append(ends(scene.geometry.shape, scene.geometry.target, scene.geometry.material.nu))
     return tuple(entries)
+
+
+def ends(shape: Shape, target: Target, nu: float) -> LedgerEntry:
+    """Plane strain against a finite length l: at an end E stands for E/(1 - nu^2), about as far in as the body is deep.
+
+    An order of magnitude: nu^2 times the share 2 h/l of the length.
+    """
+    effect, treated, depth = "finite length", "plane strain", target.body_depth
+    if depth is None:
+        return LedgerEntry(effect, treated, None, "how far the ends reach in is known of a layer or a ring only")
+    estimate = nu**2 * min(1.0, 2.0 * depth / shape.total)
+    return LedgerEntry(effect, treated, estimate, "order of magnitude: nu^2 2 h/l; striker.length")
 
 
 def _inertia(scene: Scene, peak: Peak) -> LedgerEntry:

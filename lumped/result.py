@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from lumped.dimensionless import groups
 from lumped.history import History
 from lumped.interpolation import peak
 from lumped.scene import Model, Scene
@@ -100,6 +101,7 @@ class Result:
             "model": vars(self.model),
             "numerics": self.numerics,
             "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
+            "dimensionless": groups(self.scene, self.quantities, self.history),
             "contacts": list(self.contacts),
             "error_budget": self.error_budget,
             "error_budget_by_quantity": self.error_budget_by_quantity,

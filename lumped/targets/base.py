@@ -34,6 +34,11 @@ class Target(ABC):
         return True
 
     @property
+    def body_depth(self) -> float | None:
+        """How far the body reaches beneath the contact, m; None where nothing bounds it, or its section is round."""
+        return None
+
+    @property
     def length_of_place(self) -> float:
         """Length along the surface per unit of its places, m."""
         return 1.0

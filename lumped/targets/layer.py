@@ -33,6 +33,11 @@ class Layer(Target):
     def __post_init__(self) -> None:
         check_fields("layer", self, KEYS)
 
+    @property
+    def body_depth(self) -> float:
+        """Its thickness, m."""
+        return self.thickness
+
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
         """depth - height(r)."""
         return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))

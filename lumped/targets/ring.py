@@ -36,6 +36,11 @@ class Ring(Target):
         """The inner radius: its places are angles."""
         return self.inner_radius
 
+    @property
+    def body_depth(self) -> float:
+        """Its thickness, m."""
+        return self.thickness
+
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
         """D cos(theta) + sqrt(R^2 - D^2 sin^2(theta)) - inner_radius, D = clearance + depth; `r` is theta."""
         radius, angle = shape.tip_radius or 0.0, np.asarray(r, dtype=float)

@@ -40,6 +40,11 @@ class Washer(Target):
             reason = f"{self.inner_radius:g}: accepted below the outer radius {self.outer_radius:g} m"
             raise BadInput(Fault("washer", "target.inner_radius", reason))
 
+    @property
+    def body_depth(self) -> float:
+        """Its height, m."""
+        return self.height
+
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
         """depth - height(r); `r` from the axis."""
         return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))

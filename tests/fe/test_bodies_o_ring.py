@@ -90,3 +90,10 @@ def test_impossible_geometry_is_refused_by_name(key: str, build: object) -> None
 def test_a_contact_that_leaves_the_fine_mesh_is_no_number() -> None:
     with pytest.raises(IndentationNotSettled):
         indent(pressed(0.05), (0.0095,), {})
+
+
+@pytest.mark.parametrize("depth", [2e-3, 5e-3, 8e-3])
+def test_deep_contacts_stop_short_of_the_middle_plane(depth: float) -> None:
+    """Its nodes are held: no pressure may count on them, however coarse the mesh around."""
+    found = indent(pressed(0.05), (depth,), {"tolerance": 1e-2})
+    assert found.converged

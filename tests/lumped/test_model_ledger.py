@@ -104,3 +104,19 @@ def test_a_fitted_series_is_charged_with_its_fit() -> None:
         (beyond,) = [e for e in model_ledger(scene, slow) if e.effect == effect]
         assert beyond.estimate == max(fidelity.before, fidelity.after)
     assert entry(Scene.load("polymer-sphere"), effect).estimate == 0.0
+
+
+def test_a_long_rod_is_in_plane_strain() -> None:
+    """Ends count with the share of the length that they reach: twice as long, half as much; never more than nu^2."""
+
+    def estimate(scene: Scene) -> list[float | None]:
+        ledger = model_ledger(scene, Peak(1.0, 1e-4, 1e-3, 0.1))
+        return [one.estimate for one in ledger if one.effect == "finite length"]
+
+    first, longer, short = (
+        estimate(Scene.load("rod-in-ring", {"striker.length": length})) for length in (0.03, 0.06, 0.001)
+    )
+    assert first == pytest.approx([0.45**2 * 2.0 * 0.003 / 0.03])
+    assert longer == pytest.approx([0.45**2 * 0.003 / 0.03])
+    assert short == pytest.approx([0.45**2])
+    assert estimate(Scene.load("polymer-sphere")) == []

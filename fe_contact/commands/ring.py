@@ -1,0 +1,61 @@
+"""``fe-contact ring``: what rings really do, against the paper's (27)-(32)."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from typing import TYPE_CHECKING, NamedTuple
+
+from fe_contact.commands import base
+
+if TYPE_CHECKING:
+    from fe_contact.validation.rings import RingCurve
+
+SUMMARY = "rod in ring, O-ring and washer by finite elements over depth, against the paper's (27)-(32)"
+
+
+class Paper(NamedTuple):
+    """What the folder of results is called after."""
+
+    name: str = "paper"
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """[--out DIR] [--json] [--quiet]."""
+    base.output_arguments(parser)
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Press, judge, write, draw; 0, or 3 where finite elements missed their tolerance."""
+    from fe_contact.report.rings import plot_rings
+    from fe_contact.validation.rings import cases, rings
+    from fe_contact.validation.rings_files import write_rings
+
+    where = base.folder(args, "ring", Paper())
+    progress = base.progress_of(args)
+    curves = rings(cases(), progress)
+    content = write_rings(curves, where)
+    progress("chart")
+    plot_rings(curves, where)
+    lines = [line for curve in curves for line in _said(curve)]
+    print(json.dumps(content, allow_nan=False) if args.json else "\n".join([*lines, f"written to {where}"]))
+    missed = [curve.case.name for curve in curves if not curve.found.converged]
+    if missed:
+        base.complain(f"tolerance not reached: {', '.join(missed)}")
+    return base.NOT_REACHED if missed else base.DONE
+
+
+def _said(curve: RingCurve) -> list[str]:
+    """A ring: the verdict, then every depth."""
+    from fe_contact.validation.rings_verdict import verdict
+
+    judged, found = verdict(curve), curve.found
+    lines = [f"{curve.case.name}: (27)-(32) {judged.word}: {judged.sentence}"]
+    lines += [f"    {one.effect} ({one.treated}): {one.estimate or 0.0:.2g}, {one.note}" for one in curve.ledger]
+    table = zip(
+        found.depth, found.force, found.force_error, curve.row_force, curve.exponent, curve.exponent_error, strict=True
+    )
+    return lines + [
+        f"    {1e3 * depth:.3g} mm  {force:.5g} +- {error:.1e} N, row {row:.5g} N; alpha {alpha:.4g} +- {bar:.0e}"
+        for depth, force, error, row, alpha, bar in table
+    ]
