@@ -117,9 +117,8 @@ class BulkBody:
         law = self._law(length)
         modulus = law.contact_modulus
         past = self.modes.operator.trace @ (self.modes.shape @ (self._carried(memory, law) / self._now(law)))
-        return Offer(
-            length, modulus, modulus * past, _pressed(self.modes, law.bulk.now / modulus, law.shear.now / modulus)
-        )
+        ratio = law.shear.now / law.bulk.now
+        return Offer(length, modulus, modulus * past, _pressed(self.modes, ratio))
 
     def after(self, memory: BulkMemory, offer: Offer, pressure: Array) -> tuple[BulkMemory, float]:
         """The memory after the step under a pressure (q,), and the axis' elastic displacement times modulus."""
@@ -156,11 +155,17 @@ class BulkBody:
         return np.asarray(self.modes.volume * volume + self.modes.shear * shear)
 
 
+@lru_cache(maxsize=SURFACES_KEPT)
+def _points(modes: Modes) -> PressedSurface:
+    """The contact zone on one elastic body."""
+    operator = modes.operator
+    return PressedSurface(operator.stiffness, operator.trace, operator.weights, recurring=False)
+
+
 @lru_cache(maxsize=OFFERS_KEPT)
-def _pressed(modes: Modes, bulk: float, shear: float) -> PressedSurface:
+def _pressed(modes: Modes, ratio: float) -> PressedSurface:
     """What contact knows of the body in a step, for unit contact modulus."""
-    stiffness = np.linalg.inv(modes.compliance(bulk, shear))
-    return PressedSurface(0.5 * (stiffness + stiffness.T), modes.operator.trace, modes.operator.weights, False)
+    return _points(modes).stiffened(modes.stiffness(ratio))
 
 
 def relaxing(body: ElasticBody, moduli: Moduli, numerics: Numerics) -> BulkSurface:

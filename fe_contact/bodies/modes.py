@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy.linalg import eigh
@@ -26,6 +26,7 @@ from fe_contact.operators import SurfaceOperator
 FEWEST, PER_E_FOLD = 3, 0.5  # ratios, at least and for every factor e of the interval: errors below 1e-7
 LEAST_HALF_WIDTH = 0.3  # of the interval's logarithm: closer ratios would cancel
 STIFFEST = 30.0  # ratio from which on volume is so soft beside shape that the answer bends no more
+TABULATED = 1e-10  # accuracy of the stiffness between the ratios at which it is known
 INDEPENDENT = 1e-12  # share of the largest energy below which a direction is rounding
 
 
@@ -33,7 +34,8 @@ INDEPENDENT = 1e-12  # share of the largest energy below which a direction is ro
 class Modes:
     """Surface displacement ``shape`` (n, m) of m motions; ``volume``, ``shear`` (m,) their stiffness per modulus.
 
-    ``operator``: the elastic body's at one Poisson's ratio of the interval; ``ratios``: how many were factorised.
+    ``operator``: the elastic body's at one Poisson's ratio of the interval; ``ratios``: how many were factorised;
+    ``interval`` of the ratios G/K that the motions were made for.
     """
 
     shape: Array
@@ -41,10 +43,36 @@ class Modes:
     shear: Array
     operator: SurfaceOperator
     ratios: int
+    interval: tuple[float, float]
 
     def compliance(self, bulk: float, shear: float) -> Array:
         """Normal displacement of the contact zone's nodes under unit forces there, (n, n), symmetric."""
         return np.asarray((self.shape / (bulk * self.volume + shear * self.shear)) @ self.shape.T)
+
+    def stiffness(self, ratio: float) -> Array:
+        """Its inverse at a ratio of the moduli, (n, n), for E* = 1: a polynomial in the ratio's logarithm.
+
+        Chebyshev's points: the poles lie at ratios below zero, whose logarithms are pi away from the interval.
+        """
+        places, values = self._table
+        place = np.log(ratio)
+        if not places[0] <= place <= places[-1] or place in places:
+            return self._condensed(ratio)
+        weights = np.where(np.arange(places.size) % 2, -1.0, 1.0) / (place - places)
+        weights[[0, -1]] *= 0.5
+        return np.asarray(np.tensordot(weights / weights.sum(), values, axes=1))
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array]:
+        """Logarithms of ratios, (p,), ascending, and the stiffness there, (p, n, n)."""
+        low, high = np.log(self.interval)
+        half = max(0.5 * (high - low), LEAST_HALF_WIDTH)
+        gain = np.log((np.pi + np.hypot(np.pi, half)) / half)  # of accuracy with every point
+        places = 0.5 * (low + high) - half * np.cos(np.linspace(0.0, np.pi, 2 + int(-np.log(TABULATED) / gain)))
+        return places, np.array([self._condensed(ratio) for ratio in np.exp(places)])
+
+    def _condensed(self, ratio: float) -> Array:
+        return _symmetric(np.asarray(np.linalg.inv(self.compliance(*moduli(poisson(ratio))))))
 
 
 @lru_cache(maxsize=32)
@@ -58,7 +86,8 @@ def modes(body: ElasticBody, lowest: float, highest: float) -> Modes:
     share, turned = eigh(free.T @ (shear * shear_work) @ free)
     share = np.clip(share, 0.0, 1.0)  # of the stiffness at the middle ratio
     shape = np.hstack([_compliance(operator) for operator in operators]) @ (free @ turned)
-    return Modes(shape, (1.0 - share) / bulk, share / shear, middle, len(operators))
+    interval = (min(lowest, STIFFEST), min(highest, STIFFEST))
+    return Modes(shape, (1.0 - share) / bulk, share / shear, middle, len(operators), interval)
 
 
 def poisson(ratio: float) -> float:
