@@ -61,9 +61,6 @@ class Indenter:
         contact = contact_modulus(self.shape, self.material, self.striker_material)
         if instant and contact.viscosity > 0.0:
             raise self._refused("has a dashpot in parallel: infinitely stiff at once; accepted: leave out --instant")
-        bulk = self.material.constant == "bulk" and not self.material.young.is_elastic
-        if instant and bulk and not isinstance(self.target, HalfSpace):
-            raise self._refused('has another nu at once with constant = "bulk"; accepted: leave out --instant')
         if not instant and contact.relaxed == 0.0:
             raise self._refused("is a fluid: no force stays; accepted: --instant, or a solid")
         return contact.glassy if instant else contact.relaxed

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from lumped.errors import FeContactError
 from lumped.radiation import pulse_energy
 from lumped.result import LedgerEntry
 from lumped.scene import Model, Scene
@@ -42,7 +43,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
         _profile(scene, resolved, peak),
         _finite_strain(peak),
         _deformed_gap(scene.geometry.material.nu, peak),
-        _sideways(scene),
+        _sideways(scene, peak),
         _series(scene, peak),
         LedgerEntry("striker compliance", "rigid", None, "the scene gives the striker no material"),
         _gravity(scene, resolved, peak),
@@ -107,8 +108,11 @@ def _deformed_gap(nu: float, peak: Peak) -> LedgerEntry:
     return LedgerEntry("deformed-gap kinematics", "small displacements", estimate, "(1-2nu)/(1-nu) depth/(pi a)")
 
 
-def _sideways(scene: Scene) -> LedgerEntry:
-    """At most what the instantaneous modulus changes by, 4G(3K+G)/(3K+4G) over 2G/(1-nu), to the power 2/5."""
+def _sideways(scene: Scene, peak: Peak) -> LedgerEntry:
+    """At most what the instantaneous stiffness changes by, to the power 2/5 of a peak force.
+
+    That of the half-space by 4G(3K+G)/(3K+4G) over 2G/(1-nu); a body with lengths confines, in thin layers most.
+    """
     effect, material = "constant nu against constant bulk modulus", scene.geometry.material
     treated = "constant nu" if material.constant == "poisson" else "constant bulk modulus"
     if material.young.is_elastic:
@@ -117,7 +121,23 @@ def _sideways(scene: Scene) -> LedgerEntry:
         return LedgerEntry(effect, treated, None, "no bound for a fluid or a dashpot in parallel")
     shear, bulk = material.young.glassy / (2.0 * (1.0 + material.nu)), material.bulk
     softer = 2.0 * (1.0 - material.nu) * (3.0 * bulk + shear) / (3.0 * bulk + 4.0 * shear)
+    if scene.target.has_length:
+        confined = _confined(scene, (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear)), peak.depth)
+        if confined is None:
+            return LedgerEntry(effect, treated, None, "no load curve tells it; run both of target.material.constant")
+        softer *= confined
     return LedgerEntry(effect, treated, 1.0 - softer**0.4, "bound; target.material.constant")
+
+
+def _confined(scene: Scene, nu: float, depth: float) -> float | None:
+    """Force of unit modulus with another Poisson's ratio, over that with the scene's own; None where none is known."""
+    forces = []
+    for poisson in (nu, scene.geometry.material.nu):
+        try:
+            forces.append(float(scene.target.load_curve(scene.profile, poisson).force(depth)))
+        except FeContactError:  # no load curve, or one that ends before this depth
+            return None
+    return forces[0] / forces[1] if forces[1] > 0.0 else None
 
 
 def _series(scene: Scene, peak: Peak) -> LedgerEntry:

@@ -26,7 +26,7 @@ def indent(
     cpu, wall = process_time(), perf_counter()
     depth, modulus = np.array(indenter.checked(depths)), indenter.modulus(instant)
     shape = indenter.shape.resolved("parabola") if method == "hertz" else indenter.profile
-    curve = indenter.target.load_curve(shape, indenter.material.nu)
+    curve = indenter.target.load_curve(shape, indenter.elastic(instant).material.nu)
     force = modulus * shape.total * np.asarray(curve.force(depth))
     return Indentation(
         indenter=indenter,

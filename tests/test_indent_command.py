@@ -91,6 +91,22 @@ def test_one_row_per_depth_in_the_order_asked(target: str, write: Any, empty: Pa
         assert abs(quantity["value"] - quantities[name]["value"]) <= quantity["error"] + quantities[name]["error"]
 
 
+def test_at_once_a_constant_bulk_modulus_has_its_own_poisson(write: Any, empty: Path) -> None:
+    """K = E_inf/(3 (1 - 2 nu)) stays, G is the glassy one: the elastic layer of these two, by its integral equation."""
+    relaxing = SLS + '\nconstant = "bulk"'
+    assert exit_code(write(relaxing, target=LAYER), "--depths", ASKED, "--out", "fe", "--instant") == 0
+    assert exit_code(write(relaxing, target=LAYER), "--depths", ASKED, "--out", "exact", "--method", "ting") == 0
+    for name, young in (("fe", 3e6), ("exact", 2e6)):  # E0 (1 + R1), and E0
+        bulk, shear = 2e6 / (3.0 * (1.0 - 2.0 * 0.3)), young / (2.0 * (1.0 + 0.3))
+        poisson = 0.5 * (3.0 * bulk - 2.0 * shear) / (3.0 * bulk + shear)
+        elastic = f'law = "elastic"\nE = {2.0 * shear * (1.0 + poisson)}\n# '
+        scene = Path(write(elastic, target=LAYER))
+        scene.write_text(scene.read_text().replace("nu = 0.3", f"nu = {poisson}"))
+        assert exit_code(str(scene), "--depths", ASKED, "--out", "elastic", "--method", "cheapest") == 0
+        found, wanted = rows(empty / name), rows(empty / "elastic")
+        assert np.all(np.abs(found[:, 1] - wanted[:, 1]) <= found[:, 3] + wanted[:, 3]), name
+
+
 def test_at_once_is_stiffer_by_the_glassy_modulus(write: Any, empty: Path) -> None:
     for out, more in (("slow", ()), ("fast", ("--instant",))):
         assert exit_code(write(), "--depths", "1e-5", "--out", out, *more) == 0

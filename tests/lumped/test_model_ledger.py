@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
-from lumped import LedgerEntry, Model, Scene, laws, simulate
+from lumped import LedgerEntry, Material, Model, Relaxation, Scene, Sphere, laws, simulate
 from lumped.model_ledger import Peak, model_ledger
 from lumped.radiation import pulse_energy, radiation_coefficient
+from lumped.targets.layer import Layer
 
 
 def entry(scene: Scene, effect: str, tolerance: float = 1e-4) -> LedgerEntry:
@@ -82,6 +84,20 @@ def test_constant_bulk_modulus_is_charged_as_published() -> None:
         scene = Scene.load("polymer-sphere", {"target.material.nu": nu, "target.material.E2": 1.8e6 * ratio})
         found = entry(scene, "constant nu against constant bulk modulus").estimate
         assert found == pytest.approx(effect, abs=6e-4)
+
+
+@pytest.mark.parametrize(("thickness", "confined"), [(1e-4, True), (1.0, False)])
+@pytest.mark.parametrize("nu", [0.3, 0.45])
+def test_a_layer_is_charged_with_how_it_confines(thickness: float, confined: bool, nu: float) -> None:
+    """Glued and a fourteenth as thick as its contact is wide, it knows K + 4G/3 but for 4 %."""
+    peak = Peak(force=2.0, depth=1e-5, contact_radius=1e-3, duration=0.02)
+    alike = Material(Relaxation(1e6, (1e6,), (0.01,)), nu)
+    scene = Scene(Sphere(0.1), 0.05, 1e-3, alike, target=Layer(thickness, "bonded"))
+    (told,) = [e for e in model_ledger(scene, peak) if e.effect == "constant nu against constant bulk modulus"]
+    moduli = [
+        m.confined_modulus() if confined else m.contact_modulus() for m in (replace(alike, constant="bulk"), alike)
+    ]
+    assert told.estimate == pytest.approx(1.0 - (moduli[0].glassy / moduli[1].glassy) ** 0.4, rel=0.05)
 
 
 def test_ledger_decides_whether_the_model_is_sufficient() -> None:
