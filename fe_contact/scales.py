@@ -17,8 +17,7 @@ from fe_contact.pressing import Still
 from lumped.answered import Answered
 from lumped.errors import BadInput
 from lumped.indenter import Indenter
-from lumped.laws import mdr
-from lumped.laws._hereditary_force import estimate
+from lumped.laws import correspondence, mdr
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.sampled import SampledCurve
@@ -38,10 +37,10 @@ def scales(scene: Scene, numerics: Numerics) -> mdr.ImpactScales:
     if isinstance(geometry.target, HalfSpace) and geometry.shape.fixed_radius is None and not geometry.shape.plane:
         return mdr.estimate(scene, SPRINGS)
     if not geometry.surface_remembers:
-        return estimate(with_constant_nu(scene))
+        return correspondence.estimate(with_constant_nu(scene))
     if not has_curve(scene):
         scene = Answered.by(scene, _answer(scene, numerics.varied(**COARSE)))
-    return estimate(scene)
+    return correspondence.estimate(scene)
 
 
 def has_curve(scene: Scene) -> bool:

@@ -16,11 +16,9 @@ from lumped.collide.hereditary import HereditaryLoad, StepLoad
 from lumped.collide.nodes import through_zero
 from lumped.collide.step import NODES, Step
 from lumped.laws._force_law import ForceLaw
-from lumped.laws.mdr import ImpactScales
 from lumped.scene import Model, Scene
 
 Array = NDArray[np.float64]
-ROUGH = 1e-3  # tolerance of scales
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,19 +106,3 @@ def law_of(scene: Scene, exit: str = "force", rule: str = "recovering") -> Hered
     curve = scene.load_curve
     load = HereditaryLoad(curve, scene.contact_modulus.scaled(scene.geometry.shape.total))
     return HereditaryForce(exit=exit, rule=rule, load=load, scale=scene.elastic_contact_time, load_curve=curve)
-
-
-def estimate(scene: Scene) -> ImpactScales:
-    """Scales of the impact on any target with a load curve, exact until the contact shrinks."""
-    result = law_of(scene).simulate(scene, ROUGH)
-    value = {name: quantity.value for name, quantity in result.quantities.items()}
-    history = result.history
-    return ImpactScales(
-        contact_radius=float(history.contact_radius.max()),
-        peak_depth=value["peak_depth"] or 0.0,
-        peak_force=value["peak_force"] or 0.0,
-        peak_time=value["peak_time"] or 0.0,
-        end=float(history.time[-1]),
-        duration=value["duration"],
-        restitution=value["restitution"],
-    )

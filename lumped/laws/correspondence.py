@@ -21,11 +21,13 @@ from lumped.hereditary.phase import Phase, SinceTouch, UntilEnd
 from lumped.hereditary.problem import Hereditary
 from lumped.keys import Choice, Key
 from lumped.laws._half_space import check_geometry
-from lumped.laws._hereditary import Course, simulate
+from lumped.laws._hereditary import Course, once, simulate
 from lumped.laws._hereditary_force import law_of
+from lumped.laws.mdr import ImpactScales
 from lumped.result import Result
 from lumped.scene import Scene
 
+ROUGH = 1e-3  # tolerance of scales
 KEYS: Mapping[str, Key] = {
     "exit": Choice(("force", "depth"), required=False),
     "memory": Choice(memory.available(), required=False),
@@ -57,6 +59,21 @@ def of(scene: Scene) -> Correspondence:
     check_geometry(scene, Correspondence.name)
     law = scene.law
     return Correspondence(**(law.values if law is not None and law.name == Correspondence.name else {}))
+
+
+def estimate(scene: Scene) -> ImpactScales:
+    """Scales of the impact on any target with a load curve: one integration, no bars. Raises NotReached, BadInput."""
+    answer = once(scene, ROUGH, solve)
+    value = {name: quantity or 0.0 for name, quantity in answer.values.items()}
+    return ImpactScales(
+        contact_radius=float(answer.columns(answer.times)[3].max()),
+        peak_depth=value["peak_depth"],
+        peak_force=value["peak_force"],
+        peak_time=value["peak_time"],
+        end=float(answer.times[-1]),
+        duration=answer.values["duration"],
+        restitution=answer.values["restitution"],
+    )
 
 
 def solve(problem: Hereditary, end_time: float, settings: Settings, before: Course | None = None) -> Course:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -16,8 +17,9 @@ from lumped import Material, Relaxation, Result, Scene, laws, simulate
 from lumped.shapes.punch import Punch
 from lumped.targets.layer import Layer
 
-DEPTH = 1e-6
-FINE = {"mesh": 2.0, "penalty": 1000.0, "time_step": 64, "far_field": 20.0}
+DEPTH, TOLERANCE = 1e-6, 3e-3
+FINE = {"mesh": 2.0, "penalty": 200.0, "time_step": 64, "far_field": 20.0}
+FLAT_ENDS = ((0.45, (3e-3,)), (0.2, (3e-4, 5e-3)), (0.49, (1e-3, 1e-2)))
 RULED = ("peak_force", "peak_depth", "duration", "restitution", "impulse")
 
 
@@ -59,16 +61,20 @@ def exact(scene: Scene) -> Result:
     return simulate(laws.ting.of(replace(scene, material=alike)), replace(scene, material=alike), 1e-6)
 
 
-@pytest.mark.parametrize(("nu", "times"), [(0.45, (3e-3,)), (0.2, (3e-4, 5e-3))])
-def test_a_flat_end_obeys_the_layers_integral_equation(nu: float, times: tuple[float, ...]) -> None:
+def test_a_flat_end_obeys_the_layers_integral_equation(campaign_size: Callable[[int], int]) -> None:
     """Until its rim, where the pressure's share changes as nu does, lets go: a little before the force is zero."""
-    scene = flat_end(nu, times)
-    found, truth = fe_contact.run(scene, 1e-3), exact(scene)
+    for nu, times in FLAT_ENDS[: campaign_size(len(FLAT_ENDS))]:
+        agree(flat_end(nu, times))
+
+
+def agree(scene: Scene) -> None:
+    """One impact: converged, within its bars of the law until the end is near."""
+    found, truth = fe_contact.run(scene, TOLERANCE), exact(scene)
     assert found.converged
     for name in ("peak_force", "peak_depth", "restitution", "impulse"):
         value, true = found.quantities[name], truth.quantities[name]
         assert abs(value.value - true.value) <= value.error + true.error, name
-        assert value.error <= 1e-3 * (1.0 if name == "restitution" else true.value)
+        assert value.error <= TOLERANCE * (1.0 if name == "restitution" else true.value)
     assert found.quantities["duration"].value > truth.quantities["duration"].value
     late = 0.9 * truth.quantities["duration"].value
     rows = found.history.time < late
@@ -77,8 +83,8 @@ def test_a_flat_end_obeys_the_layers_integral_equation(nu: float, times: tuple[f
     assert np.all(errors <= found.history.force_error[rows] + 2e-4 * force.max())  # what two rows' line leaves
 
 
-def test_constant_nu_would_err_by_less_than_the_ledger_says() -> None:
-    for name in ("rubber-layer-bulk", "rod-in-ring-bulk"):
+def test_constant_nu_would_err_by_less_than_the_ledger_says(campaign_size: Callable[[int], int]) -> None:
+    for name in ("rubber-layer-bulk", "rod-in-ring-bulk")[: campaign_size(2)]:
         scene = Scene.load(name)
         bulk = fe_contact.run(scene, 1e-3)
         alike = fe_contact.run(replace(scene, material=replace(scene.geometry.material, constant="poisson")), 1e-3)
