@@ -101,7 +101,7 @@ def estimate(scene: Scene, elements: int = 70) -> ImpactScales:
 def _answer(scene: Scene, level: Level) -> Answer:
     """The dense answer of one level."""
     end, separated = level.end, level.end is End.SEPARATED
-    whole = np.hstack([level.approach, level.rebound[:, 1:]]) if level.rebound.size else level.approach
+    whole = _ascending(np.hstack([level.approach, level.rebound[:, 1:]]) if level.rebound.size else level.approach)
     time, depth, velocity, _, force, _ = whole
     peak_time, peak_force = peak(time, force)
     values = {

@@ -10,8 +10,8 @@ from lumped.spring_row.row import Instant, Row
 from lumped.spring_row.shrinking import Attempt, Shrinking
 
 TRIES, CLOSE, WIDER, BEYOND = 100, 1e-7, 4.0, 1.2
-# What to try first at least, of the time so far; and a step that takes no time, s.
-SHORT, LEAST = 1e-14, 1e-200
+# What to try first at least, of the time so far.
+SHORT = 1e-14
 
 
 def retreat(row: Row, start: Instant, end_time: float) -> tuple[list[Instant], End]:
@@ -25,7 +25,7 @@ def retreat(row: Row, start: Instant, end_time: float) -> tuple[list[Instant], E
         shrinking = Shrinking(row, now)
         tried, end = _found(shrinking, _next(lengths))
         if now.time + tried.h > end_time:
-            tried, end = shrinking.attempt(max(end_time - now.time, LEAST)), End.TIME
+            tried, end = shrinking.attempt(end_time - now.time), End.TIME
         step = shrinking.step(tried)
         row.take(step)
         track.append(step.now)
@@ -47,7 +47,7 @@ def _found(shrinking: Shrinking, guess: float) -> tuple[Attempt, End]:
     """The step after which nothing is left of the force at the next place; or after which gravity turns the striker."""
     low, left, h = 0.0, shrinking.pull, max(guess, SHORT * shrinking.now.time)
     if left <= 0.0:
-        return shrinking.attempt(LEAST), End.SEPARATED
+        return shrinking.attempt(0.0), End.SEPARATED
     for _ in range(TRIES):
         tried = shrinking.attempt(h)
         if tried.pull <= 0.0:

@@ -8,6 +8,9 @@ from lumped.spring_row.memory import Fading, fadings
 from lumped.spring_row.row import Instant, Row, Step, followed, left
 from lumped.spring_row.springs import Values, stretched, yielding
 
+# A step that takes no time, s.
+LEAST = 1e-200
+
 
 class Attempt(NamedTuple):
     """A step of length h: its rate, the fadings over it and until the springs leave, what the axis carries after it.
@@ -45,6 +48,7 @@ class Shrinking:
     def attempt(self, h: float) -> Attempt:
         """A step of this length: m (v1 - v0) = m g h - int F dt with v0 + v1 twice the rate."""
         problem, modulus, now, even = self.row.problem, self.row.problem.modulus, self.now, self.row.even
+        h = max(h, LEAST)
         pressed = self.share * h
         faded, shortly = fadings(modulus, h), fadings(modulus, pressed)
         passed = self.staying.impulse(modulus, now.depth, even, faded, h)

@@ -12,6 +12,7 @@ import pytest
 from lumped import Result, Scene, laws, simulate
 from lumped.ending import End
 from lumped.laws._assembly import Answer
+from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
 from lumped.spring_row.coarse import coarse, problem_of
 from lumped.spring_row.grid import Grid
@@ -189,6 +190,18 @@ def test_energy_locked_in_at_separation_is_that_of_a_direct_sum(impact: Callable
     assert result.energy["stored"] == pytest.approx(-2.0 * np.trapezoid(density, edge), rel=1e-4)
     pressed = modulus.viscosity * history.velocity**2 * 2.0 * history.contact_radius
     assert result.energy["viscous"] == pytest.approx(np.trapezoid(pressed, history.time), rel=1e-4)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
+def test_springs_that_leave_at_one_time_but_for_rounding(tolerance: float, impact: Callable[..., Scene]) -> None:
+    """A fluid from which the striker is pulled forgets its approach: all springs within carry the same."""
+    cone = Cone(13.0)
+    scene = impact(0.0, (517.0,), (1.85e-5,), gravity=-1.0, velocity=7.1e-4, shape=cone)
+    row, exact = simulate(laws.mdr.of(scene), scene, tolerance), simulate(laws.ting.of(scene), scene, 1e-7)
+    assert row.converged
+    for name in ("peak_force", "peak_depth", "duration"):
+        assert row.quantities[name].value == pytest.approx(exact.quantities[name].value, rel=tolerance)
+    closes(scene, tolerance)
 
 
 def test_a_law_that_cannot_go_on_says_so(impact: Callable[..., Scene]) -> None:
