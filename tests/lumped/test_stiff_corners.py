@@ -1,0 +1,65 @@
+"""Corners of the numbers a user may give: every law ends with the right limit, or says by name why not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lumped import Model, Motion, Scene, laws
+from lumped.errors import TooManySteps
+from lumped.scene import LawChoice
+
+OF_GEOMETRY = ("correspondence", "ting", "mdr")
+NAMES = sorted(set(laws.available()) - set(OF_GEOMETRY))
+DAMPINGS = ("xi", "c", "chi", "A", "alpha_t")
+# Each law has this many impacts in the whole campaign.
+CASES = 60
+
+
+def corner(rng: np.random.Generator, name: str) -> Scene:
+    """Stiffness, mass, speed and damping over decades; a gap hardly there; either exit; gravity, or none, that changes
+    the speed by a tenth within the contact.
+    """
+    keys = laws.get(name).KEYS
+    values: dict[str, Any] = {"k": 10.0 ** rng.uniform(-3.0, 15.0), "exit": str(rng.choice(["force", "depth"]))}
+    values["gap"] = float(rng.choice([0.0, 1e-12]))
+    if "alpha" in keys:
+        values["alpha"] = float(rng.uniform(1.0, 5.0))
+    damping = [key for key in DAMPINGS if key in keys]
+    if "e" in keys and (not damping or rng.random() < 0.5):
+        values["e"] = float(rng.choice([0.01, 0.999, rng.uniform(0.01, 0.999)]))
+    elif damping:
+        values[str(rng.choice(damping))] = 10.0 ** rng.uniform(-12.0, 6.0)
+    mass, velocity = 10.0 ** rng.uniform(-12.0, 9.0), 10.0 ** rng.uniform(-6.0, 3.0)
+    scene = Scene(None, mass, velocity, law=LawChoice(name, values))
+    lasting = laws.get(name).of(scene).elastic_contact_time(scene)
+    gravity = min(float(rng.choice([0.0, 0.1])) * velocity / lasting, 1e6)
+    # what gravity holds may swing for ever
+    end_time = 10.0 * lasting if gravity else min(1e6 * lasting, 1e12)
+    return replace(scene, model=Model(gravity=gravity), motion=Motion(end_time=end_time))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_corner_ends_or_says_why_not(name: str, campaign_size: Callable[[int], int]) -> None:
+    rng = np.random.default_rng(len(name))
+    for _ in range(campaign_size(CASES)):
+        scene = corner(rng, name)
+        law = laws.get(name).of(scene)
+        try:
+            result = law.simulate(scene, 1e-3)
+        except TooManySteps:  # a named end too; no other error is
+            continue
+        assert result.converged or result.message, scene
+        assert np.isfinite(result.history.force).all()
+        e, energy = result.quantities["restitution"].value, result.energy
+        turned_over = energy["in"] + scene.mass * scene.gravity * result.history.depth.max()
+        assert abs(energy["residual"]) <= 1e-6 * turned_over, scene
+        # what has not yet climbed out of its dent under gravity may be faster than it came, not richer
+        assert e is None or e >= 0.0, scene
+        assert energy["out"] <= energy["in"] * (1.0 + 1e-9), scene
+        if e is not None and not scene.gravity and "e" in scene.law.values:
+            assert e == pytest.approx(scene.law.values["e"], abs=1e-6), scene
