@@ -2,8 +2,8 @@
 
 A viscoelastic body of constant Poisson's ratio has, at every instant, the displacement of the elastic body with
 the same surface displacement, and the stress of the elastic body under the same pressure. So two
-back-substitutions on the mesh of the impact give the whole interior. With a body of constant bulk modulus the
-interior does not follow from the surface, and nothing is written.
+back-substitutions give the whole interior, on a finer mesh than the impact's: a stress is a derivative. With a body
+of constant bulk modulus the interior does not follow from the surface, and nothing is written.
 
 Cells and points of ``fields.vtu``: every finite element is cut along its own nodes into linear triangles, so
 that the points are the nodes of the element, at (x, y, z) = (r, z, 0) m with the body at z <= 0. Point data:
@@ -25,7 +25,7 @@ from skfem import Basis
 
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.forms import Array, isotropic
-from fe_contact.numerics import ENFORCEMENTS
+from fe_contact.numerics import ENFORCEMENTS, TARGETS, Numerics
 from fe_contact.reference import Solved
 from fe_contact.stepping import BEYOND
 from fe_contact.surface_pressure import felt, peak_step, scale
@@ -35,6 +35,7 @@ from lumped.scene import Scene
 from lumped.targets import HalfSpace
 from lumped.targets.layer import Layer
 
+FINER = 1.5  # elements along the contact radius, over those of the impact
 STRESSES = ("stress_rr", "stress_zz", "stress_hoop", "stress_rz")
 
 
@@ -90,34 +91,35 @@ def fields_at_peak(scene: Scene, solved: Solved) -> Fields:
     check_fields(scene)
     certified, march = solved.certified, solved.certified.march
     assert isinstance(certified.surface, ScaledSurface)
-    operator, step = certified.surface.operator, peak_step(certified)
+    step = peak_step(certified)
     pressure = felt(certified, step)
     depth = float(np.interp(pressure.time, march.time, march.depth))
-    length = scale(operator, march.snapshots[step])
+    length = scale(certified.surface.operator, march.snapshots[step])
+    finer = solved.numerics.varied(elements_per_contact=FINER * solved.numerics.elements_per_contact)
+    surface: ScaledSurface = get(TARGETS, scene.target.name).struck(scene.geometry, finer)
+    operator = surface.operator
     points = length * operator.basis.doflocs.T
     touching = (points[:, 1] == 0.0) & (points[:, 0] <= pressure.contact_radius)
-    pressed = operator.solve(operator.trace.T @ (operator.weights * march.snapshots[step].pressure))
+    pressed = operator.solve(operator.trace.T @ (operator.weights * pressure.at(length * operator.points)))
     return Fields(
         time=pressure.time,
         depth=depth,
         contact_radius=pressure.contact_radius,
         points=points,
         triangles=subdivided(operator.basis),
-        displacement=_indented(scene, solved, depth, length).reshape(-1, 2),
+        displacement=_indented(scene, surface, finer, depth, length).reshape(-1, 2),
         stress=nodal_stress(operator.basis, pressed, isotropic(1 - operator.poisson**2, operator.poisson)),
         pressure=np.where(touching, pressure.at(points[:, 0]), 0.0),
         contact=touching.astype(np.int64),
     )
 
 
-def _indented(scene: Scene, solved: Solved, depth: float, length: float) -> Array:
+def _indented(scene: Scene, surface: ScaledSurface, numerics: Numerics, depth: float, length: float) -> Array:
     """Displacement (2 N,), m, of the body of unit modulus indented to a depth, on the unit mesh scaled to ``length``.
 
     Until the contact begins to shrink, which is never before the force peaks, the surface has the shape of an
     elastic one at the same depth (Lee and Radok 1960, doi:10.1115/1.3644020).
     """
-    surface, numerics = solved.certified.surface, solved.numerics
-    assert isinstance(surface, ScaledSurface)
     operator = surface.operator
     height = np.minimum(scene.profile.height(length * operator.points), BEYOND * length)
     enforcement = get(ENFORCEMENTS, numerics.enforcement)
