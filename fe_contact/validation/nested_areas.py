@@ -30,7 +30,7 @@ class NestedAreas:
     """What the radii show, relative to the largest.
 
     ``unevenness``: how much the radius falls before its maximum or rises after; ``deviation``: largest difference of
-    the radii that Ting pairs; ``bar``: what the error budget leaves open of a radius.
+    the radii that Ting pairs; ``bar``: what the error budget leaves open of the difference of two radii.
     """
 
     unevenness: float
@@ -58,7 +58,7 @@ def nested_areas(scene: Scene, solved: Solved) -> NestedAreas | None:
     return NestedAreas(
         unevenness=_unevenness(radius) / largest,
         deviation=float(np.abs(difference).max(initial=0.0)) / largest,
-        bar=_bar(solved, np.concatenate([instants[known], paired[known]])) / largest,
+        bar=(_bar(solved, instants[known]) + _bar(solved, paired[known])) / largest,
     )
 
 
