@@ -65,15 +65,14 @@ class TotalWork:
 
 
 @dataclass(frozen=True)
-class Certified:
+class Budget:
     """A curve with what each setting contributes to its error.
 
-    ``march`` is the finest run behind it, ``surface`` what it ran on, ``work`` that of all runs together.
+    ``march`` is the finest run behind it, ``work`` that of all runs together.
     """
 
     curve: Curve
     march: March
-    surface: Struck
     changes: Mapping[str, tuple[Change | Softening | None, ...]]
     work: TotalWork
 
@@ -92,6 +91,13 @@ class Certified:
         return np.sum(known, axis=0) if known else np.zeros_like(time)
 
 
+@dataclass(frozen=True)
+class Certified(Budget):
+    """The same with the ``surface`` that the finest run was on."""
+
+    surface: Struck
+
+
 def certify(strike: Strike, geometry: Geometry, numerics: Numerics) -> Certified:
     """March with ``numerics`` and with each setting varied; raises where the march itself fails."""
     runs = _Runs(strike, geometry)
@@ -102,7 +108,7 @@ def certify(strike: Strike, geometry: Geometry, numerics: Numerics) -> Certified
     if isinstance(surface, FlatEnd):
         held = _by_stiffness(runs, steps.value, surface, numerics)
         changes = held | {"time_step": (steps.change, *steps.jitter)}
-        return Certified(steps.value, finest, surface, changes, runs.work(surface))
+        return Certified(steps.value, finest, changes, runs.work(surface), surface)
     base = runs.curve(cheap)
     mesh, finer_mesh = _other(cheap, "elements_per_contact")
     penalty, stiffer = _other(cheap, "penalty")
@@ -113,7 +119,7 @@ def certify(strike: Strike, geometry: Geometry, numerics: Numerics) -> Certified
         "time_step": (steps.change,),
         "far_field": (_far_field(runs, steps.value, cheap, mesh),),
     }
-    return Certified(steps.value, finest, surface, changes, runs.work(surface))
+    return Certified(steps.value, finest, changes, runs.work(surface), surface)
 
 
 def _by_stiffness(

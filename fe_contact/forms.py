@@ -102,6 +102,17 @@ def stiffness(basis: Any, law: Array) -> sparse.coo_matrix:
     return _assembled(basis, law, axisymmetric_strain(basis), 2 * np.pi * radius * basis.dx)
 
 
+def mass(basis: Any) -> Array:
+    """Consistent mass of every element of an axisymmetric body of density one, (elements, 2 n, 2 n), m^3."""
+    radius = np.asarray(basis.global_coordinates())[0]
+    value = np.stack([np.broadcast_to(np.asarray(shape[0]), radius.shape) for shape in basis.basis], axis=-1)
+    scalar = np.einsum("eqi,eqj,eq->eij", value, value, 2 * np.pi * radius * np.asarray(basis.dx), optimize=True)
+    elements, functions, _ = scalar.shape
+    local = np.zeros((elements, 2 * functions, 2 * functions))
+    local[:, 0::2, 0::2] = local[:, 1::2, 1::2] = scalar
+    return local
+
+
 def plane_stiffness(basis: Any, law: Array) -> sparse.coo_matrix:
     """Stiffness matrix per unit length of both halves of a body in plane strain; as :func:`stiffness`."""
     return _assembled(basis, law, plane_strain(basis), 2.0 * np.asarray(basis.dx))

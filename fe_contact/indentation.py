@@ -14,7 +14,7 @@ import numpy as np
 
 from fe_contact.certify import LEAST_HALVED_SETTING, LEAST_ORDER, MESH_ORDER, SAFETY
 from fe_contact.forms import Array
-from fe_contact.numerics import RANGES, TARGETS, Numerics
+from fe_contact.numerics import RANGES, TARGETS, Numerics, check_kind
 from fe_contact.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, RIM_PENALTY, SETTING, refined
 from fe_contact.pressing import Still
 from fe_contact.progress import Progress, silent
@@ -60,6 +60,7 @@ def indent(
     ``given``: checked settings to keep; ``instant``: the material against a sudden indentation.
     Raises BadInput for depths and materials that cannot be, NotReached where contact does not settle.
     """
+    check_kind(given, False, indenter.source)
     clock = time.process_time(), time.perf_counter()
     modulus, asked = indenter.modulus(instant), len(indenter.checked(depths))
     depth = _accompanied(np.array(depths))

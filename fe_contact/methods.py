@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from fe_contact.numerics import checked
+from fe_contact.numerics import WAVES, check_kind, checked
 from fe_contact.progress import Progress, silent
 from lumped import laws
 from lumped import simulate as simulate_law
 from lumped.errors import BadInput, Fault, FeContactError, nearest
+from lumped.members import get
 from lumped.result import Result
 from lumped.scene import Scene
 
 FE = "fe"
 EXACT = ("mdr", "ting")  # exact in milliseconds: the row of springs on the half-space, Ting on any load curve
+EXACT_WITH_INERTIA = ("rod_waves",)
 OWN = (FE, "cheapest")
 
 
@@ -39,9 +41,7 @@ def simulate(
     """One impact of ``scene`` by a method; see :func:`fe_contact.run` for the parameters and errors."""
     given, method = settings(table, tolerance, scene.source), method or default(scene)
     if method == FE:
-        from fe_contact.reference import fe
-
-        return fe(scene, given, progress)
+        return _finite_elements(scene, given, progress)
     if method == "cheapest":
         return _cheapest(scene, given, progress)
     if method not in laws.available():
@@ -56,17 +56,25 @@ def _lumped(scene: Scene, name: str, given: Mapping[str, Any]) -> Result:
     return simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))
 
 
+def _finite_elements(scene: Scene, given: Mapping[str, Any], progress: Progress) -> Result:
+    from fe_contact.reference import fe
+
+    if not scene.model.inertia:
+        return fe(scene, given, progress)
+    check_kind(given, True, scene.source)
+    result: Result = get(WAVES, scene.target.name).fe(scene, given, progress)
+    return result
+
+
 def _cheapest(scene: Scene, given: Mapping[str, Any], progress: Progress) -> Result:
     """An exact law where it meets the tolerance, else finite elements; without geometry the scene's own law."""
     if scene.law is not None and not scene.has_geometry:
         return _lumped(scene, scene.law.name, given)
-    for name in EXACT:
+    for name in EXACT_WITH_INERTIA if scene.model.inertia else EXACT:
         try:
             result = _lumped(scene, name, given)
         except FeContactError:  # it has no answer here, which the next one may
             continue
         if result.converged:
             return result
-    from fe_contact.reference import fe
-
-    return fe(scene, given, progress)
+    return _finite_elements(scene, given, progress)

@@ -13,6 +13,9 @@ from lumped.members import available
 ENFORCEMENTS = "fe_contact.enforcement"
 SCHEMES = "fe_contact.schemes"
 TARGETS = "fe_contact.targets"
+MASSES = "fe_contact.dynamics.mass"
+WAVE_SCHEMES = "fe_contact.dynamics.schemes"
+WAVES = "fe_contact.waves.targets"
 
 RANGES: dict[str, tuple[float, float]] = {
     "tolerance": (1e-6, 0.1),
@@ -21,9 +24,11 @@ RANGES: dict[str, tuple[float, float]] = {
     "penalty": (1.0, 1e7),
     "steps": (8, 8192),
     "far_radius": (2.0, 1e4),
+    "rho": (0.0, 1.0),
 }
 INTEGERS = ("order", "steps")
-MEMBERS = {"enforcement": ENFORCEMENTS, "scheme": SCHEMES}
+OF_WAVES = ("mass", "rho")  # mean nothing without inertia
+MEMBERS = {"enforcement": (ENFORCEMENTS,), "scheme": (SCHEMES, WAVE_SCHEMES), "mass": (MASSES,)}
 
 
 @dataclass(frozen=True)
@@ -74,6 +79,18 @@ def faults(table: Mapping[str, Any], source: str) -> list[Fault]:
     return [fault for key, value in table.items() for fault in _faults(key, value, source)]
 
 
+def check_kind(given: Mapping[str, Any], inertia: bool, source: str) -> None:
+    """Raise BadInput for checked settings of the other kind of motion: with inertia or without."""
+    state, found = f"with model.inertia = {str(inertia).lower()}", []
+    schemes = available(WAVE_SCHEMES if inertia else SCHEMES)
+    if given.get("scheme", schemes[0]) not in schemes:
+        found.append(Fault(source, "numerics.scheme", f"{given['scheme']!r}: {state} accepted {', '.join(schemes)}"))
+    if not inertia:
+        found += [Fault(source, f"numerics.{key}", f"no such setting {state}") for key in OF_WAVES if key in given]
+    if found:
+        raise BadInput(found)
+
+
 def _rounded(key: str, value: Any) -> Any:
     """Whole numbers as such, steps up to a multiple of four: the error budget halves them twice."""
     if key == "steps":
@@ -84,7 +101,7 @@ def _rounded(key: str, value: Any) -> Any:
 def _faults(key: str, value: Any, source: str) -> list[Fault]:
     where = f"numerics.{key}"
     if key in MEMBERS:
-        names = available(MEMBERS[key])
+        names = sorted({name for package in MEMBERS[key] for name in available(package)})
         if value in names:
             return []
         hint = nearest(value, names) if isinstance(value, str) else ""

@@ -156,7 +156,7 @@ def condensed(
     response, watched = _influence(displacement, normal, watch, loaded)
     compliance = response[:loaded]
     condensed = np.linalg.inv((compliance + compliance.T) / 2)
-    points, lengths, trace = _contact_quadrature(zone, order)
+    points, lengths, trace = contact_quadrature(zone, order)
     weights = lengths * surface.measure(points)
     return SurfaceOperator(
         nodes=surface.coordinate,
@@ -202,7 +202,7 @@ def system_matrix(basis: Any, poisson: float) -> Any:
     return (body + static.robin(far, poisson)).tocsc()
 
 
-def _contact_quadrature(corners: Array, order: int) -> tuple[Array, Array, Array]:
+def contact_quadrature(corners: Array, order: int) -> tuple[Array, Array, Array]:
     """Gauss points, weights in the coordinate, and Lagrange trace on the facets between ``corners``."""
     gauss, weight = np.polynomial.legendre.leggauss(order + FACET_POINTS)
     left, length = corners[:-1, None], np.diff(corners)[:, None]

@@ -11,8 +11,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from fe_contact.numerics import RANGES, Numerics
+from fe_contact.numerics import RANGES, WAVES, Numerics, check_kind
 from fe_contact.scales import scales
+from lumped.members import get
 from lumped.model_ledger import Peak, model_ledger
 from lumped.result import LedgerEntry
 from lumped.scene import Scene
@@ -51,6 +52,10 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
 
     Raises NotReached where even a coarse estimate does not come to an end.
     """
+    check_kind(given, scene.model.inertia, scene.source)
+    if scene.model.inertia:
+        found: Plan = get(WAVES, scene.target.name).plan(scene, given)
+        return found
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
     chosen = _settings(scene, tolerance)
     size = scales(scene, chosen)

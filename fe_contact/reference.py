@@ -5,11 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
-from fe_contact.certify import CAUSES, Certified, certify
+from fe_contact.certify import CAUSES, Budget, Certified, certify
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.march import Strike
 from fe_contact.numerics import RANGES, TARGETS, Numerics
@@ -36,6 +36,25 @@ class Solved:
     certified: Certified
     cpu: float
     wall: float
+
+
+class Answer(Protocol):
+    """What a result is made of, however it was found: see :class:`Solved`."""
+
+    @property
+    def plan(self) -> Plan: ...
+
+    @property
+    def numerics(self) -> Numerics: ...
+
+    @property
+    def certified(self) -> Budget: ...
+
+    @property
+    def cpu(self) -> float: ...
+
+    @property
+    def wall(self) -> float: ...
 
 
 def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
@@ -67,7 +86,7 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
         except MemoryTooSmall:
             numerics = numerics.varied(contact_radius=1.5 * numerics.contact_radius)
             continue
-        finer = _refined(certified, numerics, chosen)
+        finer = refined_for(certified, numerics, chosen)
         if finer is None or attempt == ROUNDS:
             break
         numerics = finer
@@ -104,7 +123,7 @@ def strike_of(scene: Scene) -> Strike:
     )
 
 
-def _refined(certified: Certified, numerics: Numerics, chosen: Plan) -> Numerics | None:
+def refined_for(certified: Budget, numerics: Numerics, chosen: Plan) -> Numerics | None:
     """Settings with less of the causes that stand in the way, or None where nothing helps or is needed."""
     if meets(_quantities(certified), numerics.tolerance):
         return None
@@ -119,7 +138,7 @@ def _refined(certified: Certified, numerics: Numerics, chosen: Plan) -> Numerics
     return None if finer == numerics else finer
 
 
-def _excess(certified: Certified, tolerance: float, cause: str) -> float:
+def _excess(certified: Budget, tolerance: float, cause: str) -> float:
     """Largest error of a cause over what the tolerance allows."""
     values = certified.curve.quantities
     relative = [
@@ -131,7 +150,7 @@ def _excess(certified: Certified, tolerance: float, cause: str) -> float:
     return max(relative + absolute) / tolerance
 
 
-def result_of(scene: Scene, solved: Solved) -> Result:
+def result_of(scene: Scene, solved: Answer) -> Result:
     """The record of a certified impact."""
     certified, numerics = solved.certified, solved.numerics
     curve, tolerance = certified.curve, numerics.tolerance
@@ -160,7 +179,7 @@ def result_of(scene: Scene, solved: Solved) -> Result:
     )
 
 
-def _quantities(certified: Certified) -> dict[str, Quantity]:
+def _quantities(certified: Budget) -> dict[str, Quantity]:
     """Values with their bars; the history's own value is no distance from itself."""
     values = {**certified.curve.quantities, "history_l2": 0.0}
     return {
@@ -169,7 +188,7 @@ def _quantities(certified: Certified) -> dict[str, Quantity]:
     }
 
 
-def history(certified: Certified, tolerance: float) -> History:
+def history(certified: Budget, tolerance: float) -> History:
     """Rows dense enough for linear interpolation, with the force's error band."""
     curve = certified.curve
     rows = densified(curve.dense_time[::3], curve.force, ROWS_SHARE * tolerance)

@@ -38,6 +38,9 @@ class Indenter:
     def __post_init__(self) -> None:
         self.target.check_striker(self.source, self.shape)
         check_striker_material(self.source, self.target, self.striker_material)
+        if self.target.only_with_inertia:
+            reason = f"{self.target.name}: made of waves, it has no slow indentation; accepted: another target"
+            raise BadInput(Fault(self.source, "target.shape", reason))
 
     @classmethod
     def load(cls, source: str | Path, overrides: Mapping[str, object] | None = None) -> Indenter:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from lumped.errors import FeContactError
-from lumped.radiation import pulse_energy
+from lumped.radiation import Pulse
 from lumped.result import LedgerEntry
 from lumped.scene import Model, Scene
 from lumped.shapes.base import Shape
@@ -39,7 +39,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
     if not scene.has_geometry:
         return (_gravity(scene, resolved, peak),)
     entries = [
-        _inertia(scene, peak),
+        _inertia(scene, resolved, peak),
         _profile(scene, resolved, peak),
         _finite_strain(peak),
         _deformed_gap(scene.geometry.material.nu, peak),
@@ -67,18 +67,14 @@ def ends(shape: Shape, target: Target, nu: float) -> LedgerEntry:
     return LedgerEntry(effect, treated, estimate, "order of magnitude: nu^2 2 h/l; striker.length")
 
 
-def _inertia(scene: Scene, peak: Peak) -> LedgerEntry:
-    """Waves take the share w of the energy, half of it before the peak: F ~ energy^(3/5) loses 0.3 w."""
-    effect, treated, material = "target inertia", "neglected", scene.geometry.material
-    if material.density is None:
-        return LedgerEntry(effect, treated, None, "needs target.material.density")
-    shear = material.shear.relaxed or material.shear.glassy
-    if shear == 0.0:
-        return LedgerEntry(effect, treated, None, "a dashpot alone has no wave speed")
-    speed = math.sqrt(shear / material.density)
-    energy = pulse_energy(material.nu, material.density, speed, peak.force, peak.duration)
-    share = energy / (0.5 * scene.reduced_mass * scene.velocity**2)
-    return LedgerEntry(effect, treated, 0.3 * share, f"radiates {share:.2g} of the kinetic energy; model.inertia")
+def _inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
+    """As the target knows it."""
+    effect = "target inertia"
+    if model.inertia:
+        return LedgerEntry(effect, "included", 0.0)
+    energy = 0.5 * scene.reduced_mass * scene.velocity**2
+    pulse = Pulse(peak.force, peak.duration, energy)
+    return LedgerEntry(effect, "neglected", *scene.target.inertia_left_out(scene.geometry.material, pulse))
 
 
 def _profile(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:

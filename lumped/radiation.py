@@ -3,14 +3,25 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
+from lumped.materials import Material
 from lumped.quadrature import gauss
 
 # T int (dF/dt)^2 dt / F_max^2 of the Hertz pulse: 4.5 (T v/depth) (2/5) B(4/5, 3/2), T v/depth = 2.943275.
 HERTZ_PULSE = 1.8 * 2.943275 * math.gamma(0.8) * math.gamma(1.5) / math.gamma(2.3)
 GAUSS_POINTS = 64
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """A contact in short: peak force, N; duration, s; the kinetic energy that it turns round, J."""
+
+    force: float
+    duration: float
+    energy: float
 
 
 def radiation_coefficient(nu: float) -> float:
@@ -28,6 +39,20 @@ def pulse_energy(nu: float, density: float, shear_speed: float, peak_force: floa
     """Energy in J which a Hertz pulse of this peak, N, and duration, s, radiates into the half-space."""
     rate = HERTZ_PULSE * peak_force**2 / duration
     return radiation_coefficient(nu) / (density * shear_speed**3) * rate
+
+
+def shear_speed(material: Material) -> float | None:
+    """c_s, m/s, of the relaxed material or of a fluid's glassy one; None without density or without a spring."""
+    shear = material.shear.relaxed or material.shear.glassy
+    return math.sqrt(shear / material.density) if shear and material.density else None
+
+
+def radiated_share(material: Material, pulse: Pulse) -> float | None:
+    """Share of the energy which a Hertz pulse radiates into a half-space; None where its waves are not known."""
+    speed, density = shear_speed(material), material.density
+    if speed is None or density is None or pulse.duration == 0.0:
+        return None
+    return pulse_energy(material.nu, density, speed, pulse.force, pulse.duration) / pulse.energy
 
 
 def _both_waves(g: float) -> float:

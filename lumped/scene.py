@@ -218,11 +218,16 @@ class Scene:
         if self.law is not None and not self.has_geometry:
             law = get(LAWS, self.law.name).of(self)
             return float(law.elastic_contact_time(self))
+        geometry = self.geometry
+        return geometry.target.contact_time(self._local_contact_time, geometry.material, self.reduced_mass)
+
+    @property
+    def _local_contact_time(self) -> float:
+        """That of the half-space."""
         shape, modulus = self.geometry.shape, self.contact_modulus
-        if modulus.relaxed:
-            return shape.hertz_impact(modulus.relaxed, self.reduced_mass, self.velocity).duration
-        if modulus.glassy:
-            return shape.hertz_impact(modulus.glassy, self.reduced_mass, self.velocity).duration
+        if modulus.relaxed or modulus.glassy:
+            stiffness = modulus.relaxed or modulus.glassy
+            return shape.hertz_impact(stiffness, self.reduced_mass, self.velocity).duration
         return stiffest_impact(shape, modulus, self.reduced_mass, self.velocity).duration
 
     @property
@@ -264,8 +269,10 @@ class Scene:
 
 
 def inertia_faults(source: str, inertia: bool, density: float | None, target: Target | None) -> list[Fault]:
-    """What is missing for `model.inertia = true`; without geometry there is no target."""
+    """What is missing for `model.inertia = true`, or speaks against false; without geometry there is no target."""
     if not inertia:
+        if target is not None and target.only_with_inertia:
+            return [Fault(source, "model.inertia", f"false: a {target.name} is made of waves; accepted: true")]
         return []
     faults = []
     if target is None or not target.has_inertia:
@@ -273,5 +280,6 @@ def inertia_faults(source: str, inertia: bool, density: float | None, target: Ta
         reason = f"true is not available for {where} in this version; accepted: false"
         faults.append(Fault(source, "model.inertia", reason))
     if target is not None and density is None:
-        faults.append(Fault(source, "target.material.density", "missing; model.inertia = true needs it, in kg/m3"))
+        reason = "missing; model.inertia = true needs it, in kg/m3; the equivalent E* of two bodies is no wave medium"
+        faults.append(Fault(source, "target.material.density", reason))
     return faults

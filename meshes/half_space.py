@@ -9,12 +9,15 @@ from __future__ import annotations
 import numpy as np
 from skfem import MeshTri
 
+from meshes._sizes import beyond, checked, distance, larger, smaller
 from meshes.errors import MeshError
 from meshes.session import session
 from meshes.triangles import triangulated
 
 EDGE_REFINEMENT = 24.0  # element size inside the contact over element size at its edge
 GROWTH = 2.0  # growth of the element size per unit distance, for one element per contact radius
+ZONE = 1.1  # where contacts may end anywhere the surface is fine up to this radius
+WAVE_GROWTH, LARGEST_WAVE_GROWTH = 2.0, 0.3  # of the element size per unit distance, for one element along the radius
 LARGEST_GROWTH = 1.5  # steeper gradings leave gmsh too little room for well-shaped triangles
 
 
@@ -45,7 +48,38 @@ def half_space(elements_per_contact: float, far_radius: float) -> MeshTri:
     if not 2 <= far_radius <= 1e6:
         raise MeshError(f"far_radius = {far_radius:g}: accepted 2 to 1e6 contact radii")
     size = 1 / elements_per_contact
-    points, triangles = _triangulate(size, min(GROWTH * size, LARGEST_GROWTH), far_radius)
+    growth = min(GROWTH * size, LARGEST_GROWTH)
+    near_edge = f"({size / EDGE_REFINEMENT!r}+{growth!r}*{distance(1.0, 0.0)})"
+    elsewhere = f"({size!r}+{growth / 2!r}*{beyond(distance(0.0, 0.0), 1.0)})"
+    return _quarter(smaller(near_edge, elsewhere), 1.0, far_radius)
+
+
+def half_space_for_waves(elements_per_radius: float, smallest: float, far_radius: float) -> MeshTri:
+    """Triangles of the same outline under contacts that end anywhere up to ``r = 1``, all resolved alike.
+
+    Elements at the surface grow in proportion to the radius, and from the contact zone, 1.1, outwards so slowly that
+    the waves of a contact are still resolved where they are as long as their distance from it.
+
+    Parameters
+    ----------
+    elements_per_radius : radius over element size at the surface, 1 to 200.
+    smallest : the smallest contact radius to resolve so, 1e-3 to 1.
+    far_radius : radius of the quarter disc, 2 to 1e6.
+
+    Raises
+    ------
+    MeshError for numbers outside these ranges.
+    """
+    elements = checked("elements_per_radius", elements_per_radius, 1.0, 200.0)
+    low, far = checked("smallest", smallest, 1e-3, 1.0), checked("far_radius", far_radius, 2.0, 1e6)
+    within = smaller(larger("x", repr(low)), repr(ZONE))
+    growth = min(WAVE_GROWTH / elements, LARGEST_WAVE_GROWTH)
+    return _quarter(f"{within}/{elements!r}+{growth!r}*(Fabs(y)+{beyond('x', ZONE)})", ZONE, far)
+
+
+def _quarter(size: str, node: float, far_radius: float) -> MeshTri:
+    """Triangles of a size over (x, y), in the words of gmsh; a node of the surface at ``node``."""
+    points, triangles = _triangulate(size, node, far_radius)
     points[np.abs(points) < 1e-12 * far_radius] = 0.0  # onto the axis and the surface exactly
     mesh = MeshTri(points, triangles)
     return mesh.with_boundaries(
@@ -57,14 +91,11 @@ def half_space(elements_per_contact: float, far_radius: float) -> MeshTri:
     )
 
 
-def _triangulate(size: float, growth: float, far_radius: float) -> tuple[np.ndarray, np.ndarray]:
+def _triangulate(size: str, node: float, far_radius: float) -> tuple[np.ndarray, np.ndarray]:
     """Node coordinates (2, n) and triangles (3, m), unused nodes dropped."""
-    to_edge, to_axis = "Sqrt((x-1)^2+y^2)", "Sqrt(x^2+y^2)"
-    near_edge = f"({size / EDGE_REFINEMENT!r}+{growth!r}*{to_edge})"
-    elsewhere = f"({size!r}+{growth / 2!r}*(({to_axis}-1)+Fabs({to_axis}-1)))"
     with session("half_space") as gmsh:
         geometry = gmsh.model.geo
-        centre, edge = geometry.addPoint(0, 0, 0), geometry.addPoint(1, 0, 0)
+        centre, edge = geometry.addPoint(0, 0, 0), geometry.addPoint(node, 0, 0)
         right, bottom = geometry.addPoint(far_radius, 0, 0), geometry.addPoint(0, -far_radius, 0)
         outline = [
             geometry.addLine(centre, edge),
@@ -74,5 +105,4 @@ def _triangulate(size: float, growth: float, far_radius: float) -> tuple[np.ndar
         ]
         geometry.addPlaneSurface([geometry.addCurveLoop(outline)])
         geometry.synchronize()
-        # the smaller of the two sizes
-        return triangulated(gmsh, f"({near_edge}+{elsewhere}-Fabs({near_edge}-{elsewhere}))/2")
+        return triangulated(gmsh, size)

@@ -41,7 +41,7 @@ def execute(args: argparse.Namespace) -> int:
 def _impact(args: argparse.Namespace, scene: Scene, table: dict[str, Any], where: Path) -> int:
     from fe_contact.methods import settings, simulate
 
-    if args.method != "fe":
+    if args.method != "fe" or scene.model.inertia:
         result = simulate(scene, args.method, table, progress=base.progress_of(args))
         result.write(where)
         return base.report(args, result, where)
@@ -67,6 +67,9 @@ def _check(args: argparse.Namespace, scene: Scene) -> None:
         asked = [option for option in ("fields", "plot") if getattr(args, option)]
         if asked:
             raise BadInput(Fault(f"--{option}", "", "only with --method fe") for option in asked)
+    elif scene.model.inertia and (args.fields or args.plot):
+        reason = "not with model.inertia = true in this version"
+        raise BadInput(Fault("--fields" if args.fields else "--plot", "", reason))
     elif args.fields:
         from fe_contact.fields import check_fields
 

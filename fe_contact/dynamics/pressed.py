@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import ModuleType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,9 +14,9 @@ from fe_contact.forms import Array
 
 @dataclass(frozen=True, eq=False)
 class Enforced:
-    """A way to keep the surfaces apart, and its penalty stiffness, Pa/m."""
+    """A way to keep the surfaces apart, a member of :mod:`fe_contact.enforcement` or like one; its penalty, Pa/m."""
 
-    member: ModuleType
+    member: Any
     penalty: float
 
     @property

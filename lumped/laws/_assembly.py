@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from time import perf_counter, process_time
 from typing import Any
 
@@ -119,7 +119,7 @@ def assemble(
 ) -> Result:
     """The Result of one law: history dense enough for the tolerance, ledgers, and what it cost.
 
-    `model` is the model as the law resolves it, where that is not the scene's.
+    `model` is the model as the law resolves it, where that is not the scene's without inertia.
     """
     times = densified(answer.rows(scene), lambda t: answer.columns(t)[2], max(tolerance, FINEST_ROWS))
     depth, velocity, force, radius = answer.columns(times)
@@ -127,7 +127,7 @@ def assemble(
     # The rows themselves add what linear interpolation errs by, less than the tolerance; the bar is for the
     # rows.
     history = History(times, depth, velocity, force, radius, np.full(times.size, force_error))
-    resolved = model or scene.model
+    resolved = model or replace(scene.model, inertia=False)
     missed = unmet(quantities, tolerance)
     peak = quantities["peak_force"].value or 1.0
     return Result(

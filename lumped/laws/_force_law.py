@@ -122,5 +122,5 @@ class ForceLaw(ABC):
         return _impacts.outcome(self, scene, tolerance)
 
     def resolved(self, scene: Scene) -> Model:
-        """The scene's model as this law has it: its stiffness stands for a parabola."""
-        return replace(scene.model, profile="parabola") if scene.has_geometry else scene.model
+        """The scene's model as this law has it: its stiffness stands for a parabola, and no body for waves."""
+        return replace(scene.model, profile="parabola", inertia=False) if scene.has_geometry else scene.model

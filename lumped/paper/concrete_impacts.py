@@ -10,11 +10,12 @@ from lumped.materials import Material
 from lumped.materials.networks import sls
 from lumped.paper.examples import Concrete
 from lumped.paper.plateau import PlateauCut, plateau_cut
-from lumped.paper.struck_bar import StruckBar, bar_impedance
+from lumped.paper.struck_bar import StruckBar
 from lumped.paper.value import Value, read
 from lumped.result import Result
 from lumped.scene import Model, Scene
 from lumped.shapes import Sphere
+from lumped.targets.rod import Rod
 
 TOLERANCE = 1e-6
 # The fit takes the printed moduli as contact moduli, so Poisson's ratio plays no part.
@@ -44,5 +45,6 @@ def cut_at_measured_peak(concrete: Concrete) -> PlateauCut:
 def on_bar(concrete: Concrete, radius: float, side: float, velocity: float) -> tuple[Value, Value, Value]:
     """Peak force, N, duration, s, restitution of the elastic striker on a long bar of square section, side in m."""
     stiffness = concrete.E2 * float(Hertz(radius).force(1.0))
-    impedance = bar_impedance(concrete.E2, concrete.density, side**2)
+    pole = Rod(area=side**2, length=1.0, end="absorbing")
+    impedance = pole.impedance(concrete.E2, concrete.density)
     return StruckBar(concrete.mass, velocity, stiffness, impedance).impact()

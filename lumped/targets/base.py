@@ -12,19 +12,25 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.errors import BadInput, Fault
 from lumped.keys import Key
 from lumped.load_curves.base import LoadCurve
+from lumped.materials import Material
+from lumped.radiation import Pulse, radiated_share
 from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
+
+LOST_FORCE = 0.3  # of the peak, relatively, over the share of the energy that is lost
 
 
 class Target(ABC):
     """The geometry of a struck body; `name` and `keys` are those of the scene file.
 
-    `deformable`: whether it has a material; `yielding_strikers`: whether its striker may have one.
+    `deformable`: whether it has a material; `yielding_strikers`: whether its striker may have one. `has_inertia`:
+    whether its waves can be followed; `only_with_inertia`: whether nothing is left of it without them.
     """
 
     name: ClassVar[str]
     keys: ClassVar[Mapping[str, Key]]
     has_inertia: ClassVar[bool]
+    only_with_inertia: ClassVar[bool] = False
     deformable: ClassVar[bool] = True
     yielding_strikers: ClassVar[bool] = False
 
@@ -65,6 +71,22 @@ class Target(ABC):
         Raises BadInput where none is known.
         """
         raise BadInput(Fault(self.name, "target.shape", "no exact load curve in this version; accepted: --method fe"))
+
+    def contact_time(self, local: float, material: Material, mass: float) -> float:
+        """Elastic contact time of a mass, kg, s, where a half-space would answer in `local`; here the same."""
+        return local
+
+    def inertia_left_out(self, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+        """What a contact without the body's inertia errs by in its peak force, relatively, and a note.
+
+        Here as on the half-space: waves take the share w of the energy, half of it before the peak, and
+        F ~ energy^(3/5) loses 0.3 w. None where it is not known.
+        """
+        share = radiated_share(material, pulse)
+        if share is not None:
+            return LOST_FORCE * share, f"radiates {share:.2g} of the kinetic energy; model.inertia"
+        missing = "needs target.material.density" if material.density is None else "a dashpot alone has no wave speed"
+        return None, missing
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput, naming the key, for a striker which this target is not for; here any rigid one will do."""

@@ -20,7 +20,7 @@ KEYS: Mapping[str, Key] = {"datum_depth": Number(1e-9, 1e9, "m", required=False)
 
 @dataclass(frozen=True)
 class HalfSpace(Target):
-    """Everything below a plane; values are those of the infinite body. Its inertia is not available yet.
+    """Everything below a plane; values are those of the infinite body.
 
     `datum_depth`, m: in plane strain depth is measured relative to the point so far below; None otherwise.
     """
@@ -28,7 +28,7 @@ class HalfSpace(Target):
     datum_depth: float | None = None
     name: ClassVar[str] = "half_space"
     keys: ClassVar[Mapping[str, Key]] = KEYS
-    has_inertia: ClassVar[bool] = False
+    has_inertia: ClassVar[bool] = True
 
     @property
     def has_length(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
@@ -11,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.keys import Choice, Key, Number, check_fields
 from lumped.load_curves.base import LoadCurve
+from lumped.materials import Material
+from lumped.radiation import Pulse
 from lumped.shapes.base import Shape
 from lumped.targets.base import Target
 
@@ -54,6 +57,22 @@ class Layer(Target):
         if shape.fixed_radius is not None:
             return LayerPunch(shape.fixed_radius, elastic)
         return LayerCurve(shape.load_curve, elastic)
+
+    def inertia_left_out(self, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+        """A thin layer radiates nothing, but answers the slower the nearer its first resonance, four transits, is.
+
+        As a spring with mass it yields more by (2 h/(c T))^2, c of waves across it, and F ~ stiffness^(2/5). A thick
+        one is a half-space: the smaller of the two.
+        """
+        radiated, note = super().inertia_left_out(material, pulse)
+        if radiated is None or material.density is None:
+            return radiated, note
+        modulus = material.confined_modulus()
+        speed = math.sqrt((modulus.relaxed or modulus.glassy) / material.density)
+        resonance = 0.4 * (2.0 * self.thickness / (speed * pulse.duration)) ** 2
+        if resonance >= radiated:
+            return radiated, note
+        return resonance, "(2 h/(c T))^2 of its compliance: the layer's first resonance; model.inertia"
 
     def check_depth(self, shape: Shape, depth: float) -> str:
         """Neither through the layer nor past the equator."""

@@ -18,7 +18,7 @@ from lumped.collide.bodies import Bodies, Stage
 from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE
 from lumped.scene import LawChoice, Model
 
-OF_GEOMETRY = {"correspondence", "ting", "mdr"}
+OF_GEOMETRY = {"correspondence", "ting", "mdr", "rod_waves"}
 NAMES = sorted(set(laws.available()) - OF_GEOMETRY)
 DAMPED = [name for name in NAMES if "e" in laws.get(name).KEYS]
 FREE = [name for name in NAMES if "alpha" in laws.get(name).KEYS]

@@ -40,6 +40,7 @@ TARGETS: dict[str, dict[str, object]] = {
     "sphere": {"radius": 0.02},
     "cylinder": {"radius": 0.02, "support": "held"},
     "o_ring": {"mean_radius": 0.02, "section_radius": 0.002},
+    "rod": {"area": 1e-4, "length": 0.5, "end": "fixed"},
     "washer": {"inner_radius": 0.01, "outer_radius": 0.02, "height": 0.005, "base": "sliding"},
 }
 
@@ -79,7 +80,7 @@ def test_target_is_named_like_its_file(name: str) -> None:
     assert target.to_dict() == {"shape": name, **TARGETS[name]}
 
 
-@pytest.mark.parametrize("name", laws.available())
+@pytest.mark.parametrize("name", sorted(set(laws.available()) - {"rod_waves"}))  # on no half-space: test_rod_waves.py
 def test_law_simulates_what_it_claims(name: str, impact: Callable[..., Scene]) -> None:
     scene = impact(0.5, (0.5,), (1.0,))
     law = laws.get(name).of(scene)

@@ -1,0 +1,1 @@
+"""Impacts on bodies with inertia: plan, march, error bars, and the record of what was found."""

@@ -1,0 +1,90 @@
+"""The half-space as a body that moves: a quarter disc so large that no echo returns, dashpots and springs beyond it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sparse
+from skfem import Basis, FacetBasis
+
+import meshes
+from fe_contact.dynamics.body import Body, Part, Pressing
+from fe_contact.dynamics.mass.consistent import Nodes
+from fe_contact.far_field import absorbing
+from fe_contact.forms import Array, mass, vector_dofs
+from fe_contact.numerics import MASSES
+from fe_contact.operators import ELEMENTS, contact_quadrature, system_matrix
+from fe_contact.surface import flat
+from fe_contact.waves.moving import Moving, with_striker
+from fe_contact.waves.numerics import WaveNumerics
+from lumped.members import get
+from lumped.scene import Scene
+
+SMALLEST = 0.1  # contact radius over the largest one down to which every contact is resolved alike
+BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
+
+
+@dataclass(frozen=True, eq=False)
+class UnitBody:
+    """Matrices for contact radius, E* and density one, sparse (N, N), the striker last; ``push`` and the points."""
+
+    stiffness: Any
+    mass: Any
+    dashpots: Any
+    push: Any
+    trace: Array
+    points: Array
+    weights: Array
+
+
+def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
+    """The half-space of a scene at first touch, in SI units."""
+    material, modulus, a = scene.geometry.material, scene.contact_modulus, numerics.contact_radius
+    unit = unit_body(material.nu, numerics.elements_per_contact, numerics.order, numerics.far_radius, numerics.mass)
+    density = material.density or 0.0
+    rigid, gravity = np.zeros(unit.mass.shape[0]), np.zeros(unit.mass.shape[0])
+    rigid[-1], gravity[-1] = scene.reduced_mass, scene.gravity
+    heights = np.minimum(scene.profile.height(a * unit.points), BEYOND * a)
+    # a dashpot in parallel has no wave speed of its own
+    impedance = None if modulus.viscosity else (a**2 * np.sqrt(modulus.glassy * density)) * unit.dashpots
+    body = Body(
+        mass=density * a**3 * unit.mass,
+        rigid=rigid,
+        parts=(Part(a * unit.stiffness, modulus),),
+        dashpots=impedance,
+        gravity=gravity,
+        pressing=Pressing(unit.push, unit.trace, a**2 * unit.weights, -heights),
+    )
+    return Moving(body, scene.velocity, a * unit.points, endless=True)
+
+
+@lru_cache(maxsize=8)
+def unit_body(poisson: float, elements: float, order: int, far_radius: float, masses: str) -> UnitBody:
+    """Mesh and assemble; made once for all steps and penalties."""
+    basis = Basis(meshes.half_space_for_waves(elements, SMALLEST, far_radius), ELEMENTS[order](), intorder=2 * order)
+    surface = flat(basis)
+    far = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["far"], intorder=2 * order + 4)
+    free = np.setdiff1d(np.arange(2 * basis.N), 2 * basis.get_dofs("axis").flatten())
+    corners = surface.coordinate[::order]
+    zone = corners[: np.searchsorted(corners, surface.zone) + 1]  # whole facets only
+    points, lengths, trace = contact_quadrature(zone, order)
+    normal = 2 * surface.dofs + 1
+    inertia = get(MASSES, masses).of(mass(basis), vector_dofs(basis.element_dofs), 2 * basis.N, normal)
+    return UnitBody(
+        stiffness=with_striker(system_matrix(basis, poisson), free),
+        mass=with_striker(inertia, free),
+        dashpots=with_striker(absorbing.dashpots(far, poisson), free),
+        push=_push(np.searchsorted(free, normal[: trace.shape[1]]), len(free)),
+        trace=np.hstack([trace, np.ones((len(points), 1))]),
+        points=points,
+        weights=lengths * surface.measure(points),
+    )
+
+
+def _push(touched: Nodes, striker: int) -> sparse.csc_matrix:
+    """Pressure pushes the surface into the body, z < 0, and the striker out of it."""
+    rows = np.append(touched, striker)
+    return sparse.csc_matrix((-np.ones(rows.size), (rows, np.arange(rows.size))), shape=(striker + 1, rows.size))

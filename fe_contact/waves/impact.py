@@ -1,0 +1,117 @@
+"""One impact on a body with inertia: from the moving body and settings to the motion, and to the record of a march."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.dynamics.march import Choices, Motion, Sample, march
+from fe_contact.dynamics.pressed import Enforced
+from fe_contact.errors import MemoryTooSmall
+from fe_contact.march import March, Work
+from fe_contact.numerics import ENFORCEMENTS, WAVE_SCHEMES
+from fe_contact.pressing import half_width
+from fe_contact.waves.moving import Moving
+from fe_contact.waves.numerics import WaveNumerics
+from lumped.members import get
+from lumped.scene import Scene
+
+FAINT = (1e-3, 3e-2)  # of the peak force: what tells when contact ends
+SOONEST = 0.05  # steps after the last one in which something presses
+
+
+def motion(moving: Moving, scene: Scene, numerics: WaveNumerics) -> Motion:
+    """March from first touch until the striker has left, or to the scene's end time.
+
+    Raises the named failures of :mod:`fe_contact.errors`.
+    """
+    stiffness = scene.contact_modulus.glassy or scene.contact_modulus.relaxed
+    penalty = numerics.penalty * stiffness / numerics.contact_radius
+    choices = Choices(
+        scheme=get(WAVE_SCHEMES, numerics.scheme).of(numerics.rho),
+        enforced=Enforced(get(ENFORCEMENTS, numerics.enforcement), penalty),
+        step=numerics.contact_time / numerics.steps,
+    )
+    return march(moving.body, moving.velocity, choices, scene.end_time, moving.watch, left)
+
+
+def left(sample: Sample) -> bool:
+    """Whether nothing presses on a striker that moves back, or from which the surface moves on."""
+    return sample.force <= 0.0 and (float(sample.velocity[0]) < 0.0 or float(sample.closing.max()) < 0.0)
+
+
+def record(moving: Moving, found: Motion, scene: Scene) -> March:
+    """The history from touch to separation as of any march; forces are what the striker's momentum says."""
+    separated = left(found.samples[-1])
+    pressed = found.samples[:-1] if separated else found.samples
+    end, spread = _parting(found, scene.profile.exponent_of_force) if separated else (pressed[-1].time, 0.0)
+    time = np.append([s.time for s in pressed], end) if separated else np.array([s.time for s in pressed])
+    depth, speed = np.array([(float(s.displacement[0]), float(s.velocity[0])) for s in found.samples]).T
+    momentum = scene.reduced_mass * (scene.velocity - speed + scene.gravity * found.time)
+    if separated:  # nothing presses any more between the end and the last sample
+        late = found.samples[-1].time - end
+        depth[-1] -= late * (speed[-1] - 0.5 * scene.gravity * late)
+    touched = [s for s in pressed if s.force > 0.0]
+    return March(
+        time=time,
+        depth=depth,
+        impulse=momentum,
+        radius_time=np.array([s.time for s in touched]),
+        radius=np.array([_radius(moving, s) for s in touched]),
+        separated=separated,
+        photograph=tuple,
+        energy=energies(moving, found, scene),
+        end_spread=spread,
+        first_force=0.0,
+        work=Work(len(found.samples) - 1, len(found.samples) - 1, sum(s.iterations for s in found.samples)),
+    )
+
+
+def _parting(found: Motion, exponent: float) -> tuple[float, float]:
+    """When contact ends, s, and how well that is read: a force depth^n falls to zero as (time left)^n.
+
+    The faintest steps, in which a mesh's last elements let go one by one, are not asked.
+    """
+    force, time = found.force, found.time
+    last = int(np.flatnonzero(force > 0.0)[-1])
+    after, step = np.arange(force.size) > force.argmax(), time[-1] - time[-2]
+    faint = after & (force > FAINT[0] * force.max()) & (force < FAINT[1] * force.max())
+    if np.count_nonzero(faint) < 4:
+        return found.contacts[-1][1], step
+    x, root = (time[faint] - time[last]) / step, force[faint] ** (1.0 / exponent)
+    slope, start = np.polyfit(x, root, 1)
+    bent = np.roots(np.polyfit(x, root, 2))
+    straight = -start / slope
+    curved = min((float(r.real) for r in bent if abs(r.imag) < 1e-9), key=lambda r: abs(r - straight), default=straight)
+    return float(time[last] + step * max(curved, SOONEST)), step * abs(curved - straight)
+
+
+def _radius(moving: Moving, sample: Sample) -> float:
+    radius = half_width(moving.places, sample.signed_pressure, -sample.signed_pressure)
+    if not np.isfinite(radius):
+        raise MemoryTooSmall(moving.places[-1])
+    return radius
+
+
+def energies(moving: Moving, found: Motion, scene: Scene) -> dict[str, float]:
+    """Terms in J at the end. What waves in an endless elastic body hold without a load never comes back: radiated.
+
+    Of a viscoelastic one its motion alone is counted so: its strain has still to relax.
+    """
+    last = found.samples[-1].energies
+    waves, held = last.deformable, last.strain
+    if scene.geometry.material.young.is_elastic and left(found.samples[-1]):
+        waves, held = waves + held, 0.0
+    if not moving.endless:
+        waves, held = 0.0, held + waves
+    terms = {
+        "in": last.work,
+        "out": last.rigid,
+        "stored": held,
+        "viscous": last.viscous,
+        "radiated": last.radiated + waves,
+        "contact": last.contact,
+        "numerical": last.numerical,
+    }
+    terms["residual"] = 2 * terms["in"] - sum(terms.values())
+    return terms
+

@@ -1,0 +1,17 @@
+"""Numerics of a body with inertia: beside the settings of every impact, how its mass stands on the nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fe_contact.numerics import Numerics
+
+
+@dataclass(frozen=True)
+class WaveNumerics(Numerics):
+    """``scheme`` is one of :mod:`fe_contact.dynamics.schemes`, of spectral radius ``rho`` for what no step follows;
+    ``mass`` one of :mod:`fe_contact.dynamics.mass`; the rest as in Numerics.
+    """
+
+    rho: float
+    mass: str

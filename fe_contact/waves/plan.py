@@ -1,0 +1,65 @@
+"""Scene and tolerance -> settings of an impact on the half-space with waves, and model ledger; nothing is run.
+
+The exact row of springs, which has no inertia, places mesh and time steps. Nothing of it enters a value or a bar.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from fe_contact.far_field.absorbing import wave_speeds
+from fe_contact.numerics import RANGES
+from fe_contact.plan import Plan
+from fe_contact.waves.numerics import WaveNumerics
+from lumped.laws import mdr
+from lumped.model_ledger import Peak, model_ledger
+from lumped.scene import Scene
+
+DEFAULT_TOLERANCE = 3e-3  # of a peak force; what chatter at the contact's edge leaves is about a third
+SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
+ELEMENTS = 9.0  # along every contact radius
+STEPS = 320  # along a contact
+TRAVEL = 0.5  # of the contact time: an echo from the far radius returns after the contact
+NEAREST = 20.0  # contact radii: the far springs' own need
+VISCOUS_TRAVEL = 5.0  # contact radii: a dashpot in parallel has no wave speed, and damps what comes back
+DEFAULTS: Mapping[str, Any] = {
+    "order": 3,
+    "penalty": 120.0,
+    "enforcement": "corrected",
+    "scheme": "generalised_alpha",
+    "rho": 0.5,
+    "mass": "consistent",
+}
+
+
+def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
+    """Choose what ``given`` (checked settings) leaves open.
+
+    Raises NotReached where even the row of springs does not come to an end.
+    """
+    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    scales = mdr.estimate(scene, SPRINGS)
+    contact_time = scales.duration or scene.end_time
+    finer = max(1.0, DEFAULT_TOLERANCE / tolerance)
+    chosen = {
+        **DEFAULTS,
+        "tolerance": tolerance,
+        "elements_per_contact": ELEMENTS * math.sqrt(finer),
+        "steps": 4 * math.ceil(STEPS * math.sqrt(finer) / 4),
+        "far_radius": _far_radius(scene, scales.contact_radius, contact_time),
+        "contact_radius": scales.contact_radius,
+        "contact_time": contact_time,
+        "peak_share": min(scales.peak_time / contact_time, 1.0),
+    }
+    peak = Peak(scales.peak_force, scales.peak_depth, scales.contact_radius, 2 * scales.peak_time)
+    return Plan(WaveNumerics(**{**chosen, **given}), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
+
+
+def _far_radius(scene: Scene, contact_radius: float, contact_time: float) -> float:
+    """In contact radii: so far that pressure waves of the stiffest answer return too late."""
+    modulus, material = scene.contact_modulus, scene.geometry.material
+    fastest = wave_speeds(material.nu)[0] * math.sqrt(modulus.glassy / (material.density or 1.0))
+    travel = TRAVEL * fastest * contact_time / contact_radius
+    return min(max(travel, NEAREST), RANGES["far_radius"][1])

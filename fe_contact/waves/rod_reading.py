@@ -1,0 +1,110 @@
+"""What the steps of an impact on a rod say: a history, rows in pairs where a wave front arrives, and its quantities.
+
+A front crosses one element a step: it leaves at touch and is back after twice as many steps as there are elements. A
+struck surface with mass of its own needs two steps to follow it, in which the force carries that mass along; they are
+left out, and the force behind the front is read off the steps after them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from fe_contact.dynamics.march import Motion, Sample
+from fe_contact.forms import Array
+from fe_contact.waves.impact import left
+from lumped.interpolation import peak
+from lumped.scene import Scene
+
+SPOILED = 2  # steps behind a front
+BEHIND = np.array([3, 4, 5])  # steps behind it that tell the force there
+Steps = npt.NDArray[np.intp]
+TIME, DEPTH, VELOCITY, FORCE, DENT = range(5)
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """``rows`` (5, n): time, s, never decreasing; depth, m; velocity, m/s; force, N; dent, m. Did contact end?"""
+
+    rows: Array
+    separated: bool
+    quantities: Mapping[str, float | None]
+
+    def force_at(self, time: Array) -> Array:
+        """N, linear between the rows."""
+        return np.asarray(np.interp(time, self.rows[TIME], self.rows[FORCE]))
+
+
+def read(found: Motion, scene: Scene, elements: int) -> Reading:
+    """From the samples of a march; ``elements`` of the rod."""
+    separated = left(found.samples[-1])
+    jumping = scene.profile.fixed_radius is not None
+    rows = np.array([_row(sample) for sample in found.samples]).T
+    end = found.contacts[-1][1]
+    if jumping:
+        fronts = np.arange(0, rows.shape[1], 2 * elements, dtype=np.intp)
+        if separated and rows.shape[1] - 2 in fronts:  # a front ends the contact
+            end, rows = rows[TIME, -2], np.hstack([rows[:, :-1], rows[:, -2:-1]])
+        rows = _with_fronts(rows, fronts)
+    elif separated:
+        end = _undented(rows)
+    if separated:
+        rows = _ended(rows, end)
+    highest = _highest(rows) if jumping else peak(rows[TIME], rows[FORCE])
+    time, _, velocity, _, _ = rows[:, -1]
+    quantities = {
+        "peak_force": highest[1],
+        "peak_time": highest[0],
+        "peak_depth": peak(rows[TIME], rows[DEPTH])[1],
+        "duration": float(time) if separated else None,
+        "restitution": float(-velocity / scene.velocity) if separated else None,
+        "impulse": float(scene.reduced_mass * (scene.velocity - velocity + scene.gravity * time)),
+        "history_l2": 0.0,
+    }
+    return Reading(rows, separated, quantities)
+
+
+def _row(sample: Sample) -> tuple[float, ...]:
+    dent = max(float(sample.overlap[0]), 0.0)
+    return sample.time, float(sample.displacement[0]), float(sample.velocity[0]), max(sample.force, 0.0), dent
+
+
+def _with_fronts(rows: Array, fronts: Steps) -> Array:
+    """Rows (5, n) with those spoiled by fronts, which arrive at these steps, left out, and what follows each put in."""
+    parts, begin = list[Array](), 0
+    for front in fronts:
+        clean = front + BEHIND
+        if clean[-1] >= rows.shape[1] - 1:
+            break
+        behind = rows[:, front].copy()
+        behind[FORCE] = np.polyfit(clean - front, rows[FORCE, clean], len(clean) - 1)[-1]
+        parts += [rows[:, begin : front + 1] if front else rows[:, :0], behind[:, None]]
+        begin = front + SPOILED + 1
+    return np.hstack([*parts, rows[:, begin:]])
+
+
+def _undented(rows: Array) -> float:
+    """When the dent of the last pressed rows, smooth, comes to nothing, s; at the latest a step after them."""
+    time, dent = rows[TIME, -4:-1], rows[DENT, -4:-1]
+    step = time[-1] - time[-2]
+    roots = np.roots(np.polyfit((time - time[-1]) / step, dent, 2))
+    ahead = [float(root.real) for root in roots if abs(root.imag) < 1e-9 and 0.0 <= root.real <= 1.0]
+    return float(time[-1] + step * min(ahead, default=1.0))
+
+
+def _ended(rows: Array, end: float) -> Array:
+    """Rows up to the end of contact, s, where nothing presses any more; the last one lies beyond it."""
+    last = rows[:, -1].copy()
+    last[DEPTH] -= (last[TIME] - end) * last[VELOCITY]
+    last[[TIME, FORCE, DENT]] = end, 0.0, 0.0
+    kept = rows[:, :-1][:, rows[TIME, :-1] <= end]
+    return np.hstack([kept, last[:, None]])
+
+
+def _highest(rows: Array) -> tuple[float, float]:
+    """Time and force of the highest row: where the force jumps no polynomial goes through its rows."""
+    top = int(np.argmax(rows[FORCE]))
+    return float(rows[TIME, top]), float(rows[FORCE, top])

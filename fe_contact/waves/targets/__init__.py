@@ -1,0 +1,4 @@
+"""Impacts with inertia, one target a file under the name it has in ``lumped.targets``.
+
+A member offers ``plan(scene, given)``, the settings chosen, and ``fe(scene, given, progress)``, the certified Result.
+"""

@@ -1,0 +1,67 @@
+"""The half-space with waves: what it radiates never comes back, and its force is smooth."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from fe_contact.certify import Budget
+from fe_contact.numerics import Numerics
+from fe_contact.plan import Plan
+from fe_contact.progress import Progress, silent
+from fe_contact.reference import refined_for, result_of, strike_of
+from fe_contact.waves.certify import certify
+from fe_contact.waves.half_space_body import moving
+from fe_contact.waves.numerics import WaveNumerics
+from fe_contact.waves.plan import plan as plan
+from lumped.errors import BadInput, Fault
+from lumped.result import Result
+from lumped.scene import Scene
+
+ROUNDS = 1  # refinements before giving up
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A certified impact with the plan it began from and the settings it ended with; CPU and wall time, s."""
+
+    plan: Plan
+    numerics: Numerics
+    certified: Budget
+    cpu: float
+    wall: float
+
+
+def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
+    """Force history with error bars. Raises BadInput for a scene it is not for, NotReached where no march ends."""
+    check(scene)
+    cpu, wall = time.process_time(), time.perf_counter()
+    chosen, strike = plan(scene, given), strike_of(scene)
+    assert isinstance(chosen.numerics, WaveNumerics)
+    numerics: WaveNumerics = chosen.numerics
+    for attempt in range(ROUNDS + 1):
+        progress(f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements, waves")
+        certified = certify(scene, strike, numerics, moving)
+        finer = refined_for(certified, numerics, chosen)
+        if not isinstance(finer, WaveNumerics) or attempt == ROUNDS:
+            break
+        numerics = finer
+    solved = Solved(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall)
+    return result_of(scene, solved)
+
+
+def check(scene: Scene) -> None:
+    """Raise BadInput for several impacts, a striker with a rim or in plane strain, and a changing Poisson's ratio."""
+    scene.check_single("fe")
+    shape, material = scene.geometry.shape, scene.geometry.material
+    faults = []
+    if shape.plane or shape.fixed_radius is not None:
+        reason = f"{shape.name}: no waves under it in this version; accepted with model.inertia: sphere, cone, power"
+        faults.append(Fault(scene.source, "striker.shape", reason))
+    if material.constant == "bulk" and not material.young.is_elastic:
+        reason = '"bulk" changes nu in time, which no far field follows in this version; accepted: "poisson"'
+        faults.append(Fault(scene.source, "target.material.constant", reason))
+    if faults:
+        raise BadInput(faults)

@@ -1,0 +1,145 @@
+"""The exact impact on an elastic rod, by its waves: St Venant's series for a flat end, else a dent that presses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.ending import End
+from lumped.errors import BadInput, Fault
+from lumped.interpolation import highest
+from lumped.keys import Key
+from lumped.laws._assembly import Answer, Clock, assemble, bars, impulse_of
+from lumped.laws._half_space import check_geometry
+from lumped.result import Result
+from lumped.rod_waves.flat import FlatImpact
+from lumped.rod_waves.tipped import Scales, TippedImpact
+from lumped.rod_waves.waves import Waves
+from lumped.scene import Scene
+from lumped.targets.rod import Rod
+
+Array = NDArray[np.float64]
+KEYS: Mapping[str, Key] = {}
+COARSEST, FINEST, FINER = 1e-6, 1e-12, 1e-3  # of the tolerance, asked of every step
+COARSER = 1e2  # where what is left of the error shows
+SAFETY = 2.0
+PLACES = 400  # in the history, where peaks are looked for
+
+
+@dataclass(frozen=True)
+class RodWaves:
+    """The law; everything it needs is in the scene."""
+
+    name: ClassVar[str] = "rod_waves"
+
+    def simulate(self, scene: Scene, tolerance: float) -> Result:
+        """One impact to this tolerance. Raises NotReached."""
+        clock, rtol = Clock(), max(min(FINER * tolerance, COARSEST), FINEST)
+        fine = _answer(scene, rtol)
+        coarse = fine if scene.profile.fixed_radius else _answer(scene, rtol * COARSER)
+        quantities, force_error = bars(fine, coarse, SAFETY)
+        integration: dict[str, Any] = {"rtol": rtol} if coarse is not fine else {"series": "exact"}
+        work, model = {"echoes": int(fine.times.size // PLACES) - 1}, scene.model
+        return assemble(self.name, scene, tolerance, fine, quantities, force_error, clock, integration, work, model)
+
+
+def of(scene: Scene) -> RodWaves:
+    """The law for a scene. Raises BadInput where the target is no elastic rod, or several impacts are asked for."""
+    check_geometry(scene, RodWaves.name)
+    scene.check_single(RodWaves.name)
+    if not isinstance(scene.target, Rod):
+        reason = f"{scene.target.name}: rod_waves is for a rod; accepted: rod, or another method"
+        raise BadInput(Fault(scene.source, "target.shape", reason))
+    if not scene.geometry.material.young.is_elastic:
+        reason = "its waves disperse, which rod_waves does not follow; accepted: elastic, or --method fe"
+        raise BadInput(Fault(scene.source, "target.material.law", reason))
+    return RodWaves()
+
+
+def _answer(scene: Scene, rtol: float) -> Answer:
+    """One integration of the scene; of a flat end the series, whatever ``rtol``."""
+    impact = _impact(scene, rtol)
+    _, end, separated = impact.pieces
+    breaks = np.append(impact.starts, end)
+    rows = np.unique(np.concatenate([np.linspace(*ends, PLACES + 1) for ends in pairwise(breaks)]))
+    depth, velocity, _, _ = impact.columns(rows)
+    peak_time, peak_force = _peak(impact, breaks)
+    ending = End.SEPARATED if separated else End.TIME
+    values = {
+        "peak_force": peak_force,
+        "peak_time": peak_time,
+        "peak_depth": highest(lambda t: impact.columns(t)[0], rows)[1],
+        "duration": end if separated else None,
+        "restitution": -float(velocity[-1]) / scene.velocity if separated else None,
+        "impulse": impulse_of(scene, ending, float(velocity[-1]), end, scene.end_time),
+    }
+    columns = _Columns(scene, impact, end if separated else np.inf)
+    energy = _energy(scene, impact, rows, float(depth[-1]), float(velocity[-1]))
+    return Answer(rows, columns, values, ending, energy, "" if separated else ending.value)
+
+
+def _impact(scene: Scene, rtol: float) -> FlatImpact | TippedImpact:
+    waves = Waves.of(scene)
+    shape, mass, velocity, until = scene.profile, scene.reduced_mass, scene.velocity, scene.end_time
+    if shape.fixed_radius is not None:
+        return FlatImpact(waves, mass, velocity, scene.gravity, until)
+    modulus = shape.modulus(scene.geometry.material).relaxed
+    curve, scales = shape.load_curve, shape.hertz_impact(modulus, mass, velocity)
+    return TippedImpact(
+        waves=waves,
+        force=lambda dent: modulus * curve.force(dent),
+        mass=mass,
+        velocity=velocity,
+        gravity=scene.gravity,
+        until=until,
+        scales=Scales(scales.depth, scales.duration),
+        rtol=rtol,
+    )
+
+
+@dataclass(frozen=True)
+class _Columns:
+    """Depth, velocity, force, contact radius at times (n,), shape (4, n); nothing presses from the end on."""
+
+    scene: Scene
+    impact: FlatImpact | TippedImpact
+    end: float
+
+    def __call__(self, times: Array) -> Array:
+        columns = self.impact.columns(times)
+        columns[2] = np.where(times < self.end, np.maximum(columns[2], 0.0), 0.0)
+        radius = self.scene.profile.fixed_radius
+        if isinstance(self.impact, TippedImpact):
+            columns[3] = self.scene.profile.load_curve.contact_radius(self.impact.dents(times))
+        else:
+            columns[3] = radius
+        return columns
+
+
+def _peak(impact: FlatImpact | TippedImpact, breaks: Array) -> tuple[float, float]:
+    """Time and height of the greatest force: between two echoes it is smooth, at one it may jump."""
+    found = []
+    for begin, end in pairwise(breaks):
+        rows = np.linspace(begin, end, PLACES + 1)[:-1]
+        found.append(highest(lambda t: impact.columns(t)[2], rows))
+        found.append((float(rows[0]), float(impact.columns(rows[:1])[2, 0])))
+    return max(found, key=lambda place: place[1])
+
+
+def _energy(
+    scene: Scene, impact: FlatImpact | TippedImpact, rows: Array, depth: float, velocity: float
+) -> dict[str, float | None]:
+    """Energies at the end, J; ``stored``: in the waves on the rod's length and in the dent, if it is still there."""
+    given = 0.5 * scene.reduced_mass * scene.velocity**2 + scene.reduced_mass * scene.gravity * depth
+    out = 0.5 * scene.reduced_mass * velocity**2
+    held, radiated = impact.waves.energies(lambda t: impact.columns(t)[3], rows)
+    if isinstance(impact, TippedImpact):
+        modulus = scene.contact_modulus.relaxed
+        held += modulus * float(scene.profile.load_curve.energy(float(impact.dents(rows[-1:])[0])))
+    residual = given - out - held - radiated
+    return {"in": given, "out": out, "stored": held, "viscous": 0.0, "radiated": radiated, "residual": residual}

@@ -1,0 +1,175 @@
+"""A ball on a half-space with waves: what it loses is what is radiated, and without density nothing is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from skfem import Basis, ElementTriP2
+
+import meshes
+from fe_contact import forms
+from fe_contact.curve import Curve
+from fe_contact.far_field.absorbing import wave_speeds
+from fe_contact.march import March
+from fe_contact.methods import simulate
+from fe_contact.reference import strike_of
+from fe_contact.waves.half_space_body import moving
+from fe_contact.waves.impact import motion, record
+from fe_contact.waves.targets import half_space
+from lumped import BadInput, Result, Scene, laws
+from lumped.radiation import radiation_coefficient
+
+PLACES = 2001
+QUICK = {"elements_per_contact": 6.0, "steps": 200, "penalty": 60.0}  # errs by 3e-4 in what is radiated
+
+
+def marched(scene: Scene, **given: Any) -> tuple[March, Curve]:
+    numerics = half_space.plan(scene, given).numerics
+    body = moving(scene, numerics)
+    found = record(body, motion(body, scene, numerics), scene)
+    return found, Curve.of(found, strike_of(scene))
+
+
+def predicted(scene: Scene, curve: Curve) -> float:
+    """W = A(nu)/(density c_s^3) int (dF/dt)^2 dt over the energy of the ball."""
+    material = scene.geometry.material
+    speed = math.sqrt(material.shear.relaxed / (material.density or 0.0))
+    time = np.linspace(0.0, curve.duration, PLACES)
+    rate = np.gradient(curve.force(time), time)
+    energy = radiation_coefficient(material.nu) / (material.density * speed**3) * np.trapezoid(rate**2, time)
+    return float(energy / (0.5 * scene.mass * scene.velocity**2))
+
+
+def test_a_body_weighs_what_its_volume_does_and_waves_have_their_speeds() -> None:
+    mesh = meshes.half_space_for_waves(4.0, 0.1, 10.0)
+    basis = Basis(mesh, ElementTriP2(), intorder=4)
+    corners = mesh.p[:, mesh.t]
+    (r, z) = corners[:, 1:] - corners[:, :1]
+    volume = np.pi * np.sum(np.abs(r[0] * z[1] - r[1] * z[0]) * corners[0].mean(axis=0))  # Pappus
+    assert forms.mass(basis)[:, 1::2, 1::2].sum() == pytest.approx(volume, rel=1e-12)
+    assert volume == pytest.approx(2.0 / 3.0 * np.pi * 1e3, rel=0.05)  # a polygon inscribed in the quarter disc
+    for poisson in (0.0, 0.3, 0.49):
+        young = 1.0 - poisson**2  # E* = 1
+        pressure, shear = wave_speeds(poisson)
+        assert shear**2 == pytest.approx(young / (2.0 * (1.0 + poisson)))
+        assert pressure**2 == pytest.approx(young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson)))
+
+
+@pytest.mark.parametrize(("poisson", "young"), [(0.0, 7e10), (0.45, 3e9)])
+def test_the_ball_loses_what_its_force_radiates(poisson: float, young: float) -> None:
+    """Lamb's point force, an integral, against the momentum of the ball and the energy left in the mesh."""
+    material = {"law": "elastic", "E": young, "nu": poisson, "density": 3000.0}
+    scene = Scene.load("steel-ball-waves", {"target.material": material, "striker.velocity": 0.3})
+    march, curve = marched(scene, **QUICK)
+    e = curve.quantities["restitution"]
+    assert e is not None
+    share = predicted(scene, curve)
+    assert share < 0.06
+    assert 1.0 - e**2 == pytest.approx(share, rel=0.03)
+    assert march.energy["radiated"] / march.energy["in"] == pytest.approx(share, rel=0.03)
+    assert abs(march.energy["residual"]) < 1e-9 * march.energy["in"]
+    assert abs(march.energy["numerical"]) < 1e-3 * march.energy["radiated"]
+
+
+def test_the_share_grows_as_the_speed_to_three_fifths() -> None:
+    losses = []
+    for velocity in (0.03, 0.3):
+        scene = Scene.load("steel-ball-waves", {"striker.velocity": velocity, "model.profile": "parabola"})
+        e = marched(scene, **QUICK)[1].quantities["restitution"]
+        assert e is not None
+        losses.append(1.0 - e**2)
+    assert math.log10(losses[1] / losses[0]) == pytest.approx(0.6, abs=0.006)
+
+
+def test_without_density_it_is_the_impact_without_inertia() -> None:
+    scene = Scene.load("polymer-sphere-waves", {"target.material.density": 1e-3})
+    quantities = marched(scene, elements_per_contact=8.0, penalty=1000.0)[1].quantities
+    truth = laws.get("mdr").of(scene).simulate(scene, 1e-6).quantities
+    for key in ("peak_force", "duration", "restitution", "peak_depth", "impulse"):
+        assert quantities[key] == pytest.approx(truth[key].value, rel=1e-4), key
+
+
+@pytest.fixture(scope="module")
+def steel() -> Result:
+    """The ball of the facts on finite elements, 3: 206 GPa, nu = .3, 0.2553 g at 1 m/s."""
+    return simulate(Scene.load("steel-ball-waves", {"striker.mass": 2.553e-4, "striker.velocity": 1.0}), "fe", {})
+
+
+def test_waves_take_from_the_peak_what_was_measured_before(steel: Result) -> None:
+    # e = .99234, peak -0.45 to -0.50 %
+    result, scene = steel, steel.scene
+    assert result.converged, result.message
+    still = laws.get("mdr").of(scene).simulate(scene, 1e-6)
+    peak, calm = result.quantities["peak_force"], still.quantities["peak_force"].value
+    assert calm is not None
+    assert -0.0050 <= peak.value / calm - 1.0 <= -0.0043
+    assert result.quantities["restitution"].value == pytest.approx(0.99234, abs=5e-5)
+    assert result.quantities["restitution"].error < 1e-3
+    assert peak.error < 3e-3 * peak.value
+    (inertia,) = [entry for entry in result.model_ledger if entry.effect == "target inertia"]
+    assert inertia.treated == "included"
+    (estimate,) = [entry.estimate for entry in still.model_ledger if entry.effect == "target inertia"]
+    assert estimate == pytest.approx(1.0 - peak.value / calm, rel=0.1)
+
+
+def random_scene(rng: np.random.Generator) -> Scene:
+    """Elastic or with memory, a/R up to 0.3, slow beside its waves."""
+    young, nu, speed = 10 ** rng.uniform(6, 11), rng.uniform(0.0, 0.48), 10 ** rng.uniform(-2.5, -0.5)
+    elastic = {"law": "elastic", "E": young}
+    memory = {"law": "prony", "E_inf": young, "E": [young * rng.uniform(0.1, 2.0)], "tau": [1e-3]}
+    density = 2000.0
+    velocity = speed * 0.06 * math.sqrt(young / density)
+    mass = density * 4.0 / 3.0 * np.pi * 0.005**3 * 10 ** rng.uniform(-0.3, 0.7)
+    return Scene.from_dict(
+        {
+            "striker": {"shape": "sphere", "radius": 0.005, "mass": mass, "velocity": velocity},
+            "target": {
+                "shape": "half_space",
+                "material": (elastic if rng.integers(2) else memory) | {"nu": nu, "density": density},
+            },
+            "model": {"inertia": True},
+        }
+    )
+
+
+def test_bars_hold_the_answer_of_finer_settings(steel: Result, campaign_size: Callable[[int], int]) -> None:
+    """And of elements of another order; the steel ball first, then random scenes."""
+    rng = np.random.default_rng(3)
+    for number in range(campaign_size(10)):
+        result = simulate(random_scene(rng), "fe", {}) if number else steel
+        assert result.converged, result.message
+        numerics, scene = result.numerics, result.scene
+        finer = {"steps": 2 * numerics["steps"], "penalty": 2.0 * numerics["penalty"], "order": 4}
+        quantities = marched(scene, elements_per_contact=numerics["elements_per_contact"], **finer)[1].quantities
+        for name, value in quantities.items():
+            known = result.quantities[name]
+            assert abs(known.value - value) <= known.error, (name, scene)
+
+
+@pytest.mark.parametrize(
+    ("changes", "key"),
+    [
+        ({"striker": {"shape": "punch", "radius": 1e-3, "mass": 1e-3, "velocity": 1.0}}, "striker.shape"),
+        ({"motion.impacts": 2}, "motion.impacts"),
+        ({"target.material.constant": "bulk"}, "target.material.constant"),
+    ],
+)
+def test_what_has_no_waves_here_is_refused_with_its_key(changes: dict[str, Any], key: str) -> None:
+    with pytest.raises(BadInput, match=key):
+        half_space.check(Scene.load("polymer-sphere-waves", changes))
+
+
+def test_settings_of_the_other_kind_are_refused() -> None:
+    with pytest.raises(BadInput, match=r"numerics.scheme.*trapezoidal"):
+        simulate(Scene.load("steel-ball-waves"), "fe", {"scheme": "galerkin"})
+    with pytest.raises(BadInput, match=r"numerics.mass"):
+        simulate(Scene.load("polymer-sphere"), "fe", {"mass": "lumped"})
+
+
+def test_an_equivalent_modulus_is_no_wave_medium() -> None:
+    with pytest.raises(BadInput, match="no wave medium"):
+        Scene.load("steel-ball", {"model.inertia": True})

@@ -1,0 +1,181 @@
+"""A mass on an elastic rod: St Venant's published numbers, the balance of energy, limits, two routes to one force."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lumped import BadInput, Result, Scene, laws, simulate
+from lumped.rod_waves.flat import FlatImpact
+from lumped.rod_waves.tipped import Scales, TippedImpact
+from lumped.rod_waves.waves import Waves
+
+# Mass over that of the rod, contact time over the transit of a wave: Timoshenko and Goodier, Theory of Elasticity,
+# art. 169, after St Venant.
+PUBLISHED = [(1.0, 3.068), (2.0, 4.708), (4.0, 5.900)]
+CYLINDER = {"shape": "cylinder", "radius": 0.01, "length": 0.1, "mass": 1.0, "velocity": 1.0}
+FLUID = {"law": "maxwell", "E": 1e9, "eta": 1e9, "nu": 0.3, "density": 1e3}
+RNG = np.random.default_rng(11)
+ECHOES = [-1.0, 1.0, 0.0]
+CASES = [(echo, *10 ** RNG.uniform(-1.0, 1.0, 2), RNG.uniform(-0.1, 0.5)) for echo in ECHOES for _ in range(3)]
+
+
+def flat(echo: float, mass: float, gravity: float = 0.0, until: float = 50.0) -> FlatImpact:
+    """On a rod of mass, impedance and transit one."""
+    return FlatImpact(Waves(1.0, echo, 1.0), mass, 1.0, gravity, until)
+
+
+def tipped(
+    echo: float, mass: float, stiffness: float, gravity: float = 0.0, rtol: float = 1e-10, power: float = 1.5
+) -> TippedImpact:
+    depth = (0.5 * (power + 1.0) * mass / stiffness) ** (1.0 / (power + 1.0))
+    force = lambda dent: stiffness * dent**power  # noqa: E731  # a law of one line
+    return TippedImpact(Waves(1.0, echo, 1.0), force, mass, 1.0, gravity, 8.0, Scales(depth, depth), rtol)
+
+
+def run(scene: Scene, tolerance: float = 1e-6) -> Result:
+    return simulate(laws.get("rod_waves").of(scene), scene, tolerance)
+
+
+def value(result: Result, name: str) -> float:
+    found = result.quantities[name].value
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize(("ratio", "duration"), PUBLISHED)
+def test_contact_lasts_as_st_venant_found(ratio: float, duration: float) -> None:
+    _, end, separated = flat(-1.0, ratio).pieces
+    assert separated
+    assert end == pytest.approx(duration, abs=6e-4)
+
+
+def test_forces_between_echoes_are_the_textbook_ones() -> None:
+    """exp(-t), then exp(-2) + 2 at the first echo on a rod as heavy as the mass."""
+    impact = flat(-1.0, 1.0)
+    times = np.array([0.0, 0.7, 1.9999999, 2.0])
+    expected = [1.0, math.exp(-0.7), math.exp(-1.9999999), math.exp(-2.0) + 2.0]
+    assert impact.columns(times)[2] == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_free_rod_throws_no_mass_back_before_its_echo() -> None:
+    for mass in (0.1, 1.0, 30.0):
+        impact = flat(1.0, mass)
+        _, end, separated = impact.pieces
+        assert separated
+        assert end == pytest.approx(2.0, rel=1e-15)
+        assert impact.columns(np.array([end - 1e-12]))[1, 0] == pytest.approx(math.exp(-2.0 / mass), rel=1e-9)
+
+
+@pytest.mark.parametrize("echo", ECHOES)
+def test_a_stiff_linear_dent_comes_to_the_flat_end(echo: float) -> None:
+    """Series and integrator share nothing; away from fronts they differ by the dent, as its inverse stiffness."""
+    mass, gravity = 10 ** RNG.uniform(-0.3, 0.7), RNG.uniform(0.0, 0.1)
+    series = flat(echo, mass, gravity, until=4.5)
+    end = series.pieces[1]
+    differences = []
+    for hard in (400.0, 800.0):
+        dented = tipped(echo, mass, hard, gravity, rtol=1e-9, power=1.0)
+        times = np.linspace(0.0, min(end, dented.pieces[1]), 400)[1:-1]
+        away = times[np.abs(times[:, None] - np.arange(0.0, 50.0, 2.0)).min(axis=1) > 0.1]
+        differences.append(np.abs(series.columns(away) - dented.columns(away))[1:3].max(axis=1))
+    assert differences[1].max() < 0.02
+    assert np.allclose(differences[0] / differences[1], 2.0, rtol=0.1)
+
+
+@pytest.mark.parametrize(("echo", "mass", "stiffness", "gravity"), CASES)
+def test_what_the_striker_loses_is_in_the_waves(echo: float, mass: float, stiffness: float, gravity: float) -> None:
+    for impact in (flat(echo, mass, gravity, until=8.0), tipped(echo, mass, stiffness, gravity)):
+        _, end, _ = impact.pieces
+        rows = np.unique(np.concatenate([impact.starts, np.linspace(0.0, end, 400)]))
+        depth, speed, _, _ = impact.columns(rows)
+        held, gone = impact.waves.energies(lambda t, impact=impact: impact.columns(t)[3], rows)
+        dent = 0.0 if isinstance(impact, FlatImpact) else 0.4 * stiffness * float(impact.dents(rows[-1:])[0]) ** 2.5
+        given = 0.5 * mass * (1.0 - speed[-1] ** 2) + mass * gravity * depth[-1]
+        assert given == pytest.approx(held + gone + dent, abs=1e-7 * mass)
+        fine = np.linspace(0.0, end, 4001)
+        columns = impact.columns(fine)
+        assert depth[-1] == pytest.approx(np.trapezoid(columns[1], fine), abs=1e-4)
+        lost = mass * (1.0 - speed[-1] + gravity * end)
+        assert np.trapezoid(columns[2], fine) == pytest.approx(lost, rel=2e-3)
+
+
+def test_a_stiff_rod_is_the_half_space_it_is_dented_like() -> None:
+    """Hertz's impact as the impedance grows; the loss falls as its inverse."""
+    losses = []
+    for impedance in (1e3, 1e4):
+        waves, scales = Waves(impedance, 0.0, 1.0), Scales(1.0, 1.0)
+        impact = TippedImpact(waves, lambda d: d**1.5, 1.0, 1.0, 0.0, 50.0, scales, 1e-11)
+        _, end, _ = impact.pieces
+        columns = impact.columns(np.linspace(0.0, end, 2001))
+        assert end == pytest.approx(2.943275 * 1.25**0.4, rel=3.0 / impedance)
+        assert columns[2].max() == pytest.approx(1.25**0.6, rel=3.0 / impedance)
+        losses.append(1.0 - columns[1, -1] ** 2)
+    assert losses[0] / losses[1] == pytest.approx(10.0, rel=1e-2)
+
+
+def test_the_law_reports_what_its_solution_says() -> None:
+    for name in ("rod", "rod-free", "concrete-pole"):
+        result = run(Scene.load(name))
+        assert result.converged
+        assert result.separated
+        history = result.history
+        assert value(result, "peak_force") >= history.force.max() * (1.0 - 1e-12)
+        assert value(result, "impulse") == pytest.approx(np.trapezoid(history.force, history.time), rel=1e-5)
+        assert value(result, "duration") == history.time[-1]
+        assert abs(result.energy["residual"]) < 1e-9 * result.energy["in"]
+        assert history.force[-1] == 0.0
+        (inertia,) = [entry for entry in result.model_ledger if entry.effect == "target inertia"]
+        assert inertia.treated == "included"
+
+
+def test_the_pole_takes_what_the_audit_says() -> None:
+    # audit 4b: peak 187.7 kN, 1.40 ms, e = 0.655 for R = 0.1 m, and 239.9, 1.04, 0.560 for R = 0.5 m
+    for radius, peak, duration, e in ((0.1, 187.7e3, 1.40e-3, 0.655), (0.5, 239.9e3, 1.04e-3, 0.560)):
+        result = run(Scene.load("concrete-pole", {"striker.radius": radius}))
+        assert value(result, "peak_force") == pytest.approx(peak, abs=60.0)
+        assert value(result, "duration") == pytest.approx(duration, abs=6e-6)
+        assert value(result, "restitution") == pytest.approx(e, abs=6e-4)
+
+
+def test_a_mass_on_an_endless_rod_stays() -> None:
+    result = run(Scene.load("rod-absorbing"))
+    assert not result.separated
+    assert value(result, "peak_force") == pytest.approx(math.sqrt(2.06e11 * 7850.0) * 3.1415927e-4, rel=1e-12)
+    # exp(-t Z/m) is left after ten m/Z, and of the energy its square
+    assert result.energy["radiated"] == pytest.approx(result.energy["in"], rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("changes", "key"),
+    [
+        ({"model.inertia": False}, "model.inertia"),
+        ({"target.end": "loose"}, "target.end"),
+        ({"target.area": 0.0}, "target.area"),
+        ({"striker": CYLINDER}, "striker.shape"),
+    ],
+)
+def test_a_rod_that_cannot_be_is_refused_with_its_key(changes: dict[str, Any], key: str) -> None:
+    with pytest.raises(BadInput, match=key):
+        Scene.load("rod", changes)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "key"),
+    [
+        ("polymer-sphere", {}, "target.shape"),
+        ("rod", {"motion.impacts": 2}, "motion.impacts"),
+        ("rod", {"target.material": FLUID}, "material.law"),
+    ],
+)
+def test_the_law_refuses_what_it_does_not_follow(name: str, changes: dict[str, Any], key: str) -> None:
+    with pytest.raises(BadInput, match=key):
+        laws.get("rod_waves").of(Scene.load(name, changes))
+
+
+def test_laws_without_waves_say_what_the_rod_would_take() -> None:
+    with pytest.raises(BadInput, match=r"target.shape"):
+        laws.get("mdr").of(Scene.load("concrete-pole"))
