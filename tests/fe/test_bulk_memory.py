@@ -224,3 +224,7 @@ def test_what_bulk_memory_is_not_for_says_so() -> None:
     for law in (laws.ting, laws.correspondence):
         with pytest.raises(BadInput, match="no load curve follows"):
             law.of(scene).simulate(scene, 1e-3)
+    washer = Scene.load("polymer-washer", BULK)
+    relaxing = replace(washer.geometry.material, young=Relaxation(1e6, (1e6,), (0.01,)))
+    with pytest.raises(BadInput, match=r"no impact on washer with it in this version; accepted: \"poisson\""):
+        fe_contact.run(replace(washer, material=relaxing))
