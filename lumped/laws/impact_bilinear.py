@@ -135,6 +135,6 @@ def _given(given: Parameters) -> _bilinear.Numbers:
 
 def _derived(given: Parameters) -> _bilinear.Numbers:
     """From the stiffness of an elastic law and e."""
-    alpha = given.get("alpha", 1.5)
+    alpha = given.exponent()
     k, (_, e) = given.stiffness(alpha), given.damping(())
     return FORMULAS[given.get("damping", restitution.EXACT)](k, alpha, bodies_of(given.scene), e)

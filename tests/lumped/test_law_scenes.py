@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from lumped import BadInput, Motion, Scene, laws, simulate
+from lumped.scene import LawChoice
 from lumped.scene_file import read
 
 BARE: dict[str, Any] = {
@@ -161,3 +162,13 @@ def test_several_impacts_on_a_material_take_the_restitution_of_one(name: str, im
     once = impact(0.5, (0.5,), (1.0,))
     expected = laws.get(name).of(once).parameters
     assert laws.get(name).of(replace(once, motion=Motion(impacts=3))).parameters == expected
+
+
+def test_the_bilinear_loop_of_a_cone_is_fitted_to_the_cone_s_exponent() -> None:
+    """Given e, a scene's loop is the one of the same k and alpha given by themselves: 2 for a cone, Table 1."""
+    cone = replace(Scene.load("polymer-cone"), law=LawChoice("impact_bilinear", {"e": 0.6}))
+    k = laws.hertz.of(replace(cone, law=None)).k
+    alone = Scene(None, cone.mass, cone.velocity, law=LawChoice("impact_bilinear", {"k": k, "alpha": 2.0, "e": 0.6}))
+    loop, expected = (laws.impact_bilinear.of(scene) for scene in (cone, alone))
+    for key in ("k1", "k2", "yield_depth"):
+        assert getattr(loop, key) == pytest.approx(getattr(expected, key), rel=1e-12)
