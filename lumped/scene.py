@@ -22,8 +22,9 @@ from lumped.targets import HalfSpace, Target
 
 END_IN_CONTACT_TIMES = 50.0
 
+LEAST_MASS = 1e-21
 STRIKER_KEYS: Mapping[str, Key] = {
-    "mass": Number(1e-21, 1e12, "kg"),
+    "mass": Number(0.0, 1e12, "kg"),
     "velocity": Number(1e-9, 1e5, "m/s"),
 }
 MODEL_KEYS: Mapping[str, Key] = {
@@ -132,7 +133,7 @@ class Scene:
             check_striker_material(self.source, self.target, self.striker_material)
         density = None if self.material is None else self.material.density
         target = self.target if self.has_geometry else None
-        faults = inertia_faults(self.source, self.model.inertia, density, target)
+        faults = inertia_faults(self.source, self.model.inertia, density, target) + self._mass_faults()
         if faults:
             raise BadInput(faults)
         message = self._absurd_depth() if self.has_geometry else ""
@@ -184,6 +185,13 @@ class Scene:
         return self.mass if self.target_mass is None else self.mass / (1.0 + self.mass / self.target_mass)
 
     @property
+    def swinging_mass(self) -> float:
+        """What a contact time goes with, kg: a block with inertia counts by a third of its own mass (Rayleigh)."""
+        if not self.model.inertia or self.shape is None or self.material is None:
+            return self.reduced_mass
+        return self.reduced_mass + self.shape.own_mass(self.material.density or 0.0) / 3.0
+
+    @property
     def gravity(self) -> float:
         """What drives the approach, m/s2: two free bodies fall alike."""
         return self.model.gravity if self.target_mass is None else 0.0
@@ -227,8 +235,8 @@ class Scene:
         shape, modulus = self.geometry.shape, self.contact_modulus
         if modulus.relaxed or modulus.glassy:
             stiffness = modulus.relaxed or modulus.glassy
-            return shape.hertz_impact(stiffness, self.reduced_mass, self.velocity).duration
-        return stiffest_impact(shape, modulus, self.reduced_mass, self.velocity).duration
+            return shape.hertz_impact(stiffness, self.swinging_mass, self.velocity).duration
+        return stiffest_impact(shape, modulus, self.swinging_mass, self.velocity).duration
 
     @property
     def end_time(self) -> float:
@@ -256,10 +264,17 @@ class Scene:
         known = self.motion.end_time is not None or self.has_geometry or self.law is not None
         return {"end_time": self.end_time} if known else {}
 
+    def _mass_faults(self) -> list[Fault]:
+        """Too little mass: none at all is for a block whose own inertia moves it."""
+        if self.mass >= LEAST_MASS or (self.mass == 0.0 and self.swinging_mass > 0.0):
+            return []
+        reason = f"{self.mass:g}: accepted a number from {LEAST_MASS:g} to 1e+12 kg; 0 of a block with model.inertia"
+        return [Fault(self.source, "striker.mass", reason)]
+
     def _absurd_depth(self) -> str:
         """Even the stiffest answer of the material lets a round striker sink in deeper than it is round."""
         shape = self.geometry.shape
-        impact = stiffest_impact(shape, self.contact_modulus, self.reduced_mass, self.velocity)
+        impact = stiffest_impact(shape, self.contact_modulus, self.swinging_mass, self.velocity)
         if shape.tip_radius is not None and impact.contact_radius <= impact.depth:
             return (
                 f"the striker sinks in by {impact.depth:.3g} m, deeper than its radius: no small-displacement theory "
@@ -281,5 +296,6 @@ def inertia_faults(source: str, inertia: bool, density: float | None, target: Ta
         faults.append(Fault(source, "model.inertia", reason))
     if target is not None and density is None:
         reason = "missing; model.inertia = true needs it, in kg/m3; the equivalent E* of two bodies is no wave medium"
-        faults.append(Fault(source, "target.material.density", reason))
+        owner = "target" if target.deformable else "striker"
+        faults.append(Fault(source, f"{owner}.material.density", reason))
     return faults

@@ -15,7 +15,7 @@ from fe_contact.dynamics.body import Body
 from fe_contact.dynamics.explicit import ExplicitStepper
 from fe_contact.dynamics.implicit import ImplicitStepper
 from fe_contact.dynamics.ledger import Energies
-from fe_contact.dynamics.pressed import Enforced, Found
+from fe_contact.dynamics.pressed import Enforced
 from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.dynamics.state import State, undeformed
 from fe_contact.errors import MotionUnbounded, TooManySteps
@@ -115,16 +115,15 @@ def march(
         if not np.abs(state.velocity).max() <= fastest:  # nan is no less
             raise MotionUnbounded(state.time)
         energies = ledger.entered(energies, body, choices.scheme, before, state)
-        samples.append(_sample(body, state, _impulse(body, choices, before, found), watch, energies, found.iterations))
+        samples.append(_sample(body, state, _impulse(body, choices, before, state), watch, energies, found.iterations))
         if finished(samples[-1]):
             break
     return Motion(tuple(samples), state)
 
 
-def _impulse(body: Body, choices: Choices, before: State, found: Found) -> float:
-    """N s in a step."""
-    early = choices.scheme.alpha_f
-    return choices.step * float(body.pressing.weights @ ((1 - early) * found.pressure + early * before.pressure))
+def _impulse(body: Body, choices: Choices, before: State, after: State) -> float:
+    """N s in a step, by the forces at its ends."""
+    return choices.step * 0.5 * float(body.pressing.weights @ (before.pressure + after.pressure))
 
 
 def _sample(body: Body, state: State, impulse: float, watch: Array, energies: Energies, iterations: int) -> Sample:

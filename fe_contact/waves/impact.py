@@ -114,4 +114,3 @@ def energies(moving: Moving, found: Motion, scene: Scene) -> dict[str, float]:
     }
     terms["residual"] = 2 * terms["in"] - sum(terms.values())
     return terms
-

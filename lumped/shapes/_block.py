@@ -58,6 +58,10 @@ class Block(Shape):
         """Radius of the circle of its area, m."""
         return math.sqrt(self.area / math.pi)
 
+    def own_mass(self, density: float) -> float:
+        """density x area x thickness, kg."""
+        return density * self.area * self.thickness
+
     @property
     def uniform(self) -> bool:
         """Whether it is strained alike everywhere: unless both its faces are bonded and its sides free."""

@@ -65,6 +65,10 @@ class Shape(ABC):
         """Radius of curvature of the lowest point, m; None where it has none."""
         return None
 
+    def own_mass(self, density: float) -> float:
+        """Mass of a body of this shape, kg, that its scene does not give; 0 where the shape is a profile alone."""
+        return 0.0
+
     @property
     @abstractmethod
     def load_curve(self) -> LoadCurve:

@@ -25,7 +25,7 @@ class Plane(Target):
 
     name: ClassVar[str] = "plane"
     keys: ClassVar[Mapping[str, Key]] = KEYS
-    has_inertia: ClassVar[bool] = False
+    has_inertia: ClassVar[bool] = True
     deformable: ClassVar[bool] = False
     yielding_strikers: ClassVar[bool] = True
 

@@ -1,0 +1,138 @@
+"""What the steps of a bouncing bar say: one history of all its contacts, and each contact by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.dynamics.march import Motion, Sample
+from fe_contact.forms import Array
+from fe_contact.waves.rod_reading import DEPTH, FORCE, TIME, VELOCITY, Reading
+
+SPOILED, TELLING = 4, 8  # steps at the ends of a contact whose force is its element's, and those beside them
+DROPPED = 0.6  # of what was to be expected, below which a force drops
+Contacts = tuple[Mapping[str, float | None], ...]
+
+
+@dataclass
+class Ending:
+    """Told sample after sample, says when the last of some contacts is over: open for longer than a ``pause``, s."""
+
+    impacts: int
+    pause: float
+    begun: int = 0
+    last: float = -np.inf
+    open: bool = True
+
+    def __call__(self, sample: Sample) -> bool:
+        away = sample.time - self.last
+        if sample.force > 0.0:
+            self.begun += self.open and away > self.pause
+            self.last = sample.time
+        self.open = sample.force <= 0.0
+        return self.open and self.begun == self.impacts and away > self.pause
+
+
+def read(found: Motion, total: float, gravity: float, impacts: int, pause: float) -> tuple[Reading, Contacts]:
+    """Rows up to the last separation and every contact; ``total`` mass, kg; those within a ``pause``, s, are one.
+
+    Impulse and history are those of all contacts, the other quantities those of the first.
+    """
+    rows = np.array([_row(sample) for sample in found.samples]).T
+    spans = clustered(found.contacts, pause)
+    if impacts > 1:
+        rows = _cleaned(rows, spans)
+    separated = len(spans) == impacts and rows[FORCE, -1] <= 0.0
+    if separated:
+        rows, end = _ended(rows, spans[-1][1])
+        spans[-1] = (spans[-1][0], end)
+    impulses = np.cumsum([sample.impulse for sample in found.samples])
+    contacts = tuple(_contact(rows, found.time, impulses, span, total, gravity) for span in spans)
+    first = contacts[0]  # of the later ones a front that comes a little early or late makes another peak
+    quantities = {
+        "peak_force": first["peak_force"],
+        "peak_time": first["peak_time"],
+        "peak_depth": first["peak_depth"],
+        "duration": first["duration"] if separated or len(contacts) > 1 else None,
+        "restitution": first["restitution"] if separated or len(contacts) > 1 else None,
+        "impulse": float(impulses[-1]),
+        "history_l2": 0.0,
+    }
+    return Reading(rows, separated, quantities), contacts
+
+
+def clustered(contacts: tuple[tuple[float, float], ...], pause: float) -> list[tuple[float, float]]:
+    """Contacts that follow each other within a pause, s, as one."""
+    found = list[tuple[float, float]]()
+    for start, end in contacts:
+        if found and start - found[-1][1] < pause:
+            found[-1] = (found[-1][0], end)
+        else:
+            found.append((start, end))
+    return found
+
+
+def _row(sample: Sample) -> tuple[float, ...]:
+    return sample.time, float(sample.displacement[0]), float(sample.velocity[0]), sample.force, 0.0
+
+
+def _ended(rows: Array, end: float) -> tuple[Array, float]:
+    """Rows up to the separation, s, and when that is; a force that drops there does so between two rows of one time.
+
+    A front that ends the contact leaves the mean of before and behind in its own step: there the contact ends.
+    """
+    pressed = rows[:, : 1 + int(np.flatnonzero(rows[FORCE] > 0.0)[-1])]
+    before = pressed[FORCE, -4:-1]
+    if before.size == 3 and pressed[FORCE, -1] < DROPPED * _onwards(before):
+        end, pressed = float(pressed[TIME, -1]), pressed[:, :-1]
+    pressed = pressed[:, pressed[TIME] < end]
+    last = np.array([np.interp(end, rows[TIME], row) for row in rows])
+    last[TIME] = end
+    ends = [last * np.where(np.arange(len(last)) == FORCE, 0.0, 1.0)]
+    if pressed[FORCE, -1] > DROPPED * pressed[FORCE].max():
+        last[FORCE] = max(_onwards(pressed[FORCE, -3:]), 0.0)
+        ends.insert(0, last)
+    return np.hstack([pressed, *(row[:, None] for row in ends)]), end
+
+
+def _cleaned(rows: Array, spans: list[tuple[float, float]]) -> Array:
+    """Forces without the beat of the lightest element at both ends of every contact: a line through what follows."""
+    time, cleaned = rows[TIME], rows.copy()
+    for start, end in spans:
+        pressed = np.flatnonzero((time >= start) & (time <= end))
+        if pressed.size < 2 * (SPOILED + TELLING):
+            continue
+        for ordered in (pressed, pressed[::-1]):
+            telling, spoiled = ordered[SPOILED : SPOILED + TELLING], ordered[:SPOILED]
+            line = np.polyfit(time[telling] - start, rows[FORCE, telling], 1)
+            cleaned[FORCE, spoiled] = np.maximum(np.polyval(line, time[spoiled] - start), 0.0)
+    return cleaned
+
+
+def _onwards(values: Array) -> float:
+    """The next of some equidistant values along their last straight line."""
+    return float(2 * values[-1] - values[-2])
+
+
+def _contact(
+    rows: Array, time: Array, impulses: Array, span: tuple[float, float], total: float, gravity: float
+) -> dict[str, float | None]:
+    """One contact; velocities are those of the centre of mass, by the force's impulse."""
+    start, end = span
+    before, after = np.interp([start, end], time, impulses)
+    came = float(np.interp(start, rows[TIME], rows[VELOCITY]))
+    left = came + gravity * (end - start) - (after - before) / total
+    inside = (rows[TIME] >= start) & (rows[TIME] <= end)
+    inside[np.searchsorted(rows[TIME], start, side="right") - 1] = True
+    top = int(np.argmax(np.where(inside, rows[FORCE], -1.0)))
+    return {
+        "start": start,
+        "duration": end - start,
+        "velocity": came,
+        "restitution": -left / came,
+        "peak_force": float(rows[FORCE, top]),
+        "peak_time": float(rows[TIME, top]),
+        "peak_depth": float(rows[DEPTH, inside].max()),
+    }

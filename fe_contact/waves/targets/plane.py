@@ -1,0 +1,195 @@
+"""A block with inertia on a rigid plane: a bar of line elements which a wave crosses in one step.
+
+Depth and velocity are those of the centre of mass of block and rigid mass, which the force moves.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from fe_contact.bodies.bar import Bar, falling
+from fe_contact.certify import CAUSES
+from fe_contact.dynamics.march import Choices, march
+from fe_contact.dynamics.pressed import Enforced
+from fe_contact.numerics import ENFORCEMENTS, MASSES, WAVE_SCHEMES, Numerics
+from fe_contact.plan import Plan
+from fe_contact.progress import Progress, silent
+from fe_contact.waves.bar_reading import Contacts, Ending, read
+from fe_contact.waves.numerics import WaveNumerics
+from fe_contact.waves.rod_record import Run, bars, result_of
+from lumped.errors import BadInput, Fault
+from lumped.members import get
+from lumped.result import LedgerEntry, Quantity, Result, meets
+from lumped.scene import Scene
+from lumped.shapes._block import Block
+
+DEFAULT_TOLERANCE = 3e-3
+GRAVITY = 9.81
+STEPS = 200  # while a wave goes to the far end and back
+MOST = 3200  # of them
+ROUNDS = 3  # refinements before giving up
+PAUSE = 0.25  # of that time within which several contacts count as one
+BY_PENALTY = ("penalty", "corrected")  # whose answer depends on it
+
+
+def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
+    """Choose what ``given`` (checked settings) leaves open; a sudden force or the energy of many contacts is kept."""
+    bar, echo = checked(scene), echo_time(scene)
+    numerics = WaveNumerics(
+        tolerance=DEFAULT_TOLERANCE,
+        elements_per_contact=1.0,
+        order=1,
+        penalty=1.0,
+        enforcement="exact",
+        scheme="central_difference",
+        steps=STEPS,
+        far_radius=bar.length / _block(scene).fixed_radius,
+        contact_radius=_block(scene).fixed_radius,
+        contact_time=echo,
+        peak_share=0.5,
+        rho=1.0,
+        mass=usual_mass(scene),
+    ).varied(**given)
+    return Plan(numerics, frozenset(given) - {"tolerance"}, _ledger(scene, bar))
+
+
+def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
+    """History of one or several contacts with error bars. Raises BadInput, or NotReached where no march ends."""
+    cpu, wall = time.process_time(), time.perf_counter()
+    chosen = plan(scene, given)
+    numerics, runs = chosen.numerics, list[Run]()
+    for attempt in range(ROUNDS + 1):
+        assert isinstance(numerics, WaveNumerics)
+        progress(f"{numerics.steps} steps an echo")
+        fine, contacts = run(scene, numerics)
+        others = {cause: run(scene, settings)[0] for cause, settings in _varied(scene, numerics).items()}
+        runs += [fine, *others.values()]
+        by_cause = {cause: bars(fine.reading, other.reading) for cause, other in others.items()}
+        quantities = _summed(by_cause)
+        if meets(quantities, numerics.tolerance) or "steps" in chosen.pinned or 2 * numerics.steps > MOST:
+            break
+        if attempt < ROUNDS:
+            numerics = numerics.varied(steps=2 * numerics.steps)
+    timing = {"cpu_s": time.process_time() - cpu, "wall_s": time.perf_counter() - wall}
+    assert isinstance(numerics, WaveNumerics)
+    coarse = others["time_step"]
+    result = result_of(scene, chosen, numerics, fine, coarse, quantities, timing, runs)
+    return replace(result, contacts=contacts, **_budgets(by_cause, quantities))
+
+
+def usual_mass(scene: Scene) -> str:
+    """One contact ends with the march: mass at its nodes carries its jumps exactly. More of them need a surface
+    without mass, and one whose neighbours are no heavier than others: their inertia would be felt as a first peak.
+    """
+    return "lumped" if scene.motion.impacts == 1 else "spread"
+
+
+def _varied(scene: Scene, numerics: WaveNumerics) -> dict[str, Numerics]:
+    """Settings with one cause of error changed: steps and elements together; what a penalty lets in; another mass."""
+    found = {"time_step": numerics.varied(steps=max(numerics.steps // 2, 8))}
+    if numerics.enforcement in BY_PENALTY:
+        found["penalty"] = numerics.varied(penalty=numerics.penalty / 2)
+    if numerics.mass != usual_mass(scene):
+        found["mesh"] = numerics.varied(mass=usual_mass(scene))
+    return found
+
+
+def checked(scene: Scene) -> Bar:
+    """The bar that the block is; raises BadInput where waves in it are not one-dimensional, or have no speed."""
+    block, material, faults = _block(scene), scene.geometry.material, []
+    if not block.uniform:
+        reason = "bonded: waves between free sides and held faces are not one-dimensional; accepted: sliding"
+        faults.append(Fault(scene.source, "striker.faces", reason))
+    modulus = block.modulus(material)
+    if modulus.viscosity > 0.0:
+        reason = "a dashpot in parallel has no wave speed for steps to follow; accepted: a material without one"
+        faults.append(Fault(scene.source, "striker.material.law", reason))
+    if faults:
+        raise BadInput(faults)
+    return Bar(block.thickness, block.area, material.density or 0.0, modulus, scene.reduced_mass)
+
+
+def echo_time(scene: Scene) -> float:
+    """2 L/c of the fastest waves, s."""
+    bar = checked(scene)
+    return 2.0 * bar.length * math.sqrt(bar.density / bar.relaxation.glassy)
+
+
+def run(scene: Scene, numerics: Numerics) -> tuple[Run, Contacts]:
+    """One march, its steps those in which a wave crosses an element. Raises NotReached."""
+    assert isinstance(numerics, WaveNumerics)
+    bar, echo = checked(scene), echo_time(scene)
+    elements = max(numerics.steps // 2, 2)
+    body = falling(bar, elements, get(MASSES, numerics.mass), scene.gravity)
+    stiffness = numerics.penalty * bar.relaxation.glassy * elements / bar.length
+    choices = Choices(
+        scheme=get(WAVE_SCHEMES, numerics.scheme).of(numerics.rho),
+        enforced=Enforced(get(ENFORCEMENTS, numerics.enforcement), stiffness),
+        step=echo / (2 * elements),
+    )
+    carried = np.asarray(body.inertia.sum(axis=0)).ravel()
+    watch = -carried[None, :] / carried.sum()
+    pause = 0.0 if scene.motion.impacts == 1 else PAUSE * echo
+    ending = Ending(scene.motion.impacts, pause)
+    found = march(body, np.full(body.size, -scene.velocity), choices, scene.end_time, watch, ending)
+    reading, contacts = read(found, carried.sum(), scene.gravity, scene.motion.impacts, pause)
+    last = found.samples[-1].energies
+    out = 0.5 * carried.sum() * float(found.samples[-1].velocity[0]) ** 2
+    energy = {
+        "in": last.work,
+        "out": out,
+        "stored": last.strain + last.deformable + last.rigid - out,  # strain, and motion about the centre of mass
+        "viscous": last.viscous,
+        "radiated": last.radiated,
+        "contact": last.contact,
+        "numerical": last.numerical,
+    }
+    energy["residual"] = 2 * energy["in"] - sum(energy.values())
+    return Run(reading, energy, len(found.samples) - 1, body.size), contacts
+
+
+def _block(scene: Scene) -> Block:
+    block = scene.geometry.shape
+    assert isinstance(block, Block)
+    return block
+
+
+def _summed(by_cause: Mapping[str, Mapping[str, Quantity]]) -> dict[str, Quantity]:
+    """The bars of all causes together."""
+    found = dict(by_cause["time_step"])
+    for name, quantity in found.items():
+        errors = [own[name].error for own in by_cause.values()]
+        error = None if None in errors else sum(error for error in errors if error is not None)
+        found[name] = replace(quantity, error=error)
+    return found
+
+
+def _budgets(by_cause: Mapping[str, Mapping[str, Quantity]], quantities: Mapping[str, Quantity]) -> dict[str, Any]:
+    """Error of every quantity by cause, and that of the peak force relatively; steps and elements are one cause."""
+    nothing = dict.fromkeys(CAUSES, 0.0)
+    found = {n: nothing | {c: own[n].error or 0.0 for c, own in by_cause.items()} for n in quantities}
+    peak = quantities["peak_force"].value or math.inf
+    share = {cause: error / peak for cause, error in found["peak_force"].items()}
+    return {"error_budget": share, "error_budget_by_quantity": found}
+
+
+def _ledger(scene: Scene, bar: Bar) -> tuple[LedgerEntry, ...]:
+    """What one-dimensional small waves leave out, relative to the peak force."""
+    speed = math.sqrt(bar.relaxation.glassy / bar.density)
+    slim = scene.geometry.material.nu * _block(scene).fixed_radius / bar.length
+    sideways = 0.0 if _block(scene).sides == "confined" else slim**2
+    slow = scene.profile.hertz_impact(bar.relaxation.glassy, scene.swinging_mass, scene.velocity).force
+    force = max(speed * bar.density * bar.area * scene.velocity, slow)
+    pull = 0.0 if scene.gravity else GRAVITY * (bar.density * bar.area * bar.length + bar.end_mass) / force
+    return (
+        LedgerEntry("inertia of the striker", "included", 0.0),
+        LedgerEntry("lateral inertia", "neglected", sideways, "(nu radius/length)^2, Rayleigh; but at wave fronts"),
+        LedgerEntry("finite strain", "small displacements", scene.velocity / speed, "v/c"),
+        LedgerEntry("gravity", "included" if scene.gravity else "neglected", pull, "model.gravity"),
+    )

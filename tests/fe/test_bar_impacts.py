@@ -1,0 +1,177 @@
+"""Blocks with inertia on a rigid plane: FE against the exact waves, within its own bars; limits; the files of `run`."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fe_contact
+from fe_contact.cli import main
+from lumped import Scene
+from lumped.bar_waves import StraightBar, bounces
+from lumped.errors import BadInput
+from lumped.result import Result
+from lumped.scene import Motion
+
+BAR = StraightBar(length=10.0, speed=30.0, impedance=30.0)
+ECHO = 2 / 3
+
+
+@pytest.fixture(scope="module")
+def impact() -> Result:
+    return fe_contact.run(Scene.load("bar-impact"), tolerance=3e-3)
+
+
+@pytest.fixture(scope="module")
+def bouncing() -> Result:
+    return fe_contact.run(Scene.load("bar"), tolerance=0.1)
+
+
+def covers(result: Result, name: str, exact: float) -> bool:
+    found = result.quantities[name]
+    assert found.value is not None
+    assert found.error is not None
+    return abs(found.value - exact) <= found.error + 1e-12 * abs(exact)
+
+
+def test_the_impact_of_a_bar_is_a_rectangle(impact: Result) -> None:
+    """density c v for one echo, to the step and to rounding; every bar holds."""
+    assert impact.converged
+    exact = {"peak_force": 300.0, "duration": ECHO, "restitution": 1.0, "impulse": 200.0, "peak_depth": 5 / 3}
+    assert all(covers(impact, name, value) for name, value in exact.items())
+    assert impact.quantities["peak_force"].value == pytest.approx(300.0, rel=1e-9)
+    assert impact.quantities["duration"].value == pytest.approx(ECHO, rel=1e-9)
+    history = impact.history
+    np.testing.assert_allclose(history.force[history.time < 0.999 * ECHO], 300.0, rtol=1e-9)
+    assert history.time[0] == 0.0
+    assert history.force[-1] == 0.0
+
+
+def test_the_bouncing_bar_follows_the_exact_one(bouncing: Result) -> None:
+    """Two contacts of a period, force and motion: what the first leaves in the bar, the second takes out."""
+    exact = bounces(BAR, 10.0, 10.0, 0.0, 10.5 / 3)
+    wanted = {"peak_force": 500.0, "duration": ECHO, "restitution": 1.0, "impulse": 1600 / 3}
+    for name, value in wanted.items():
+        assert covers(bouncing, name, value), name
+    history = bouncing.history
+    rows = np.linspace(0.0, history.time[-1], 4001)[1:-1]
+    force = exact.force(rows)
+    change = np.sqrt(np.mean((history.force_at(rows) - force) ** 2) / np.mean(force**2))
+    assert change <= (bouncing.quantities["history_l2"].error or 0.0)
+    starts = [contact["start"] for contact in bouncing.contacts]
+    np.testing.assert_allclose(starts, [start for start, _ in exact.contacts], atol=0.01)
+    assert bouncing.contacts[1]["restitution"] == pytest.approx(1.0, abs=0.02)
+
+
+def test_energy_is_accounted_for(impact: Result, bouncing: Result) -> None:
+    for result in (impact, bouncing):
+        energy = {name: value or 0.0 for name, value in result.energy.items()}
+        assert abs(energy["residual"]) < 1e-6 * energy["in"]
+        assert energy["out"] == pytest.approx(energy["in"], rel=0.02)
+        assert abs(energy["numerical"]) < 0.01 * energy["in"]
+
+
+def test_with_a_heavy_mass_behind_it_the_bar_is_a_spring() -> None:
+    """Ten tonnes for every kilogram of the bar: the half sine of mass and spring, to a thousandth."""
+    heavy = Scene.load("bar-impact", {"striker.mass": 1e5})
+    choices = {"scheme": "generalised_alpha", "rho": 0.5, "mass": "spread", "steps": 8}
+    result = fe_contact.run(heavy, tolerance=0.05, numerics=choices)
+    pace = math.sqrt(900.0 / 10.0 / 1e5)
+    assert result.quantities["duration"].value == pytest.approx(math.pi / pace, rel=1e-3)
+    assert result.quantities["peak_force"].value == pytest.approx(1e5 * 10.0 * pace, rel=2e-2)
+    assert result.quantities["restitution"].value == pytest.approx(1.0, abs=2e-3)
+
+
+@pytest.mark.parametrize("mass", [3.0, 10.0])
+def test_the_first_echo_of_a_rigid_mass_trebles_the_force(mass: float) -> None:
+    """St Venant: the mass stops for nobody at once, so that the wave comes back doubled: a light one's peak."""
+    scene = Scene.load("bar-impact", {"striker.mass": mass})
+    result = fe_contact.run(scene, tolerance=0.1, numerics={"steps": 400})
+    force = result.history.force_at(np.array([0.3, 0.6]))
+    np.testing.assert_allclose(force, 300.0, rtol=1e-6)
+    assert covers(result, "peak_force", 900.0)
+    assert result.quantities["peak_force"].value == pytest.approx(900.0, rel=0.03)
+    assert result.quantities["peak_time"].value == pytest.approx(ECHO, rel=0.01)
+
+
+def test_memory_costs_a_bar_its_restitution() -> None:
+    """A standard linear solid: the front carries the glassy density c v, heat leaves, the ledger closes."""
+    changes = {"law": "sls", "E0": 900.0, "R1": 0.5, "R2": 0.2, "nu": 0.0, "density": 1.0}
+    scene = Scene.load("bar-impact", {"striker.material": changes})
+    result = fe_contact.run(scene, tolerance=0.05)
+    glassy = 900.0 * 1.5
+    assert result.history.force[0] == pytest.approx(10.0 * math.sqrt(glassy), rel=0.02)
+    energy = {name: value or 0.0 for name, value in result.energy.items()}
+    assert energy["viscous"] > 0.01 * energy["in"]
+    assert abs(energy["residual"]) < 1e-9 * energy["in"]
+    restitution = result.quantities["restitution"].value
+    assert restitution is not None
+    assert 0.5 < restitution < 0.999
+
+
+def test_other_choices_agree_within_their_bars() -> None:
+    """An implicit scheme and a penalty on the same bar: what they err by lies in their own budget."""
+    scene = Scene.load("bar-impact")
+    choices = {"scheme": "generalised_alpha", "rho": 0.8, "mass": "spread", "enforcement": "penalty", "steps": 200}
+    result = fe_contact.run(scene, tolerance=0.1, numerics=choices)
+    for name, exact in {"duration": ECHO, "impulse": 200.0, "restitution": 1.0}.items():
+        assert covers(result, name, exact), name
+    assert result.error_budget_by_quantity["duration"]["penalty"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "key"),
+    [
+        ({"striker.faces": "bonded"}, "striker.faces"),
+        ({"striker.material.density": None}, "striker.material.density"),
+        ({"model.inertia": False}, "striker.mass"),
+        (
+            {"striker.material": {"law": "kelvin_voigt", "E": 1.0, "eta": 1.0, "nu": 0.0, "density": 1.0}},
+            "material.law",
+        ),
+    ],
+)
+def test_what_has_no_waves_is_refused_by_its_key(changes: dict[str, object], key: str) -> None:
+    table = Scene.load("bar-impact").to_dict()
+    for path, value in changes.items():
+        *parents, last = path.split(".")
+        place = table
+        for parent in parents:
+            place = place[parent]
+        if value is None:
+            del place[last]
+        else:
+            place[last] = value
+    with pytest.raises(BadInput, match=key):
+        fe_contact.run(Scene.from_dict(table))
+
+
+def test_a_lumped_mass_of_zero_is_none() -> None:
+    scene = Scene.load("steel-ball")
+    with pytest.raises(BadInput, match=r"striker\.mass"):
+        replace(scene, mass=0.0)
+
+
+def test_the_command_writes_contacts(tmp_path: Path) -> None:
+    code = main(["run", "bar", "--out", str(tmp_path), "--quiet", "--set", "numerics.steps=100"])
+    content = json.loads((tmp_path / "result.json").read_text())
+    assert code in (0, 3)
+    assert code == (0 if content["converged"] else 3)
+    assert len(content["contacts"]) == 2
+    assert content["numerics"]["mass"] == "spread"
+    with (tmp_path / "history.csv").open() as file:
+        assert len(list(csv.reader(file))) > 201
+
+
+def test_an_end_before_the_separation_is_no_separation() -> None:
+    scene = replace(Scene.load("bar-impact"), motion=Motion(end_time=0.3))
+    result = fe_contact.run(scene, numerics={"steps": 100})
+    assert not result.separated
+    assert result.quantities["duration"].value is None
+    assert result.history.time[-1] == pytest.approx(0.3, abs=0.01)
