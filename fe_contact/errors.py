@@ -46,7 +46,7 @@ class ContactTooWide(NotReached):
 
     def __init__(self, depth: float) -> None:
         reason = f"contact at depth {depth:.3g} m leaves the fine mesh"
-        super().__init__(f"{reason}; cure: raise numerics.elements_per_contact")
+        super().__init__(f"{reason}; cure: smaller depths")
 
 
 class MotionUnbounded(NotReached):

@@ -53,7 +53,10 @@ def simulate(
 def _lumped(scene: Scene, name: str, given: Mapping[str, Any]) -> Result:
     from fe_contact.plan import DEFAULT_TOLERANCE
 
-    return simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))
+    found = simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))
+    if scene.has_geometry:
+        scene.check_sunk(found.quantities["peak_depth"].value or 0.0)
+    return found
 
 
 def _finite_elements(scene: Scene, given: Mapping[str, Any], progress: Progress) -> Result:

@@ -71,7 +71,8 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     given : checked settings that the plan must keep.
     progress : told, in a line, what happens.
 
-    Raises NotReached where no march came to an end, BadInput for a scene without geometry or of several impacts.
+    Raises NotReached where no march came to an end, BadInput for a scene without geometry, of several impacts, or that
+    goes deeper than its bodies.
     """
     scene.check_single("fe")
     check_target(scene)
@@ -92,6 +93,7 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
         numerics = finer
     if certified is None:
         raise MemoryTooSmall(numerics.contact_radius)
+    scene.check_sunk(certified.curve.quantities["peak_depth"] or 0.0)
     return Solved(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall)
 
 

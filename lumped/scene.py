@@ -259,6 +259,13 @@ class Scene:
         }
         return {"name": self.name} | {key: table for key, table in tables.items() if table}
 
+    def check_sunk(self, depth: float) -> None:
+        """Raise BadInput where an impact went deeper, m, than the target or the striker goes."""
+        reason = self.geometry.target.check_depth(self.geometry.shape, depth)
+        if reason:
+            told = f"the striker sinks in by {depth:.3g} m: {reason}; cure: a lower velocity, a stiffer material"
+            raise BadInput(Fault(self.source, "striker.velocity", told))
+
     def _ending(self) -> dict[str, float]:
         """The end time, where the scene alone tells it."""
         known = self.motion.end_time is not None or self.has_geometry or self.law is not None

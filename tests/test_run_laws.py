@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+import fe_contact
 from fe_contact.cli import main
+from lumped import BadInput, Scene
 from lumped.data import scene_names
 from lumped.history import History
 
@@ -74,3 +76,16 @@ def test_finite_elements_have_nothing_to_run_without_geometry(
     assert main(["run", "pounding-steel-jankowski", "--method", "fe", "--out", str(tmp_path / "out")]) == 2
     assert "striker.shape" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "velocity", "method", "body"),
+    [
+        ("polymer-prism", 50.0, "fe", "block's 0.02 m"),
+        ("polymer-prism", 50.0, "correspondence", "block's 0.02 m"),
+        ("polymer-washer", 20.0, "fe", "washer's height 0.004 m"),
+    ],
+)
+def test_an_impact_through_the_body_is_refused(name: str, velocity: float, method: str, body: str) -> None:
+    with pytest.raises(BadInput, match=f"striker.velocity: the striker sinks in.*{body}"):
+        fe_contact.run(Scene.load(name, {"striker.velocity": velocity}), method=method)

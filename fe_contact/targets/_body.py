@@ -8,7 +8,7 @@ from types import ModuleType
 import numpy as np
 
 from fe_contact.contact import ContactProblem, PressedSurface
-from fe_contact.errors import IndentationNotSettled
+from fe_contact.errors import ContactTooWide, IndentationNotSettled
 from fe_contact.forms import Array
 from fe_contact.numerics import ENFORCEMENTS, Numerics
 from fe_contact.operators import SurfaceOperator, lagrange
@@ -41,7 +41,7 @@ class BodyStill:
         return EDGE_ORDER if self.indenter.target.fixed_radius(self.indenter.shape) is None else np.inf
 
     def press(self, depth: float, guess: float) -> Pressed:
-        """Press to a depth, m; raises IndentationNotSettled, also where a growing contact leaves the fine mesh."""
+        """Press to a depth, m; raises IndentationNotSettled, or ContactTooWide where a contact leaves the fine mesh."""
         target, shape = self.indenter.target, self.indenter.shape
         fixed = target.fixed_radius(shape)
         overlap = target.overlap(self.indenter.profile, self.places, depth)
@@ -50,8 +50,10 @@ class BodyStill:
         enforcement: ModuleType = get(ENFORCEMENTS, self.numerics.enforcement)
         solution = enforcement.enforce(problem, np.abs(self.places) < guess)
         radius = fixed or half_width(self.places, solution.signed_pressure, -solution.signed_pressure)
-        if not solution.converged or not 0.0 < radius < np.inf:
+        if not solution.converged or radius == 0.0:
             raise IndentationNotSettled(depth)
+        if not np.isfinite(radius):
+            raise ContactTooWide(depth)
         force = self.operator.force(self.scale, solution.pressure)
         return Pressed(force, radius, enforcement.SOLVES, solution.iterations)
 

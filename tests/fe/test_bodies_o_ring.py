@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from fe_contact.errors import IndentationNotSettled
+from fe_contact.errors import ContactTooWide
 from fe_contact.indentation import indent, press, settings
 from lumped import BadInput, Material, Relaxation
 from lumped.indenter import Indenter
@@ -88,7 +88,7 @@ def test_impossible_geometry_is_refused_by_name(key: str, build: object) -> None
 
 
 def test_a_contact_that_leaves_the_fine_mesh_is_no_number() -> None:
-    with pytest.raises(IndentationNotSettled):
+    with pytest.raises(ContactTooWide):
         indent(pressed(0.05), (0.0095,), {})
 
 
