@@ -78,10 +78,14 @@ def _inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
 
 
 def _profile(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
-    """The load curves of sphere and parabola at the peak depth."""
-    effect = "parabola against true profile"
+    """The load curves of sphere and parabola at the peak depth; in plane strain their heights at its edge."""
+    effect, shape = "parabola against true profile", scene.geometry.shape
     if model.profile == "exact":
         return LedgerEntry(effect, "true profile", 0.0)
+    if shape.plane:
+        heights = [float(shape.resolved(name).height(peak.contact_radius)) for name in ("exact", "parabola")]
+        estimate = abs(heights[1] / heights[0] - 1.0) if heights[0] > 0.0 else 0.0
+        return LedgerEntry(effect, "parabola", estimate, "model.profile = 'exact'")
     exact = float(scene.geometry.shape.resolved("exact").load_curve.force(peak.depth))
     parabola = float(scene.geometry.shape.resolved("parabola").load_curve.force(peak.depth))
     return LedgerEntry(effect, "parabola", abs(parabola / exact - 1.0), "model.profile = 'exact'")

@@ -61,4 +61,18 @@ def _said(trial: Trial) -> list[str]:
     if trial.moduli:
         nu, found = max(trial.moduli.items())
         lines.append(f"    E* {found.value:.6g} +- {found.error:.1e} Pa at nu = {nu:g}, printed {row.printed[1]}")
-    return lines
+    return [*lines, *_struck(trial)]
+
+
+def _struck(trial: Trial) -> list[str]:
+    """What its impacts say."""
+    if trial.impact is None:
+        return []
+    found = trial.impact
+    said = [] if found.alpha is None or found.factor is None else [
+        f"alpha {found.alpha.value:.6g} +- {found.alpha.error:.1e}",
+        f"D {found.factor.value:.6g} +- {found.factor.error:.1e} {found.factor.unit}",
+    ]  # fmt: skip
+    nu, modulus = max(found.moduli.items())
+    said.append(f"E* {modulus.value:.6g} +- {modulus.error:.1e} Pa at nu = {nu:g}")
+    return [f"    from impact: {', '.join(said)}"]

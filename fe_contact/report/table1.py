@@ -78,7 +78,10 @@ def _moduli(axes: Axes, trials: Sequence[Trial]) -> None:
         axes.errorbar(numbers, found / printed, yerr=bars / printed, color=colour, linestyle="", marker="o",
                       markersize=4.0, markerfacecolor="none", label=f"ν = {nu:g}, FE")  # fmt: skip
         axes.plot(numbers, corrected / printed, color=colour, linestyle="", marker="_", markersize=8.0)
+        struck = [(trial.impact.moduli[nu].value or 0.0) if trial.impact else np.nan for trial in tried]
+        axes.plot(numbers + 0.3 * SHIFT, struck / printed, color=colour, linestyle="", marker="x", markersize=3.2)
     axes.plot([], [], color=style.GREY, linestyle="", marker="_", markersize=8.0, label="corrected row")
+    axes.plot([], [], color=style.GREY, linestyle="", marker="x", markersize=3.2, label="FE, from impact")
     axes.set(xlabel="row", ylabel="E* over the printed one", xticks=range(1, 9))
     axes.legend(loc="upper left", fontsize=6.0, labelspacing=0.25)
 
@@ -115,14 +118,15 @@ def _datum(left: Axes, right: Axes, trials: Sequence[Trial]) -> None:
 
 
 def _places(axes: Axes, places: Sequence[tuple[float, Quantity, str]], colour: str, label: str) -> None:
-    """One support: a line of exact places, circles with bars by finite elements."""
+    """One support: a line of exact places, circles with bars by finite elements, crosses from impacts."""
     exact = [(length, one.value or 0.0) for length, one, method in places if method == "exact"]
-    checked = [(length, one.value or 0.0, one.error or 0.0) for length, one, method in places if method == "fe"]
     if exact:
         axes.plot(*zip(*exact, strict=True), color=colour)
-    x, y, bars = zip(*checked, strict=True)
-    axes.errorbar(x, y, yerr=bars, linestyle="", color=colour, marker="o", markersize=4.0, markerfacecolor="white",
-                  label=label)  # fmt: skip
+    for way, marker in (("fe", "o"), ("impact", "x")):
+        found = [(length, one.value or 0.0, one.error or 0.0) for length, one, method in places if method == way]
+        x, y, bars = zip(*found, strict=True) if found else ((), (), ())
+        axes.errorbar(x, y, yerr=bars, linestyle="", color=colour, marker=marker, markersize=4.0,
+                      markerfacecolor="white", label=label if way == "fe" else None)  # fmt: skip
 
 
 def _bonded(axes: Axes, trials: Sequence[Trial]) -> None:

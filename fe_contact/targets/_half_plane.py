@@ -17,7 +17,7 @@ from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, condensed, lagrange
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
-from fe_contact.targets._zone import LINE_REFINEMENT, STRUCK_REFINEMENT, Zone, held, smallest_struck
+from fe_contact.targets._zone import LINE_REFINEMENT, MESHES_KEPT, STRUCK_REFINEMENT, Zone, held, smallest_struck
 from lumped.indenter import Indenter
 from lumped.scene import Geometry
 
@@ -43,7 +43,7 @@ def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
     return _surface(geometry.material.nu, elements, numerics.order, smallest_struck(geometry.shape), depth, size)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=MESHES_KEPT)
 def _surface(poisson: float, elements: float, order: int, smallest: float, datum: float, size: float) -> ScaledSurface:
     """Condensed for unit reference radius; the datum's motion upwards is watched."""
     basis = Basis(meshes.layer(elements, smallest, size, size), ELEMENTS[order](), intorder=2 * order)

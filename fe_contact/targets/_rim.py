@@ -15,7 +15,7 @@ from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, condensed
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
-from fe_contact.targets._zone import REFINEMENT, held
+from fe_contact.targets._zone import MESHES_KEPT, REFINEMENT, held
 from lumped.indenter import Indenter
 
 
@@ -26,7 +26,7 @@ def still(indenter: Indenter, radius: float, numerics: Numerics) -> Still:
     return FixedStill(surface, indenter, numerics, radius, radius, np.inf)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=MESHES_KEPT)
 def _surface(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
     """Condensed for unit radius."""
     basis = Basis(meshes.layer_under_rim(elements, far_radius, far_radius), ELEMENTS[order](), intorder=2 * order)

@@ -22,6 +22,7 @@ from fe_contact.targets._body import BodyStill, trace_at
 from fe_contact.targets._zone import (
     LINE_REFINEMENT,
     MARGIN,
+    MESHES_KEPT,
     SPHERE_REFINEMENT,
     STRUCK_REFINEMENT,
     Zone,
@@ -75,7 +76,7 @@ def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
     return _together(geometry, ends, STRUCK_REFINEMENT * numerics.elements_per_contact, numerics.order)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=MESHES_KEPT)
 def _together(geometry: Geometry, ends: tuple[float, float], elements: float, order: int) -> Stacked:
     """All bodies that yield, on meshes fine for contacts that end between these radii, m."""
     radii = np.array(ends)
@@ -102,7 +103,7 @@ def _bodies(geometry: Geometry) -> list[_Body]:
     return sorted(bodies, key=lambda body: body.radius)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=MESHES_KEPT)
 def _operator(
     poisson: float, elements: float, order: int, smallest: float, contact: float, support: bool, plane: bool
 ) -> SurfaceOperator:

@@ -12,6 +12,7 @@ from fe_contact.operators import surface_operator
 from fe_contact.pressing import ScaledStill, Still
 from fe_contact.targets import _half_plane as half_plane
 from fe_contact.targets import _rim as rim
+from fe_contact.targets._zone import MESHES_KEPT
 from lumped.indenter import Indenter
 from lumped.scene import Geometry
 
@@ -37,6 +38,6 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     return ScaledStill(surface(indenter.material.nu, numerics), indenter, numerics)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=MESHES_KEPT)
 def _surface(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
     return ScaledSurface(surface_operator(meshes.half_space(elements, far_radius), order, poisson))

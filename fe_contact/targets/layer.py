@@ -16,7 +16,15 @@ from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
-from fe_contact.targets._zone import LINE_REFINEMENT, REFINEMENT, STRUCK_REFINEMENT, Zone, held, smallest_struck
+from fe_contact.targets._zone import (
+    LINE_REFINEMENT,
+    MESHES_KEPT,
+    REFINEMENT,
+    STRUCK_REFINEMENT,
+    Zone,
+    held,
+    smallest_struck,
+)
 from lumped.indenter import Indenter
 from lumped.scene import Geometry
 from lumped.targets.layer import Layer
@@ -59,13 +67,13 @@ def _shape(geometry: Geometry, numerics: Numerics) -> tuple[Sizes, int, bool, bo
     return (elements, smallest, thickness, width), numerics.order, target.base == "bonded", geometry.shape.plane
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=MESHES_KEPT)
 def _surface(poisson: float, sizes: Sizes, order: int, bonded: bool, plane: bool) -> ScaledSurface:
     """Condensed for unit reference radius."""
     return ScaledSurface(_body(sizes, order, bonded, plane).operator(poisson), breathes=False)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=MESHES_KEPT)
 def _body(sizes: Sizes, order: int, bonded: bool, plane: bool) -> ElasticBody:
     """In units of the reference radius."""
     basis = Basis(_mesh(*sizes), ELEMENTS[order](), intorder=2 * order)

@@ -16,7 +16,15 @@ from fe_contact.operators import ELEMENTS, SurfaceOperator, condensed
 from fe_contact.pressing import Still
 from fe_contact.surface import crown
 from fe_contact.targets._body import BodyStill
-from fe_contact.targets._zone import LINE_REFINEMENT, MARGIN, STRUCK_REFINEMENT, Zone, held, smallest_struck
+from fe_contact.targets._zone import (
+    LINE_REFINEMENT,
+    MARGIN,
+    MESHES_KEPT,
+    STRUCK_REFINEMENT,
+    Zone,
+    held,
+    smallest_struck,
+)
 from lumped.indenter import Indenter
 from lumped.scene import Geometry
 from lumped.targets.o_ring import ORing
@@ -52,7 +60,7 @@ def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
     return _struck(geometry, elements, numerics.order, numerics.contact_radius / MARGIN)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=MESHES_KEPT)
 def _struck(geometry: Geometry, elements: float, order: int, largest: float) -> Stacked:
     """For contacts up to a half-width, m."""
     target = geometry.target
@@ -65,7 +73,7 @@ def _struck(geometry: Geometry, elements: float, order: int, largest: float) -> 
     return Stacked(operator, (Side(operator, relaxation, operator.trace, target.lead),), section)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=MESHES_KEPT)
 def _surface(
     poisson: float, elements: float, order: int, smallest: float, contact: float, mean_radius: float
 ) -> tuple[SurfaceOperator, PressedSurface]:

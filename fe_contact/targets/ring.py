@@ -17,7 +17,15 @@ from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
-from fe_contact.targets._zone import LINE_REFINEMENT, MARGIN, STRUCK_REFINEMENT, Zone, held, smallest_struck
+from fe_contact.targets._zone import (
+    LINE_REFINEMENT,
+    MARGIN,
+    MESHES_KEPT,
+    STRUCK_REFINEMENT,
+    Zone,
+    held,
+    smallest_struck,
+)
 from lumped.indenter import Indenter
 from lumped.scene import Geometry
 from lumped.targets.ring import Ring
@@ -59,7 +67,7 @@ def _shape(geometry: Geometry, numerics: Numerics) -> tuple[float, int, float, f
     return elements, numerics.order, smallest_struck(geometry.shape), thickness, angle
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=MESHES_KEPT)
 def _surface(
     poisson: float, elements: float, order: int, smallest: float, thickness: float, angle: float
 ) -> ScaledSurface:
@@ -67,7 +75,7 @@ def _surface(
     return ScaledSurface(_body(elements, order, smallest, thickness, angle).operator(poisson), breathes=False)
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=MESHES_KEPT)
 def _body(elements: float, order: int, smallest: float, thickness: float, angle: float) -> ElasticBody:
     """In units of the zone's arc length."""
     basis = Basis(meshes.ring(elements, smallest, thickness, math.pi / angle), ELEMENTS[order](), intorder=2 * order)

@@ -15,7 +15,7 @@ from fe_contact.operators import ELEMENTS, SurfaceOperator, condensed
 from fe_contact.pressing import Still
 from fe_contact.surface import Surface, ring_area
 from fe_contact.targets._body import BodyStill
-from fe_contact.targets._zone import held
+from fe_contact.targets._zone import MESHES_KEPT, held
 from lumped.indenter import Indenter
 from lumped.targets.washer import Washer
 
@@ -40,7 +40,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     )
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=MESHES_KEPT)
 def _surface(
     poisson: float, elements: float, order: int, inner: float, outer: float, rim: float, bonded: bool
 ) -> tuple[SurfaceOperator, PressedSurface]:

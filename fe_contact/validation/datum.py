@@ -37,7 +37,7 @@ NARROW = 1e-6  # a contact over the widest, below which no D of the table lies
 
 @dataclass(frozen=True)
 class Place:
-    """D/l = F/(E* l depth) and the local exponent at one depth, with one support; `method`: "exact" or "fe".
+    """D/l = F/(E* l depth) and the local exponent at one depth, with one support; `method`: "exact", "fe" or "impact".
 
     ``length``: datum, thickness or the struck cylinder's radius over R of the gap; ``once``: depth over R at which the
     exact D is pi l/4, None where there is none or where finite elements answer.

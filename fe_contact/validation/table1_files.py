@@ -10,6 +10,7 @@ from typing import Any
 from fe_contact.validation.blocks import Block
 from fe_contact.validation.datum import DEPTH
 from fe_contact.validation.table1 import Trial, bodies
+from fe_contact.validation.table1_impact import FromImpact
 from fe_contact.validation.table1_verdict import Deviation, deviations, verdict
 from fe_contact.validation.tables import plain, write_csv, write_json
 from lumped.result import Quantity
@@ -19,7 +20,8 @@ COLUMNS = (
     "number", "row", "case", "D_printed_formula", "D_printed", "D", "D_error", "D_deviation", "alpha_printed", "alpha",
     "alpha_error", "E_printed_formula", "E_corrected_formula", "nu", "E_printed_Pa", "E_Pa", "E_error_Pa",
     "E_deviation", "depth_tried_from", "depth_tried_to", "holds_to_1_percent_up_to", "holds_up_to_error", "verdict",
-    "statement", "validity", "correction",
+    "statement", "validity", "correction", "D_impact", "D_impact_error", "alpha_impact", "alpha_impact_error",
+    "E_impact_Pa", "E_impact_error_Pa",
 )  # fmt: skip
 DATUM_COLUMNS = ("number", "row", "support", "length_over_radius", "method", "D_over_l", "D_over_l_error", "alpha",
                  "alpha_error", "depth_over_radius_with_printed_D")  # fmt: skip
@@ -52,8 +54,16 @@ def _line(trial: Trial) -> list[Any]:
         row.printed[1], row.corrected[1], nu, known, *_pair(None if nu is None else trial.moduli[nu]),
         _value(printed, "E*"),
         *((None, None, None, None) if reach is None else (reach.first, reach.last, *_pair(reach.held))),
-        judged.word, judged.sentence, row.validity, row.correction or None,
+        judged.word, judged.sentence, row.validity, row.correction or None, *_struck(trial, nu),
     ]  # fmt: skip
+
+
+def _struck(trial: Trial, nu: float | None) -> tuple[float | None, ...]:
+    """D, alpha and E* at a Poisson's ratio from impacts, each with its bar."""
+    found = trial.impact
+    if found is None:
+        return (None,) * 6
+    return (*_pair(found.factor), *_pair(found.alpha), *_pair(None if nu is None else found.moduli[nu]))
 
 
 def _data(trial: Trial) -> list[list[Any]]:
@@ -87,6 +97,7 @@ def _described(trial: Trial) -> dict[str, Any]:
         "alpha": None if trial.alpha is None else asdict(trial.alpha),
         "D": None if trial.factor is None else asdict(trial.factor),
         "E*": [_modulus(trial, nu, found) for nu, found in trial.moduli.items()],
+        "impact": None if trial.impact is None else _from_impact(trial.impact),
         "reach": None if reach is None else _reach(trial),
         "datum": [asdict(place) for place in trial.datum],
         "datum_depth_over_radius": DEPTH if trial.datum else None,
@@ -98,6 +109,12 @@ def _described(trial: Trial) -> dict[str, Any]:
         "verdict": asdict(verdict(trial)),
         "failure": trial.failure or None,
     }
+
+
+def _from_impact(found: FromImpact) -> dict[str, Any]:
+    moduli = [{"nu": nu, **asdict(modulus)} for nu, modulus in found.moduli.items()]
+    single = {name: None if one is None else asdict(one) for name, one in (("alpha", found.alpha), ("D", found.factor))}
+    return {**single, "E*": moduli}
 
 
 def _modulus(trial: Trial, nu: float, found: Quantity) -> dict[str, Any]:

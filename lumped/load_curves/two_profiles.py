@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.half_space import HalfSpaceCurve
 
-BISECTIONS = 120
+STEPS, LAST_STEP = 60, 1e-12  # the step after that is rounding
 
 
 @dataclass(frozen=True)
@@ -43,12 +43,15 @@ class TwoProfiles(HalfSpaceCurve):
         return self.first.depth_slope(contact_radius) + self.second.depth_slope(contact_radius)
 
     def contact_radius(self, depth: ArrayLike) -> Any:
-        """a with d1(a) + d2(a) = depth, m, by bisection: each profile alone would be wider."""
-        asked = np.maximum(np.asarray(depth, dtype=float), 0.0)
-        low = np.zeros_like(asked)
-        high = np.minimum(self.first.contact_radius(asked), self.second.contact_radius(asked))
-        for _ in range(BISECTIONS):
-            middle = 0.5 * (low + high)
-            deep = self.depth(middle) > asked
-            low, high = np.where(deep, low, middle), np.where(deep, middle, high)
-        return 0.5 * (low + high)
+        """a with d1(a) + d2(a) = depth, m, by Newton: the sum is convex, and each profile alone would be wider."""
+        asked = np.asarray(depth, dtype=float)
+        wanted = asked[asked > 0.0]
+        radius = np.minimum(self.first.contact_radius(wanted), self.second.contact_radius(wanted))
+        for _ in range(STEPS):
+            step = (self.depth(radius) - wanted) / self.depth_slope(radius)
+            radius = radius - step
+            if np.all(np.abs(step) <= LAST_STEP * radius):
+                break
+        found = np.zeros_like(asked)
+        found[asked > 0.0] = radius
+        return found
