@@ -71,6 +71,29 @@ def test_finite_spheres_leave_hertz_like_a_over_r(support: str, striker: Materia
     assert np.all(np.abs(np.diff(slope) / slope[:-1]) < 0.15 + bar[1:] / slope[1:] + bar[:-1] / slope[:-1])
 
 
+def terms_of_a_over_r(nu: float) -> tuple[np.ndarray, float]:
+    """Coefficients of F/Hertz - 1 on a/R, (a/R) ln(a/R) and (a/R)^2, and the largest relative residual."""
+    share = np.geomspace(0.005, 0.1, 8)
+    depths, material = (0.02 * share) ** 2 * (1.0 / 0.01 + 1.0 / 0.02), Material(Relaxation(1e6), nu)
+    scene, exact = balls(None, material, "free"), closed_form(balls(None, material), tuple(depths), "mdr")
+    fine = settings({}, scene.shape).varied(elements_per_contact=6.0, penalty=1e4)
+    deviation = exact.modulus * press(scene, depths, exact.contact_radius, fine).force / exact.force - 1.0
+    x = exact.contact_radius / 0.02
+    columns = np.stack([x, x * np.log(x), x**2], axis=1) / deviation[:, None]
+    found, *_ = np.linalg.lstsq(columns, np.ones_like(x), rcond=None)
+    return found, float(np.abs(columns @ found - 1.0).max())
+
+
+def test_what_finite_spheres_add_to_hertz_holds_a_logarithm_if_they_are_compressible() -> None:
+    """Why the deviation is no plain a/R: a sphere's point load adds a logarithm that falls like (1 - 2 nu)^2."""
+    loose, left = terms_of_a_over_r(0.2)
+    tight, rest = terms_of_a_over_r(0.49)
+    assert max(left, rest) < 1e-2
+    assert loose[1] > 0.1
+    assert abs(tight[1]) < 0.01 * tight[0]
+    assert min(loose[0], tight[0]) > 0.5
+
+
 def approach(line_force: np.ndarray, half_width: np.ndarray, radius: float, material: Material) -> np.ndarray:
     """Of a contact to the centre of mass of a free cylinder, whose acceleration balances the line force, N/m.
 
