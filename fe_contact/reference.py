@@ -98,8 +98,11 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
 
 
 def check_target(scene: Scene) -> None:
-    """Raise BadInput for a target which no impact is marched on."""
+    """Raise BadInput for a target which no impact is marched on, and for waves, which are marched elsewhere."""
     geometry = scene.geometry
+    if scene.model.inertia:
+        reason = "true: this command is without waves in this version; accepted: false, or fe-contact run"
+        raise BadInput(Fault(scene.source, "model.inertia", reason))
     fixed = geometry.target.fixed_radius(geometry.shape) is not None
     if not fixed and not hasattr(get(TARGETS, geometry.target.name), "struck"):
         reason = f"no impact on {geometry.target.name} by finite elements in this version; accepted: indent"

@@ -36,6 +36,20 @@ FORCE_BOUND, FORCE_TOLERANCE, FORCE_SAMPLES, FORCE_STUDY = 5e-3 / 0.4, 1e-3, 21,
 LAW_BOUNDS = {"correspondence": 5e-3 / 0.4, "ting": 30e-3 / 0.4, "mdr": 30e-3 / 0.4}
 LAW_TOLERANCE, LAW_REPEATS = 1e-5, 15
 
+# One impact with waves in a process of its own: 400 implicit steps of some 3000 unknowns.
+WAVES = """
+from lumped import Scene
+from fe_contact.waves.half_space_body import moving
+from fe_contact.waves.impact import motion
+from fe_contact.waves.plan import plan
+scene = Scene.load("steel-ball-waves")
+numerics = plan(scene, {"steps": 400, "elements_per_contact": 4.0}).numerics
+body = moving(scene, numerics)
+assert 2900 <= body.body.size <= 3400, body.body.size
+assert len(motion(body, scene, numerics).samples) >= 400
+"""
+WAVES_BOUND = 4.0
+
 # The deepest of twenty slow indentations of every row of Table 1 and what lies between them, m.
 ROW_DEPTHS = {
     "polymer-sphere": 3e-4, "polymer-cone": 3e-4, "polymer-power": 3e-4, "polymer-punch": 3e-4,
@@ -133,6 +147,16 @@ def indent_once(name: str, deepest: float, folder: str) -> tuple[float, float]:
     return child(["-m", "fe_contact", "indent", name, "--depths", depths, "--out", folder, "--quiet"])
 
 
+def waves() -> None:
+    """An impact with inertia, a whole process, against bare imports between them."""
+    imports, impacts = [], []
+    for _ in range(REPEATS):
+        imports.append(child(["-c", IMPORTS])[0])
+        impacts.append(child(["-c", WAVES])[0])
+    ratio = statistics.median(impacts) / statistics.median(imports)
+    say(f"impact with waves, 400 steps, 3000 unknowns {ratio:.2f} x imports (bound {WAVES_BOUND:g})")
+
+
 def marginal(imports: float) -> None:
     """Another impact on meshes that are there already, within this process: from scene to result, bars included."""
     sys.path.insert(0, str(ROOT))
@@ -227,6 +251,7 @@ if __name__ == "__main__":
     imports = cold()
     indent_rows()
     table1()
+    waves()
     marginal(imports)
     lumped_laws(imports)
     force_laws()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from skfem import Basis, ElementTriP2
 
 import meshes
 from fe_contact import forms
+from fe_contact.cli import main
 from fe_contact.curve import Curve
 from fe_contact.far_field.absorbing import wave_speeds
 from fe_contact.march import March
@@ -173,3 +175,9 @@ def test_settings_of_the_other_kind_are_refused() -> None:
 def test_an_equivalent_modulus_is_no_wave_medium() -> None:
     with pytest.raises(BadInput, match="no wave medium"):
         Scene.load("steel-ball", {"model.inertia": True})
+
+
+@pytest.mark.parametrize("command", ["compare", "tradeoff"])
+def test_commands_without_waves_say_so(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([command, "steel-ball-waves", "--out", str(tmp_path / "out")]) == 2
+    assert "model.inertia" in capsys.readouterr().err
