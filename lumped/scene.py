@@ -171,6 +171,12 @@ class Scene:
             reason = f"{self.motion.impacts}: {method} follows one impact; accepted: 1, or a law between two masses"
             raise BadInput(Fault(self.source, "motion.impacts", reason))
 
+    def check_mass(self, method: str) -> None:
+        """Raise BadInput for a striker without a mass of its own, whose waves `method` does not know."""
+        if self.mass == 0.0:
+            reason = f"0: {method} moves a rigid mass; accepted: more, or --method fe"
+            raise BadInput(Fault(self.source, "striker.mass", reason))
+
     @property
     def geometry(self) -> Geometry:
         """Shape, target and material; raises BadInput where the scene has a law's parameters alone."""

@@ -22,5 +22,9 @@ class Law(Protocol):
 
 
 def simulate(model: Law, scene: Scene, tolerance: float = 1e-6) -> Result:
-    """The impacts of a scene under the law `model`, every ruled quantity to `tolerance`. Raises NotReached."""
+    """The impacts of a scene under the law `model`, every ruled quantity to `tolerance`.
+
+    Raises NotReached, or BadInput for a scene that the law has no answer for.
+    """
+    scene.check_mass("a lumped law")
     return model.simulate(scene, tolerance)

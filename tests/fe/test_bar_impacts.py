@@ -158,6 +158,12 @@ def test_a_lumped_mass_of_zero_is_none() -> None:
         replace(scene, mass=0.0)
 
 
+@pytest.mark.parametrize("method", ["ting", "correspondence"])
+def test_a_law_without_waves_asks_for_a_mass(method: str) -> None:
+    with pytest.raises(BadInput, match=r"striker\.mass"):
+        fe_contact.run(Scene.load("bar-impact"), method=method)
+
+
 def test_the_command_writes_contacts(tmp_path: Path) -> None:
     code = main(["run", "bar", "--out", str(tmp_path), "--quiet", "--set", "numerics.steps=100"])
     content = json.loads((tmp_path / "result.json").read_text())

@@ -234,6 +234,16 @@ def test_exact_contact_is_the_limit_of_the_augmented_lagrangian(seed: int) -> No
         np.testing.assert_allclose(np.where(found.pressure > 0.0, left, np.maximum(left, 0.0)), 0.0, atol=1e-10)
 
 
+@given(SEEDS)
+def test_more_points_than_nodes_end_without_overlap_or_with_a_flag(seed: int) -> None:
+    """Many pressures then do the same: the multipliers may creep, but never crash nor claim what is not so."""
+    problem = random_problem(seed)
+    found = augmented.enforce(problem, np.zeros(len(problem.overlap), bool))
+    left = problem.overlap - problem.surface.trace @ displacement(problem.surface, found.pressure)
+    allowed = 2 * augmented.SETTLED * found.pressure.max() / problem.penalty + 1e-8 * np.abs(problem.overlap).max()
+    assert not found.converged or left.max() <= allowed
+
+
 def test_exact_contact_knows_that_a_rigid_striker_is_no_shape_of_the_pressure() -> None:
     """One more column, the same everywhere, is a second body's retreat: the same as that retreat in closed form."""
     size = 4
