@@ -32,6 +32,7 @@ from fe_contact.march import March, Strike
 from fe_contact.numerics import SCHEMES, Numerics
 from fe_contact.plan import SETTING
 from fe_contact.softening import Softening, compliance_change
+from fe_contact.trusted_order import trusted_orders
 from lumped.errors import NotReached
 from lumped.members import get
 from lumped.scene import Geometry
@@ -42,9 +43,6 @@ MESH_ORDER = {1: 0.5, 2: 1, 3: 1, 4: 2}  # by element order: the edge allows thr
 MESH_ORDER_ANYWHERE = 1  # where the edge falls anywhere in an element: 1.6 is what is seen
 LEAST_HALVED = 40  # steps below which halving them twice would leave too few to tell anything
 LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 20.0, "far_radius": 5.0}
-AS_EXPECTED = (0.6, 2.5)  # shares of the expected ratio of changes that show the order; faster does no harm
-ASYMPTOTIC = 1e-2  # share of the duration by which the fewest steps may err where orders are to be believed
-NEARLY = 0.8  # share of the expected ratio that the durations must show: they stand for themselves alone
 CAUSES = ("mesh", "penalty", "time_step", "far_field")
 ROUNDING = 1e-9  # of a solve of nearly incompressible bodies
 
@@ -174,11 +172,10 @@ def _time_steps(runs: _Runs, fine: Curve, numerics: Numerics) -> _TimeSteps:
     if half is None or quarter is None or not fine.separated == half.separated == quarter.separated:
         return _TimeSteps(fine, None, (), numerics.steps)
     value, before = extrapolated(fine, half, order), extrapolated(half, quarter, order)
-    trusted = _trusted_order(fine, half, quarter, order)
-    # a relaxation shorter than the step spoils the higher order of what adds up over the contact
-    momentum = (2**trusted - 1) / (2 ** min(trusted, order) - 1)
-    lasting = (2**trusted - 1) / (2 ** min(trusted, _order_of_duration(fine, half, quarter, order)) - 1)
-    change = Change(value, before, SAFETY / (2**trusted - 1), momentum, lasting)
+    orders = trusted_orders((fine, half, quarter), order, runs.step_in_relaxations(numerics))
+    least = SAFETY / (2 ** orders.pop("force") - 1)
+    weights = {name: SAFETY / (2**trusted - 1) / least for name, trusted in orders.items()}
+    change = Change(value, before, least, weights)
     jitter = Change(fine, fine.thinned(), 1.0)
     return _TimeSteps(value, change, (jitter,), numerics.steps // 4)
 
@@ -200,6 +197,10 @@ class _Runs:
         self._marches.append(march(self._strike, surface, settings, not self._marches, expected))
         self._radii.setdefault(settings.steps, self._marches[-1].radius)
         return self._marches[-1]
+
+    def step_in_relaxations(self, settings: Numerics) -> Array:
+        """Length of a step over every relaxation time."""
+        return settings.contact_time / settings.steps / np.asarray(self._strike.relaxation.times)
 
     def surface(self, settings: Numerics) -> Struck:
         """What contact sees of the struck body."""
@@ -236,23 +237,6 @@ class _Runs:
 def _error(change: Change | Softening | None, name: str) -> float:
     """Error of a quantity by one change; infinite where the variation failed."""
     return np.inf if change is None else change.errors[name]
-
-
-def _trusted_order(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
-    """Order left after extrapolation: one more than the scheme's if three step lengths show the scheme's own.
-
-    The velocity is asked, since the force of a viscous contact may jitter by more than the steps change it.
-    """
-    seen = Change(half, quarter, 1.0).velocity / max(Change(fine, half, 1.0).velocity, np.finfo(float).tiny)
-    return order + 1 if AS_EXPECTED[0] <= seen / 2**order <= AS_EXPECTED[1] else 1
-
-
-def _order_of_duration(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
-    """Order to trust of the duration: where the fewest steps err by more than a per cent, only what it shows."""
-    first, second, third = (curve.quantities["duration"] for curve in (fine, half, quarter))
-    if first is None or second is None or third is None or abs(third - second) <= ASYMPTOTIC * first:
-        return order + 1
-    return order if abs(third - second) >= NEARLY * 2**order * abs(second - first) else 1
 
 
 def _change(first: Curve | None, second: Curve | None, order: float, finer: bool = False) -> Change | None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -19,15 +20,13 @@ LATE = int(np.searchsorted(DENSE, 0.75))  # from here on path and speed count fo
 class Change:
     """Two curves that differ in one setting, and the factor that turns their difference into an error.
 
-    ``momentum``: what that factor is to be multiplied with for impulse and speed, which add up what every step errs;
-    ``lasting``: the same for the duration.
+    ``weights``: what that factor is to be multiplied with for quantities that deserve less trust.
     """
 
     first: Curve
     second: Curve
     factor: float
-    momentum: float = 1.0
-    lasting: float = 1.0
+    weights: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def errors(self) -> dict[str, float]:
@@ -42,19 +41,18 @@ class Change:
             "peak_force": float(self._force_change[first.near_peak].max()),
             "peak_time": self._peak_time,
             "peak_depth": float(depth[first.dense.depth > PEAK_SHARE * first.dense.depth.max()].max()),
-            "duration": self.lasting * float(depth[LATE:].max()) / speed,
-            "impulse": self.momentum * float(np.abs(first.dense.impulse - self.second.dense.impulse)[LATE:].max()),
-            "restitution": self.momentum * self.velocity / first.strike.velocity,
+            "duration": float(depth[LATE:].max()) / speed,
+            "impulse": float(np.abs(first.dense.impulse - self.second.dense.impulse)[LATE:].max()),
+            "restitution": self.velocity / first.strike.velocity,
         }
         errors = {name: self._error(name, value) for name, value in around.items()}
-        errors["duration"] = max(errors["duration"], self.lasting * self._error("duration", 0.0))
         return errors | {"history_l2": self.factor * self._history}
 
     def _error(self, name: str, around: float) -> float:
         first, second = self.first.quantities[name], self.second.quantities[name]
         if first is None or second is None:
             return np.inf if first is not second else 0.0
-        return self.factor * max(abs(first - second), around)
+        return self.factor * self.weights.get(name, 1.0) * max(abs(first - second), around)
 
     def force(self, time: Array) -> Array:
         """Error of the force at times, N: the largest change in the neighbourhood of each.

@@ -41,7 +41,7 @@ class Stepper:
     ``expected``: contact radii, m, of the first steps where a like march has told them, for as many as it did.
     """
 
-    shortest = 1e-3
+    shortest = 3e-4
     first_force = 0.0
 
     def __init__(

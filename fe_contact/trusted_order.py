@@ -1,0 +1,61 @@
+"""Orders to trust after Richardson's extrapolation, one more than the scheme's own where nothing speaks against it.
+
+A relaxation about as long as a step gives the scheme's order one coefficient for longer steps and another for
+shorter ones, so that extrapolation gains nothing sure. What adds up over the contact then keeps order one, and
+loses an order to any relaxation; the duration, a single instant, is unsettled by the next longer steps already.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.change import Change
+from fe_contact.curve import Curve
+from fe_contact.forms import Array
+
+AS_EXPECTED = (0.6, 2.5)  # shares of the expected ratio of changes that show the order; faster does no harm
+ASYMPTOTIC = 1e-2  # share of the duration by which the fewest steps may err where orders are to be believed
+NEARLY = 0.8  # share of the expected ratio that the durations must show: they stand for themselves alone
+ABOUT_A_STEP = (0.4, 9.0)  # step over relaxation time: outside, its weight in the step is within 1/8 of a power of it
+
+
+def trusted_orders(curves: tuple[Curve, Curve, Curve], order: int, steps: Array) -> dict[str, int]:
+    """Orders of the extrapolated force and of the quantities that deserve less trust.
+
+    Parameters
+    ----------
+    curves : with steps in the ratio 4 : 2 : 1.
+    order : the scheme's own.
+    steps : (k,) shortest step over each relaxation time.
+    """
+    force = _trusted_order(*curves, order)
+    duration = min(force, _order_of_duration(*curves, order))
+    within_step, within_two = (_about_a_step(share * steps) for share in (1, 2))
+    if within_step:
+        force = min(force, order)
+    if within_two:
+        duration = min(duration, order)
+    depth, summed = (1, 1) if within_step else (force, min(force, order))
+    return {"force": force, "peak_depth": depth, "impulse": summed, "restitution": summed, "duration": duration}
+
+
+def _trusted_order(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
+    """Order left after extrapolation: one more than the scheme's if three step lengths show the scheme's own.
+
+    The velocity is asked, since the force of a viscous contact may jitter by more than the steps change it.
+    """
+    seen = Change(half, quarter, 1.0).velocity / max(Change(fine, half, 1.0).velocity, np.finfo(float).tiny)
+    return order + 1 if AS_EXPECTED[0] <= seen / 2**order <= AS_EXPECTED[1] else 1
+
+
+def _order_of_duration(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
+    """Order to trust of the duration: where the fewest steps err by more than a per cent, only what it shows."""
+    first, second, third = (curve.quantities["duration"] for curve in (fine, half, quarter))
+    if first is None or second is None or third is None or abs(third - second) <= ASYMPTOTIC * first:
+        return order + 1
+    return order if abs(third - second) >= NEARLY * 2**order * abs(second - first) else 1
+
+
+def _about_a_step(steps: Array) -> bool:
+    """Whether some relaxation time is neither much longer nor much shorter than a step."""
+    return bool(np.any((steps > ABOUT_A_STEP[0]) & (steps < ABOUT_A_STEP[1])))
