@@ -50,7 +50,7 @@ def half_space(elements_per_contact: float, far_radius: float) -> MeshTri:
     size = 1 / elements_per_contact
     growth = min(GROWTH * size, LARGEST_GROWTH)
     near_edge = f"({size / EDGE_REFINEMENT!r}+{growth!r}*{distance(1.0, 0.0)})"
-    elsewhere = f"({size!r}+{growth / 2!r}*{beyond(distance(0.0, 0.0), 1.0)})"
+    elsewhere = f"({size!r}+{growth!r}*{beyond(distance(0.0, 0.0), 1.0)})"
     return _quarter(smaller(near_edge, elsewhere), 1.0, far_radius)
 
 
