@@ -23,7 +23,7 @@ ELEMENTS = 9.0  # along every contact radius
 STEPS = 320  # along a contact
 TRAVEL = 0.5  # of the contact time: an echo from the far radius returns after the contact
 NEAREST = 20.0  # contact radii: the far springs' own need
-VISCOUS_TRAVEL = 5.0  # contact radii: a dashpot in parallel has no wave speed, and damps what comes back
+SPREAD = 2.0  # lengths over which a dashpot in parallel, which has no wave speed, spreads a motion in a contact
 DEFAULTS: Mapping[str, Any] = {
     "order": 3,
     "penalty": 120.0,
@@ -58,8 +58,9 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
 
 
 def _far_radius(scene: Scene, contact_radius: float, contact_time: float) -> float:
-    """In contact radii: so far that pressure waves of the stiffest answer return too late."""
+    """In contact radii: so far that pressure waves of the stiffest answer return too late, or viscosity has faded."""
     modulus, material = scene.contact_modulus, scene.geometry.material
-    fastest = wave_speeds(material.nu)[0] * math.sqrt(modulus.glassy / (material.density or 1.0))
-    travel = TRAVEL * fastest * contact_time / contact_radius
-    return min(max(travel, NEAREST), RANGES["far_radius"][1])
+    density = material.density or 1.0
+    fastest = wave_speeds(material.nu)[0] * math.sqrt(modulus.glassy / density)
+    travel = max(TRAVEL * fastest * contact_time, SPREAD * math.sqrt(modulus.viscosity * contact_time / density))
+    return min(max(travel / contact_radius, NEAREST), RANGES["far_radius"][1])

@@ -48,6 +48,7 @@ def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> R
         if not isinstance(finer, WaveNumerics) or attempt == ROUNDS:
             break
         numerics = finer
+    scene.check_sunk(certified.curve.quantities["peak_depth"] or 0.0)
     solved = Solved(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall)
     return result_of(scene, solved)
 
