@@ -34,8 +34,8 @@ from fe_contact.plan import SETTING
 from fe_contact.softening import Softening, compliance_change
 from fe_contact.trusted_order import trusted_orders
 from lumped.errors import NotReached
+from lumped.geometry import Geometry
 from lumped.members import get
-from lumped.scene import Geometry
 
 SAFETY = 1.25
 LEAST_ORDER = {"penalty": 1, "far_field": 2}

@@ -17,9 +17,9 @@ from lumped.materials import Relaxation as Relaxation
 from lumped.result import LedgerEntry as LedgerEntry
 from lumped.result import Quantity as Quantity
 from lumped.result import Result as Result
-from lumped.scene import Model as Model
-from lumped.scene import Motion as Motion
 from lumped.scene import Scene as Scene
+from lumped.scene_tables import Model as Model
+from lumped.scene_tables import Motion as Motion
 from lumped.score import Score as Score
 from lumped.score import score as score
 from lumped.shapes import Sphere as Sphere

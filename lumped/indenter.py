@@ -11,7 +11,7 @@ from lumped.errors import BadInput, Fault
 from lumped.keys import Number
 from lumped.materials import Material
 from lumped.pair import check_striker_material, contact_modulus, tables
-from lumped.scene import Model
+from lumped.scene_tables import Model
 from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
 

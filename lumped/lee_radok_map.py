@@ -16,7 +16,8 @@ from lumped.errors import NotReached
 from lumped.laws import correspondence, ting
 from lumped.materials import Material, Relaxation
 from lumped.result import Result
-from lumped.scene import Model, Scene
+from lumped.scene import Scene
+from lumped.scene_tables import Model
 from lumped.shapes import Shape, Sphere
 
 # Any mass, velocity and size will do, the answers are without dimension.

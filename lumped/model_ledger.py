@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from lumped.errors import FeContactError
 from lumped.radiation import Pulse
 from lumped.result import LedgerEntry
-from lumped.scene import Model, Scene
+from lumped.scene import Scene
+from lumped.scene_tables import Model
 from lumped.shapes.base import Shape
 from lumped.targets.base import Target
 

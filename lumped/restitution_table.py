@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 from lumped import laws, restitution
 from lumped.errors import BadInput
-from lumped.scene import LawChoice, Motion, Scene
+from lumped.scene import Scene
+from lumped.scene_tables import LawChoice, Motion
 
 ASKED = (0.01, *(round(0.05 * i, 2) for i in range(1, 20)), 0.99, 0.999)
 EXITS = ("force", "depth")

@@ -16,7 +16,8 @@ import numpy as np
 from lumped.dimensionless import groups
 from lumped.history import History
 from lumped.interpolation import peak
-from lumped.scene import Model, Scene
+from lumped.scene import Scene
+from lumped.scene_tables import Model
 
 SCHEMA = "fe-contact/result/1"
 UNITS = {

@@ -9,94 +9,29 @@ from pathlib import Path
 from typing import Any
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import Choice, Count, Flag, Key, Number, Text, check_fields, read_table
+from lumped.geometry import Geometry
+from lumped.keys import check_fields
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material, Relaxation
 from lumped.members import get
 from lumped.pair import check_striker_material, contact_modulus
 from lumped.pair import tables as bodies
 from lumped.scales import stiffest_impact
+from lumped.scene_tables import (
+    LAWS,
+    LEAST_MASS,
+    NAME_KEYS,
+    SECOND_BODY_KEYS,
+    STRIKER_KEYS,
+    LawChoice,
+    Model,
+    Motion,
+    inertia_faults,
+)
 from lumped.shapes import Shape
-from lumped.shapes._block import Block
 from lumped.targets import HalfSpace, Target
 
 END_IN_CONTACT_TIMES = 50.0
-
-LEAST_MASS = 1e-21
-STRIKER_KEYS: Mapping[str, Key] = {
-    "mass": Number(0.0, 1e12, "kg"),
-    "velocity": Number(1e-9, 1e5, "m/s"),
-}
-MODEL_KEYS: Mapping[str, Key] = {
-    "inertia": Flag(required=False),
-    "profile": Choice(("exact", "parabola"), required=False),
-    "gravity": Number(-1e6, 1e6, "m/s2", required=False),
-}
-MOTION_KEYS: Mapping[str, Key] = {
-    "impacts": Count(1, 1000, required=False),
-    "end_time": Number(1e-15, 1e12, "s", required=False),
-}
-NAME_KEYS: Mapping[str, Key] = {"name": Text(required=False)}
-SECOND_BODY_KEYS: Mapping[str, Key] = {"target_mass": Number(1e-21, 1e12, "kg", required=False)}
-LAWS = "lumped.laws"
-
-
-@dataclass(frozen=True)
-class Model:
-    """The `[model]` table: inertia of deformable bodies, profile, gravity along the motion (m/s2)."""
-
-    inertia: bool = False
-    profile: str = "exact"
-    gravity: float = 0.0
-
-    def __post_init__(self) -> None:
-        check_fields("model", self, MODEL_KEYS)
-
-
-@dataclass(frozen=True)
-class Motion:
-    """The `[motion]` table: how many impacts are followed, and until when (s; None: 50 contact times)."""
-
-    impacts: int = 1
-    end_time: float | None = None
-
-    def __post_init__(self) -> None:
-        check_fields("motion", self, MOTION_KEYS)
-
-
-@dataclass(frozen=True)
-class LawChoice:
-    """The `[law]` table: a lumped law by its name, with parameters of its own."""
-
-    name: str
-    values: Mapping[str, Any] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        keys = get(LAWS, self.name, source="law").KEYS
-        _, faults = read_table("law", "", self.values, keys)
-        if faults:
-            raise BadInput(faults)
-
-
-@dataclass(frozen=True)
-class Geometry:
-    """What finite elements and the laws of the half-space need: striker's shape, target, its material.
-
-    `striker_material`: of a striker which yields as the target does, None: rigid.
-    """
-
-    shape: Shape
-    target: Target
-    material: Material
-    striker_material: Material | None = None
-
-    @property
-    def surface_remembers(self) -> bool:
-        """Whether elastic bodies and E*(t) tell all: of a body with lengths, where nu stays or strain is uniform."""
-        materials = [self.material] if self.striker_material is None else [self.material, self.striker_material]
-        steady = all(one.constant == "poisson" or one.young.is_elastic for one in materials)
-        uniform = isinstance(self.shape, Block) and self.shape.uniform
-        return steady or uniform or not self.target.has_length
 
 
 @dataclass(frozen=True)
@@ -115,8 +50,8 @@ class Scene:
     velocity: float
     material: Material | None = None
     target: Target = field(default_factory=HalfSpace)
-    model: Model = Model()
-    motion: Motion = Motion()
+    model: Model = field(default_factory=Model)
+    motion: Motion = field(default_factory=Motion)
     target_mass: float | None = None
     law: LawChoice | None = None
     striker_material: Material | None = None
@@ -294,21 +229,3 @@ class Scene:
                 "holds; accepted: a lower velocity or mass, or a stiffer material"
             )
         return ""
-
-
-def inertia_faults(source: str, inertia: bool, density: float | None, target: Target | None) -> list[Fault]:
-    """What is missing for `model.inertia = true`, or speaks against false; without geometry there is no target."""
-    if not inertia:
-        if target is not None and target.only_with_inertia:
-            return [Fault(source, "model.inertia", f"false: a {target.name} is made of waves; accepted: true")]
-        return []
-    faults = []
-    if target is None or not target.has_inertia:
-        where = "a law of its own" if target is None else target.name
-        reason = f"true is not available for {where} in this version; accepted: false"
-        faults.append(Fault(source, "model.inertia", reason))
-    if target is not None and density is None:
-        reason = "missing; model.inertia = true needs it, in kg/m3; the equivalent E* of two bodies is no wave medium"
-        owner = "target" if target.deformable else "striker"
-        faults.append(Fault(source, f"{owner}.material.density", reason))
-    return faults

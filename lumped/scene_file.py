@@ -17,7 +17,8 @@ from lumped.materials.material import KEYS as MATERIAL_KEYS
 from lumped.materials.material import bulk_fault
 from lumped.members import Member, available, get
 from lumped.pair import striker_material_faults
-from lumped.scene import (
+from lumped.scene import Scene
+from lumped.scene_tables import (
     MODEL_KEYS,
     MOTION_KEYS,
     NAME_KEYS,
@@ -26,7 +27,6 @@ from lumped.scene import (
     LawChoice,
     Model,
     Motion,
-    Scene,
     inertia_faults,
 )
 from lumped.targets import Target

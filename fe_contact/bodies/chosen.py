@@ -9,9 +9,9 @@ from fe_contact.bodies.bulk_memory import Moduli, relaxing
 from fe_contact.bodies.flat_end import FlatEnd
 from fe_contact.bodies.struck import Struck
 from fe_contact.numerics import TARGETS, Numerics
+from lumped.geometry import Geometry
 from lumped.materials import Relaxation
 from lumped.members import get
-from lumped.scene import Geometry
 
 
 def struck(geometry: Geometry, numerics: Numerics) -> Struck:

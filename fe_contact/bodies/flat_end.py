@@ -17,9 +17,9 @@ from fe_contact.march import Snapshot, Strike
 from fe_contact.numerics import TARGETS, Numerics
 from fe_contact.pressing import Still
 from fe_contact.steps import Stepping
+from lumped.geometry import Geometry
 from lumped.indenter import Indenter
 from lumped.members import get
-from lumped.scene import Geometry
 
 SHALLOW = 1e-3  # depth over radius: every answer is in proportion
 

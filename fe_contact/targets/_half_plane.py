@@ -18,8 +18,8 @@ from fe_contact.operators import ELEMENTS, condensed, lagrange
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
 from fe_contact.targets._zone import LINE_REFINEMENT, MESHES_KEPT, STRUCK_REFINEMENT, Zone, held, smallest_struck
+from lumped.geometry import Geometry
 from lumped.indenter import Indenter
-from lumped.scene import Geometry
 
 DATUM = 0.15  # size of the mesh over the datum's depth, per far radius of the settings
 

@@ -28,9 +28,9 @@ from fe_contact.targets._zone import (
     Zone,
     smallest_struck,
 )
+from lumped.geometry import Geometry
 from lumped.indenter import Indenter
 from lumped.materials import Material
-from lumped.scene import Geometry
 from lumped.targets._round import Round
 
 SPARE = 1.05  # the larger body's fine mesh over what the contact may reach on the smaller

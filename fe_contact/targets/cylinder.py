@@ -7,8 +7,8 @@ from fe_contact.forms import Array
 from fe_contact.numerics import Numerics
 from fe_contact.pressing import Still
 from fe_contact.targets import _round
+from lumped.geometry import Geometry
 from lumped.indenter import Indenter
-from lumped.scene import Geometry
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:

@@ -13,8 +13,8 @@ from fe_contact.pressing import ScaledStill, Still
 from fe_contact.targets import _half_plane as half_plane
 from fe_contact.targets import _rim as rim
 from fe_contact.targets._zone import MESHES_KEPT
+from lumped.geometry import Geometry
 from lumped.indenter import Indenter
-from lumped.scene import Geometry
 
 
 def surface(poisson: float, numerics: Numerics) -> ScaledSurface:

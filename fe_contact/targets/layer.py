@@ -25,8 +25,8 @@ from fe_contact.targets._zone import (
     held,
     smallest_struck,
 )
+from lumped.geometry import Geometry
 from lumped.indenter import Indenter
-from lumped.scene import Geometry
 from lumped.targets.layer import Layer
 
 Sizes = tuple[float, float | None, float, float]  # elements, smallest contact, thickness, width: see _mesh

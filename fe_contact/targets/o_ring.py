@@ -25,8 +25,8 @@ from fe_contact.targets._zone import (
     held,
     smallest_struck,
 )
+from lumped.geometry import Geometry
 from lumped.indenter import Indenter
-from lumped.scene import Geometry
 from lumped.targets.o_ring import ORing
 
 

@@ -26,8 +26,8 @@ from fe_contact.targets._zone import (
     held,
     smallest_struck,
 )
+from lumped.geometry import Geometry
 from lumped.indenter import Indenter
-from lumped.scene import Geometry
 from lumped.targets.ring import Ring
 
 WIDEST = 2.7  # rad: the contact zone ends before the far side of the ring

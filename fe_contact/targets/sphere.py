@@ -7,8 +7,8 @@ from fe_contact.forms import Array
 from fe_contact.numerics import Numerics
 from fe_contact.pressing import ScaledStill, Still
 from fe_contact.targets import _round, half_space
+from lumped.geometry import Geometry
 from lumped.indenter import Indenter
-from lumped.scene import Geometry
 from lumped.targets.sphere import Sphere
 
 

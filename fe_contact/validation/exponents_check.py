@@ -16,7 +16,7 @@ from lumped.load_curves.layer import Layer
 from lumped.load_curves.layer_curve import LayerPunch
 from lumped.materials import Material, Relaxation
 from lumped.result import Quantity
-from lumped.scene import Model
+from lumped.scene_tables import Model
 from lumped.shapes import punch
 from lumped.targets import layer as layers
 

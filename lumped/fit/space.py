@@ -14,7 +14,8 @@ from lumped.errors import BadInput, Fault, nearest
 from lumped.fit import network
 from lumped.keys import Number
 from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS
-from lumped.scene import LawChoice, Scene
+from lumped.scene import Scene
+from lumped.scene_tables import LawChoice
 
 Array = NDArray[np.float64]
 Bounds = Mapping[str, tuple[float, float]]

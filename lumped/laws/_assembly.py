@@ -14,7 +14,8 @@ from lumped.ending import AT_REST, End
 from lumped.history import History, densified
 from lumped.model_ledger import Peak, model_ledger
 from lumped.result import RULED_RELATIVE, UNITS, Quantity, Result, provenance, unmet
-from lumped.scene import Model, Scene
+from lumped.scene import Scene
+from lumped.scene_tables import Model
 
 Array = NDArray[np.float64]
 # Rounding of the sums behind a quantity, relative to it.

@@ -17,7 +17,8 @@ from lumped.collide.step import Step
 from lumped.laws import _impacts
 from lumped.load_curves.base import LoadCurve
 from lumped.result import Result
-from lumped.scene import Model, Scene
+from lumped.scene import Scene
+from lumped.scene_tables import Model
 
 Array = NDArray[np.float64]
 

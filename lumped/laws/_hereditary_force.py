@@ -16,7 +16,8 @@ from lumped.collide.hereditary import HereditaryLoad, StepLoad
 from lumped.collide.nodes import through_zero
 from lumped.collide.step import NODES, Step
 from lumped.laws._force_law import ForceLaw
-from lumped.scene import Model, Scene
+from lumped.scene import Scene
+from lumped.scene_tables import Model
 
 Array = NDArray[np.float64]
 

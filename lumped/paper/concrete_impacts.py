@@ -13,7 +13,8 @@ from lumped.paper.plateau import PlateauCut, plateau_cut
 from lumped.paper.struck_bar import StruckBar
 from lumped.paper.value import Value, read
 from lumped.result import Result
-from lumped.scene import Model, Scene
+from lumped.scene import Scene
+from lumped.scene_tables import Model
 from lumped.shapes import Sphere
 from lumped.targets.rod import Rod
 

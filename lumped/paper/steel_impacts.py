@@ -15,7 +15,8 @@ from lumped.materials.relaxation import Relaxation
 from lumped.paper.examples import Steel
 from lumped.paper.value import Value, read
 from lumped.result import Result
-from lumped.scene import LawChoice, Model, Scene
+from lumped.scene import Scene
+from lumped.scene_tables import LawChoice, Model
 from lumped.shapes import Sphere
 
 TOLERANCE = 1e-6

@@ -14,7 +14,7 @@ from lumped.errors import BadInput, Fault
 from lumped.indenter import Indenter
 from lumped.keys import Key, check_fields
 from lumped.materials import Material, Relaxation
-from lumped.scene import Model
+from lumped.scene_tables import Model
 from lumped.shapes import Shape
 from lumped.targets import Target
 

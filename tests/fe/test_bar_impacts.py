@@ -17,7 +17,7 @@ from lumped import Scene
 from lumped.bar_waves import StraightBar, bounces
 from lumped.errors import BadInput
 from lumped.result import Result
-from lumped.scene import Motion
+from lumped.scene_tables import Motion
 
 BAR = StraightBar(length=10.0, speed=30.0, impedance=30.0)
 ECHO = 2 / 3

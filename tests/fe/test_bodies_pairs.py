@@ -10,7 +10,7 @@ import pytest
 from fe_contact.indentation import indent, press, settings
 from lumped import BadInput, Material, Relaxation, Sphere
 from lumped.indenter import Indenter
-from lumped.scene import Model
+from lumped.scene_tables import Model
 from lumped.shapes.cylinder import Cylinder as Roller
 from lumped.shapes.punch import Punch
 from lumped.slow import indent as closed_form

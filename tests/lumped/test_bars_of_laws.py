@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from scipy.special import beta
 
 from lumped import Model, Scene, laws
-from lumped.scene import LawChoice
+from lumped.scene_tables import LawChoice
 
 CASES = 600
 # Where an error is rounding its size is an accident; the time of a flat peak is known to the root of rounding.

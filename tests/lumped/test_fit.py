@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lumped import BadInput, Fit, History, NotReached, Scene, fit, laws, simulate
-from lumped.scene import LawChoice
+from lumped.scene_tables import LawChoice
 from lumped.score import Curve
 
 BODY = Scene(None, mass=0.001, velocity=1.0)

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from lumped import BadInput, Motion, Scene, laws, restitution
 from lumped.collide.bodies import Bodies, Stage
 from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE
-from lumped.scene import LawChoice, Model
+from lumped.scene_tables import LawChoice, Model
 
 OF_GEOMETRY = {"correspondence", "ting", "mdr", "rod_waves"}
 NAMES = sorted(set(laws.available()) - OF_GEOMETRY)

@@ -11,7 +11,7 @@ import pytest
 
 from lumped import BadInput, Scene, laws, opensees
 from lumped.collide.bodies import Stage
-from lumped.scene import LawChoice
+from lumped.scene_tables import LawChoice
 
 BODY = Scene(None, mass=0.002, velocity=1.5)
 

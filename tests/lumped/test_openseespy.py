@@ -11,7 +11,7 @@ import openseespy.opensees as ops
 import pytest
 
 from lumped import Scene, laws, opensees, simulate
-from lumped.scene import LawChoice
+from lumped.scene_tables import LawChoice
 
 BODY = Scene(None, mass=0.001, velocity=1.0)
 STEPS = 20_000

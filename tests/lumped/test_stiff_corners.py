@@ -11,7 +11,7 @@ import pytest
 
 from lumped import Model, Motion, Scene, laws
 from lumped.errors import TooManySteps
-from lumped.scene import LawChoice
+from lumped.scene_tables import LawChoice
 
 OF_GEOMETRY = ("correspondence", "ting", "mdr")
 NAMES = sorted(set(laws.available()) - set(OF_GEOMETRY))

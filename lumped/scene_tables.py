@@ -1,0 +1,85 @@
+"""The small tables of a scene: `[model]`, `[motion]`, `[law]`, and the keys and ranges of its numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from lumped.errors import BadInput, Fault
+from lumped.keys import Choice, Count, Flag, Key, Number, Text, check_fields, read_table
+from lumped.members import get
+from lumped.targets import Target
+
+LEAST_MASS = 1e-21
+STRIKER_KEYS: Mapping[str, Key] = {
+    "mass": Number(0.0, 1e12, "kg"),
+    "velocity": Number(1e-9, 1e5, "m/s"),
+}
+MODEL_KEYS: Mapping[str, Key] = {
+    "inertia": Flag(required=False),
+    "profile": Choice(("exact", "parabola"), required=False),
+    "gravity": Number(-1e6, 1e6, "m/s2", required=False),
+}
+MOTION_KEYS: Mapping[str, Key] = {
+    "impacts": Count(1, 1000, required=False),
+    "end_time": Number(1e-15, 1e12, "s", required=False),
+}
+NAME_KEYS: Mapping[str, Key] = {"name": Text(required=False)}
+SECOND_BODY_KEYS: Mapping[str, Key] = {"target_mass": Number(1e-21, 1e12, "kg", required=False)}
+LAWS = "lumped.laws"
+
+
+@dataclass(frozen=True)
+class Model:
+    """The `[model]` table: inertia of deformable bodies, profile, gravity along the motion (m/s2)."""
+
+    inertia: bool = False
+    profile: str = "exact"
+    gravity: float = 0.0
+
+    def __post_init__(self) -> None:
+        check_fields("model", self, MODEL_KEYS)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The `[motion]` table: how many impacts are followed, and until when (s; None: 50 contact times)."""
+
+    impacts: int = 1
+    end_time: float | None = None
+
+    def __post_init__(self) -> None:
+        check_fields("motion", self, MOTION_KEYS)
+
+
+@dataclass(frozen=True)
+class LawChoice:
+    """The `[law]` table: a lumped law by its name, with parameters of its own."""
+
+    name: str
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        keys = get(LAWS, self.name, source="law").KEYS
+        _, faults = read_table("law", "", self.values, keys)
+        if faults:
+            raise BadInput(faults)
+
+
+def inertia_faults(source: str, inertia: bool, density: float | None, target: Target | None) -> list[Fault]:
+    """What is missing for `model.inertia = true`, or speaks against false; without geometry there is no target."""
+    if not inertia:
+        if target is not None and target.only_with_inertia:
+            return [Fault(source, "model.inertia", f"false: a {target.name} is made of waves; accepted: true")]
+        return []
+    faults = []
+    if target is None or not target.has_inertia:
+        where = "a law of its own" if target is None else target.name
+        reason = f"true is not available for {where} in this version; accepted: false"
+        faults.append(Fault(source, "model.inertia", reason))
+    if target is not None and density is None:
+        reason = "missing; model.inertia = true needs it, in kg/m3; the equivalent E* of two bodies is no wave medium"
+        owner = "target" if target.deformable else "striker"
+        faults.append(Fault(source, f"{owner}.material.density", reason))
+    return faults
