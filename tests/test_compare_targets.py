@@ -28,7 +28,7 @@ def test_a_washer_is_compared_with_laws_on_its_own_slow_curve(tmp_path: Path) ->
 def test_the_chart_of_a_block_tells_sizes_as_they_are(tmp_path: Path) -> None:
     scene = Scene.load("polymer-prism")
     solved = solve(scene, {})
-    svg, _ = plot_history(result_of(scene, solved), solved, tmp_path)
+    svg, _ = plot_history(result_of(scene, solved), tmp_path, solved)
     assert svg.stat().st_size > 0
 
 

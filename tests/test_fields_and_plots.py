@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from skfem import Basis
 
 import meshes
+from fe_contact.cli import main
 from fe_contact.fields import STRESSES, check_fields, fields_at_peak, nodal_stress, subdivided, write_fields
 from fe_contact.forms import isotropic
 from fe_contact.operators import ELEMENTS
@@ -155,7 +156,7 @@ def test_a_relaxing_body_of_constant_bulk_modulus_has_no_fields(tmp_path: Path) 
 def test_the_chart_of_an_impact_is_reproducible_and_well_formed(tmp_path: Path, case: Case) -> None:
     scene, solved = case
     result = result_of(scene, solved)
-    first, again = (plot_history(result, solved, tmp_path / name) for name in ("first", "again"))
+    first, again = (plot_history(result, tmp_path / name, solved) for name in ("first", "again"))
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
     text = ElementTree.parse(first[0]).getroot().itertext()
     assert scene.name in {part.strip() for part in text}
@@ -170,7 +171,23 @@ def test_a_prefix_makes_values_readable(value: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "error", "text"), [(0.1613372, 3.64e-6, "161.337 ± 0.004 mN"), (66.2331, 0.0173, "66.23 ± 0.02 N")]
+    ("value", "error", "text"),
+    [
+        (0.1613372, 3.64e-6, "161.337 ± 0.004 mN"),
+        (66.2331, 0.0173, "66.23 ± 0.02 N"),
+        (80.3000374, 2.4e-10, "80.3 N ± 3e-12 of it"),
+    ],
 )
 def test_a_value_ends_where_its_error_begins(value: float, error: float, text: str) -> None:
     assert with_error(value, error, "N") == text
+
+
+@pytest.mark.parametrize("scene", ["bar-impact", "pounding-steel-jankowski"])
+def test_a_history_without_a_pressure_is_drawn_too(scene: str, tmp_path: Path) -> None:
+    """Bodies with inertia and bare laws tell no pressure: the chart names the method and has two panels."""
+    assert main(["run", scene, "--plot", "--quiet", "--out", str(tmp_path)]) == 0
+    words = (tmp_path / "history.svg").read_text(encoding="utf-8")
+    method = "finite elements" if scene == "bar-impact" else "jankowski"
+    assert (tmp_path / "history.png").stat().st_size > 10_000
+    assert all(word in words for word in (scene, method, "contact force", "depth"))
+    assert "pressure" not in words

@@ -41,36 +41,33 @@ def execute(args: argparse.Namespace) -> int:
 def _impact(args: argparse.Namespace, scene: Scene, table: dict[str, Any], where: Path) -> int:
     from fe_contact.methods import settings, simulate
 
-    if args.method != "fe" or scene.model.inertia:
-        result = simulate(scene, args.method, table, progress=base.progress_of(args))
-        result.write(where)
-        return base.report(args, result, where)
-    from fe_contact.reference import result_of, solve
+    if args.method == "fe" and not scene.model.inertia:
+        from fe_contact.reference import result_of, solve
 
-    solved = solve(scene, settings(table, None, scene.source), base.progress_of(args))
-    result = result_of(scene, solved)
+        solved = solve(scene, settings(table, None, scene.source), base.progress_of(args))
+        result = result_of(scene, solved)
+    else:
+        solved, result = None, simulate(scene, args.method, table, progress=base.progress_of(args))
     result.write(where)
-    if args.fields:
+    if args.fields and solved is not None:
         from fe_contact.fields import write_fields
 
         write_fields(scene, solved, where)
     if args.plot:
         from fe_contact.report.history import plot_history
 
-        plot_history(result, solved, where)
+        plot_history(result, where, solved)
     return base.report(args, result, where)
 
 
 def _check(args: argparse.Namespace, scene: Scene) -> None:
-    """Refuse, before anything is computed, what this method or scene cannot give; raises BadInput."""
+    """Refuse, before anything is computed, fields that this method or scene cannot give; raises BadInput."""
+    if not args.fields:
+        return
     if args.method != "fe":
-        asked = [option for option in ("fields", "plot") if getattr(args, option)]
-        if asked:
-            raise BadInput(Fault(f"--{option}", "", "only with --method fe") for option in asked)
-    elif scene.model.inertia and (args.fields or args.plot):
-        reason = "not with model.inertia = true in this version"
-        raise BadInput(Fault("--fields" if args.fields else "--plot", "", reason))
-    elif args.fields:
-        from fe_contact.fields import check_fields
+        raise BadInput(Fault("--fields", "", "only with --method fe"))
+    if scene.model.inertia:
+        raise BadInput(Fault("--fields", "", "not with model.inertia = true in this version"))
+    from fe_contact.fields import check_fields
 
-        check_fields(scene)
+    check_fields(scene)

@@ -23,22 +23,30 @@ BAND_VISIBLE = 0.01  # share of the peak below which the band is a hair line and
 CAPTION_WIDTH = 78  # characters
 
 
-def plot_history(result: Result, solved: Solved, where: Path) -> tuple[Path, Path]:
-    """Write ``history.svg`` and ``history.png`` into the folder ``where``; their paths."""
+def plot_history(result: Result, where: Path, solved: Solved | None = None) -> tuple[Path, Path]:
+    """Write ``history.svg`` and ``history.png`` into the folder ``where``; their paths.
+
+    The pressure at the peak is drawn where ``solved`` knows one, the march behind a quasi-static result.
+    """
     with style.look():
         figure = Figure(figsize=(style.COLUMN, HEIGHT))
         grid = figure.add_gridspec(2, 2, height_ratios=(1.6, 1.0), hspace=0.5, wspace=0.42)
         grid.update(left=0.15, right=0.965, top=0.845, bottom=0.175)
         _force(figure.add_subplot(grid[0, :]), result)
-        _motion(figure.add_subplot(grid[1, 0]), result.history)
-        _pressure(figure.add_subplot(grid[1, 1]), _at_peak(solved))
+        if solved is None:
+            _motion(figure.add_subplot(grid[1, :]), result.history)
+        else:
+            _motion(figure.add_subplot(grid[1, 0]), result.history)
+            _pressure(figure.add_subplot(grid[1, 1]), _at_peak(solved))
         style.heading(figure, result.scene.name, [_subtitle(result)], 100)
         figure.text(0.023, 0.016, caption(result.scene), fontsize=6.0, color="#4d4d4d", linespacing=1.4)
         return style.save(figure, where, "history")
 
 
 def caption(scene: Scene) -> str:
-    """The scene's parameters in two lines or more."""
+    """The scene's parameters in two lines or more, of a scene with a geometry; else those of its law."""
+    if not scene.has_geometry:
+        return _law_alone(scene)
     material, shape, young = scene.geometry.material, scene.geometry.shape, scene.geometry.material.young
     sizes = {key: value for key, value in shape.to_dict().items() if isinstance(value, float)}
     lengths = ", ".join(f"{key} {_size(shape.keys[key], value)}" for key, value in sizes.items())
@@ -54,6 +62,15 @@ def caption(scene: Scene) -> str:
     return "\n".join(part for line in lines for part in textwrap.wrap(line, CAPTION_WIDTH))
 
 
+def _law_alone(scene: Scene) -> str:
+    """What a scene without a geometry tells: mass, velocity and the law's own parameters."""
+    moving = f"{readable(1e3 * scene.mass, 'g')}, {readable(scene.velocity, 'm/s')}"
+    if scene.law is None:
+        return moving
+    values = ", ".join(f"{key} = {value}" for key, value in scene.law.values.items())
+    return "\n".join(textwrap.wrap(f"{moving}; {scene.law.name.replace('_', ' ')}: {values}", CAPTION_WIDTH))
+
+
 def _size(key: Key, value: float) -> str:
     """A length with a prefixed unit, anything else as it stands in the scene file."""
     unit = key.unit if isinstance(key, Number) else ""
@@ -64,7 +81,8 @@ def _subtitle(result: Result) -> str:
     """Restitution with its bar, and the tolerance."""
     e = result.quantities["restitution"]
     outcome = "no separation" if e.value is None else f"restitution {with_error(e.value, e.error or 0.0)}"
-    return f"{outcome}; finite elements, tolerance {result.tolerance:g}"
+    method = "finite elements" if result.method == "fe" else result.method.replace("_", " ")
+    return f"{outcome}; {method}, tolerance {result.tolerance:g}"
 
 
 def _force(axes: Axes, result: Result) -> None:
@@ -107,14 +125,15 @@ def _mark_peak(axes: Axes, result: Result, second: float, newton: float, above: 
 def _motion(axes: Axes, history: History) -> None:
     second, time_unit = prefixed(history.time[-1], "s")
     columns = (("depth", history.depth, style.VERMILION, "-"), ("radius", history.contact_radius, style.GREEN, "--"))
-    for row, (name, values, colour, line) in enumerate(columns):
+    known = [column for column in columns if np.nanmax(column[1], initial=0.0) > 0.0]  # a bare law has no radius
+    for row, (name, values, colour, line) in enumerate(known):
         axes.plot(second * history.time, values / values.max(), color=colour, linestyle=line)
         text = f"{name} / {readable(values.max(), 'm', 3)}"
         axes.text(0.5, 0.21 - 0.13 * row, text, color=colour, fontsize=6.2, ha="center", transform=axes.transAxes)
     axes.set(xlabel=f"time, {time_unit}", ylabel="share of the largest", xlim=(0, second * history.time[-1]))
     axes.set_ylim(min(0.0, float(history.depth.min() / history.depth.max())), 1.08)
     axes.set_yticks((0.0, 0.5, 1.0))
-    style.label(axes, "b", "depth and radius")
+    style.label(axes, "b", " and ".join(name for name, *_ in known))
 
 
 def _at_peak(solved: Solved) -> Pressure | None:

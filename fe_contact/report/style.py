@@ -85,9 +85,14 @@ def readable(value: float, unit: str, digits: int = 4) -> str:
     return f"{value * factor:.{digits}g} {name}".rstrip()
 
 
+MINUTE = 1e-6  # share of a value below which a bar is written as such a share
+
+
 def with_error(value: float, error: float, unit: str = "") -> str:
-    """A value with its error bar in the same unit, both cut at the bar's first digit."""
+    """A value with its error bar in the same unit, cut at the bar's first digit; a minute bar as a share of it."""
     factor, name = prefixed(abs(value), unit) if unit else (1.0, "")
+    if 0.0 < error < MINUTE * abs(value):
+        return f"{value * factor:.6g} {name}".rstrip() + f" ± {error / abs(value):.0e} of it"
     digits = max(0, -math.floor(math.log10(error * factor))) if error > 0.0 else 4
     return f"{value * factor:.{digits}f} ± {error * factor:.{digits}f} {name}".rstrip()
 
