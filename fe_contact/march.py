@@ -14,7 +14,8 @@ from lumped.materials import Relaxation
 @dataclass(frozen=True)
 class Strike:
     """Physics of an impact: profile height(r), m; mass, kg; velocity, m/s; gravity along the motion, m/s2;
-    contact modulus E*(t); time at which to stop, s; and, where it is not depth - height, overlap(arc, depth), m.
+    contact modulus E*(t); time at which to stop, s; where it is not depth - height, overlap(arc, depth), m; and the
+    length over which forces and modulus are totals in plane strain, m, else 1.
     """
 
     height: Callable[[Array], Array]
@@ -24,11 +25,15 @@ class Strike:
     relaxation: Relaxation
     end_time: float
     overlap: Callable[[Array, float], Array] | None = None
+    total: float = 1.0
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Surface in one step: time, s; force, N; contact radius, m; radii and pressure at the quadrature points, m, Pa."""
+    """Surface in one step: time, s; force, N; contact radius, m; radii and pressure at the quadrature points, m, Pa.
+
+    In plane strain the pressure too is a total over the length, Pa m.
+    """
 
     time: float
     force: float

@@ -125,6 +125,7 @@ def strike_of(scene: Scene) -> Strike:
         gravity=scene.gravity,
         relaxation=scene.contact_modulus.scaled(scene.geometry.shape.total),
         end_time=scene.end_time,
+        total=scene.geometry.shape.total,
     )
 
 

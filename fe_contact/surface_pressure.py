@@ -35,7 +35,8 @@ class Pressure:
 def felt(certified: Certified, step: int) -> Pressure:
     """Pressure in a step of the finest march."""
     snapshot = certified.march.snapshots[step]
-    return Pressure(snapshot.time, snapshot.contact_radius, *certified.surface.felt(snapshot))
+    radii, values = certified.surface.felt(snapshot)
+    return Pressure(snapshot.time, snapshot.contact_radius, radii, values / certified.curve.strike.total)
 
 
 def scale(operator: SurfaceOperator, snapshot: Snapshot) -> float:

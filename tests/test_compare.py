@@ -171,6 +171,7 @@ def test_the_command_writes_what_it_prints(tmp_path: Path, capsys: pytest.Captur
         candidate = printed["candidates"][row["law"]]
         assert float(row["score_percent"]) == candidate["score_percent"]
         assert float(row["duration_error"]) == candidate["errors"]["duration"]
+        assert row["nested_areas"] == str(printed["nested_areas"]["holds"])
     written = {path.name for path in tmp_path.iterdir()}
     assert {"history.csv", "result.json", "ting-history.csv", "compare.svg", "compare.png"} <= written
 

@@ -5,14 +5,17 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from fe_contact.cli import main
 from fe_contact.fields import check_fields
 from fe_contact.reference import result_of, solve
 from fe_contact.report.history import plot_history
+from fe_contact.surface_pressure import felt
+from fe_contact.validation.deviations import pressure_error, rebound_steps, surface_radii
 from fe_contact.validation.verdict import WITHIN
-from lumped import Scene
+from lumped import Scene, laws, simulate
 from lumped.errors import BadInput
 
 
@@ -30,6 +33,20 @@ def test_the_chart_of_a_block_tells_sizes_as_they_are(tmp_path: Path) -> None:
     solved = solve(scene, {})
     svg, _ = plot_history(result_of(scene, solved), tmp_path, solved)
     assert svg.stat().st_size > 0
+
+
+def test_the_pressure_under_a_cylinder_carries_the_force_and_is_that_of_ting(recwarn: pytest.WarningsRecorder) -> None:
+    """In Pa, whatever the length of the cylinder; strips of the surface weigh alike, where rings would not."""
+    scene = Scene.load("polymer-layer-line", {"striker.length": 0.03 * np.random.default_rng(4).uniform(2.0, 5.0)})
+    solved = solve(scene, {"tolerance": 1e-2})
+    radii = surface_radii(solved)
+    for step in rebound_steps(solved):
+        force = 2.0 * radii[0] * 2.0 * felt(solved.certified, step).at(radii).sum() * scene.geometry.shape.total
+        assert force == pytest.approx(solved.certified.march.snapshots[step].force, rel=1e-2)
+    ting, correspondence = (simulate(law.of(scene), scene, 1e-6) for law in (laws.ting, laws.correspondence))
+    assert (pressure_error(solved, ting) or 0.0) < 0.02
+    assert (pressure_error(solved, correspondence) or 0.0) > 3.0 * (pressure_error(solved, ting) or 0.0)
+    assert not recwarn.list
 
 
 @pytest.mark.parametrize("name", ["polymer-punch", "polymer-prism", "polymer-o-ring", "two-spheres", "rod-in-ring"])

@@ -58,24 +58,27 @@ def pressure_error(solved: Solved, law: Result) -> float | None:
     """Largest share of the force that a law presses, or pulls, in the wrong place in the rebound; None without any.
 
     The integral of the deviation's magnitude over the force: the square of a viscous law's pressure, singular at
-    the edge, would have no integral.
+    the edge, would have no integral. Over rings of the surface, or in plane strain over strips alike.
     """
     pressure = LawPressure.of(law)
     if pressure is None:
         return None
-    return max((_pressure_deviation(solved, pressure, step) for step in rebound_steps(solved)), default=None)
-
-
-def _pressure_deviation(solved: Solved, law: LawPressure, step: int) -> float:
-    reference = felt(solved.certified, step)
     radii = surface_radii(solved)
+    areas = np.ones_like(radii) if law.scene.geometry.shape.plane else radii
+    steps = rebound_steps(solved)
+    return max((_pressure_deviation(solved, pressure, step, radii, areas) for step in steps), default=None)
+
+
+def _pressure_deviation(solved: Solved, law: LawPressure, step: int, radii: Array, areas: Array) -> float:
+    """Of one step; ``areas``: in any unit, of the pieces of surface around the radii, m."""
+    reference = felt(solved.certified, step)
     truth = reference.at(radii)
     deviation = law.at(reference.time, radii) - truth
-    return float((radii @ np.abs(deviation)) / (radii @ truth))
+    return float((areas @ np.abs(deviation)) / (areas @ truth))
 
 
 def surface_radii(solved: Solved) -> Array:
-    """Equally spaced radii over the surface that contact ever reaches, the middles of rings, m."""
+    """Equally spaced radii over the surface that contact ever reaches, the middles of rings or strips, m."""
     largest = max(snapshot.contact_radius for snapshot in solved.certified.march.snapshots)
     return largest * (np.arange(PRESSURE_POINTS) + 0.5) / PRESSURE_POINTS
 

@@ -58,8 +58,9 @@ def write_comparison(comparison: Comparison, where: Path) -> dict[str, Any]:
     comparison.reference.write(where)
     for name, law in comparison.laws.items():
         law.history.write_csv(where / f"{name}-history.csv")
-    rows = [[j.name, j.score_percent, *(j.errors[name] for name in SCORE_COLUMNS)] for j in comparison.judgements]
-    write_csv(where / "scores.csv", ["law", "score_percent", *SCORE_COLUMNS.values()], rows)
+    nested = comparison.nested and comparison.nested.holds  # of the reference: the same in every row
+    rows = [[j.name, j.score_percent, *(j.errors[key] for key in SCORE_COLUMNS), nested] for j in comparison.judgements]
+    write_csv(where / "scores.csv", ["law", "score_percent", *SCORE_COLUMNS.values(), "nested_areas"], rows)
     content = comparison_content(comparison)
     write_json(where / "compare.json", content)
     return content

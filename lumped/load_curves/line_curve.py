@@ -50,6 +50,8 @@ class LineCurve(TabulatedCurve):
         return State(*(np.where(touched, value, 0.0) for value in values))
 
     def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
-        """p/E* at distances from the middle of the contact, from the equation itself."""
+        """p/E* at distances from the middle of the contact, from the equation itself; zero at first touch."""
+        if contact_radius == 0.0:
+            return np.zeros(np.shape(radius))
         here = self.grown(contact_radius, 1.0)
         return here.collocation.at(here.q, np.asarray(radius, dtype=float) / contact_radius)
