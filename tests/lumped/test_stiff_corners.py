@@ -13,8 +13,7 @@ from lumped import Model, Motion, Scene, laws
 from lumped.errors import TooManySteps
 from lumped.scene_tables import LawChoice
 
-OF_GEOMETRY = ("correspondence", "ting", "mdr")
-NAMES = sorted(set(laws.available()) - set(OF_GEOMETRY))
+NAMES = [name for name in laws.available() if "k" in laws.get(name).KEYS]
 DAMPINGS = ("xi", "c", "chi", "A", "alpha_t")
 # Each law has this many impacts in the whole campaign.
 CASES = 60
