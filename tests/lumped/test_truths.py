@@ -90,9 +90,9 @@ def test_an_early_end_time_ends_the_history(law: str, end: float, impact: Build,
     assert result.quantities["duration"].value is None
     whole = run(law, impact(0.5, (0.5,), (1.0,)))
     bars = result.history.force_error[-1] + np.interp(end * unit_time, whole.history.time, whole.history.force_error)
-    between_rows = 1e-6 * value(whole, "peak_force")
+    between_rows = 1e-5 * value(whole, "peak_force")  # what straight lines may err by
     assert abs(result.history.force[-1] - whole.history.force_at(end * unit_time)) <= bars + between_rows
-    assert bars <= 1e-4 * value(whole, "peak_force")
+    assert bars <= 3e-5 * value(whole, "peak_force")
 
 
 def test_a_dashpot_alone_stops_the_striker_where_it_should(impact: Build) -> None:
