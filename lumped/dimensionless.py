@@ -8,8 +8,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.pair import contact_modulus
+
 if TYPE_CHECKING:
     from lumped.history import History
+    from lumped.indenter import Indenter
     from lumped.result import Quantity
     from lumped.scene import Scene
 
@@ -39,6 +45,18 @@ def groups(scene: Scene, quantities: Mapping[str, Quantity], history: History) -
         "T/T0": _over(duration, unit.duration),
         "F0": unit.force,
         "T0": unit.duration,
+    }
+
+
+def groups_at_rest(indenter: Indenter, contact_radius: NDArray[np.float64]) -> dict[str, Any]:
+    """Those of a slow indentation, which knows no time: E_i/E_inf, nu, a/R and h/a with the largest of its radii, m."""
+    modulus = contact_modulus(indenter.shape, indenter.material, indenter.striker_material)
+    largest = float(contact_radius.max())
+    return {
+        "E_i/E_inf": _over(modulus.instantaneous, modulus.relaxed),
+        "nu": indenter.material.nu,
+        "a/R": _over(largest, indenter.shape.tip_radius),
+        "h/a": _over(indenter.target.body_depth, largest),
     }
 
 

@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.dimensionless import groups_at_rest
+from lumped.finite_size import FiniteSize, finite_size
 from lumped.indenter import Indenter
 from lumped.result import Quantity, plain, provenance
 
@@ -61,6 +63,13 @@ class Indentation:
             return {}
         return power_law(self.depth, self.force / self.modulus, self.force_error / self.force, row)
 
+    @property
+    def finite_size(self) -> FiniteSize | None:
+        """How far finite spheres are from Hertz; from three depths on, None before and for all else."""
+        if np.unique(self.depth).size < FEWEST:
+            return None
+        return finite_size(self.indenter, self.depth, self.force / self.modulus, self.force_error / self.modulus)
+
     def to_json(self) -> dict[str, Any]:
         """The content of result.json."""
         content = {
@@ -73,6 +82,8 @@ class Indentation:
             "contact_modulus": self.modulus,
             "numerics": self.numerics,
             "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
+            "deviation": self.finite_size and self.finite_size.to_dict(),
+            "dimensionless": groups_at_rest(self.indenter, self.contact_radius),
             "error_budget": {cause: float(np.max(error)) for cause, error in self.budget.items()},
             "work": self.work,
             "provenance": provenance(),

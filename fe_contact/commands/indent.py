@@ -74,4 +74,7 @@ def _lines(found: Indentation) -> list[str]:
         lines.append(f"  {depth:.6g} m  {force:.6g} +- {error:.1e} N")
     for name, quantity in found.quantities.items():
         lines.append(f"  {name:11s} {quantity.value:.6g} +- {quantity.error or 0.0:.1e} {quantity.unit}")
+    if found.finite_size is not None:
+        slope = found.finite_size.slope
+        lines.append(f"  F/F_Hertz-1 {slope.value:.4g} +- {slope.error or 0.0:.1e} a/R")
     return lines

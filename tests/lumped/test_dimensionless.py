@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from lumped import Material, Relaxation, Scene, Sphere, laws, simulate
+from lumped.indenter import Indenter
 from lumped.shapes.cone import Cone
+from lumped.slow import indent as closed_form
 from lumped.targets.layer import Layer
 
 YOUNG = Relaxation(1e6, (0.7e6,), (3e-3,))
@@ -59,3 +61,11 @@ def test_what_is_not_defined_is_null() -> None:
     dashpot = Material(replace(YOUNG, viscosity=1e3), 0.3)
     assert told(Scene(Sphere(0.01), 0.02, 0.05, dashpot), "mdr")["E_i/E_inf"] is None
     assert told(Scene.load("paper-steel-hertz"), "hertz") == {}
+
+
+def test_a_slow_indentation_has_the_groups_that_know_no_time() -> None:
+    scene = on_layer(1.0, 1.0, 1.0)
+    pressed = Indenter(scene.geometry.shape, scene.geometry.material, scene.target)
+    slow = closed_form(pressed, (1e-5, 1e-4, 2e-5), "ting")
+    found, largest = slow.to_json()["dimensionless"], slow.contact_radius[1]
+    assert found == pytest.approx({"E_i/E_inf": 1.7, "nu": 0.3, "a/R": largest / 0.01, "h/a": 0.002 / largest})
