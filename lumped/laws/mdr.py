@@ -101,8 +101,13 @@ def estimate(scene: Scene, elements: int = 70) -> ImpactScales:
 def _answer(scene: Scene, level: Level) -> Answer:
     """The dense answer of one level."""
     end, separated = level.end, level.end is End.SEPARATED
-    whole = _ascending(np.hstack([level.approach, level.rebound[:, 1:]]) if level.rebound.size else level.approach)
-    time, depth, velocity, _, force, _ = whole
+    dense, whole = _Dense(level, separated), level.approach
+    if level.rebound.size:
+        whole = _ascending(np.hstack([level.approach, level.rebound[:, 1:]]))
+    time, (depth, velocity, force, _) = whole[0], _seen(whole)
+    if end is End.TIME and time[-1] > level.last:
+        time = np.append(time[time < level.last], level.last)
+        depth, velocity, force, _ = dense(time)
     peak_time, peak_force = peak(time, force)
     values = {
         "peak_force": peak_force,
@@ -113,7 +118,7 @@ def _answer(scene: Scene, level: Level) -> Answer:
         "impulse": impulse_of(scene, end, velocity[-1], time[-1], scene.end_time),
     }
     message = "" if separated else end.value
-    return Answer(time, _Dense(level, separated), values, end, _energy(scene, level), message)
+    return Answer(time, dense, values, end, _energy(scene, level), message)
 
 
 @dataclass(frozen=True)
@@ -125,7 +130,7 @@ class _Dense:
 
     def __call__(self, times: Array) -> Array:
         approach, rebound = self.level.approach, _ascending(self.level.rebound)
-        turn, last = self.level.ends
+        turn, last = self.level.turn, self.level.last
         columns = np.empty((4, times.size))
         early = times <= turn
         columns[:, early] = local(np.sqrt(approach[0]), _seen(approach), np.sqrt(times[early]))

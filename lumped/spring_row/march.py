@@ -25,7 +25,7 @@ class Inward:
 class Track:
     """Instants of the approach, and of the rebound, which starts with the last of them; the end; energies there.
 
-    `spent` in dashpots and `held` in springs, pressed or released, J.
+    `spent` in dashpots and `held` in springs, pressed or released, J. `beyond`: whole steps past an end by time.
     """
 
     approach: list[Instant]
@@ -33,6 +33,7 @@ class Track:
     end: End
     spent: float
     held: float
+    beyond: list[Instant]
 
 
 def march(problem: Problem, end_time: float, pace: Pace, most: int, at_rest: float = AT_REST) -> Track:
@@ -61,10 +62,11 @@ def rebound(inward: Inward, end_time: float) -> Track:
         return _track(inward, [], inward.end)
     if turn.acceleration >= 0.0:
         return _track(inward, [], End.SECOND_APPROACH)
-    return _track(inward, *retreat(row, turn, end_time))
+    found = retreat(row, turn, end_time)
+    return _track(inward, found.instants, found.end, found.beyond)
 
 
-def _track(inward: Inward, outward: list[Instant], end: End) -> Track:
+def _track(inward: Inward, outward: list[Instant], end: End, beyond: list[Instant] | None = None) -> Track:
     row, last = inward.row, (outward or inward.instants)[-1]
     held = row.springs.held(row.problem.modulus, last.depth, row.even)
-    return Track(inward.instants, outward, end, 2.0 * row.spent, 2.0 * (row.released + held))
+    return Track(inward.instants, outward, end, 2.0 * row.spent, 2.0 * (row.released + held), beyond or [])

@@ -28,20 +28,22 @@ NEARLY = 1e-3
 class Level:
     """One march, or a limit of several.
 
-    The fields of Instant over the steps of approach and rebound, shape (6, n); how it ended; steps marched for it;
-    energies at the end, J: that of the motion, (2,) as work of gravity and left, spent in dashpots, held in springs.
+    The fields of Instant over the steps of approach and rebound, shape (6, n), whole ones past an end by time; how and
+    when, s, it ended; steps marched for it; energies at the end, J: that of the motion, (2,) as work of gravity and
+    left, spent in dashpots, held in springs.
     """
 
     approach: Array
     rebound: Array
     end: End
+    last: float
     steps: int
     energies: Array
 
     @property
-    def ends(self) -> tuple[float, float]:
-        """When the striker turns, and when the history ends, s."""
-        return float(self.approach[0, -1]), float((self.rebound if self.rebound.size else self.approach)[0, -1])
+    def turn(self) -> float:
+        """When the striker turns, s."""
+        return float(self.approach[0, -1])
 
 
 @dataclass(frozen=True)
@@ -87,16 +89,17 @@ class Nest:
     def _level(self, track: Track, steps: int) -> Level:
         mass, last = self.problem.mass, (track.rebound or track.approach)[-1]
         motion = [mass * self.problem.gravity * last.depth, 0.5 * mass * last.velocity**2]
-        steps += len(track.rebound)
+        steps += len(track.rebound) + len(track.beyond)
+        outward = [*track.rebound[:-1], *track.beyond] if track.beyond else track.rebound
         energies = np.array([*motion, track.spent, track.held])
         end = End.REST if self.rests else track.end
-        return Level(_columns(track.approach), _columns(track.rebound), end, steps, energies)
+        return Level(_columns(track.approach), _columns(outward), end, last.time, steps, energies)
 
 
 def predicted_turn(levels: Sequence[Level]) -> float:
     """When the approach of the next level will end, s: the difference of the last two falls by 4."""
-    last = levels[-1].ends[0]
-    before = levels[-2].ends[0] if len(levels) > 1 else last
+    last = levels[-1].turn
+    before = levels[-2].turn if len(levels) > 1 else last
     return last + 0.25 * (last - before)
 
 
@@ -109,11 +112,23 @@ def limit(coarse: Level, fine: Level, order: int) -> Level:
         raise NotReached("finer and coarser steps of the spring row end differently")
     gain = 1.0 / (2.0**order - 1.0)
     one, finer = coarse.rebound, fine.rebound
-    if fine.end is not End.SEPARATED and finer.size:
+    if bool(one.size) != bool(finer.size):
+        raise NotReached("finer and coarser steps of the spring row turn on either side of the end time")
+    if finer.size and fine.end is End.TIME:
+        one, finer = _whole(one, finer)
+    elif finer.size and fine.end is not End.SEPARATED:
         one, finer = _cut(one, finer)
     energies = fine.energies + gain * (fine.energies - coarse.energies)
     approach = _limit(coarse.approach, fine.approach, gain)
-    return Level(approach, _limit(one, finer, gain), fine.end, fine.steps, energies)
+    back = _limit(one, finer, gain)
+    last = fine.last if fine.end is End.TIME else float((back if back.size else approach)[0, -1])
+    return Level(approach, back, fine.end, last, fine.steps, energies)
+
+
+def _whole(coarse: Array, fine: Array) -> tuple[Array, Array]:
+    """Two rebounds of whole steps, as far as both go."""
+    both = min(coarse.shape[1] - 1, (fine.shape[1] - 1) // 2)
+    return coarse[:, : both + 1], fine[:, : 2 * both + 1]
 
 
 def _cut(coarse: Array, fine: Array) -> tuple[Array, Array]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 from lumped.ending import End
 from lumped.errors import NotReached
@@ -10,12 +11,22 @@ from lumped.spring_row.row import Instant, Row
 from lumped.spring_row.shrinking import Attempt, Shrinking
 
 TRIES, CLOSE, WIDER, BEYOND = 100, 1e-7, 4.0, 1.2
+WHOLE_STEPS = 4  # the finer of two marches needs two more than the coarser to get as far
 # What to try first at least, of the time so far.
 SHORT = 1e-14
 
 
-def retreat(row: Row, start: Instant, end_time: float) -> tuple[list[Instant], End]:
-    """The instants from the turn until the springs at the axis leave, gravity turns the striker, or `end_time`, s.
+class Retreat(NamedTuple):
+    """The row when the rebound ends, its instants from the turn on, how it ended; whole steps past an end by time."""
+
+    row: Row
+    instants: list[Instant]
+    end: End
+    beyond: list[Instant]
+
+
+def retreat(row: Row, start: Instant, end_time: float) -> Retreat:
+    """From the turn until the springs at the axis leave, gravity turns the striker, or `end_time`, s.
 
     Raises NotReached.
     """
@@ -25,14 +36,32 @@ def retreat(row: Row, start: Instant, end_time: float) -> tuple[list[Instant], E
         shrinking = Shrinking(row, now)
         tried, end = _found(shrinking, _next(lengths))
         if now.time + tried.h > end_time:
-            tried, end = shrinking.attempt(end_time - now.time), End.TIME
+            beyond = _beyond(row.copy(), now, lengths)
+            cut = shrinking.step(shrinking.attempt(end_time - now.time))
+            row.take(cut)
+            return Retreat(row, [*track, cut.now], End.TIME, beyond)
         step = shrinking.step(tried)
         row.take(step)
         track.append(step.now)
         lengths.append(tried.h)
         if end is not End.SEPARATED:
-            return track, end
-    return track, End.SEPARATED
+            return Retreat(row, track, end, [])
+    return Retreat(row, track, End.SEPARATED, [])
+
+
+def _beyond(row: Row, now: Instant, lengths: list[float]) -> list[Instant]:
+    """A few whole steps from an instant on: limits of marches are smooth at these, not within a step."""
+    track, lengths = [now], list(lengths)
+    while len(row.places) > 1 and len(track) <= WHOLE_STEPS:
+        shrinking = Shrinking(row, track[-1])
+        tried, end = _found(shrinking, _next(lengths))
+        if end is not End.SEPARATED:
+            break
+        step = shrinking.step(tried)
+        row.take(step)
+        track.append(step.now)
+        lengths.append(tried.h)
+    return track[1:]
 
 
 def _next(lengths: list[float]) -> float:

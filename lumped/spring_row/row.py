@@ -8,6 +8,7 @@ however long the steps are. The springs between two places of the edge count as 
 from __future__ import annotations
 
 import math
+from copy import copy
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -86,6 +87,12 @@ class Row:
         self.even = self.axis = self.kept = nothing
         self.places = [Place(0.0, 0.0, 0.0, nothing, self.springs, nothing)]
         self.spent = self.released = 0.0
+
+    def copy(self) -> Row:
+        """The same state, to go on from on its own."""
+        other = copy(self)
+        other.places = list(self.places)
+        return other
 
     def take(self, step: Step) -> None:
         """Take a step: of the approach where it has a place, else of the rebound."""

@@ -105,7 +105,7 @@ def test_spring_row_errs_by_even_powers_of_its_steps(case: str, impact: Callable
     for parts in (2, 4, 8):
         levels.append(nest.level(parts, predicted_turn(levels)))
     for order, near in ((2, 0.05), (4, 0.7)):
-        for values in ([level.ends[1] for level in levels], [level.rebound[2, -1] for level in levels]):
+        for values in ([level.last for level in levels], [level.rebound[2, -1] for level in levels]):
             differences = np.abs(np.diff(values))
             rates = np.log2(differences[:-1] / differences[1:])
             assert np.all(np.abs(rates - order) < near), f"limits err as h^{order}"
