@@ -15,6 +15,7 @@ from fe_contact.march import Strike
 from fe_contact.numerics import RANGES, TARGETS, Numerics
 from fe_contact.plan import SETTING, Plan, plan, refined
 from fe_contact.progress import Progress, silent
+from fe_contact.recovery import indentation_left, recovers
 from lumped.errors import BadInput, Fault
 from lumped.history import History, densified
 from lumped.members import get
@@ -182,6 +183,7 @@ def result_of(scene: Scene, solved: Answer) -> Result:
         timing={"cpu_s": solved.cpu, "wall_s": solved.wall},
         work=asdict(certified.work),
         message="" if converged else f"{unmet(quantities, tolerance)}; {CURE}",
+        recovery=indentation_left(certified) if recovers(scene, curve) else None,
     )
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from lumped.dimensionless import groups
 from lumped.history import History
+from lumped.indentation_left import IndentationLeft
 from lumped.interpolation import peak
 from lumped.scene import Scene
 from lumped.scene_tables import Model
@@ -61,7 +62,8 @@ class Result:
     `error_budget`: relative to peak force, by cause; `error_budget_by_quantity`: the same for every quantity.
     `model` is the model as resolved, to which every claimed error refers. Energies in J. `contacts`: start,
     duration, velocity, restitution, peak_force, peak_time, peak_depth of each, where several were asked for;
-    duration and restitution among the quantities are the first one's.
+    duration and restitution among the quantities are the first one's. `recovery`: of the surface after separation,
+    None where it is not told.
     """
 
     method: str
@@ -82,6 +84,7 @@ class Result:
     work: Mapping[str, Any] = field(default_factory=dict)
     message: str = ""
     contacts: tuple[Mapping[str, float | None], ...] = ()
+    recovery: IndentationLeft | None = None
 
     @property
     def model_sufficient(self) -> bool:
@@ -104,6 +107,7 @@ class Result:
             "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
             "dimensionless": groups(self.scene, self.quantities, self.history),
             "contacts": list(self.contacts),
+            "recovery": None if self.recovery is None else self.recovery.to_json(),
             "error_budget": self.error_budget,
             "error_budget_by_quantity": self.error_budget_by_quantity,
             "model_ledger": [asdict(entry) for entry in self.model_ledger],
@@ -116,9 +120,11 @@ class Result:
         return found
 
     def write(self, directory: Path) -> None:
-        """Write history.csv and result.json into `directory`, made when it is not there."""
+        """Write history.csv, result.json and, where it is told, recovery.csv into `directory`, made where it is not."""
         directory.mkdir(parents=True, exist_ok=True)
         self.history.write_csv(directory / "history.csv")
+        if self.recovery is not None:
+            self.recovery.write_csv(directory / "recovery.csv")
         text = json.dumps(self.to_json(), indent=2, allow_nan=False, ensure_ascii=False)
         (directory / "result.json").write_text(text + "\n", encoding="utf-8")
 

@@ -3,4 +3,5 @@
 from lumped.materials.creep import Creep as Creep
 from lumped.materials.fidelity import Fidelity as Fidelity
 from lumped.materials.material import Material as Material
+from lumped.materials.recovery import Recovery as Recovery
 from lumped.materials.relaxation import Relaxation as Relaxation
