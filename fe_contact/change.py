@@ -41,7 +41,7 @@ class Change:
             "peak_force": float(self._force_change[first.near_peak].max()),
             "peak_time": self._peak_time,
             "peak_depth": float(depth[first.dense.depth > PEAK_SHARE * first.dense.depth.max()].max()),
-            "duration": self.late_depth / speed,
+            "duration": float(depth[LATE:].max()) / speed,
             "impulse": float(np.abs(first.dense.impulse - self.second.dense.impulse)[LATE:].max()),
             "restitution": self.velocity / first.strike.velocity,
         }
@@ -80,11 +80,6 @@ class Change:
         order = times.argsort(kind="stable")
         change = np.abs(self.first.force(within) - self.second.force(within))
         return times[order], np.concatenate([self._force_change, change])[order]
-
-    @property
-    def late_depth(self) -> float:
-        """Largest change of the depth late in the contact, m."""
-        return float(self._depth_change[LATE:].max())
 
     @cached_property
     def velocity(self) -> float:

@@ -22,6 +22,7 @@ from lumped.errors import BadInput, Fault
 from lumped.materials.relaxation import Relaxation
 
 Array = NDArray[np.float64]
+HALVINGS = 2000  # of the longest time, enough for the shortest a number can be
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,9 @@ class Recovery:
         damped = relaxation.viscosity * strain
         retardation = np.array(creep.times)
         answers = np.array(creep.compliances) / retardation
-        released = (pulls / (1.0 - taus / retardation[:, None])).sum(axis=1) + damped
+        apart = 1.0 - taus / retardation[:, None]
+        # a branch too weak to tell retardation from relaxation holds nothing back
+        released = np.divide(pulls, apart, out=np.zeros_like(apart), where=apart != 0.0).sum(axis=1) + damped
         stays = creep.fluidity * (float(pulls.sum()) + damped)
         return cls(stays, tuple((answers * released).tolist()), creep.times)
 
@@ -55,14 +58,16 @@ class Recovery:
         return value
 
     def until(self, share: float) -> float:
-        """Time, s, at which a share of what goes is left, after a load that only pressed; zero where nothing goes.
-
-        Raises BadInput.
-        """
+        """Time, s, at which a share of what goes is left; zero where nothing goes. Raises BadInput."""
         if not 0.0 < share < 1.0:
             raise BadInput(Fault("recovery", "share", f"{share:g}: accepted between 0 and 1"))
         goes = float(self(0.0)) - self.permanent
         if goes == 0.0:
             return 0.0
-        last = -np.log(share) * max(self.times)
-        return float(brentq(lambda t: (float(self(t)) - self.permanent) / goes - share, 0.0, last * (1.0 + 1e-9)))
+        most = float(np.abs(self.amplitudes).sum())
+        last = (1.0 + np.log(most / (share * abs(goes)))) * max(self.times)
+
+        def over(time: float) -> float:
+            return (float(self(time)) - self.permanent) / goes - share
+
+        return float(brentq(over, 0.0, last, xtol=float(np.finfo(float).tiny), rtol=1e-12, maxiter=HALVINGS))
