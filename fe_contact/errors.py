@@ -20,11 +20,15 @@ class ContactLost(NotReached):
 
 
 class MemoryTooSmall(NotReached):
-    """The contact grew beyond the radii on which the surface remembers."""
+    """The contact grew beyond the radii on which the surface remembers, or off the fine mesh.
+
+    An impact is planned again for a wider contact; where that does not help, it is too hard for what it strikes.
+    """
 
     def __init__(self, radius: float) -> None:
         self.radius = radius
-        super().__init__(f"contact radius {radius:.6g} m exceeds the planned one; cure: raise numerics.steps")
+        cure = "cure: a lower striker.velocity or striker.mass, or a stiffer material"
+        super().__init__(f"contact radius {radius:.6g} m exceeds the planned one; {cure}")
 
 
 class TooManySteps(NotReached):

@@ -58,7 +58,8 @@ def indent(
     """Press to every depth, m, refine what stands in the way of the tolerance, and say what was reached.
 
     ``given``: checked settings to keep; ``instant``: the material against a sudden indentation.
-    Raises BadInput for depths and materials that cannot be, NotReached where contact does not settle.
+    Raises BadInput for depths and materials that cannot be, and for contacts too wide for the target; NotReached where
+    contact does not settle.
     """
     check_kind(given, False, indenter.source)
     clock = time.process_time(), time.perf_counter()
@@ -75,6 +76,7 @@ def indent(
         if finer == numerics or attempt == ROUNDS:
             break
         numerics = finer
+    indenter.check_contacts(depth[:asked], base.contact_radius[:asked])
     error = ROUNDING + np.sum([budget[cause] for cause in CAUSES], axis=0)[:asked]
     force = (modulus * indenter.shape.total * base.force)[:asked]
     kept = ("tolerance", "elements_per_contact", "order", "penalty", "enforcement", "far_radius")

@@ -80,12 +80,13 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     cpu, wall = time.process_time(), time.perf_counter()
     chosen = plan(scene, given)
     strike = strike_of(scene)
-    numerics, certified = chosen.numerics, None
+    numerics, certified, outgrown = chosen.numerics, None, None
     for attempt in range(ROUNDS + 1):
         progress(f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements along the contact radius")
         try:
             certified = certify(strike, scene.geometry, numerics)
-        except MemoryTooSmall:
+        except MemoryTooSmall as failure:
+            outgrown = failure
             numerics = numerics.varied(contact_radius=1.5 * numerics.contact_radius)
             continue
         finer = refined_for(certified, numerics, chosen)
@@ -93,8 +94,9 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
             break
         numerics = finer
     if certified is None:
-        raise MemoryTooSmall(numerics.contact_radius)
-    scene.check_sunk(certified.curve.quantities["peak_depth"] or 0.0)
+        raise outgrown or MemoryTooSmall(numerics.contact_radius)
+    curve = certified.curve
+    scene.check_sunk(curve.quantities["peak_depth"] or 0.0, float(np.sqrt(curve.radius_squared.max())))
     return Solved(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall)
 
 

@@ -7,6 +7,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from lumped.errors import BadInput, Fault
 from lumped.keys import Number
 from lumped.materials import Material
@@ -78,6 +81,13 @@ class Indenter:
         if faults:
             raise BadInput(faults)
         return depths
+
+    def check_contacts(self, depths: NDArray[np.float64], contact_radii: NDArray[np.float64]) -> None:
+        """Raise BadInput for depths, m, whose contacts, m, are too wide for the target."""
+        wrong = [(d, self.target.check_contact(float(a))) for d, a in zip(depths, contact_radii, strict=True)]
+        faults = [Fault("--depths", "", f"{d:g}: {reason}; cure: a smaller depth") for d, reason in wrong if reason]
+        if faults:
+            raise BadInput(faults)
 
     def to_dict(self) -> dict[str, Any]:
         """The tables of a scene file that gives it back."""

@@ -200,9 +200,10 @@ class Scene:
         }
         return {"name": self.name} | {key: table for key, table in tables.items() if table}
 
-    def check_sunk(self, depth: float) -> None:
-        """Raise BadInput where an impact went deeper, m, than the target or the striker goes."""
-        reason = self.geometry.target.check_depth(self.geometry.shape, depth)
+    def check_sunk(self, depth: float, contact_radius: float = 0.0) -> None:
+        """Raise BadInput where an impact went deeper, m, than target or striker go, or its contact too wide, m."""
+        target = self.geometry.target
+        reason = target.check_depth(self.geometry.shape, depth) or target.check_contact(contact_radius)
         if reason:
             told = f"the striker sinks in by {depth:.3g} m: {reason}; cure: a lower velocity, a stiffer material"
             raise BadInput(Fault(self.source, "striker.velocity", told))

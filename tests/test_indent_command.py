@@ -189,3 +189,14 @@ def test_packaged_scenes_are_pressed_within_their_bars(name: str, empty: Path) -
     assert code == 0
     elements, exact = rows(empty / "fe")[0], rows(empty / "exact")[0]
     assert abs(elements[1] - exact[1]) <= elements[3] + exact[3]
+
+
+def test_a_contact_as_wide_as_the_datum_is_deep_is_refused(empty: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Whether or not the depth is less than the roller's radius."""
+    shallow = ("polymer-half-plane", "--set", "target.datum_depth=0.002", "--tolerance", "1e-2", "--depths")
+    assert exit_code(*shallow, "1e-4,4e-4,1e-3", "--out", "none") == 2
+    faults = capsys.readouterr().err.splitlines()
+    assert [fault.split(":")[1].strip() for fault in faults] == ["0.0004", "0.001"]
+    assert all("below the datum's depth 0.002 m" in fault for fault in faults)
+    assert not (empty / "none").exists()
+    assert exit_code(*shallow, "1e-4", "--out", "one") == 0

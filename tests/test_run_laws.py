@@ -14,6 +14,7 @@ import fe_contact
 from fe_contact.cli import main
 from lumped import BadInput, Scene
 from lumped.data import scene_names
+from lumped.errors import NotReached
 from lumped.history import History
 
 POUNDING = [name for name in scene_names() if name.startswith("pounding-")]
@@ -89,3 +90,12 @@ def test_finite_elements_have_nothing_to_run_without_geometry(
 def test_an_impact_through_the_body_is_refused(name: str, velocity: float, method: str, body: str) -> None:
     with pytest.raises(BadInput, match=f"striker.velocity: the striker sinks in.*{body}"):
         fe_contact.run(Scene.load(name, {"striker.velocity": velocity}), method=method)
+
+
+def test_an_impact_too_hard_for_an_o_ring_names_a_cure_that_helps() -> None:
+    """The contact leaves the section's top however wide it is planned; a quarter as fast it does not."""
+    with pytest.raises(NotReached, match=r"cure: a lower striker\.velocity") as refused:
+        fe_contact.run(Scene.load("polymer-o-ring", {"striker.velocity": 8.0}), tolerance=5e-2)
+    assert float(str(refused.value).split()[2]) <= 0.0025  # m, that of the section
+    assert fe_contact.run(Scene.load("polymer-o-ring", {"striker.velocity": 2.0}), tolerance=5e-2).converged
+

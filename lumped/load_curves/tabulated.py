@@ -116,7 +116,8 @@ class TabulatedCurve(LoadCurve):
         for panels in range(1, len(self.edges)):
             if float(self._at(np.array([self.edges[panels]]), panels).depth[0]) >= depth:
                 return panels
-        raise NotReached(f"{self} at a depth of {depth:g} m: the contact grows beyond {self.edges[-1]:g} m")
+        reason = f"the contact grows beyond {self.edges[-1]:g} m; cure: a smaller depth, a lower velocity"
+        raise NotReached(f"{self} at a depth of {depth:g} m: {reason}")
 
     def _at(self, radius: Array, panels: int) -> State:
         edges = np.array(self.edges[: panels + 1])

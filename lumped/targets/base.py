@@ -102,6 +102,10 @@ class Target(ABC):
         radius = shape.tip_radius
         return f"accepted below the striker's radius {radius:g} m" if radius is not None and depth >= radius else ""
 
+    def check_contact(self, contact_radius: float) -> str:
+        """What is wrong with a contact as wide, m; empty where nothing is."""
+        return ""
+
     def to_dict(self) -> dict[str, Any]:
         """The geometry's part of the target's table."""
         return {"shape": self.name} | {key: getattr(self, key) for key in self.keys}

@@ -59,6 +59,12 @@ class HalfSpace(Target):
         if not shape.plane and self.datum_depth is not None:
             raise BadInput(Fault(source, "target.datum_depth", "only for a cylinder; accepted: leave it out"))
 
+    def check_contact(self, contact_radius: float) -> str:
+        """Narrower than the datum is deep: the point to which depth refers must lie below the contact."""
+        if self.datum_depth is None or contact_radius < self.datum_depth:
+            return ""
+        return f"contact {contact_radius:.3g} m wide; accepted below the datum's depth {self.datum_depth:g} m"
+
     def to_dict(self) -> dict[str, Any]:
         """Its part of the target's table."""
         return {"shape": self.name} | ({} if self.datum_depth is None else {"datum_depth": self.datum_depth})
