@@ -105,3 +105,15 @@ def test_three_marches_tell_all() -> None:
     work = solve(random_scene(0), {"tolerance": TOLERANCE}).certified.work
     assert work.marches == 3
     assert work.contact_problems == work.steps
+
+
+def test_a_confined_plate_of_constant_bulk_modulus_relaxes_by_its_shear_alone() -> None:
+    """M(t) = K + 4/3 G(t) by hand: as a prism of nu = 0 whose Young's modulus relaxes so."""
+    rng = np.random.default_rng(11)
+    nu, share = float(rng.uniform(0.1, 0.4)), float(rng.uniform(0.5, 2.0))
+    soft = Material(Relaxation(YOUNG, (share * YOUNG,), (2e-3,)), nu, constant="bulk")
+    third = 4.0 / 3.0 * YOUNG / (2.0 * (1.0 + nu))
+    by_hand = Material(Relaxation(YOUNG / (3.0 * (1.0 - 2.0 * nu)) + third, (share * third,), (2e-3,)), 0.0)
+    scene = Scene(plate.of(4e-4, 0.004, "confined", "sliding"), MASS, 0.01, soft, target=Plane())
+    twin = replace(scene, shape=prism.of(4e-4, 0.004), material=by_hand)
+    agree(fe_contact.run(scene, tolerance=TOLERANCE), simulate(laws.correspondence.of(twin), twin, 1e-8))
