@@ -20,7 +20,7 @@ from lumped.scene import Scene
 
 DEFAULT_TOLERANCE = 1e-3
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-4: see `fe-contact tradeoff`
-LOOSER = 0.058  # three and a half of them at 1e-3 where the mesh follows the contact
+LOOSER = math.log10(4.0 / 3.2)  # three and a fifth of them at 1e-3 where the mesh follows the contact
 FIXED_ELEMENTS = 2.0  # the same on a mesh that stays, four times refined where the contact may end
 SPARE = 1.2  # such a mesh is fine beyond the largest contact, where the gap tells how wide that is
 RIM_PENALTY = 16.0  # penalty under a rim over the usual: the pressure is infinite there
@@ -91,7 +91,8 @@ def _elements(scene: Scene, tolerance: float) -> float:
     fewest = FIXED_ELEMENTS if _stays(scene) else ELEMENTS
     if not _stays(scene) and scene.geometry.target.fixed_radius(scene.geometry.shape) is None:
         fewest *= math.pow(min(max(1e-4 / tolerance, 0.1), 1.0), LOOSER)
-    return fewest * max(1.0, math.pow(1e-4 / tolerance, 0.25), math.pow(DEFAULT_TOLERANCE / tolerance, order))
+    finer = max(1.0, math.pow(1e-4 / tolerance, 0.25), math.pow(DEFAULT_TOLERANCE / tolerance, order))
+    return round(fewest * finer, 6)
 
 
 def _stays(scene: Scene) -> bool:

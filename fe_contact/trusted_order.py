@@ -1,7 +1,7 @@
 """Orders to trust after Richardson's extrapolation, one more than the scheme's own where nothing speaks against it.
 
 A relaxation about as long as a step gives the scheme's order one coefficient for longer steps and another for
-shorter ones, so that extrapolation gains nothing sure. What adds up over the contact then keeps order one, and
+shorter ones, so that extrapolation gains no order. What adds up over the contact then keeps order one alone, and
 loses an order to any relaxation; the duration, a single instant, is unsettled by the next longer steps already.
 """
 
@@ -35,8 +35,8 @@ def trusted_orders(curves: tuple[Curve, Curve, Curve], order: int, steps: Array)
         force = min(force, order)
     if within_two:
         duration = min(duration, order)
-    depth, summed = (1, 1) if within_step else (force, min(force, order))
-    return {"force": force, "peak_depth": depth, "impulse": summed, "restitution": summed, "duration": duration}
+    summed = 1 if within_step else min(force, order)
+    return {"force": force, "impulse": summed, "restitution": summed, "duration": duration}
 
 
 def _trusted_order(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:

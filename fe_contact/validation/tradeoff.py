@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from typing import Any, TypeVar
 
@@ -28,7 +28,8 @@ from lumped.result import Result
 from lumped.scene import Scene
 
 EXACT_TOLERANCE = 1e-8
-REPEATS = 2  # the smallest of so many times counts
+ROUNDS = 3  # through all settings: the least of so many times counts, and a slow spell of the machine hits all alike
+REPEATS = 2  # of what takes milliseconds
 MEASURED = ("peak_force", "duration", "restitution")
 ROW_ELEMENTS = (25, 50, 100, 200, 400)
 LAW_TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
@@ -75,6 +76,9 @@ def tradeoff(scene: Scene, given: Mapping[str, Any], quick: bool, progress: Prog
     for count, numerics in enumerate(chosen, 1):
         progress(f"finite elements {count} of {len(chosen)}")
         points.append(_fe(scene, numerics, exact, marked.get(numerics)))
+    for count in range(2, ROUNDS + 1):
+        progress(f"finite elements again, {count} of {ROUNDS}")
+        points = [_again(scene, numerics, point) for numerics, point in zip(chosen, points, strict=True)]
     progress("exact laws and models")
     return (*points, *_rows(scene, exact), *_laws(scene, exact, quick))
 
@@ -93,7 +97,7 @@ def operations(work: TotalWork, surface: Deformable) -> float:
 def _fe(scene: Scene, numerics: Numerics, exact: Result, default_for: float | None) -> Point:
     settings = numerics.as_dict() | {"tolerance": default_for}
     try:
-        certified, cpu = _timed(partial(_certify, scene, numerics))
+        certified, cpu = _timed(partial(_certify, scene, numerics), 1)
     except NotReached as failure:
         return Point("fe", settings, default_for=default_for, failure=str(failure))
     curve = certified.curve
@@ -103,6 +107,14 @@ def _fe(scene: Scene, numerics: Numerics, exact: Result, default_for: float | No
     assert isinstance(certified.surface, Deformable)
     work = asdict(certified.work) | {"operations": operations(certified.work, certified.surface)}
     return Point("fe", settings, cpu, errors, max(bars), work, default_for)
+
+
+def _again(scene: Scene, numerics: Numerics, point: Point) -> Point:
+    """The same point with the lesser of two times."""
+    if point.failure:
+        return point
+    _, cpu = _timed(partial(_certify, scene, numerics), 1)
+    return replace(point, cpu=min(cpu, point.cpu))
 
 
 def _certify(scene: Scene, numerics: Numerics) -> Certified:
@@ -175,10 +187,10 @@ def _distance(exact: Result, time: Array, force: Array) -> float:
     return float(np.sqrt(np.trapezoid((forces - truth) ** 2, times) / np.trapezoid(truth**2, times)))
 
 
-def _timed(run: Callable[[], T]) -> tuple[T, float]:
+def _timed(run: Callable[[], T], repeats: int = REPEATS) -> tuple[T, float]:
     """What a call gives, and the least processor time it took, s."""
     spent = []
-    for _ in range(REPEATS):
+    for _ in range(repeats):
         start = time.process_time()
         found = run()
         spent.append(time.process_time() - start)
