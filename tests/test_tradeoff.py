@@ -122,7 +122,7 @@ def test_every_point_builds_its_operators_again(scene: Scene, monkeypatch: pytes
     monkeypatch.setattr(study, "_laws", none_varied)
     found = finite_elements(tradeoff(scene, {}, True, lambda message: None))
     warm_up = found[0].work["factorizations"]
-    assert len(built) == warm_up + study.REPEATS * sum(p.work["factorizations"] for p in found)
+    assert len(built) == warm_up + study.ROUNDS * sum(p.work["factorizations"] for p in found)
 
 
 def test_the_row_of_springs_converges_with_order_two(points: tuple[Point, ...]) -> None:
