@@ -16,7 +16,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 from lumped.errors import BadInput, Fault
 from lumped.materials.relaxation import Relaxation
@@ -59,6 +58,8 @@ class Recovery:
 
     def until(self, share: float) -> float:
         """Time, s, at which a share of what goes is left; zero where nothing goes. Raises BadInput."""
+        from scipy.optimize import brentq  # late: scenes and the spring row need numpy alone
+
         if not 0.0 < share < 1.0:
             raise BadInput(Fault("recovery", "share", f"{share:g}: accepted between 0 and 1"))
         goes = float(self(0.0)) - self.permanent
