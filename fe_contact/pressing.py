@@ -25,7 +25,7 @@ BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 # The gap tells where contact ends up to this distance from the edge, in contact radii and in thicknesses of the body,
 # but for the nearest share of it.
 GAP_REACH, GAP_REACH_OF_THICKNESS, GAP_NEAREST = 0.4, 0.6, 0.2
-GAP_POINTS = 16  # beyond the edge of a contact that has just begun to recede: two elements
+GAP_POINTS = 16  # beyond the edge of a contact that has just begun to recede, or is steep: two elements
 GAP_DEGREE = 2
 
 
@@ -118,24 +118,24 @@ class FixedStill:
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m; raises IndentationNotSettled, ContactTooWide."""
         operator, fixed = self.surface.operator, self.indenter.shape.fixed_radius
-        solution, solves = self._solved(depth, guess / self.reference)
+        overlap = self.indenter.target.overlap(self.indenter.profile, self.stretch * operator.points, depth)
+        solution, solves = self._solved(overlap, guess / self.reference)
         if not solution.converged:
             raise IndentationNotSettled(depth)
         edge = solution.edge(operator.points)
         if fixed is None and not np.isfinite(edge):
             raise ContactTooWide(depth)
-        end = contact_end(operator.points, edge, -solution.signed_pressure, self.thickness)
-        radius = fixed or self.reference * end
+        gap, height = -solution.signed_pressure, depth - overlap
+        radius = fixed or self.reference * contact_end(operator.points, edge, gap, height, self.thickness)
         return Pressed(operator.force(self.reference, solution.pressure), radius, solves, solution.iterations)
 
-    def _solved(self, depth: float, expected: float) -> tuple[ContactSolution, int]:
-        """The contact problem at a depth, m, and how many solves it took.
+    def _solved(self, overlap: Array, expected: float) -> tuple[ContactSolution, int]:
+        """The contact problem of an overlap, (q,), m, and how many solves it took.
 
         The penalty counts in the body's own stiffness under a flat end of radius a over 2 a^2 (2 a in plane strain):
         E*/a on the half-space, and much more where a thin layer is confined.
         """
         operator = self.surface.operator
-        overlap = self.indenter.target.overlap(self.indenter.profile, self.stretch * operator.points, depth)
         unit = float(operator.punched(expected).sum()) / (2.0 * expected ** (operator.dimension - 1))
         numerics = replace(self.numerics, penalty=self.numerics.penalty * unit)
         return _enforced(self.surface, overlap, self.reference, numerics, operator.points < expected)
@@ -150,37 +150,56 @@ def _enforced(
     return enforcement.enforce(problem, touching), enforcement.SOLVES
 
 
-def contact_end(points: Array, edge: float, gap: Array, thickness: float = np.inf, touched: float = np.inf) -> float:
+def contact_end(
+    points: Array, edge: float, gap: Array, height: Array, thickness: float = np.inf, touched: float = np.inf
+) -> float:
     """Where the surfaces part, from the gap (q,) outside: beyond the edge it grows like the 3/2 power of the distance.
 
     The pressure, which falls to zero at ``edge``, rings there if that is anywhere in an element; the gap, a
     displacement, does not. In a body thinner than the contact is wide the power holds less far: ``thickness``, in the
-    unit of the points. So it does in a contact that has receded from where the surface was ``touched`` and remembers.
+    unit of the points. So it does in a contact that has receded from where the surface was ``touched`` and remembers,
+    and under a profile that is steep: distance counts in the root of the ``height`` between the undeformed surfaces
+    (q,), which under a round one is the distance.
     """
-    fewest = float(points[min(int(points.searchsorted(edge)) + GAP_POINTS, points.size - 1)])
-    reach = min(GAP_REACH * edge, GAP_REACH_OF_THICKNESS * thickness, max(touched, fewest) - edge)
-    outside = (points > edge + GAP_NEAREST * reach) & (points < edge + reach)
+    after, rise = int(points.searchsorted(edge)), np.sqrt(height)
+    start = float(np.interp(edge, points, rise))
+    fewest = float(points[min(after + GAP_POINTS, points.size - 1)])
+    steep = float(points[min(int(rise.searchsorted((1.0 + GAP_REACH) * start)), points.size - 1)])
+    reach = min(GAP_REACH * edge, GAP_REACH_OF_THICKNESS * thickness, max(min(touched, steep), fewest) - edge)
+    outside = (points > edge + GAP_NEAREST * reach) & (points < edge + reach) & np.isfinite(rise)
     if np.count_nonzero(outside) <= 2 * GAP_DEGREE:
         return edge
-    roots = np.polynomial.Polynomial.fit(points[outside], np.maximum(gap[outside], 0.0) ** (2 / 3), GAP_DEGREE).roots()
-    real = np.real(roots[np.abs(np.imag(roots)) < 1e-9 * edge])
-    near = real[np.abs(real - edge) < reach]
-    return float(near[np.argmin(np.abs(near - edge))]) if near.size else edge
+    roots = np.polynomial.Polynomial.fit(rise[outside], np.maximum(gap[outside], 0.0) ** (2 / 3), GAP_DEGREE).roots()
+    real = np.real(roots[np.abs(np.imag(roots)) < 1e-9 * start])
+    near = real[np.abs(real - start) < rise[outside][-1] - start]
+    return _place(points, rise, float(near[np.argmin(np.abs(near - start))])) if near.size else edge
 
 
-def half_width(places: Array, signed_pressure: Array, gap: Array, touched: float = np.inf) -> float:
+def _place(points: Array, rise: Array, value: float) -> float:
+    """The place where the rise has this value, by a power between the points."""
+    after = int(rise.searchsorted(value))
+    if after in (0, points.size):
+        return float(points[min(after, points.size - 1)])
+    pair = slice(after - 1, after + 1)
+    return float(np.exp(np.interp(np.log(value), np.log(rise[pair]), np.log(points[pair]))))
+
+
+def half_width(
+    places: Array, signed_pressure: Array, gap: Array, touched: float = np.inf, height: Array | None = None
+) -> float:
     """From the first touch to where the surfaces part; where there is a left side too, half from end to end.
 
     Infinite where the contact reaches the last place, 0 without contact. See :func:`contact_end`.
     """
-    right = _end(places, signed_pressure, gap, touched)
+    height = places**2 if height is None else height
+    right = _end(places, signed_pressure, gap, touched, height)
     if places[0] > 0.0:
         return right
-    return 0.5 * (right + _end(-places[::-1], signed_pressure[::-1], gap[::-1], touched))
+    return 0.5 * (right + _end(-places[::-1], signed_pressure[::-1], gap[::-1], touched, height[::-1]))
 
 
-def _end(places: Array, signed_pressure: Array, gap: Array, touched: float) -> float:
+def _end(places: Array, signed_pressure: Array, gap: Array, touched: float, height: Array) -> float:
     """Where the surfaces part on the side of the places, ascending, that are positive."""
     side = places > 0.0
     edge = ContactSolution(signed_pressure[side], 0, True, ()).edge(places[side])
-    return contact_end(places[side], edge, gap[side], touched=touched)
+    return contact_end(places[side], edge, gap[side], height[side], touched=touched)

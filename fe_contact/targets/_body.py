@@ -49,7 +49,8 @@ class BodyStill:
         problem = ContactProblem(self.surface, np.maximum(overlap, -BEYOND * self.scale), penalty)
         enforcement: ModuleType = get(ENFORCEMENTS, self.numerics.enforcement)
         solution = enforcement.enforce(problem, np.abs(self.places) < guess)
-        radius = fixed or half_width(self.places, solution.signed_pressure, -solution.signed_pressure)
+        gap, height = -solution.signed_pressure, target.lead * depth - overlap
+        radius = fixed or half_width(self.places, solution.signed_pressure, gap, height=height)
         if not solution.converged or radius == 0.0:
             raise IndentationNotSettled(depth)
         if not np.isfinite(radius):

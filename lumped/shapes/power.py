@@ -15,8 +15,8 @@ from lumped.load_curves.power import Power
 from lumped.shapes.base import Shape
 
 KEYS: Mapping[str, Key] = {
-    "coefficient": Number(1e-30, 1e30, "m^(1-n)"),
-    "exponent": Number(1.0, 12.0),
+    "coefficient": Number(1e-300, 1e300, "m^(1-n)"),
+    "exponent": Number(1.0, 20.0),
 }
 
 
