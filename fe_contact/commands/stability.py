@@ -51,5 +51,7 @@ def _lines(rows: Sequence[Row]) -> list[str]:
     failed = Counter(row["study"] for row in rows if row["failure"])
     lines = [f"{study:16s} {count} cases, {failed[study]} of them named failures" for study, count in counted.items()]
     kept = [row for row in rows if row.get("all_kept")]
-    held = [f"{row['scheme']} {row['mass']} {row['enforcement']}, CFL {row['cfl']:g}" for row in kept]
+    held = [
+        f"{row['scheme']} {row['mass']} tip {row['tip']:.2f} {row['enforcement']}, CFL {row['cfl']:g}" for row in kept
+    ]
     return [*lines, f"all limits kept over ten periods: {'; '.join(held) or 'by no scheme'}"]

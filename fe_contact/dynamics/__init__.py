@@ -6,5 +6,6 @@
 ``implicit``, ``explicit``  what a step would do without new pressure, and how it yields to one;
 ``march``     the loop, written once;
 ``ledger``    where the energy goes, each term computed on its own;
+``stages``    parts of a step of central difference;
 ``events``    first touch and separation within a step.
 """

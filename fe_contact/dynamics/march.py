@@ -17,6 +17,7 @@ from fe_contact.dynamics.implicit import ImplicitStepper
 from fe_contact.dynamics.ledger import Energies
 from fe_contact.dynamics.pressed import Enforced
 from fe_contact.dynamics.schemes.base import Scheme
+from fe_contact.dynamics.stages import stages
 from fe_contact.dynamics.state import State, undeformed
 from fe_contact.errors import MotionUnbounded, TooManySteps
 from fe_contact.forms import Array
@@ -53,10 +54,11 @@ class Sample(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """A march from its first sample, at the start, to its last; ``final`` state."""
+    """A march from its first sample, at the start, to its last; ``final`` state; ``stages`` of every step."""
 
     samples: tuple[Sample, ...]
     final: State
+    stages: int
 
     @cached_property
     def time(self) -> Array:
@@ -98,32 +100,41 @@ def march(
 
     ``watch`` (k, N): weights of the displacements that are recorded.
 
-    Raises ContactNotSettled, MotionUnbounded or TooManySteps.
+    Raises ContactNotSettled, MotionUnbounded or TooManySteps; BadInput for a scheme that the body does not admit.
     """
     steps = math.ceil(end_time / choices.step * (1 - 1e-12))
-    if steps > MOST_STEPS:
-        raise TooManySteps(MOST_STEPS, MOST_STEPS * choices.step)
-    kind: type[ExplicitStepper | ImplicitStepper] = ExplicitStepper if choices.scheme.explicit else ImplicitStepper
-    stepper = kind(body, choices.scheme, choices.enforced, choices.step)
+    parts = stages(body, choices.enforced, choices.step) if choices.scheme.staged else 1
+    if steps * parts > MOST_STEPS:
+        raise TooManySteps(MOST_STEPS, MOST_STEPS * choices.step / parts)
+    stepper = _stepper(body, choices, parts)
     state = stepper.begun(undeformed(body, velocity))
     fastest = UNBOUNDED * (np.abs(velocity).max() + np.abs(body.gravity).max() * end_time)
     energies = ledger.opened(body, state)
     samples = [_sample(body, state, 0.0, watch, energies, 0)]
     for _ in range(steps):
-        before = state
-        state, found = stepper.advance(before)
-        if not np.abs(state.velocity).max() <= fastest:  # nan is no less
-            raise MotionUnbounded(state.time)
-        energies = ledger.entered(energies, body, choices.scheme, before, state)
-        samples.append(_sample(body, state, _impulse(body, choices, before, state), watch, energies, found.iterations))
+        impulse, iterations = 0.0, 0
+        for _ in range(parts):
+            before = state
+            state, found = stepper.advance(before)
+            if not np.abs(state.velocity).max() <= fastest:  # nan is no less
+                raise MotionUnbounded(state.time)
+            energies = ledger.entered(energies, body, choices.scheme, before, state)
+            impulse += _impulse(body, before, state)
+            iterations += found.iterations
+        samples.append(_sample(body, state, impulse, watch, energies, iterations))
         if finished(samples[-1]):
             break
-    return Motion(tuple(samples), state)
+    return Motion(tuple(samples), state, parts)
 
 
-def _impulse(body: Body, choices: Choices, before: State, after: State) -> float:
-    """N s in a step, by the forces at its ends."""
-    return choices.step * 0.5 * float(body.pressing.weights @ (before.pressure + after.pressure))
+def _stepper(body: Body, choices: Choices, parts: int) -> ExplicitStepper | ImplicitStepper:
+    kind: type[ExplicitStepper | ImplicitStepper] = ExplicitStepper if choices.scheme.explicit else ImplicitStepper
+    return kind(body, choices.scheme, choices.enforced, choices.step / parts)
+
+
+def _impulse(body: Body, before: State, after: State) -> float:
+    """N s from one state to the next, by the forces there."""
+    return (after.time - before.time) * 0.5 * float(body.pressing.weights @ (before.pressure + after.pressure))
 
 
 def _sample(body: Body, state: State, impulse: float, watch: Array, energies: Energies, iterations: int) -> Sample:

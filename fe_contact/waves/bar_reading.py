@@ -11,7 +11,7 @@ from fe_contact.dynamics.march import Motion, Sample
 from fe_contact.forms import Array
 from fe_contact.waves.rod_reading import DEPTH, FORCE, TIME, VELOCITY, Reading
 
-SPOILED, TELLING = 4, 8  # steps at the ends of a contact whose force is its element's, and those beside them
+SPOILED, TELLING = 8, 8  # steps at the ends of a contact in which its element rings, and those beside them
 DROPPED = 0.6  # of what was to be expected, below which a force drops
 Contacts = tuple[Mapping[str, float | None], ...]
 
@@ -98,7 +98,7 @@ def _ended(rows: Array, end: float) -> tuple[Array, float]:
 
 
 def _cleaned(rows: Array, spans: list[tuple[float, float]]) -> Array:
-    """Forces without the beat of the lightest element at both ends of every contact: a line through what follows."""
+    """Forces without the ringing of the first element at both ends of every contact: a line through what follows."""
     time, cleaned = rows[TIME], rows.copy()
     for start, end in spans:
         pressed = np.flatnonzero((time >= start) & (time <= end))

@@ -170,7 +170,7 @@ def test_the_command_writes_contacts(tmp_path: Path) -> None:
     assert code in (0, 3)
     assert code == (0 if content["converged"] else 3)
     assert len(content["contacts"]) == 2
-    assert content["numerics"]["mass"] == "spread"
+    assert content["numerics"]["mass"] == "redistributed"
     with (tmp_path / "history.csv").open() as file:
         assert len(list(csv.reader(file))) > 201
 

@@ -22,3 +22,8 @@ class Scheme(NamedTuple):
     def explicit(self) -> bool:
         """Whether displacements come before accelerations."""
         return self.beta == 0.0
+
+    @property
+    def staged(self) -> bool:
+        """Whether a step is taken in as many equal stages as it asks for."""
+        return False

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from fe_contact.bodies.bar import Bar, falling
+from fe_contact.bodies.bar import TIP, Bar, falling, pitch
 from fe_contact.dynamics.march import Choices, Motion, march
 from fe_contact.dynamics.pressed import Enforced
 from fe_contact.forms import Array
@@ -26,12 +27,21 @@ TRANSIT = BAR.length / SPEED
 PERIOD = 16 * TRANSIT  # two contacts of two transits each
 TENTH = 10  # contact whose start is judged, or the last of fewer
 MIDDLE = (0.1, 0.9)  # of a plateau, where its ripple is measured
+BY_PENALTY = ("penalty", "corrected")  # enforcements whose answer depends on it
+DEFAULT: Mapping[str, Any] = {  # what ``fe-contact run bar`` takes
+    "scheme": "staged",
+    "rho": 1.0,
+    "mass": "redistributed",
+    "tip": TIP,
+    "enforcement": "exact",
+    "penalty": 1.0,
+}
 ENERGY = 0.5 * BAR.density * BAR.area * BAR.length * VELOCITY**2
 
 
 def choices(case: Case) -> Choices:
     """Scheme, enforcement and step; ``cfl`` is speed x step / element, ``penalty`` in units of modulus / element."""
-    size = BAR.length / case["elements"]
+    size = pitch(BAR.length, case["elements"], case["tip"])
     return Choices(
         scheme=get(SCHEMES, case["scheme"]).of(case["rho"]),
         enforced=Enforced(get(ENFORCEMENTS, case["enforcement"]), case["penalty"] * 900.0 / size),
@@ -39,10 +49,10 @@ def choices(case: Case) -> Choices:
     )
 
 
-def bounced(case: Case, gap: float = 0.0) -> Motion:
+def bounced(case: Case, gap: float = 0.0, gravity: float = GRAVITY) -> Motion:
     """The bar's motion over some periods; raises the named failures of a march."""
     elements = case["elements"]
-    body = falling(BAR, elements, get(MASSES, case["mass"]), GRAVITY, gap)
+    body = falling(BAR, elements, get(MASSES, case["mass"]), gravity, gap, case["tip"])
     watch = np.full((1, elements + 1), 1.0 / (elements + 1))
     return march(body, np.full(elements + 1, -VELOCITY), choices(case), case["periods"] * PERIOD, watch)
 
@@ -75,6 +85,7 @@ def measured(case: Case) -> dict[str, Any]:
         "restitution": (impulse - 800.0 / 3.0) / (BAR.length * VELOCITY),
         "contacts": len(motion.contacts) / len(due),
         "steps": len(motion.samples) - 1,
+        "stages": motion.stages,
         "iterations": sum(sample.iterations for sample in motion.samples),
         "residual": max(abs(sample.energies.residual) for sample in motion.samples) / ENERGY,
     }

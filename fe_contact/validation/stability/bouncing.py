@@ -5,16 +5,16 @@ from __future__ import annotations
 from itertools import product
 from typing import Any
 
+from fe_contact.bodies.bar import TIP
 from fe_contact.numerics import ENFORCEMENTS
-from fe_contact.validation.stability._bar import MASSES, SCHEMES, measured
+from fe_contact.validation.stability._bar import BY_PENALTY, DEFAULT, MASSES, SCHEMES, measured
 from fe_contact.validation.stability.base import Case, Chart, Measure
 from lumped.members import available
 
 TITLE = "Bouncing bar, two periods: every scheme, mass and enforcement"
 RHO = 0.8
-BY_PENALTY = ("penalty", "corrected")  # the others' answer does not depend on it
 CHART = Chart(
-    rows=("scheme", "mass"),
+    rows=("scheme", "mass", "tip"),
     columns=("cfl", "enforcement", "penalty"),
     measures={
         "drift": Measure("energy drift", 1e-3),
@@ -33,21 +33,13 @@ def cases(quick: bool) -> list[Case]:
     ways = [
         (name, penalty) for name in available(ENFORCEMENTS) for penalty in (penalties if name in BY_PENALTY else (1.0,))
     ]
-    every = product(available(SCHEMES), available(MASSES), ways, steps)
-    return [_case(scheme, mass, *way, cfl, elements) for scheme, mass, way, cfl in every]
-
-
-def _case(scheme: str, mass: str, enforcement: str, penalty: float, cfl: float, elements: int) -> dict[str, Any]:
-    return {
-        "scheme": scheme,
-        "rho": RHO,
-        "mass": mass,
-        "enforcement": enforcement,
-        "penalty": penalty,
-        "cfl": cfl,
-        "elements": elements,
-        "periods": 2,
-    }
+    bodies = [*((name, 1.0) for name in available(MASSES)), (DEFAULT["mass"], TIP)]
+    every = product(available(SCHEMES), bodies, ways, steps)
+    return [
+        {"scheme": scheme, "rho": RHO, "mass": mass, "tip": tip, "enforcement": enforcement, "penalty": penalty}
+        | {"cfl": cfl, "elements": elements, "periods": 2}
+        for scheme, (mass, tip), (enforcement, penalty), cfl in every
+    ]
 
 
 def measure(case: Case) -> dict[str, Any]:

@@ -36,7 +36,13 @@ def measure(case: Case) -> dict[str, Any]:
     """Largest energy gain over the energy at the start, the worst of some gaps; raises MotionUnbounded."""
     size = BAR.length / case["elements"]
     step = case["share"] * linear_limit(case["mass"], case["penalty"], case["elements"])
-    fixed = {"scheme": "central_difference", "rho": 1.0, "enforcement": "penalty", "cfl": step * SPEED / size}
+    fixed = {
+        "scheme": "central_difference",
+        "rho": 1.0,
+        "tip": 1.0,
+        "enforcement": "penalty",
+        "cfl": step * SPEED / size,
+    }
     motions = [bounced({**case, **fixed}, gap) for gap in GAPS]
     gains = [max(s.energies.total - s.energies.work for s in motion.samples) / ENERGY for motion in motions]
     return {"gain": max(gains), "cfl": fixed["cfl"], "steps": sum(len(motion.samples) - 1 for motion in motions)}

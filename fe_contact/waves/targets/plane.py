@@ -1,4 +1,4 @@
-"""A block with inertia on a rigid plane: a bar of line elements which a wave crosses in one step.
+"""A block with inertia on a rigid plane: a bar of line elements, each of which a wave crosses in one step.
 
 Depth and velocity are those of the centre of mass of block and rigid mass, which the force moves.
 """
@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_contact.bodies.bar import Bar, falling
+from fe_contact.bodies.bar import TIP, Bar, falling, pitch
 from fe_contact.certify import CAUSES
 from fe_contact.dynamics.march import Choices, march
 from fe_contact.dynamics.pressed import Enforced
@@ -47,7 +47,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
         order=1,
         penalty=1.0,
         enforcement="exact",
-        scheme="central_difference",
+        scheme="staged",
         steps=STEPS,
         far_radius=bar.length / _block(scene).fixed_radius,
         contact_radius=_block(scene).fixed_radius,
@@ -85,9 +85,14 @@ def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> R
 
 def usual_mass(scene: Scene) -> str:
     """One contact ends with the march: mass at its nodes carries its jumps exactly. More of them need a surface
-    without mass, and one whose neighbours are no heavier than others: their inertia would be felt as a first peak.
+    without mass, or each would cost the energy of the mass that it stops.
     """
-    return "lumped" if scene.motion.impacts == 1 else "spread"
+    return "lumped" if scene.motion.impacts == 1 else "redistributed"
+
+
+def usual_tip(scene: Scene) -> float:
+    """Length of the element at the contact over the others', as the usual mass asks for."""
+    return 1.0 if scene.motion.impacts == 1 else TIP
 
 
 def _varied(scene: Scene, numerics: WaveNumerics) -> dict[str, Numerics]:
@@ -126,12 +131,13 @@ def run(scene: Scene, numerics: Numerics) -> tuple[Run, Contacts]:
     assert isinstance(numerics, WaveNumerics)
     bar, echo = checked(scene), echo_time(scene)
     elements = max(numerics.steps // 2, 2)
-    body = falling(bar, elements, get(MASSES, numerics.mass), scene.gravity)
-    stiffness = numerics.penalty * bar.relaxation.glassy * elements / bar.length
+    tip = usual_tip(scene)
+    body = falling(bar, elements, get(MASSES, numerics.mass), scene.gravity, tip=tip)
+    size = pitch(bar.length, elements, tip)
     choices = Choices(
         scheme=get(WAVE_SCHEMES, numerics.scheme).of(numerics.rho),
-        enforced=Enforced(get(ENFORCEMENTS, numerics.enforcement), stiffness),
-        step=echo / (2 * elements),
+        enforced=Enforced(get(ENFORCEMENTS, numerics.enforcement), numerics.penalty * bar.relaxation.glassy / size),
+        step=0.5 * echo * size / bar.length,
     )
     carried = np.asarray(body.inertia.sum(axis=0)).ravel()
     watch = -carried[None, :] / carried.sum()
