@@ -22,7 +22,7 @@ from fe_contact.dynamics.state import State, undeformed
 from fe_contact.errors import MotionUnbounded, TooManySteps
 from fe_contact.forms import Array
 
-MOST_STEPS = 1_000_000
+MOST_STEPS = 200_000
 UNBOUNDED = 1e6  # multiple of the fastest that gravity and the start explain
 
 
@@ -104,14 +104,14 @@ def march(
     """
     steps = math.ceil(end_time / choices.step * (1 - 1e-12))
     parts = stages(body, choices.enforced, choices.step) if choices.scheme.staged else 1
-    if steps * parts > MOST_STEPS:
-        raise TooManySteps(MOST_STEPS, MOST_STEPS * choices.step / parts)
     stepper = _stepper(body, choices, parts)
     state = stepper.begun(undeformed(body, velocity))
     fastest = UNBOUNDED * (np.abs(velocity).max() + np.abs(body.gravity).max() * end_time)
     energies = ledger.opened(body, state)
     samples = [_sample(body, state, 0.0, watch, energies, 0)]
-    for _ in range(steps):
+    for number in range(steps):
+        if number * parts >= MOST_STEPS:
+            raise TooManySteps(MOST_STEPS, state.time)
         impulse, iterations = 0.0, 0
         for _ in range(parts):
             before = state

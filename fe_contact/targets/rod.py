@@ -23,6 +23,13 @@ def elements(scene: Scene, numerics: WaveNumerics) -> int:
     return max(round(rod.length / speed(scene) * numerics.steps / numerics.contact_time), 1)
 
 
+def rod_mass(scene: Scene) -> float:
+    """Of the whole rod, kg."""
+    rod = scene.target
+    assert isinstance(rod, Rod)
+    return (scene.geometry.material.density or 0.0) * rod.area * rod.length
+
+
 def speed(scene: Scene) -> float:
     """Of the fastest waves along the rod, m/s."""
     material = scene.geometry.material

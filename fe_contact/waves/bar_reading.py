@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from fe_contact.dynamics.march import Motion, Sample
 from fe_contact.forms import Array
-from fe_contact.waves.rod_reading import DEPTH, FORCE, TIME, VELOCITY, Reading
+from fe_contact.waves.fronts import DEPTH, FORCE, TIME, VELOCITY, with_fronts
+from fe_contact.waves.rod_reading import Contacts, Reading
 
 SPOILED, TELLING = 8, 8  # steps at the ends of a contact in which its element rings, and those beside them
 DROPPED = 0.6  # of what was to be expected, below which a force drops
-Contacts = tuple[Mapping[str, float | None], ...]
 
 
 @dataclass
@@ -35,15 +34,20 @@ class Ending:
         return self.open and self.begun == self.impacts and away > self.pause
 
 
-def read(found: Motion, total: float, gravity: float, impacts: int, pause: float) -> tuple[Reading, Contacts]:
+def read(
+    found: Motion, total: float, gravity: float, impacts: int, pause: float, echo: int | None
+) -> tuple[Reading, Contacts]:
     """Rows up to the last separation and every contact; ``total`` mass, kg; those within a ``pause``, s, are one.
 
+    ``echo``: steps after which a front comes back, None where steps do not follow it.
     Impulse and history are those of all contacts, the other quantities those of the first.
     """
     rows = np.array([_row(sample) for sample in found.samples]).T
     spans = clustered(found.contacts, pause)
     if impacts > 1:
         rows = _cleaned(rows, spans)
+    elif echo:
+        rows = with_fronts(rows, np.arange(echo, rows.shape[1] - 2, echo), spoiled=0)
     separated = len(spans) == impacts and rows[FORCE, -1] <= 0.0
     if separated:
         rows, end = _ended(rows, spans[-1][1])
@@ -85,13 +89,14 @@ def _ended(rows: Array, end: float) -> tuple[Array, float]:
     """
     pressed = rows[:, : 1 + int(np.flatnonzero(rows[FORCE] > 0.0)[-1])]
     before = pressed[FORCE, -4:-1]
-    if before.size == 3 and pressed[FORCE, -1] < DROPPED * _onwards(before):
+    dropped = bool(before.size == 3 and pressed[FORCE, -1] < DROPPED * _onwards(before))
+    if dropped:
         end, pressed = float(pressed[TIME, -1]), pressed[:, :-1]
     pressed = pressed[:, pressed[TIME] < end]
     last = np.array([np.interp(end, rows[TIME], row) for row in rows])
     last[TIME] = end
     ends = [last * np.where(np.arange(len(last)) == FORCE, 0.0, 1.0)]
-    if pressed[FORCE, -1] > DROPPED * pressed[FORCE].max():
+    if dropped or pressed[FORCE, -1] > DROPPED * pressed[FORCE].max():
         last[FORCE] = max(_onwards(pressed[FORCE, -3:]), 0.0)
         ends.insert(0, last)
     return np.hstack([pressed, *(row[:, None] for row in ends)]), end

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 from fe_contact.numerics import Numerics
 
@@ -15,3 +16,7 @@ class WaveNumerics(Numerics):
 
     rho: float
     mass: str
+
+    def varied(self, **changes: Any) -> WaveNumerics:
+        """A copy with some settings changed."""
+        return replace(self, **changes)

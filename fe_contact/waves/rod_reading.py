@@ -1,8 +1,7 @@
 """What the steps of an impact on a rod say: a history, rows in pairs where a wave front arrives, and its quantities.
 
 A front crosses one element a step: it leaves at touch and is back after twice as many steps as there are elements. A
-struck surface with mass of its own needs two steps to follow it, in which the force carries that mass along; they are
-left out, and the force behind the front is read off the steps after them.
+struck surface with mass of its own needs two steps to follow it.
 """
 
 from __future__ import annotations
@@ -11,18 +10,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from fe_contact.dynamics.march import Motion, Sample
 from fe_contact.forms import Array
+from fe_contact.waves.fronts import DENT, DEPTH, FORCE, TIME, VELOCITY, with_fronts
 from fe_contact.waves.impact import left
 from lumped.interpolation import peak
 from lumped.scene import Scene
 
 SPOILED = 2  # steps behind a front
-BEHIND = np.array([3, 4, 5])  # steps behind it that tell the force there
-Steps = npt.NDArray[np.intp]
-TIME, DEPTH, VELOCITY, FORCE, DENT = range(5)
+
+
+Contacts = tuple[Mapping[str, float | None], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +47,7 @@ def read(found: Motion, scene: Scene, elements: int) -> Reading:
         fronts = np.arange(0, rows.shape[1], 2 * elements, dtype=np.intp)
         if separated and rows.shape[1] - 2 in fronts:  # a front ends the contact
             end, rows = rows[TIME, -2], np.hstack([rows[:, :-1], rows[:, -2:-1]])
-        rows = _with_fronts(rows, fronts)
+        rows = with_fronts(rows, fronts, SPOILED)
     elif separated:
         end = _undented(rows)
     if separated:
@@ -70,20 +69,6 @@ def read(found: Motion, scene: Scene, elements: int) -> Reading:
 def _row(sample: Sample) -> tuple[float, ...]:
     dent = max(float(sample.overlap[0]), 0.0)
     return sample.time, float(sample.displacement[0]), float(sample.velocity[0]), max(sample.force, 0.0), dent
-
-
-def _with_fronts(rows: Array, fronts: Steps) -> Array:
-    """Rows (5, n) with those spoiled by fronts, which arrive at these steps, left out, and what follows each put in."""
-    parts, begin = list[Array](), 0
-    for front in fronts:
-        clean = front + BEHIND
-        if clean[-1] >= rows.shape[1] - 1:
-            break
-        behind = rows[:, front].copy()
-        behind[FORCE] = np.polyfit(clean - front, rows[FORCE, clean], len(clean) - 1)[-1]
-        parts += [rows[:, begin : front + 1] if front else rows[:, :0], behind[:, None]]
-        begin = front + SPOILED + 1
-    return np.hstack([*parts, rows[:, begin:]])
 
 
 def _undented(rows: Array) -> float:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -12,7 +13,8 @@ from fe_contact.forms import Array
 from fe_contact.numerics import Numerics
 from fe_contact.plan import Plan
 from fe_contact.reference import CURE
-from fe_contact.waves.rod_reading import DENT, DEPTH, FORCE, TIME, VELOCITY, Reading
+from fe_contact.waves.fronts import DENT, DEPTH, FORCE, TIME, VELOCITY
+from fe_contact.waves.rod_reading import Contacts, Reading
 from lumped.history import LEAST_ROWS, History
 from lumped.result import UNITS, Quantity, Result, meets, provenance, unmet
 from lumped.scene import Scene
@@ -24,12 +26,47 @@ AWAY = 0.02  # share of the contact within which a change counts as the error of
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """One march: what was read off it, its energies, J, its steps and unknowns."""
+    """One march: what was read off it, its energies, J, its steps and unknowns; every contact, where several may be."""
 
     reading: Reading
     energy: Mapping[str, float]
     steps: int
     unknowns: int
+    contacts: Contacts = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Bars:
+    """A march and the same with one cause of error varied, by cause; half the steps are among them."""
+
+    fine: Run
+    others: Mapping[str, Run]
+
+    @property
+    def runs(self) -> list[Run]:
+        """All marches."""
+        return [self.fine, *self.others.values()]
+
+    @cached_property
+    def by_cause(self) -> dict[str, dict[str, Quantity]]:
+        """The quantities with the bars of each cause."""
+        return {cause: bars(self.fine.reading, other.reading) for cause, other in self.others.items()}
+
+    @property
+    def quantities(self) -> dict[str, Quantity]:
+        """With the bars of all causes together."""
+        found = dict(self.by_cause["time_step"])
+        for name, quantity in found.items():
+            errors = [own[name].error for own in self.by_cause.values()]
+            error = None if None in errors else sum(error for error in errors if error is not None)
+            found[name] = replace(quantity, error=error)
+        return found
+
+    @property
+    def budget(self) -> dict[str, dict[str, float]]:
+        """Error of every quantity by cause; steps and elements are one."""
+        nothing = dict.fromkeys(CAUSES, 0.0)
+        return {n: nothing | {c: own[n].error or 0.0 for c, own in self.by_cause.items()} for n in UNITS}
 
 
 def bars(fine: Reading, coarse: Reading) -> dict[str, Quantity]:
@@ -53,26 +90,22 @@ def _distance(fine: Reading, coarse: Reading) -> float:
 
 
 def _compared(fine: Reading, coarse: Reading) -> tuple[Array, Array]:
-    places = np.linspace(0.0, fine.rows[TIME, -1], COMPARED)
+    places = _places(fine)
     force = fine.force_at(places)
     return force, np.abs(force - coarse.force_at(places))
 
 
+def _places(fine: Reading) -> Array:
+    """Times up to just before the end of contact, s, where a force may jump to zero."""
+    return np.linspace(0.0, fine.rows[TIME, -1] * (1.0 - ROUNDING), COMPARED)
+
+
 def result_of(
-    scene: Scene,
-    chosen: Plan,
-    numerics: Numerics,
-    fine: Run,
-    coarse: Run,
-    quantities: dict[str, Quantity],
-    timing: Mapping[str, float],
-    runs: list[Run],
+    scene: Scene, chosen: Plan, numerics: Numerics, found: Bars, timing: Mapping[str, float], runs: list[Run]
 ) -> Result:
-    """The record of an impact and its variation."""
+    """The record of an impact and its variations; ``runs``: all that were made on the way."""
+    fine, quantities, budget = found.fine, found.quantities, found.budget
     peak = quantities["peak_force"].value or np.inf
-    errors = {name: quantity.error or 0.0 for name, quantity in quantities.items()}
-    # steps and elements are one, and nothing else errs
-    by_quantity = {name: dict.fromkeys(CAUSES, 0.0) | {"time_step": error} for name, error in errors.items()}
     converged = meets(quantities, numerics.tolerance)
     return Result(
         method="fe",
@@ -81,11 +114,11 @@ def result_of(
         scene=scene,
         model=scene.model,
         tolerance=numerics.tolerance,
-        history=history(scene, fine.reading, coarse.reading),
+        history=history(scene, fine.reading, found.others["time_step"].reading),
         quantities=quantities,
         numerics=numerics.as_dict(),
-        error_budget={cause: value / peak for cause, value in by_quantity["peak_force"].items()},
-        error_budget_by_quantity=by_quantity,
+        error_budget={cause: value / peak for cause, value in budget["peak_force"].items()},
+        error_budget_by_quantity=budget,
         model_ledger=chosen.ledger,
         energy=fine.energy,
         provenance=provenance(),
@@ -96,6 +129,7 @@ def result_of(
             "steps": sum(one.steps for one in runs),
         },
         message="" if converged else f"{unmet(quantities, numerics.tolerance)}; {CURE}",
+        contacts=fine.contacts,
     )
 
 
@@ -109,7 +143,7 @@ def history(scene: Scene, fine: Reading, coarse: Reading) -> History:
     _, change = _compared(fine, coarse)
     width = int(AWAY * COMPARED)
     around = np.lib.stride_tricks.sliding_window_view(np.pad(change, width, mode="edge"), 2 * width + 1).max(axis=1)
-    error = SAFETY * np.interp(rows[TIME], np.linspace(0.0, rows[TIME, -1], COMPARED), around)
+    error = SAFETY * np.interp(rows[TIME], _places(fine), around)
     flat, curve = scene.profile.fixed_radius, scene.profile.load_curve
     radius = np.full(rows.shape[1], flat) if flat is not None else curve.contact_radius(rows[DENT])
     return History(rows[TIME], rows[DEPTH], rows[VELOCITY], rows[FORCE], np.asarray(radius), error)

@@ -6,34 +6,32 @@ Depth and velocity are those of the centre of mass of block and rigid mass, whic
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Mapping
-from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from fe_contact.bodies.bar import TIP, Bar, falling, pitch
-from fe_contact.certify import CAUSES
 from fe_contact.dynamics.march import Choices, march
 from fe_contact.dynamics.pressed import Enforced
-from fe_contact.numerics import ENFORCEMENTS, MASSES, WAVE_SCHEMES, Numerics
+from fe_contact.numerics import ENFORCEMENTS, MASSES, WAVE_SCHEMES
 from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
-from fe_contact.waves.bar_reading import Contacts, Ending, read
+from fe_contact.waves.bar_reading import Ending, read
+from fe_contact.waves.doubling import certified
 from fe_contact.waves.numerics import WaveNumerics
-from fe_contact.waves.rod_record import Run, bars, result_of
+from fe_contact.waves.rod_record import Run
 from lumped.errors import BadInput, Fault
 from lumped.members import get
-from lumped.result import LedgerEntry, Quantity, Result, meets
+from lumped.result import LedgerEntry, Result
 from lumped.scene import Scene
 from lumped.shapes._block import Block
 
 DEFAULT_TOLERANCE = 3e-3
 GRAVITY = 9.81
-STEPS = 200  # while a wave goes to the far end and back
-MOST = 3200  # of them
-ROUNDS = 3  # refinements before giving up
+STEPS, MANY, MOST = 200, 1600, 12_800  # while a wave goes to the far end and back: at first, and at all
+LIGHT = 32.0  # of them in the part of the bar that is as heavy as the mass behind it
 PAUSE = 0.25  # of that time within which several contacts count as one
 BY_PENALTY = ("penalty", "corrected")  # whose answer depends on it
 
@@ -48,7 +46,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
         penalty=1.0,
         enforcement="exact",
         scheme="staged",
-        steps=STEPS,
+        steps=_steps(bar),
         far_radius=bar.length / _block(scene).fixed_radius,
         contact_radius=_block(scene).fixed_radius,
         contact_time=echo,
@@ -61,26 +59,15 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
 
 def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
     """History of one or several contacts with error bars. Raises BadInput, or NotReached where no march ends."""
-    cpu, wall = time.process_time(), time.perf_counter()
     chosen = plan(scene, given)
-    numerics, runs = chosen.numerics, list[Run]()
-    for attempt in range(ROUNDS + 1):
-        assert isinstance(numerics, WaveNumerics)
-        progress(f"{numerics.steps} steps an echo")
-        fine, contacts = run(scene, numerics)
-        others = {cause: run(scene, settings)[0] for cause, settings in _varied(scene, numerics).items()}
-        runs += [fine, *others.values()]
-        by_cause = {cause: bars(fine.reading, other.reading) for cause, other in others.items()}
-        quantities = _summed(by_cause)
-        if meets(quantities, numerics.tolerance) or "steps" in chosen.pinned or 2 * numerics.steps > MOST:
-            break
-        if attempt < ROUNDS:
-            numerics = numerics.varied(steps=2 * numerics.steps)
-    timing = {"cpu_s": time.process_time() - cpu, "wall_s": time.perf_counter() - wall}
-    assert isinstance(numerics, WaveNumerics)
-    coarse = others["time_step"]
-    result = result_of(scene, chosen, numerics, fine, coarse, quantities, timing, runs)
-    return replace(result, contacts=contacts, **_budgets(by_cause, quantities))
+    return certified(scene, chosen, partial(run, scene), partial(_varied, scene), MOST, progress)
+
+
+def _steps(bar: Bar) -> int:
+    """So many at first that the echo of a light mass, which is no longer than its share of the bar's, is resolved."""
+    own = bar.density * bar.area * bar.length
+    echo = LIGHT * own / bar.end_mass if bar.end_mass else 0.0
+    return 4 * math.ceil(min(max(STEPS, echo), MANY) / 4)
 
 
 def usual_mass(scene: Scene) -> str:
@@ -95,7 +82,7 @@ def usual_tip(scene: Scene) -> float:
     return 1.0 if scene.motion.impacts == 1 else TIP
 
 
-def _varied(scene: Scene, numerics: WaveNumerics) -> dict[str, Numerics]:
+def _varied(scene: Scene, numerics: WaveNumerics) -> dict[str, WaveNumerics]:
     """Settings with one cause of error changed: steps and elements together; what a penalty lets in; another mass."""
     found = {"time_step": numerics.varied(steps=max(numerics.steps // 2, 8))}
     if numerics.enforcement in BY_PENALTY:
@@ -126,9 +113,8 @@ def echo_time(scene: Scene) -> float:
     return 2.0 * bar.length * math.sqrt(bar.density / bar.relaxation.glassy)
 
 
-def run(scene: Scene, numerics: Numerics) -> tuple[Run, Contacts]:
+def run(scene: Scene, numerics: WaveNumerics) -> Run:
     """One march, its steps those in which a wave crosses an element. Raises NotReached."""
-    assert isinstance(numerics, WaveNumerics)
     bar, echo = checked(scene), echo_time(scene)
     elements = max(numerics.steps // 2, 2)
     tip = usual_tip(scene)
@@ -144,7 +130,8 @@ def run(scene: Scene, numerics: Numerics) -> tuple[Run, Contacts]:
     pause = 0.0 if scene.motion.impacts == 1 else PAUSE * echo
     ending = Ending(scene.motion.impacts, pause)
     found = march(body, np.full(body.size, -scene.velocity), choices, scene.end_time, watch, ending)
-    reading, contacts = read(found, carried.sum(), scene.gravity, scene.motion.impacts, pause)
+    fronts = 2 * elements if choices.scheme.explicit and not body.massless.size else None
+    reading, contacts = read(found, carried.sum(), scene.gravity, scene.motion.impacts, pause, fronts)
     last = found.samples[-1].energies
     out = 0.5 * carried.sum() * float(found.samples[-1].velocity[0]) ** 2
     energy = {
@@ -157,32 +144,13 @@ def run(scene: Scene, numerics: Numerics) -> tuple[Run, Contacts]:
         "numerical": last.numerical,
     }
     energy["residual"] = 2 * energy["in"] - sum(energy.values())
-    return Run(reading, energy, len(found.samples) - 1, body.size), contacts
+    return Run(reading, energy, len(found.samples) - 1, body.size, contacts)
 
 
 def _block(scene: Scene) -> Block:
     block = scene.geometry.shape
     assert isinstance(block, Block)
     return block
-
-
-def _summed(by_cause: Mapping[str, Mapping[str, Quantity]]) -> dict[str, Quantity]:
-    """The bars of all causes together."""
-    found = dict(by_cause["time_step"])
-    for name, quantity in found.items():
-        errors = [own[name].error for own in by_cause.values()]
-        error = None if None in errors else sum(error for error in errors if error is not None)
-        found[name] = replace(quantity, error=error)
-    return found
-
-
-def _budgets(by_cause: Mapping[str, Mapping[str, Quantity]], quantities: Mapping[str, Quantity]) -> dict[str, Any]:
-    """Error of every quantity by cause, and that of the peak force relatively; steps and elements are one cause."""
-    nothing = dict.fromkeys(CAUSES, 0.0)
-    found = {n: nothing | {c: own[n].error or 0.0 for c, own in by_cause.items()} for n in quantities}
-    peak = quantities["peak_force"].value or math.inf
-    share = {cause: error / peak for cause, error in found["peak_force"].items()}
-    return {"error_budget": share, "error_budget_by_quantity": found}
 
 
 def _ledger(scene: Scene, bar: Bar) -> tuple[LedgerEntry, ...]:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,23 +14,25 @@ from fe_contact.dynamics.pressed import Enforced
 from fe_contact.numerics import ENFORCEMENTS, RANGES, WAVE_SCHEMES
 from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
-from fe_contact.targets.rod import elements, moving, speed
+from fe_contact.targets.rod import elements, moving, rod_mass, speed
 from fe_contact.waves.dent import Dent
+from fe_contact.waves.doubling import certified
 from fe_contact.waves.impact import energies, left
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.rod_reading import read
-from fe_contact.waves.rod_record import Run, bars, result_of
+from fe_contact.waves.rod_record import Run
 from lumped.errors import BadInput, Fault
 from lumped.members import get
 from lumped.model_ledger import Peak, model_ledger
-from lumped.result import Result, meets
+from lumped.result import Result
 from lumped.scene import Scene
 from lumped.targets.rod import Rod
 
 DEFAULT_TOLERANCE = 1e-3
 STEPS = 400  # along the contact time of the scene, at the default tolerance
-FEWEST, MOST = 48, 20_000  # elements
-ROUNDS = 3  # refinements before giving up
+FEWEST, MANY, MOST = 48, 2_500, 20_000  # elements: at first, and at all
+LIGHT = 16.0  # of them in the part of the rod that is as heavy as the striker
+DENTED = 64.0  # of them which a wave crosses while the striker dents the rod
 
 
 def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
@@ -56,35 +58,28 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
         rho=1.0,
         mass="lumped" if flat else "redistributed",
     ).varied(**given)
-    assert isinstance(coarse, WaveNumerics)
-    more = max(FEWEST / elements(scene, coarse), 1.0)
-    settings = coarse if "steps" in given else coarse.varied(steps=math.ceil(coarse.steps * more))
     shape = scene.profile.hertz_impact(scene.contact_modulus.glassy, scene.reduced_mass, scene.velocity)
+    fewest = min(max(FEWEST, LIGHT * rod_mass(scene) / scene.reduced_mass), MANY)
+    if not flat:
+        fewest = min(max(fewest, DENTED * rod.length / (speed(scene) * shape.duration)), MANY)
+    more = max(fewest / elements(scene, coarse), 1.0)
+    settings = coarse if "steps" in given else coarse.varied(steps=math.ceil(coarse.steps * more))
     scales = Peak(shape.force, shape.depth, shape.contact_radius, contact_time)
     return Plan(settings, frozenset(given) - {"tolerance"}, model_ledger(scene, scales))
 
 
 def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
     """Force history with error bars. Raises BadInput for a scene it is not for, NotReached where no march ends."""
-    cpu, wall = time.process_time(), time.perf_counter()
     chosen = plan(scene, given)
-    numerics, runs = chosen.numerics, list[Run]()
-    for attempt in range(ROUNDS + 1):
-        assert isinstance(numerics, WaveNumerics)
-        progress(f"{elements(scene, numerics)} elements along the rod")
-        half = numerics.varied(steps=max(numerics.steps // 2, 4))
-        assert isinstance(half, WaveNumerics)
-        fine, coarse = run(scene, numerics), run(scene, half)
-        runs += [fine, coarse]
-        quantities = bars(fine.reading, coarse.reading)
-        finer = numerics.varied(steps=2 * numerics.steps)
-        assert isinstance(finer, WaveNumerics)
-        stuck = "steps" in chosen.pinned or attempt == ROUNDS or elements(scene, finer) > MOST
-        if stuck or meets(quantities, numerics.tolerance):
-            break
-        numerics = finer
-    timing = {"cpu_s": time.process_time() - cpu, "wall_s": time.perf_counter() - wall}
-    return result_of(scene, chosen, numerics, fine, coarse, quantities, timing, runs)
+    steps = chosen.numerics.steps
+    assert isinstance(chosen.numerics, WaveNumerics)
+    most = MOST * steps / elements(scene, chosen.numerics)
+    return certified(scene, chosen, partial(run, scene), _varied, most, progress)
+
+
+def _varied(numerics: WaveNumerics) -> dict[str, WaveNumerics]:
+    """Steps and elements are one, and nothing else errs."""
+    return {"time_step": numerics.varied(steps=max(numerics.steps // 2, 4))}
 
 
 def check(scene: Scene) -> None:

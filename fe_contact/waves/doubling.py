@@ -1,0 +1,41 @@
+"""An impact whose waves run along a line: its steps doubled until its bars meet the tolerance."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+
+from fe_contact.plan import Plan
+from fe_contact.progress import Progress
+from fe_contact.waves.numerics import WaveNumerics
+from fe_contact.waves.rod_record import Bars, Run, result_of
+from lumped.result import Result, meets
+from lumped.scene import Scene
+
+ROUNDS = 3  # refinements before giving up
+
+
+def certified(
+    scene: Scene,
+    chosen: Plan,
+    run: Callable[[WaveNumerics], Run],
+    varied: Callable[[WaveNumerics], Mapping[str, WaveNumerics]],
+    most_steps: float,
+    progress: Progress,
+) -> Result:
+    """March as planned and with one cause of error ``varied`` at a time; again with twice the steps, ``most_steps`` at
+    most, where a bar is too wide. Raises NotReached where a march does not end.
+    """
+    cpu, wall = time.process_time(), time.perf_counter()
+    numerics, runs = chosen.numerics, list[Run]()
+    for attempt in range(ROUNDS + 1):
+        assert isinstance(numerics, WaveNumerics)
+        progress(f"{numerics.steps} steps")
+        found = Bars(run(numerics), {cause: run(settings) for cause, settings in varied(numerics).items()})
+        runs += found.runs
+        stuck = "steps" in chosen.pinned or attempt == ROUNDS or 2 * numerics.steps > most_steps
+        if stuck or meets(found.quantities, numerics.tolerance):
+            break
+        numerics = numerics.varied(steps=2 * numerics.steps)
+    timing = {"cpu_s": time.process_time() - cpu, "wall_s": time.perf_counter() - wall}
+    return result_of(scene, chosen, numerics, found, timing, runs)
