@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from fe_contact.bodies.memory import SurfaceMemory, step_law
 from fe_contact.bodies.offer import Offer
 from fe_contact.contact import ContactProblem, ContactSolution, Touching
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
 from fe_contact.forms import Array
 from fe_contact.march import Snapshot, Strike, Work
 from fe_contact.numerics import ENFORCEMENTS, SCHEMES, Numerics
+from fe_contact.opening import just_open, opened
 from fe_contact.pressing import half_width
 from fe_contact.stepping import extrapolated
 from fe_contact.steps import State, Step
@@ -29,6 +31,13 @@ WIDTH = 0.1  # of the first contact, in the mesh's unit, for the penalty alone
 SECANTS, PRECISE = 20, 1e-13
 
 Guesses = tuple[Touching, ...]
+
+
+class Remembered(NamedTuple):
+    """What the body remembers, which is its own affair, and, once the contact recedes, where it has opened."""
+
+    body: Any
+    opened: SurfaceMemory | None = None
 
 
 class FixedStepper:
@@ -49,7 +58,7 @@ class FixedStepper:
 
     def touch(self) -> State:
         """The striker at the surface at rest."""
-        return State(0.0, 0.0, self.strike.velocity, 0.0, self.body.at_rest())
+        return State(0.0, 0.0, self.strike.velocity, 0.0, Remembered(self.body.at_rest()))
 
     def step(self, state: State, steps: Sequence[Step], length: float) -> Step:
         """The step of a length, s, from a state reached by ``steps``.
@@ -57,37 +66,47 @@ class FixedStepper:
         Raises ContactLost, ContactNotSettled, or MemoryTooSmall where the contact leaves the fine mesh.
         """
         strike, operator = self.strike, self.surface.operator
-        offer = self.body.offer(state.memory, length)
+        offer = self.body.offer(state.memory.body, length)
         lever = self.scheme.LEVER * length**2
         free_depth = state.depth + length * state.velocity + lever * strike.gravity
         settle = self._settled if strike.overlap is None else self._settled_by_secants
         guesses = self._guesses(steps, state.time + length, free_depth)
         solution, work = settle(offer, free_depth, lever / strike.mass, steps, guesses, state.time)
         force = operator.force(self.scale, solution.pressure)
-        memory, axis = self.body.after(state.memory, offer, solution.pressure)
+        memory, axis = self.body.after(state.memory.body, offer, solution.pressure)
         moved = State(
             time=strike.end_time if length >= strike.end_time - state.time else state.time + length,
             depth=free_depth - lever * force / strike.mass,
             velocity=state.velocity + length * (strike.gravity - force / strike.mass),
             impulse=state.impulse + length * force,
-            memory=memory,
+            memory=Remembered(memory),
         )
-        share = 1.0 if moved.velocity > 0 else self.scheme.SAMPLE
-        widest = np.inf if share == 1.0 else max((earlier.radius for earlier in steps), default=np.inf)
-        radius = half_width(self.places, solution.signed_pressure, self._gap(state, moved, share, solution), widest)
-        return Step(length, moved, force, radius, state.time + length * share, axis, solution, self.scale, work)
+        if moved.velocity > 0.0:  # growing, the contact has its radius at the end of the step
+            radius, found_at = half_width(self.places, solution.signed_pressure, self._gap(moved, solution)), moved.time
+        else:
+            radius, moved = self._receded(state, moved, steps, solution, length)
+            found_at = state.time + length * self.scheme.SAMPLE
+        return Step(length, moved, force, radius, found_at, axis, solution, self.scale, work)
 
-    def _gap(self, before: State, after: State, share: float, solution: ContactSolution) -> Array:
-        """Of the deformed surfaces after a share of the step, (q,), m, which tells the contact radius.
+    def _receded(
+        self, before: State, after: State, steps: Sequence[Step], solution: ContactSolution, length: float
+    ) -> tuple[float, State]:
+        """Contact radius, m, where the scheme samples the pressure, and the state with what has opened."""
+        law = step_law(self.strike.relaxation, self.scheme, length)
+        known = before.memory.opened or just_open(self._gap(before, solution), len(law.decay))
+        memory, stress = opened(known, law, self._gap(after, solution))
+        widest = max((earlier.radius for earlier in steps), default=np.inf)
+        radius = half_width(self.places, solution.signed_pressure, stress, widest)
+        return radius, after._replace(memory=after.memory._replace(opened=memory))
 
-        Growing, the contact has its radius at the end of the step. Receding, it has it where the scheme samples the
-        pressure: what lies outside swings about that from one end of a step to the other. A datum that moves lifts all
-        places alike: where the surfaces touch there is no gap.
+    def _gap(self, state: State, solution: ContactSolution) -> Array:
+        """Of the deformed surfaces, (q,), m.
+
+        A datum that moves lifts all places alike: where the surfaces touch there is no gap.
         """
-        depth = before.depth + share * (after.depth - before.depth)
-        old, new = self.body.displacement(before.memory), self.body.displacement(after.memory)
-        gap = old + share * (new - old) - self._overlap(depth)
-        return np.asarray(gap - np.median(gap[solution.signed_pressure > 0.0]))
+        gap = self.body.displacement(state.memory.body) - self._overlap(state.depth)
+        touching = solution.signed_pressure > 0.0
+        return np.where(touching, 0.0, gap - np.median(gap[touching]))
 
     def _overlap(self, depth: float) -> Array:
         """Of the undeformed surfaces at the points, (q,), m."""
@@ -111,11 +130,11 @@ class FixedStepper:
 
     def stored(self, memory: Any) -> float:
         """Elastic energy, J."""
-        return self.body.stored(memory)
+        return self.body.stored(memory.body)
 
     def dissipated(self, before: Any, after: Any, length: float) -> float:
         """Heat of a step of a length, s; J."""
-        return self.body.dissipated(before, after, length)
+        return self.body.dissipated(before.body, after.body, length)
 
     def springs(self, step: Step) -> float:
         """What the penalty's springs hold, J."""
