@@ -43,15 +43,15 @@ class Motion:
         return cls(problem, duration * (1.0 - left * left), 2.0 * duration * table.integral * left)
 
     def piece(self, state: Array, guess: float | Array) -> Piece | None:
-        """The piece from a state, (4 + 2K,), the acceleration guessed; None where Newton's steps fail."""
+        """The piece from a state, (4 + K,), the acceleration guessed; None where Newton's steps fail."""
         problem, weights = self.problem, self.weights
-        modulus, terms = problem.modulus, problem.terms
+        modulus = problem.modulus
         # (1 + W/tau_k)^-1, shape (K, N, N): the rise of a memory by the rise of what it remembers.
         eye = np.eye(self.elapsed.size)
         answers = np.asarray(np.linalg.inv(eye + weights * problem.rates[:, None, None]), dtype=float)
         response = (problem.stiffnesses[:, None, None] * answers).sum(axis=0) + modulus.equilibrium * eye
         first = float(problem.loads(state[:1])[0][0])
-        kept = modulus.equilibrium * first + (problem.stiffnesses * state[4 : 4 + terms]) @ answers.sum(axis=2)
+        kept = modulus.equilibrium * first + (problem.stiffnesses * state[4:]) @ answers.sum(axis=2)
         twice, coasted = weights @ weights, state[0] + state[1] * self.elapsed
         a = np.full(self.elapsed.size, guess)
         for step in range(1, NEWTON_STEPS + 1):
@@ -74,14 +74,13 @@ class Motion:
 
     def _values(self, state: Array, a: Array, rise: Array, answers: Array) -> Array:
         """The fields at the first place and the nodes; `rise` is by how much the load has grown."""
-        k, weights = self.problem.terms, self.weights
+        weights = self.weights
         velocity, force = state[1] + weights @ a, self.problem.gravity - a
         depth = state[0] + weights @ velocity
         values = np.empty((state.size, a.size + 1))
         values[:, 0] = state
         values[0, 1:], values[1, 1:], values[3, 1:] = depth, velocity, force
         values[2, 1:] = state[2] + weights @ (force * velocity)
-        if k:
-            values[4 : 4 + k, 1:] = (answers @ (state[4 : 4 + k, None] + rise)[..., None])[..., 0]
-            values[4 + k :, 1:] = (answers @ (state[4 + k :, None] + depth - state[0])[..., None])[..., 0]
+        if self.problem.terms:
+            values[4:, 1:] = (answers @ (state[4:, None] + rise)[..., None])[..., 0]
         return values

@@ -53,7 +53,7 @@ class Hereditary:
 
     `modulus` is E*(t) in units of `scales.unit` and `scales.time`; `gravity` in v/T; `shortest` is the contact
     time on the stiffest answer of the material, in T. With z_k' = y' - z_k/tau_k the force is E_inf y + sum
-    E_k z_k + eta y'. The memories of the depth obey the same, x_k' = depth' - x_k/tau_k.
+    E_k z_k + eta y'.
     """
 
     scales: Scales
@@ -96,6 +96,16 @@ class Hereditary:
         """1/tau_k, shape (K,)."""
         return 1.0 / np.array(self.modulus.times)
 
+    @cached_property
+    def springs(self) -> Array:
+        """E_inf and the moduli E_k, shape (K + 1,)."""
+        return np.array([self.modulus.equilibrium, *self.modulus.moduli])
+
+    @cached_property
+    def fadings(self) -> Array:
+        """The rates of `springs`, which are those of the moduli and none for E_inf."""
+        return np.array([0.0, *self.rates])
+
     def loads(self, depth: Array) -> tuple[Array, Array]:
         """y and dy/d depth at a depth; y is odd: below zero it pulls, so that a force ends by crossing zero."""
         force, slope = self.curve.force_and_slope(np.abs(depth) * self.scales.depth)
@@ -124,14 +134,14 @@ class Hereditary:
         return abs(power - round(power)) > WHOLE
 
     def early(self, times: Array) -> Array:
-        """States so soon after touch, times (n,), that the velocity is still that of touch; shape (4 + 2K, n).
+        """States so soon after touch, times (n,), that the velocity is still that of touch; shape (4 + K, n).
 
-        Depth, velocity, work done, force, memories z_k of load, x_k of depth.
+        Depth, velocity, work done, force, memories z_k of the load.
         """
         load, slope = self.loads(times)
-        states = np.empty((4 + 2 * self.terms, times.size))
+        states = np.empty((4 + self.terms, times.size))
         states[0], states[1] = times, 1.0
         states[2] = self.modulus.viscosity * load
         states[3] = self.modulus.glassy * load + self.modulus.viscosity * slope
-        states[4 : 4 + self.terms], states[4 + self.terms :] = load, times
+        states[4:] = load
         return states

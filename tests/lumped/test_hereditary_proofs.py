@@ -164,6 +164,45 @@ def test_ting_and_the_row_of_springs_agree_on_random_materials(
             assert row[name] == pytest.approx(exact[name], rel=1e-6), f"{name} of {scene}"
 
 
+def wild_scene(random: np.random.Generator, impact: Build) -> Scene:
+    """A network over ten decades of relaxation times, six of stiffness, with or without equilibrium and viscosity."""
+    terms = int(random.integers(1, 7))
+    return impact(
+        float(random.choice([0.0, 1.0, 1.0])),
+        tuple((10.0 ** random.uniform(-3.0, 3.0, terms)).tolist()),
+        tuple((10.0 ** random.uniform(-6.0, 4.0, terms)).tolist()),
+        float(random.choice([0.0, 10.0 ** random.uniform(-8.0, 1.0)])),
+        shape=random_shape(random, curved=True),
+    )
+
+
+def test_ting_follows_every_network_to_its_end(impact: Build, campaign_size: Callable[[int], int]) -> None:
+    random = np.random.default_rng(3625192)
+    for _ in range(campaign_size(120)):
+        scene = wild_scene(random, impact)
+        exact, clipped = values("ting", scene, 1e-6), values("correspondence", scene, 1e-6)
+        # the approach is common, and clipping only loses: both contact times and restitutions are too small
+        assert exact["peak_force"] == pytest.approx(clipped["peak_force"], rel=1e-6), scene
+        assert exact.keys() == clipped.keys()
+        if "restitution" in exact:
+            assert exact["duration"] >= clipped["duration"] * (1.0 - 1e-6), scene
+            assert clipped["restitution"] - 1e-6 <= exact["restitution"] <= 1.0, scene
+
+
+@pytest.mark.parametrize(
+    ("moduli", "times", "viscosity"),
+    [((1.05,), (3.5e-5,), 0.0), ((20.0, 12.0), (3e-4, 0.3), 1e-5), ((7.0,), (2e-3,), 3e-5)],
+)
+def test_ting_s_layer_at_the_turn_is_the_row_s(
+    moduli: tuple[float, ...], times: tuple[float, ...], viscosity: float, impact: Build
+) -> None:
+    # where a term relaxes within the layer the time since the turn is a millionth of the contact
+    scene = impact(1.0, moduli, times, viscosity, shape=Cone(20.0))
+    exact, row = values("ting", scene, 1e-8), values("mdr", scene, 1e-5)
+    for name in QUANTITIES:
+        assert row[name] == pytest.approx(exact[name], rel=1e-5), name
+
+
 # The audit's grid of steel impacts.
 
 # 5/32 in of steel dropped from 2 in, E0 = 1.05e11 Pa as contact modulus.
