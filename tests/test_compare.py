@@ -16,8 +16,9 @@ from fe_contact.commands.compare import law_names
 from fe_contact.reference import Solved, result_of, solve
 from fe_contact.report.compare import plot_comparison
 from fe_contact.validation.compare import DEFAULT_LAWS, Comparison, Judgement, compare
-from fe_contact.validation.deviations import deepest, rebound_steps
+from fe_contact.validation.deviations import rebound_steps
 from fe_contact.validation.law_pressure import LawPressure
+from fe_contact.validation.told import Told
 from fe_contact.validation.verdict import WITHIN, verdicts
 from lumped import laws, simulate
 from lumped.errors import BadInput
@@ -135,7 +136,7 @@ def test_a_scaled_measurement_is_called_so(polymer: tuple[Solved, Result], facto
 def test_the_instants_of_the_rebound_lie_after_maximum_depth(polymer: tuple[Solved, Result]) -> None:
     solved, result = polymer
     times = [solved.certified.march.snapshots[step].time for step in rebound_steps(solved)]
-    turn = deepest(solved)
+    turn = Told.by(solved).deepest
     velocity = np.interp(turn, result.history.time, result.history.velocity)
     assert velocity == pytest.approx(0.0, abs=0.02 * result.scene.velocity)
     assert len(times) == 3
@@ -186,7 +187,7 @@ def test_every_unknown_law_is_named_with_the_nearest(tmp_path: Path, capsys: pyt
 
 def test_no_law_named_is_a_fault() -> None:
     with pytest.raises(BadInput):
-        law_names("")
+        law_names("", Scene.load("polymer-sphere"))
 
 
 def test_an_unreadable_measurement_writes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -133,9 +133,7 @@ def test_files(tmp_path: Path, found: tuple[Curve, ...], checked: tuple[Check, .
     assert content["all_covered"]
 
 
-def test_the_chart_is_the_same_every_time(
-    tmp_path: Path, found: tuple[Curve, ...], checked: tuple[Check, ...]
-) -> None:
+def test_the_chart_is_the_same_every_time(tmp_path: Path, found: tuple[Curve, ...], checked: tuple[Check, ...]) -> None:
     first = [path.read_bytes() for path in plot_exponents(found, checked, tmp_path / "one")]
     assert first == [path.read_bytes() for path in plot_exponents(found, checked, tmp_path / "two")]
 

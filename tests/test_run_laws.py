@@ -97,4 +97,3 @@ def test_an_impact_too_hard_for_an_o_ring_names_a_cure_that_helps() -> None:
     with pytest.raises(NotReached, match=r"cure: a lower striker\.velocity") as refused:
         fe_contact.run(Scene.load("polymer-o-ring", {"striker.velocity": 8.0}), tolerance=5e-2)
     assert float(str(refused.value).split()[2]) <= 0.0025  # m, that of the section
-

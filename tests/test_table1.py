@@ -241,9 +241,11 @@ def test_files(tmp_path: Path, trials: Mapping[str, Trial]) -> None:
         rows = list(csv.DictReader(file))
     assert list(rows[0]) == list(COLUMNS)
     assert [int(row["number"]) for row in rows] == list(range(1, 9))
-    assert [row["D"] == "" for row in rows] == [row["alpha"] == "" for row in rows] == [
-        not one.single for one in examples()
-    ]
+    assert (
+        [row["D"] == "" for row in rows]
+        == [row["alpha"] == "" for row in rows]
+        == [not one.single for one in examples()]
+    )
     for row in rows:
         assert all(math.isfinite(float(row[name])) for name in COLUMNS if name.endswith("_Pa"))
     with (tmp_path / "table1-datum.csv").open(newline="", encoding="utf-8") as file:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault
+from lumped.scene import Scene
 
 SUMMARY = "the finite-element reference against lumped laws: scores, verdict, chart"
 
@@ -16,13 +17,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """SCENE [--laws a,b] [--measured CURVE.csv] [--tolerance T] [--set a.b=value ...] [--out DIR]."""
     base.scene_arguments(parser)
     base.output_arguments(parser)
-    parser.add_argument("--laws", help="lumped laws, separated by commas; default: all that the half-space has")
+    parser.add_argument("--laws", help="lumped laws, separated by commas; default: all that the target has")
     parser.add_argument("--measured", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N")
 
 
 def execute(args: argparse.Namespace) -> int:
     """Solve, judge, write, say the verdict; 0 or 3."""
-    from fe_contact.methods import settings
+    from fe_contact.methods import settings, simulate
     from fe_contact.reference import result_of, solve
     from fe_contact.report.compare import plot_comparison
     from fe_contact.validation.compare import compare
@@ -30,11 +31,14 @@ def execute(args: argparse.Namespace) -> int:
     from lumped.score import read_curve
 
     scene, table = base.read_scene(args)
-    given, names = settings(table, None, scene.source), law_names(args.laws)
+    given, names = settings(table, None, scene.source), law_names(args.laws, scene)
     measured = None if args.measured is None else read_curve(args.measured)
     progress = base.progress_of(args)
-    solved = solve(scene, given, progress)
-    reference = result_of(scene, solved)
+    if scene.model.inertia:
+        solved, reference = None, simulate(scene, "fe", given, progress=progress)
+    else:
+        solved = solve(scene, given, progress)
+        reference = result_of(scene, solved)
     progress("lumped laws")
     comparison = compare(solved, reference, names, measured)
     where = base.folder(args, "compare", scene)
@@ -48,14 +52,15 @@ def execute(args: argparse.Namespace) -> int:
     return base.DONE if reference.converged else base.NOT_REACHED
 
 
-def law_names(text: str | None) -> tuple[str, ...]:
+def law_names(text: str | None, scene: Scene) -> tuple[str, ...]:
     """Checked names of the laws asked for, each once; raises BadInput with every unknown one and the nearest."""
+    from fe_contact.methods import EXACT_WITH_INERTIA
     from fe_contact.validation.compare import DEFAULT_LAWS
     from lumped.errors import nearest
     from lumped.laws import available
 
     if text is None:
-        return DEFAULT_LAWS
+        return EXACT_WITH_INERTIA if scene.target.only_with_inertia else DEFAULT_LAWS
     names, known = tuple(dict.fromkeys(name.strip() for name in text.split(","))), available()
     faults = [
         Fault("--laws", "", f"{name!r}: accepted {', '.join(known)}{nearest(name, known)}")

@@ -12,12 +12,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from fe_contact.reference import Solved
 from fe_contact.report import style
 from fe_contact.report.history import caption
 from fe_contact.report.style import prefixed, readable
 from fe_contact.surface_pressure import felt
 from fe_contact.validation.compare import Comparison
-from fe_contact.validation.deviations import deepest, rebound_steps, surface_radii
+from fe_contact.validation.deviations import rebound_steps, surface_radii
 from fe_contact.validation.law_pressure import LawPressure
 from fe_contact.validation.verdict import verdicts
 from lumped.history import History
@@ -97,7 +98,7 @@ def _force(axes: Axes, comparison: Comparison) -> None:
         linewidth=0.0,
     )
     _mark_depth(axes, comparison, second)
-    turn = deepest(comparison.solved)
+    turn = comparison.told.deepest
     side, shift = ("left", 3.0) if turn < 0.6 * span else ("right", -3.0)
     axes.annotate("maximum depth", (second * turn, 0.0), (shift, 3.0), textcoords="offset points", ha=side,
                   fontsize=6.0, color="#666666")  # fmt: skip
@@ -108,18 +109,16 @@ def _force(axes: Axes, comparison: Comparison) -> None:
 
 def _distance(axes: Axes, comparison: Comparison) -> None:
     """|force - reference| over the peak, logarithmic, so that the error bar can be seen."""
-    certified = comparison.solved.certified
-    curve = certified.curve
+    told = comparison.told
     second, unit, span = _time_axis(axes, comparison)
-    peak = float(curve.dense_force.max())
     times = np.linspace(0.0, span, 1200)
-    inside = times <= curve.duration
-    bar = np.where(inside, certified.force_error(np.minimum(times, curve.duration)), 0.0) / peak
+    inside = times <= told.duration
+    bar = np.where(inside, told.force_error(np.minimum(times, told.duration)), 0.0) / told.peak
     top = np.maximum(bar[inside], LEAST_SHOWN)
     axes.fill_between(second * times[inside], LEAST_SHOWN, top, color=style.SKY, alpha=0.45, linewidth=0.0)
     for candidate, line in _candidates(comparison):
-        distance = np.abs(candidate.force_at(times) - curve.force(times)) / peak
-        ended = times > max(curve.duration, float(candidate.time[-1]))
+        distance = np.abs(candidate.force_at(times) - told.force(times)) / told.peak
+        ended = times > max(told.duration, float(candidate.time[-1]))
         axes.plot(second * times, np.where(ended, np.nan, np.maximum(distance, 0.5 * LEAST_SHOWN)), **line)
     _mark_depth(axes, comparison, second)
     axes.set(yscale="log", ylabel="share of the peak", ylim=(LEAST_SHOWN, 2.0))
@@ -142,15 +141,14 @@ def _radius(axes: Axes, comparison: Comparison) -> None:
 
 def _pressure(axes: Axes, comparison: Comparison) -> None:
     """Pressure at the last of the compared instants of the rebound, where a clipped law and the truth part most."""
-    steps = rebound_steps(comparison.solved)
-    if not steps:
+    solved = comparison.solved
+    steps = () if solved is None else rebound_steps(solved)
+    if solved is None or not steps:
         axes.set_axis_off()
-        told = comparison.solved.certified.march.snapshots
-        said = "no rebound before the end of the history" if told else "under a flat end: that of the indentation"
-        axes.text(0.0, 0.9, said, transform=axes.transAxes)
+        axes.text(0.0, 0.9, _without_pressure(solved), transform=axes.transAxes)
         return
-    truth = felt(comparison.solved.certified, steps[-1])
-    radii = surface_radii(comparison.solved)
+    truth = felt(solved.certified, steps[-1])
+    radii = surface_radii(solved)
     metre, length_unit = prefixed(radii[-1], "m")
     pascal, unit = prefixed(truth.values.max(), "Pa")
     axes.axhline(0.0, color="#4d4d4d", linewidth=0.5)
@@ -171,6 +169,14 @@ def _pressure(axes: Axes, comparison: Comparison) -> None:
     style.label(axes, "d", f"pressure in the rebound, at {readable(truth.time, 's', 3)}")
 
 
+def _without_pressure(solved: Solved | None) -> str:
+    """Why there is no pressure to show."""
+    if solved is None:
+        return "with waves the history alone is compared"
+    told = solved.certified.march.snapshots
+    return "no rebound before the end of the history" if told else "under a flat end: that of the indentation"
+
+
 def _time_axis(axes: Axes, comparison: Comparison) -> tuple[float, str, float]:
     """Factor and unit of time, and the latest end of any history, s."""
     histories = [comparison.reference.history, *(law.history for law in comparison.laws.values())]
@@ -182,4 +188,4 @@ def _time_axis(axes: Axes, comparison: Comparison) -> tuple[float, str, float]:
 
 def _mark_depth(axes: Axes, comparison: Comparison, second: float) -> None:
     """A thin line at the reference's maximum depth."""
-    axes.axvline(second * deepest(comparison.solved), color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
+    axes.axvline(second * comparison.told.deepest, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)

@@ -11,6 +11,7 @@ from fe_contact.reference import Solved
 from fe_contact.validation.deviations import force_bars, force_errors, pressure_error, radius_error
 from fe_contact.validation.nested_areas import NestedAreas, nested_areas
 from fe_contact.validation.slow_curve import known
+from fe_contact.validation.told import Told
 from lumped import simulate
 from lumped.errors import FeContactError
 from lumped.laws import get
@@ -51,10 +52,13 @@ class Judgement:
 class Comparison:
     """Reference, candidates and judgements; ``refused`` maps laws without an answer to the reason.
 
+    ``solved``: the reference's steps with their pressures, None with inertia, where its history tells all.
+
     ``nested``: whether the contact goes back through the areas it came through, which Ting's solution supposes.
     """
 
-    solved: Solved
+    solved: Solved | None
+    told: Told
     reference: Result
     laws: Mapping[str, Result]
     measured: Measured | None
@@ -63,7 +67,9 @@ class Comparison:
     nested: NestedAreas | None
 
 
-def compare(solved: Solved, reference: Result, names: tuple[str, ...], measured: Measured | None = None) -> Comparison:
+def compare(
+    solved: Solved | None, reference: Result, names: tuple[str, ...], measured: Measured | None = None
+) -> Comparison:
     """Judge laws by their names, and a measured curve where there is one. Raises BadInput for an unknown law."""
     members = {name: get(name) for name in names}
     scene, curve_error = known(reference.scene, reference.quantities["peak_depth"].value or 0.0)
@@ -74,29 +80,31 @@ def compare(solved: Solved, reference: Result, names: tuple[str, ...], measured:
             laws[name] = simulate(member.of(scene), scene, LAW_TOLERANCE)
         except FeContactError as failure:  # what has no answer is told, and the others go on
             refused[name] = str(failure)
-    judged = [_law(solved, reference, law, curve_error) for law in laws.values()]
-    judged += [] if measured is None else [_curve(solved, reference, measured)]
-    nested = nested_areas(reference.scene, solved)
-    return Comparison(solved, reference, laws, measured, tuple(judged), refused, nested)
+    told = Told.of(reference) if solved is None else Told.by(solved)
+    judged = [_law(solved, told, reference, law, curve_error) for law in laws.values()]
+    judged += [] if measured is None else [_curve(told, reference, measured)]
+    nested = None if solved is None else nested_areas(reference.scene, solved)
+    return Comparison(solved, told, reference, laws, measured, tuple(judged), refused, nested)
 
 
-def _law(solved: Solved, reference: Result, law: Result, curve_error: float) -> Judgement:
+def _law(solved: Solved | None, told: Told, reference: Result, law: Result, curve_error: float) -> Judgement:
     """``curve_error``: relative, of the forces on the load curve that the law follows."""
     errors = {name: _error(reference, law, name) for name in QUANTITIES}
-    errors |= {"contact_radius_rebound": radius_error(solved, law), "pressure_rebound": pressure_error(solved, law)}
+    errors["contact_radius_rebound"] = radius_error(told, law)
+    errors["pressure_rebound"] = None if solved is None else pressure_error(solved, law)
     scored = score(reference.history, law.history)
-    errors |= force_errors(solved, law.history) | {name: getattr(scored, name) for name in DISTANCES}
+    errors |= force_errors(told, law.history) | {name: getattr(scored, name) for name in DISTANCES}
     own = curve_error + float(law.history.force_error.max()) / (reference.quantities["peak_force"].value or np.inf)
     bars = {name: _bar(reference, name) + _bar(law, name) + curve_error for name in QUANTITIES}
-    bars |= force_bars(solved, own)
+    bars |= force_bars(told, own)
     return Judgement(law.method, 100 * scored.normalized_error, errors, bars)
 
 
-def _curve(solved: Solved, reference: Result, measured: Measured) -> Judgement:
+def _curve(told: Told, reference: Result, measured: Measured) -> Judgement:
     scored = score(reference.history, measured)
     errors: dict[str, float | None] = {name: getattr(scored, name) for name in (*QUANTITIES, *DISTANCES)}
-    errors |= {"contact_radius_rebound": None, "pressure_rebound": None} | force_errors(solved, measured)
-    bars = {name: _bar(reference, name) for name in QUANTITIES} | force_bars(solved, 0.0)
+    errors |= {"contact_radius_rebound": None, "pressure_rebound": None} | force_errors(told, measured)
+    bars = {name: _bar(reference, name) for name in QUANTITIES} | force_bars(told, 0.0)
     return Judgement("measured", 100 * scored.normalized_error, errors, bars)
 
 

@@ -8,6 +8,7 @@ from fe_contact.forms import Array
 from fe_contact.reference import Solved
 from fe_contact.surface_pressure import felt, nearest_step
 from fe_contact.validation.law_pressure import LawPressure
+from fe_contact.validation.told import Told
 from lumped.history import History
 from lumped.result import Result
 from lumped.score import Curve as Measured
@@ -15,43 +16,42 @@ from lumped.score import Curve as Measured
 REBOUND_SHARES = (0.75, 0.5, 0.25)  # of the force at maximum depth: instants at which pressures are compared
 RADIUS_UNTIL = 0.95  # of the shorter contact: later the radius falls like a root and shows the duration again
 PRESSURE_POINTS = 240
+ROUNDING = 1e-9  # of the contact, by which the times of one jump may differ
 
 
-def force_errors(solved: Solved, candidate: History | Measured) -> dict[str, float | None]:
+def force_errors(told: Told, candidate: History | Measured) -> dict[str, float | None]:
     """``held_until_max_depth`` relative to the reference's peak; ``history``, norm over norm."""
-    curve = solved.certified.curve
-    times = np.union1d(curve.dense_time, candidate.time)
-    force = curve.force(times)
+    times = (
+        _between_jumps(np.union1d(told.time, candidate.time)) if told.jumps else np.union1d(told.time, candidate.time)
+    )
+    force = told.force(times)
     difference = np.abs(candidate.force_at(times) - force)
     norms = np.trapezoid(difference**2, times) / np.trapezoid(force**2, times)
-    held = difference[times <= deepest(solved)].max() / force.max()
+    held = difference[times <= told.deepest].max() / force.max()
     return {"held_until_max_depth": float(held), "history": float(np.sqrt(norms))}
 
 
-def force_bars(solved: Solved, own: float) -> dict[str, float]:
+def _between_jumps(times: Array) -> Array:
+    """The middles of intervals that rounding alone has not made, s: at a jump itself no two curves agree."""
+    lasting = np.diff(times) > ROUNDING * times[-1]
+    return np.asarray(0.5 * (times[1:] + times[:-1])[lasting])
+
+
+def force_bars(told: Told, own: float) -> dict[str, float]:
     """What error bars leave open of :func:`force_errors`; ``own`` is the candidate's, relative to the peak."""
-    certified = solved.certified
-    time = certified.curve.dense_time
-    early = certified.force_error(time[time <= deepest(solved)]).max() / certified.curve.dense_force.max()
-    return {"held_until_max_depth": float(early) + own, "history": certified.total("history_l2") + own}
+    early = told.force_error(told.time[told.time <= told.deepest]).max() / told.peak
+    return {"held_until_max_depth": float(early) + own, "history": told.history_error + own}
 
 
-def deepest(solved: Solved) -> float:
-    """Time of the reference's maximum depth, s."""
-    curve = solved.certified.curve
-    return float(curve.dense_time[np.argmax(curve.dense.depth)])
-
-
-def radius_error(solved: Solved, law: Result) -> float | None:
+def radius_error(told: Told, law: Result) -> float | None:
     """Largest deviation of the contact radius in the rebound, relative to the largest; None without a rebound."""
-    curve, history = solved.certified.curve, law.history
-    time = curve.dense_time
-    end = RADIUS_UNTIL * min(curve.duration, float(history.time[-1]))
-    rebound = time[(time >= deepest(solved)) & (time <= end)]
+    time, history = told.time, law.history
+    end = RADIUS_UNTIL * min(told.duration, float(history.time[-1]))
+    rebound = time[(time >= told.deepest) & (time <= end)]
     if rebound.size == 0:
         return None
-    deviation = np.interp(rebound, history.time, history.contact_radius) - curve.radius_at(rebound)
-    return float(np.abs(deviation).max() / curve.radius_at(time).max())
+    deviation = np.interp(rebound, history.time, history.contact_radius) - told.radius(rebound)
+    return float(np.abs(deviation).max() / told.radius(time).max())
 
 
 def pressure_error(solved: Solved, law: Result) -> float | None:
@@ -91,7 +91,7 @@ def rebound_steps(solved: Solved) -> tuple[int, ...]:
     if not solved.certified.march.snapshots:
         return ()
     curve = solved.certified.curve
-    rebound = curve.dense_time >= deepest(solved)
+    rebound = curve.dense_time >= Told.by(solved).deepest
     force = curve.dense_force[rebound]
     fallen = 1 - np.maximum.accumulate(force[::-1])[::-1] / force[0]
     reached = [1 - share for share in REBOUND_SHARES if 1 - share < fallen[-1]]

@@ -24,14 +24,19 @@ def motion(moving: Moving, scene: Scene, numerics: WaveNumerics) -> Motion:
 
     Raises the named failures of :mod:`fe_contact.errors`.
     """
-    stiffness = scene.contact_modulus.glassy or scene.contact_modulus.relaxed
-    penalty = numerics.penalty * stiffness / numerics.contact_radius
+    penalty = numerics.penalty * _stiffness(scene, numerics) / numerics.contact_radius
     choices = Choices(
         scheme=get(WAVE_SCHEMES, numerics.scheme).of(numerics.rho),
         enforced=Enforced(get(ENFORCEMENTS, numerics.enforcement), penalty),
         step=numerics.contact_time / numerics.steps,
     )
     return march(moving.body, moving.velocity, choices, scene.end_time, moving.watch, left)
+
+
+def _stiffness(scene: Scene, numerics: WaveNumerics) -> float:
+    """Of the first answer until the force peaks, Pa: at once, and what a dashpot in parallel adds."""
+    modulus = scene.contact_modulus
+    return modulus.glassy + modulus.viscosity / (numerics.peak_share * numerics.contact_time)
 
 
 def left(sample: Sample) -> bool:

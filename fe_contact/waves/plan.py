@@ -11,7 +11,7 @@ from typing import Any
 
 from fe_contact.far_field.absorbing import wave_speeds
 from fe_contact.numerics import RANGES
-from fe_contact.plan import Plan
+from fe_contact.plan import EARLY_PEAK, SOONEST_PEAK, Plan
 from fe_contact.waves.numerics import WaveNumerics
 from lumped.laws import mdr
 from lumped.model_ledger import Peak, model_ledger
@@ -20,7 +20,9 @@ from lumped.scene import Scene
 DEFAULT_TOLERANCE = 3e-3  # of a peak force; what chatter at the contact's edge leaves is about a third
 SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
 ELEMENTS = 9.0  # along every contact radius
+VISCOUS = 2.0  # times as many under a dashpot in parallel, which differentiates the mesh's error
 STEPS = 320  # along a contact
+MOST_EARLY = 4.0  # times as many at most for a force that peaks early
 TRAVEL = 0.5  # of the contact time: an echo from the far radius returns after the contact
 NEAREST = 20.0  # contact radii: the far springs' own need
 SPREAD = 2.0  # lengths over which a dashpot in parallel, which has no wave speed, spreads a motion in a contact
@@ -43,15 +45,16 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     scales = mdr.estimate(scene, SPRINGS)
     contact_time = scales.duration or scene.end_time
     finer = max(1.0, DEFAULT_TOLERANCE / tolerance)
+    peak_share = min(max(scales.peak_time / contact_time, SOONEST_PEAK), 1.0)
     chosen = {
         **DEFAULTS,
         "tolerance": tolerance,
-        "elements_per_contact": ELEMENTS * math.sqrt(finer),
-        "steps": 4 * math.ceil(STEPS * math.sqrt(finer) / 4),
+        "elements_per_contact": ELEMENTS * math.sqrt(finer) * (VISCOUS if scene.contact_modulus.viscosity else 1.0),
+        "steps": 4 * math.ceil(STEPS * math.sqrt(finer) * min(max(1.0, EARLY_PEAK / peak_share), MOST_EARLY) / 4),
         "far_radius": _far_radius(scene, scales.contact_radius, contact_time),
         "contact_radius": scales.contact_radius,
         "contact_time": contact_time,
-        "peak_share": min(scales.peak_time / contact_time, 1.0),
+        "peak_share": peak_share,
     }
     peak = Peak(scales.peak_force, scales.peak_depth, scales.contact_radius, 2 * scales.peak_time)
     return Plan(WaveNumerics(**{**chosen, **given}), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from fe_contact.certify import CAUSES, SAFETY
+from fe_contact.curve import PEAK_SHARE
 from fe_contact.forms import Array
 from fe_contact.numerics import Numerics
 from fe_contact.plan import Plan
@@ -21,6 +22,7 @@ from lumped.scene import Scene
 
 ROUNDING = 1e-9  # relative, of what adds up over the steps
 COMPARED = 2001  # places along the contact at which two histories are compared
+LATE = 0.75  # of the contact, from where on motion counts for that at the end
 AWAY = 0.02  # share of the contact within which a change counts as the error of its neighbours
 
 
@@ -50,7 +52,8 @@ class Bars:
     @cached_property
     def by_cause(self) -> dict[str, dict[str, Quantity]]:
         """The quantities with the bars of each cause."""
-        return {cause: bars(self.fine.reading, other.reading) for cause, other in self.others.items()}
+        alone = len(self.fine.contacts) < 2
+        return {cause: bars(self.fine.reading, other.reading, alone) for cause, other in self.others.items()}
 
     @property
     def quantities(self) -> dict[str, Quantity]:
@@ -69,18 +72,39 @@ class Bars:
         return {n: nothing | {c: own[n].error or 0.0 for c, own in self.by_cause.items()} for n in UNITS}
 
 
-def bars(fine: Reading, coarse: Reading) -> dict[str, Quantity]:
-    """Quantities with SAFETY times what twice the steps change as bars: order one, as at the fronts."""
-    found = {}
+def bars(fine: Reading, coarse: Reading, alone: bool) -> dict[str, Quantity]:
+    """Quantities with SAFETY times what twice the steps change as bars: order one, as at the fronts.
+
+    Of a contact ``alone`` the largest change nearby counts: at one instant two histories may cross.
+    """
+    found, nearby = {}, _nearby(fine, coarse) if alone else {}
     for name, unit in UNITS.items():
         value, other = fine.quantities[name], coarse.quantities[name]
         error = None
         if name == "history_l2":
             error = SAFETY * _distance(fine, coarse)
         elif value is not None:
-            error = np.inf if other is None else SAFETY * abs(value - other) + ROUNDING * abs(value)
+            error = np.inf if other is None else SAFETY * max(abs(value - other), nearby.get(name, 0.0))
+            error += ROUNDING * abs(value)
         found[name] = Quantity(value, error, unit)
     return found
+
+
+def _nearby(fine: Reading, coarse: Reading) -> dict[str, float]:
+    """The largest changes of force and depth near their peaks, of motion late in the contact; at times of both."""
+    force, change = _compared(fine, coarse)
+    end, start = fine.rows[TIME, -1], abs(fine.rows[VELOCITY, 0])
+    both = coarse.rows[:, coarse.rows[TIME] < end]
+    depth, speed = (np.interp(both[TIME], fine.rows[TIME], fine.rows[row]) for row in (DEPTH, VELOCITY))
+    late, deep = both[TIME] > LATE * end, depth > PEAK_SHARE * depth.max()
+    slower = float(np.abs(speed - both[VELOCITY])[late].max(initial=0.0))
+    turned = abs(float(fine.rows[VELOCITY, 0] - fine.rows[VELOCITY, -1])) or np.inf
+    return {
+        "peak_force": float(change[force > PEAK_SHARE * force.max()].max()),
+        "peak_depth": float(np.abs(depth - both[DEPTH])[deep].max(initial=0.0)),
+        "restitution": slower / start,
+        "impulse": slower / turned * abs(fine.quantities["impulse"] or 0.0),
+    }
 
 
 def _distance(fine: Reading, coarse: Reading) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -177,7 +178,20 @@ def test_an_equivalent_modulus_is_no_wave_medium() -> None:
         Scene.load("steel-ball", {"model.inertia": True})
 
 
-@pytest.mark.parametrize("command", ["compare", "tradeoff"])
-def test_commands_without_waves_say_so(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main([command, "steel-ball-waves", "--out", str(tmp_path / "out")]) == 2
+def test_a_study_without_an_exact_impact_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["tradeoff", "steel-ball-waves", "--out", str(tmp_path / "out")]) == 2
     assert "model.inertia" in capsys.readouterr().err
+
+
+def test_compared_with_laws_that_know_no_waves_the_ball_comes_back_slower(tmp_path: Path) -> None:
+    """By the energy that is radiated, 1.5 per cent, half of which is the restitution's share."""
+    coarse = ["--tolerance", "0.05", "--set", "numerics.steps=100", "--set", "numerics.elements_per_contact=4"]
+    assert main(["compare", "steel-ball-waves", *coarse, "--laws", "mdr", "--out", str(tmp_path)]) == 0
+    content = json.loads((tmp_path / "compare.json").read_text(encoding="utf-8"))
+    (line,) = content["verdict"]
+    assert "restitution" in line
+    assert "too high" in line
+    errors = content["candidates"]["mdr"]["errors"]
+    assert errors["restitution"] == pytest.approx(1.0 - 0.9923, abs=3e-4)
+    assert errors["pressure_rebound"] is None
+    assert (tmp_path / "compare.png").exists()

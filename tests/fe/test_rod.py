@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from fe_contact.cli import main
 from fe_contact.methods import simulate
+from fe_contact.validation.verdict import WITHIN
 from fe_contact.waves.targets import rod
 from lumped import BadInput, Result, Scene, laws
 from lumped.indenter import Indenter
@@ -92,6 +96,13 @@ def test_a_relaxation_that_takes_for_ever_is_elastic_and_a_quick_one_costs_energ
     found = simulate(Scene.load("rod", {"target.material": lossy | common}), "fe", loose)
     assert found.energy["viscous"] > 0.01 * found.energy["in"]
     assert abs(found.energy["residual"]) < 1e-6 * found.energy["in"]
+
+
+def test_the_exact_waves_lie_within_the_reference_of_a_comparison(tmp_path: Path) -> None:
+    """Jumps at the same times, so that at no time between them the forces differ by more than the bar."""
+    assert main(["compare", "rod", "--out", str(tmp_path)]) == 0
+    content = json.loads((tmp_path / "compare.json").read_text(encoding="utf-8"))
+    assert content["verdict"] == [f"rod_waves: {WITHIN}"]
 
 
 def test_a_rod_has_no_slow_indentation() -> None:
