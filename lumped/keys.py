@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, Protocol
 
 from lumped.errors import BadInput, Fault, nearest
@@ -132,6 +133,19 @@ class Text:
         return value
 
 
+@dataclass(frozen=True)
+class File:
+    """A file's name, maybe with folders before it; it reads as a path, which `placed` puts where it belongs."""
+
+    required: bool = True
+    accepted: str = "the name of a file, from the folder of the scene file"
+
+    def read(self, value: object) -> Path:
+        if not isinstance(value, str | Path) or not str(value).strip() or not str(value).isprintable():
+            raise ValueError
+        return Path(value)
+
+
 def read_table(
     source: str, path: str, table: Mapping[str, object], keys: Mapping[str, Key]
 ) -> tuple[dict[str, Any], list[Fault]]:
@@ -148,6 +162,11 @@ def read_table(
         except ValueError as error:
             faults.append(Fault(source, _join(path, name), str(error) or _refused(key, table[name])))
     return values, faults
+
+
+def placed(values: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """The same values, files from this folder on."""
+    return {name: folder / value if isinstance(value, Path) else value for name, value in values.items()}
 
 
 def optional(keys: Mapping[str, Any]) -> dict[str, Any]:

@@ -9,13 +9,14 @@ from types import ModuleType
 from typing import Any
 
 from lumped import data
+from lumped.alternatives import alternatives
 from lumped.errors import BadInput, Fault
 from lumped.indenter import Indenter
-from lumped.keys import Key, optional, read_table, unknown_key
+from lumped.keys import Key, optional, placed, read_table, unknown_key
 from lumped.materials import Material
 from lumped.materials.material import KEYS as MATERIAL_KEYS
 from lumped.materials.material import bulk_fault
-from lumped.members import Member, available, get
+from lumped.members import Member, get
 from lumped.pair import striker_material_faults
 from lumped.scene import Scene
 from lumped.scene_tables import (
@@ -45,20 +46,17 @@ def load(source: str | Path, overrides: Mapping[str, object] | None = None) -> t
     `overrides` maps dotted keys ("striker.velocity") to values that replace the file's. Raises BadInput
     with every fault found, at most 20.
     """
-    path = resolved(source)
-    return read(parsed(path), path.name, overrides)
+    return _reader(source, overrides).scene()
 
 
 def load_for_fit(source: str | Path, overrides: Mapping[str, object] | None = None) -> tuple[Scene, Table]:
     """A scene whose law is yet to be found: mass and velocity are enough. Raises BadInput with every fault."""
-    path = resolved(source)
-    return _Reader(path.name, overridden(parsed(path), overrides or {}, path.name)).scene(law_known=False)
+    return _reader(source, overrides).scene(law_known=False)
 
 
 def load_indenter(source: str | Path, overrides: Mapping[str, object] | None = None) -> tuple[Indenter, Table]:
     """What a slow indentation needs of a file, and its raw `[numerics]`. Raises BadInput with every fault."""
-    path = resolved(source)
-    return _Reader(path.name, overridden(parsed(path), overrides or {}, path.name)).indenter()
+    return _reader(source, overrides).indenter()
 
 
 def resolved(source: str | Path) -> Path:
@@ -76,12 +74,19 @@ def read(
     return _Reader(source, overridden(table, overrides or {}, source)).scene()
 
 
-class _Reader:
-    """Walks the tables once and keeps every fault on the way."""
+def _reader(source: str | Path, overrides: Mapping[str, object] | None) -> _Reader:
+    """What reads the file of a path or a packaged name. Raises BadInput."""
+    path = resolved(source)
+    return _Reader(path.name, overridden(parsed(path), overrides or {}, path.name), path.parent)
 
-    def __init__(self, source: str, raw: Table) -> None:
+
+class _Reader:
+    """Walks the tables once and keeps every fault on the way; files are named from `folder` on."""
+
+    def __init__(self, source: str, raw: Table, folder: Path = Path()) -> None:
         self.source = source
         self.raw = raw
+        self.folder = folder
         self.faults: list[Fault] = []
 
     def scene(self, law_known: bool = True) -> tuple[Scene, Table]:
@@ -193,9 +198,12 @@ class _Reader:
     def network(self, path: str, law: ModuleType, values: Table, common: Table) -> Material | None:
         """The material of a network's checked values."""
         try:
-            young = law.of(**values)
+            young = law.of(**placed(values, self.folder))
         except ValueError as error:
             self.faults.append(Fault(self.source, path, str(error)))
+            return None
+        except BadInput as bad:
+            self.faults += bad.faults
             return None
         message = bulk_fault(common.get("constant", "poisson"), common.get("bulk_modulus"), young.relaxed)
         if message:
@@ -226,18 +234,3 @@ class _Reader:
         values, faults = read_table(self.source, path, table, keys)
         self.faults += faults
         return values
-
-
-def alternatives(package: str, name: object) -> tuple[Mapping[str, Key], ...]:
-    """The sets of keys of the member called `name`; of an unknown member the keys of all, none required."""
-    if isinstance(name, str) and name in available(package):
-        return _sets(get(package, name))
-    every: dict[str, Key] = {}
-    for member in available(package):
-        for keys in _sets(get(package, member)):
-            every |= optional(keys)
-    return (every,)
-
-
-def _sets(module: ModuleType) -> tuple[Mapping[str, Key], ...]:
-    return module.KEYS if isinstance(module.KEYS, tuple) else (module.KEYS,)

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from lumped import data
+from lumped.alternatives import alternatives
 from lumped.errors import BadInput, Fault, nearest
-from lumped.keys import Choice, Key, Number, Text, read_table, unknown_key
+from lumped.keys import Choice, Key, Number, Text, placed, read_table, unknown_key
 from lumped.materials import Material
 from lumped.materials.material import KEYS as MATERIAL_KEYS
 from lumped.members import Member
@@ -27,7 +28,7 @@ from lumped.pounding_tmd.system import (
     Ring,
     Start,
 )
-from lumped.scene_file import NETWORKS, alternatives
+from lumped.scene_file import NETWORKS
 from lumped.toml_file import overridden, parsed
 
 FOLDER, DEFAULT = "ptmd", "paper"
@@ -67,7 +68,7 @@ def load(source: str | Path = DEFAULT, overrides: Mapping[str, object] | None = 
             known = f"neither a file nor a packaged case; packaged: {', '.join(names())}{nearest(path.name, names())}"
             raise BadInput(Fault(path.name, "", known))
         path = data.directory() / FOLDER / f"{path.name}.toml"
-    return read(parsed(path), path.name, overrides)
+    return _Reader(path.name, overridden(parsed(path), overrides or {}, path.name), path.parent).case()
 
 
 def read(table: Mapping[str, object], source: str = "ptmd", overrides: Mapping[str, object] | None = None) -> Case:
@@ -76,11 +77,12 @@ def read(table: Mapping[str, object], source: str = "ptmd", overrides: Mapping[s
 
 
 class _Reader:
-    """Walks the tables once and keeps every fault on the way."""
+    """Walks the tables once and keeps every fault on the way; files are named from `folder` on."""
 
-    def __init__(self, source: str, raw: Table) -> None:
+    def __init__(self, source: str, raw: Table, folder: Path = Path()) -> None:
         self.source = source
         self.raw = raw
+        self.folder = folder
         self.faults: list[Fault] = []
 
     def case(self) -> Case:
@@ -138,7 +140,7 @@ class _Reader:
             return None
         common = {key: values.pop(key) for key in MATERIAL_KEYS if key in values}
         try:
-            return Material(values.pop("law").of(**values), **common)
+            return Material(values.pop("law").of(**placed(values, self.folder)), **common)
         except ValueError as error:
             self.faults.append(Fault(self.source, path, str(error)))
         except BadInput as bad:

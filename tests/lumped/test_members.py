@@ -6,6 +6,8 @@ import dataclasses
 import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -14,7 +16,7 @@ from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS
 from lumped.shapes import Shape
 from lumped.targets import Target
 
-SAMPLES = {
+SAMPLES: dict[str, list[dict[str, Any]]] = {
     "elastic": [{"E": 1e6}],
     "kelvin_voigt": [{"E": 1e6, "eta": 1e3}],
     "maxwell": [{"E": 1e6, "eta": 1e3}],
@@ -22,6 +24,7 @@ SAMPLES = {
     "prony": [{"E_inf": 1e6, "E": (1e6,), "tau": (1e-3,)}],
     "operators": [{"p": (1.0, 1e-3), "q": (1e6, 2e3)}],
     "fractional_zener": [{"E_inf": 1e6, "E_glass": 1e7, "tau": 1e-2, "alpha": 0.5}],
+    "measured": [{"file": Path(__file__).parent / "moduli.csv"}],
 }
 SHAPES = {
     "sphere": {"radius": 0.01},

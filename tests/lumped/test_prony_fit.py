@@ -206,6 +206,44 @@ def test_fractional_solid_is_a_material_of_every_law() -> None:
     assert other == pytest.approx(mdr.quantities["peak_force"].value, rel=1e-3)
 
 
+def measured_scene(folder: Path, header: str = "frequency_Hz") -> Path:
+    """A scene file beside what a rheometer would measure of the packaged polymer, 1e-2 to 1e4 Hz."""
+    data = DynamicModuli.of(
+        Scene.load("polymer-sphere").geometry.material.young, 2.0 * math.pi * np.logspace(-2, 4, 61)
+    )
+    rows = np.column_stack([data.omega / (2.0 * math.pi), data.storage, data.loss])
+    np.savetxt(folder / "moduli.csv", rows, delimiter=",", header=f"{header},storage_Pa,loss_Pa", comments="")
+    path = folder / "measured.toml"
+    path.write_text(
+        "[striker]\nshape = 'sphere'\nradius = 0.006\nmass = 0.05\nvelocity = 0.02\n[target]\nshape = 'half_space'\n"
+        "[target.material]\nlaw = 'measured'\nfile = 'moduli.csv'\nnu = 0.45\n"
+    )
+    return path
+
+
+def test_a_scene_names_the_moduli_measured_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    path = measured_scene(tmp_path)
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    scene, known = Scene.load(path), Scene.load("polymer-sphere")
+    found, exact = (simulate(laws.ting.of(each), each, 1e-7) for each in (scene, known))
+    for name in ("peak_force", "duration", "restitution"):
+        assert found.quantities[name].value == pytest.approx(exact.quantities[name].value, rel=1e-5), name
+    (series,) = (entry for entry in found.model_ledger if entry.effect == "material series")
+    assert series.treated.startswith("fitted to ")
+    assert Scene.from_dict(scene.to_dict()).geometry.material.young == scene.geometry.material.young
+
+
+def test_a_table_of_moduli_that_cannot_be_used_is_named(tmp_path: Path) -> None:
+    path = measured_scene(tmp_path, header="frequency")
+    with pytest.raises(BadInput, match=r"moduli.csv: frequency_Hz: missing column; accepted"):
+        Scene.load(path)
+    with pytest.raises(BadInput, match=r"nowhere.csv: cannot be read"):
+        Scene.load(path, {"target.material.file": "nowhere.csv"})
+    with pytest.raises(BadInput, match=r"target.material.file: 3 is not accepted; accepted: the name of a file"):
+        Scene.load(path, {"target.material.file": 3})
+
+
 def test_a_fit_travels_with_the_table_of_its_material() -> None:
     known = fractional_zener.of(1e6, 2e6, 0.01, 0.5)
     table = Material(known, 0.3).to_dict()

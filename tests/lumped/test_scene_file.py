@@ -154,10 +154,15 @@ def test_all_faults_come_at_once_but_at_most_twenty() -> None:
 
 def test_what_is_not_built_yet_says_what_is() -> None:
     (fault,) = [f for f in faults(changed("striker.shape", "torus")) if "striker.shape" in f]
-    assert "not available in this version; available: cone, cylinder, plate, power, prism, punch, sphere" in fault
+    assert "not available in this version; accepted: cone, cylinder, plate, power, prism, punch, sphere" in fault
     assert any("target.shape" in f and "half_space" in f for f in faults(changed("target.shape", "plank")))
     (fault,) = [f for f in faults(changed("striker.material", {"law": "elastic"})) if "striker.material" in f]
     assert "struck by a rigid body in this version" in fault
+
+
+def test_an_unknown_network_may_mean_anything_by_a_key_that_is_several_things() -> None:
+    (fault,) = faults(changed("target.material", {"law": "prosy", "E": 1e6, "E_inf": 1e6, "nu": 0.3}))
+    assert "did you mean prony?" in fault
 
 
 def test_inertia_names_the_missing_density_too() -> None:

@@ -1,0 +1,18 @@
+"""Storage and loss moduli measured over frequency: the Prony series closest to them, its deviation in the model ledger.
+
+The table has the columns storage_Pa, loss_Pa and one of frequency_Hz, angular_frequency_rad_per_s.
+"""
+
+from pathlib import Path
+
+from lumped.keys import File, Flag
+from lumped.materials.dynamic_moduli import DynamicModuli
+from lumped.materials.prony_fit import of_dynamic
+from lumped.materials.relaxation import Relaxation
+
+KEYS = ({"file": File(), "viscous": Flag(required=False)},)
+
+
+def of(file: Path, viscous: bool = False) -> Relaxation:
+    """E(t) of a CSV file of Young's moduli; `viscous` allows for a dashpot in parallel. Raises BadInput."""
+    return of_dynamic(DynamicModuli.read_csv(file), viscous=viscous).relaxation
