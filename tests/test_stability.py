@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import json
+import time
 from collections.abc import Callable
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -207,6 +209,32 @@ def test_an_interrupted_study_resumes(
     assert np.isfinite(again[0]["drift"])
 
 
+def test_a_study_that_is_killed_resumes(
+    few: list[dict[str, Any]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Killed at its second case, it measures that one alone the next time."""
+    calls = []
+
+    def stuck(study: str, case: dict[str, Any]) -> Any:
+        if case == few[1]:
+            time.sleep(600.0)
+        return row(study, case)
+
+    monkeypatch.setattr(stability_files, "row", stuck)
+    running = get_context("fork").Process(
+        target=stability_files.rows_of, args=(True, 1, tmp_path, lambda message: None)
+    )
+    running.start()
+    while not (tmp_path / stability_files.KEPT).exists() or not (tmp_path / stability_files.KEPT).read_text():
+        time.sleep(0.01)
+    running.kill()
+    running.join()
+    monkeypatch.setattr(stability_files, "row", lambda study, case: calls.append(case) or row(study, case))
+    resumed = stability_files.rows_of(True, 1, tmp_path, lambda message: None)
+    assert calls == [few[1]]
+    assert [one["failure"] for one in resumed] == ["", "MotionUnbounded"]
+
+
 def test_the_chart_shows_every_case(tmp_path: Path) -> None:
     from fe_contact.report.stability import plot_stability
 
@@ -214,7 +242,8 @@ def test_the_chart_shows_every_case(tmp_path: Path) -> None:
     limits = [{"study": "explicit_limit", **_limit("lumped", 1.0, 0.5), "gain": 0.1, "failure": ""}]
     maps = [{**r, "study": "bouncing"} for r in rows]
     paths = plot_stability([*rows, *limits, *maps], tmp_path)
-    assert {p.name for p in paths} == {f"{s}.{kind}" for s in available(STUDIES) for kind in ("svg", "png")}
+    shown = ("table", "explicit_limit", "bouncing")
+    assert {p.name for p in paths} == {f"{study}.{kind}" for study in shown for kind in ("svg", "png")}
     assert "named failure" in (tmp_path / "table.svg").read_text()
 
 

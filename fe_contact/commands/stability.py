@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from fe_contact.validation.stability.base import Row
 
-SUMMARY = "maps of energy, ripple, penetration and failures over scheme, mass, enforcement, penalty and time step"
+SUMMARY = "maps of where methods break: schemes, masses, penalties, locking, relaxation, exits, gaps, far ends"
 
 
 class Bars(NamedTuple):

@@ -11,6 +11,7 @@ from dataclasses import replace
 from fe_contact.contact import ContactProblem, ContactSolution, Touching, count, moved, solve
 
 SOLVES = 2
+SOFT = True
 
 
 def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:

@@ -8,6 +8,7 @@ from fe_contact.contact import ContactProblem, ContactSolution, Touching, solve
 from fe_contact.forms import Array
 
 SOLVES = 1
+SOFT = True
 
 
 def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:

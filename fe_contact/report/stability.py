@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from fe_contact.report import style
 from fe_contact.validation.stability.base import STUDIES, Chart, Measure, Row
-from lumped.members import available, get
+from lumped.members import get
 
 CELL, LETTER = 0.16, 0.062  # height of a row, width of a letter of its name, in
 DECADES = 2.0  # either side of the limit that the colours span
@@ -25,9 +25,9 @@ LINES = [
 
 
 def plot_stability(rows: Sequence[Row], where: Path) -> list[Path]:
-    """Write ``<study>.svg`` and ``.png`` of every study into the folder ``where``; their paths."""
+    """Write ``<study>.svg`` and ``.png`` of every study that has rows into the folder ``where``; their paths."""
     found = list[Path]()
-    for study in available(STUDIES):
+    for study in dict.fromkeys(row["study"] for row in rows):
         own = [row for row in rows if row["study"] == study]
         module = get(STUDIES, study)
         with style.look():

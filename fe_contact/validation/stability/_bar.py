@@ -27,7 +27,6 @@ TRANSIT = BAR.length / SPEED
 PERIOD = 16 * TRANSIT  # two contacts of two transits each
 TENTH = 10  # contact whose start is judged, or the last of fewer
 MIDDLE = (0.1, 0.9)  # of a plateau, where its ripple is measured
-BY_PENALTY = ("penalty", "corrected")  # enforcements whose answer depends on it
 DEFAULT: Mapping[str, Any] = {  # what ``fe-contact run bar`` takes
     "scheme": "staged",
     "rho": 1.0,

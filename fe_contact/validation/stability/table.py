@@ -40,10 +40,10 @@ KEYS = ("scheme", "rho", "mass", "tip", "enforcement")
 
 
 def cases(quick: bool) -> list[Case]:
-    """Quick: fewer elements, only the step in which a wave crosses one of them."""
-    fixed = {"penalty": 1.0, "elements": 40 if quick else 100, "periods": 10}
-    steps = (1.0,) if quick else (1.0, 2.0)
-    return [{**dict(zip(KEYS, row, strict=True)), **fixed, "cfl": cfl} for row in ROWS for cfl in steps]
+    """Quick: a scheme of every kind, the default among them, in steps in which a wave crosses an element."""
+    rows, steps = (ROWS[:: len(ROWS) // 3], (1.0,)) if quick else (ROWS, (1.0, 2.0))
+    fixed = {"penalty": 1.0, "elements": 100, "periods": 10}
+    return [{**dict(zip(KEYS, row, strict=True)), **fixed, "cfl": cfl} for row in rows for cfl in steps]
 
 
 def measure(case: Case) -> dict[str, Any]:

@@ -15,6 +15,7 @@ import numpy as np
 from fe_contact.bodies.bar import TIP, Bar, falling, pitch
 from fe_contact.dynamics.march import Choices, march
 from fe_contact.dynamics.pressed import Enforced
+from fe_contact.enforcement import is_soft
 from fe_contact.numerics import ENFORCEMENTS, MASSES, WAVE_SCHEMES
 from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
@@ -33,7 +34,6 @@ GRAVITY = 9.81
 STEPS, MANY, MOST = 200, 1600, 12_800  # while a wave goes to the far end and back: at first, and at all
 LIGHT = 32.0  # of them in the part of the bar that is as heavy as the mass behind it
 PAUSE = 0.25  # of that time within which several contacts count as one
-BY_PENALTY = ("penalty", "corrected")  # whose answer depends on it
 
 
 def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
@@ -85,7 +85,7 @@ def usual_tip(scene: Scene) -> float:
 def _varied(scene: Scene, numerics: WaveNumerics) -> dict[str, WaveNumerics]:
     """Settings with one cause of error changed: steps and elements together; what a penalty lets in; another mass."""
     found = {"time_step": numerics.varied(steps=max(numerics.steps // 2, 8))}
-    if numerics.enforcement in BY_PENALTY:
+    if is_soft(numerics.enforcement):
         found["penalty"] = numerics.varied(penalty=numerics.penalty / 2)
     if numerics.mass != usual_mass(scene):
         found["mesh"] = numerics.varied(mass=usual_mass(scene))
