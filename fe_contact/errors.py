@@ -53,6 +53,14 @@ class ContactTooWide(NotReached):
         super().__init__(f"{reason}; cure: smaller depths")
 
 
+class BodyTooThin(NotReached):
+    """The body is so thin beside the contacts to expect that no mesh of it can be afforded."""
+
+    def __init__(self, width: float, thickness: float, most: float) -> None:
+        reason = f"a fine mesh {width:.2g} m wide on a body {thickness:g} m thick"
+        super().__init__(f"{reason}: accepted up to {most:g} times as wide; cure: smaller depths, or a thicker body")
+
+
 class MotionUnbounded(NotReached):
     """A time integrator lost its stability."""
 

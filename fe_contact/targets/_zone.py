@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from fe_contact.errors import BodyTooThin
 from fe_contact.forms import Array
 from lumped.shapes import Shape
 
@@ -21,6 +22,7 @@ SPHERE_REFINEMENT = 3.0  # the same on spheres, of which two may touch whose mes
 WIDEST = 1.2  # rad from the first touch: a contact on a circle ends before
 MESHES_KEPT = 8  # of every target, with what contact knows of them: some 10 MB each
 MARGIN = 1.35  # largest radius of the fine mesh over that of the contacts expected
+WIDEST_THIN = 130.0  # thicknesses of the body that a fine mesh may be wide: its elements shrink with the thickness
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,13 @@ class Zone:
         angles = np.arcsin(np.minimum(radii / radius, 1.0))
         reference = min(MARGIN * float(angles.max()), WIDEST)
         return cls(reference, min(float(angles.min()) / reference, 1.0))
+
+
+def thickness_over(width: float, thickness: float) -> float:
+    """Thickness of a body over the width of its fine mesh, both m. Raises BodyTooThin."""
+    if width > WIDEST_THIN * thickness:
+        raise BodyTooThin(width, thickness, WIDEST_THIN)
+    return thickness / width
 
 
 def smallest_struck(shape: Shape) -> float:

@@ -24,6 +24,7 @@ from fe_contact.targets._zone import (
     Zone,
     held,
     smallest_struck,
+    thickness_over,
 )
 from lumped.geometry import Geometry
 from lumped.indenter import Indenter
@@ -39,7 +40,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     assert isinstance(target, Layer)
     rim = indenter.shape.fixed_radius
     zone = Zone.of(radii) if rim is None else Zone(rim, 1.0)
-    thickness = target.thickness / zone.reference
+    thickness = thickness_over(zone.reference, target.thickness)
     refinement = LINE_REFINEMENT if indenter.shape.plane else REFINEMENT
     elements, width = refinement * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
     sizes, bonded = (elements, zone.smallest if rim is None else None, thickness, width), target.base == "bonded"
@@ -61,7 +62,7 @@ def _shape(geometry: Geometry, numerics: Numerics) -> tuple[Sizes, int, bool, bo
     """Sizes of the mesh in an impact, order of its elements, whether bonded, whether in plane strain."""
     target = geometry.target
     assert isinstance(target, Layer)
-    thickness = target.thickness / numerics.contact_radius
+    thickness = thickness_over(numerics.contact_radius, target.thickness)
     smallest = None if geometry.shape.fixed_radius is not None else smallest_struck(geometry.shape)
     elements, width = STRUCK_REFINEMENT * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
     return (elements, smallest, thickness, width), numerics.order, target.base == "bonded", geometry.shape.plane

@@ -25,6 +25,7 @@ from fe_contact.targets._zone import (
     Zone,
     held,
     smallest_struck,
+    thickness_over,
 )
 from lumped.geometry import Geometry
 from lumped.indenter import Indenter
@@ -41,7 +42,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     target = indenter.target
     assert isinstance(target, Ring)
     zone = Zone.of(np.minimum(radii, WIDEST / MARGIN * target.inner_radius))
-    angle, thickness = zone.reference / target.inner_radius, target.thickness / zone.reference
+    angle, thickness = zone.reference / target.inner_radius, thickness_over(zone.reference, target.thickness)
     elements = LINE_REFINEMENT * numerics.elements_per_contact
     surface = _surface(indenter.material.nu, elements, numerics.order, zone.smallest, thickness, angle)
     return FixedStill(surface, indenter, numerics, zone.reference, angle, thickness)
@@ -63,7 +64,7 @@ def _shape(geometry: Geometry, numerics: Numerics) -> tuple[float, int, float, f
     assert isinstance(target, Ring)
     reference = min(numerics.contact_radius, WIDEST * target.inner_radius)
     elements = STRUCK_REFINEMENT * numerics.elements_per_contact
-    angle, thickness = reference / target.inner_radius, target.thickness / reference
+    angle, thickness = reference / target.inner_radius, thickness_over(reference, target.thickness)
     return elements, numerics.order, smallest_struck(geometry.shape), thickness, angle
 
 

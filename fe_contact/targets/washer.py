@@ -15,7 +15,7 @@ from fe_contact.operators import ELEMENTS, SurfaceOperator, condensed
 from fe_contact.pressing import Still
 from fe_contact.surface import Surface, ring_area
 from fe_contact.targets._body import BodyStill
-from fe_contact.targets._zone import MESHES_KEPT, held
+from fe_contact.targets._zone import MESHES_KEPT, held, thickness_over
 from lumped.indenter import Indenter
 from lumped.targets.washer import Washer
 
@@ -26,6 +26,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The washer at rest; ``radii``, m: where the contact ends, alike at every depth."""
     target = indenter.target
     assert isinstance(target, Washer)
+    thickness_over(2.0 * (target.outer_radius - target.inner_radius), target.height)  # fine from both of its ends
     inner, outer, rim = (length / target.height for length in (target.inner_radius, target.outer_radius, radii.max()))
     elements, bonded = COARSER * numerics.elements_per_contact, target.base == "bonded"
     operator, surface = _surface(indenter.material.nu, elements, numerics.order, inner, outer, rim, bonded)

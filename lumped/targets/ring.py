@@ -66,8 +66,10 @@ class Ring(Target):
             raise BadInput(Fault(source, "striker.radius", reason))
 
     def check_depth(self, shape: Shape, depth: float) -> str:
-        """Not through the ring."""
-        return f"accepted below the ring's thickness {self.thickness:g} m" if depth >= self.thickness else ""
+        """Neither through the ring nor past the rod's middle."""
+        if depth >= self.thickness:
+            return f"accepted below the ring's thickness {self.thickness:g} m"
+        return super().check_depth(shape, depth)
 
 
 def of(inner_radius: float, thickness: float) -> Ring:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_contact.errors import ContactTooWide
+from fe_contact.errors import BodyTooThin, ContactTooWide
 from fe_contact.indentation import indent, press, settings
 from lumped import BadInput, Material, Relaxation
 from lumped.indentation import Indentation
@@ -19,6 +19,7 @@ from lumped.shapes import Shape, Sphere
 from lumped.targets import HalfSpace, Target
 from lumped.targets.layer import Layer
 from lumped.targets.ring import Ring
+from lumped.targets.washer import Washer
 
 RATIOS = (0.0, 0.2, 0.3, 0.4, 0.45, 0.49, 0.4999)
 DEPTHS = (1, 2, 3, 5, 10)
@@ -204,10 +205,25 @@ def test_a_contact_beyond_the_fine_mesh_is_named() -> None:
         (Case(Sphere(0.01), Layer(2e-3, "bonded"), 0.3, (2e-3,)), "below the layer's thickness"),
         (Case(Sphere(0.01), HalfSpace(), 0.3, (1e-5, 0.01)), "below the striker's radius"),
         (Case(shaped("cylinder", 6e-3, 0.1), Ring(0.01, 3e-3), 0.3, (3e-3,)), "below the ring's thickness"),
+        (Case(shaped("cylinder", 1e-4, 0.1), Ring(0.01, 3e-3), 0.3, (1e-5, 2e-3)), "below the striker's radius"),
     ],
 )
 def test_impossible_depths_are_refused(case: Case, reason: str) -> None:
     with pytest.raises(BadInput, match=reason):
+        case.found()
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        Case(shaped("cone", 0.02), Layer(1e-3, "bonded"), 0.3, (1e-4,)),
+        Case(shaped("punch", 1.0), Layer(1e-3, "sliding"), 0.3, (1e-4,)),
+        Case(shaped("cylinder", 9.9e-3, 0.1), Ring(0.01, 1e-5), 0.3, (1e-6,)),
+        Case(shaped("punch", 0.03), Washer(0.01, 0.02, 1e-5, "bonded"), 0.4999, (1e-6,)),
+    ],
+)
+def test_contacts_hundreds_of_thicknesses_wide_are_refused_by_name_and_at_once(case: Case) -> None:
+    with pytest.raises(BodyTooThin, match="1e-0. m thick|0.001 m thick"):
         case.found()
 
 
