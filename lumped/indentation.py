@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from lumped.dimensionless import groups_at_rest
 from lumped.finite_size import FiniteSize, finite_size
 from lumped.indenter import Indenter
-from lumped.result import Quantity, plain, provenance
+from lumped.model_ledger import Peak, ledger_at_rest
+from lumped.result import LedgerEntry, Quantity, plain, provenance
 
 Array = NDArray[np.float64]
 SCHEMA = "fe-contact/indentation/1"
@@ -56,6 +57,18 @@ class Indentation:
         return f"tolerance {self.tolerance:g} not reached: force to {np.max(self.force_error / self.force):.2g}"
 
     @property
+    def model_ledger(self) -> tuple[LedgerEntry, ...]:
+        """What the model leaves out, at the largest depth."""
+        deepest = int(self.depth.argmax())
+        force, depth, radius = (float(row[deepest]) for row in (self.force, self.depth, self.contact_radius))
+        return ledger_at_rest(self.indenter, Peak(force, depth, radius, math.inf))
+
+    @property
+    def model_sufficient(self) -> bool:
+        """Whether no known estimate of the model ledger exceeds the tolerance."""
+        return all(entry.estimate is None or entry.estimate <= self.tolerance for entry in self.model_ledger)
+
+    @property
     def quantities(self) -> dict[str, Quantity]:
         """`alpha`, `D`, and `D_at_alpha` with the exponent of Table 1's row held; from three depths on."""
         row = self.indenter.shape.exponent_of_force
@@ -76,6 +89,7 @@ class Indentation:
             "schema": SCHEMA,
             "method": self.method,
             "converged": self.converged,
+            "model_sufficient": self.model_sufficient,
             "tolerance": self.tolerance,
             "message": self.message,
             "scene": self.indenter.to_dict(),
@@ -85,6 +99,7 @@ class Indentation:
             "deviation": self.finite_size and self.finite_size.to_dict(),
             "dimensionless": groups_at_rest(self.indenter, self.contact_radius),
             "error_budget": {cause: float(np.max(error)) for cause, error in self.budget.items()},
+            "model_ledger": [asdict(entry) for entry in self.model_ledger],
             "work": self.work,
             "provenance": provenance(),
             "timing": self.timing,

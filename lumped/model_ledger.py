@@ -1,4 +1,4 @@
-"""What a model of impact on a half-space leaves out, each effect estimated relative to peak force."""
+"""What a model of impact or slow indentation leaves out, each effect estimated relative to peak force."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from lumped.errors import FeContactError
+from lumped.indenter import Indenter
 from lumped.radiation import Pulse
 from lumped.result import LedgerEntry
 from lumped.scene import Scene
@@ -41,8 +42,8 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
         return (_gravity(scene, resolved, peak),)
     entries = [
         _inertia(scene, resolved, peak),
-        _profile(scene, resolved, peak),
-        _finite_strain(peak),
+        _profile(scene.geometry.shape, resolved, peak),
+        _finite_strain(scene.geometry.target.pressed_height(scene.geometry.shape), peak),
         _deformed_gap(scene.geometry.material.nu, peak),
         _sideways(scene, peak),
         _series(scene, peak),
@@ -54,6 +55,15 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
     if scene.geometry.shape.plane:
         entries.append(ends(scene.geometry.shape, scene.geometry.target, scene.geometry.material.nu))
     return tuple(entries)
+
+
+def ledger_at_rest(indenter: Indenter, peak: Peak) -> tuple[LedgerEntry, ...]:
+    """The same of a slow indentation at its deepest, which has neither inertia nor time."""
+    shape, target, nu = indenter.shape, indenter.target, indenter.material.nu
+    entries = [_finite_strain(target.pressed_height(shape), peak)]
+    if target.fixed_radius(shape) is None:
+        entries += [_profile(shape, indenter.model, peak), _deformed_gap(nu, peak)]
+    return (*entries, ends(shape, target, nu)) if shape.plane else tuple(entries)
 
 
 def ends(shape: Shape, target: Target, nu: float) -> LedgerEntry:
@@ -78,24 +88,29 @@ def _inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     return LedgerEntry(effect, "neglected", *scene.target.inertia_left_out(scene.geometry.material, pulse))
 
 
-def _profile(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
+def _profile(shape: Shape, model: Model, peak: Peak) -> LedgerEntry:
     """The load curves of sphere and parabola at the peak depth; in plane strain their heights at its edge."""
-    effect, shape = "parabola against true profile", scene.geometry.shape
+    effect = "parabola against true profile"
     if model.profile == "exact":
         return LedgerEntry(effect, "true profile", 0.0)
     if shape.plane:
         heights = [float(shape.resolved(name).height(peak.contact_radius)) for name in ("exact", "parabola")]
         estimate = abs(heights[1] / heights[0] - 1.0) if heights[0] > 0.0 else 0.0
         return LedgerEntry(effect, "parabola", estimate, "model.profile = 'exact'")
-    exact = float(scene.geometry.shape.resolved("exact").load_curve.force(peak.depth))
-    parabola = float(scene.geometry.shape.resolved("parabola").load_curve.force(peak.depth))
+    exact = float(shape.resolved("exact").load_curve.force(peak.depth))
+    parabola = float(shape.resolved("parabola").load_curve.force(peak.depth))
     return LedgerEntry(effect, "parabola", abs(parabola / exact - 1.0), "model.profile = 'exact'")
 
 
-def _finite_strain(peak: Peak) -> LedgerEntry:
-    """Stresses err by the order of the strain, Tabor's 0.2 a/R (1951, ISBN 978-0-19-850776-5), a/R = depth/a."""
-    note = "order of magnitude: Tabor's representative strain 0.2 depth/a"
-    return LedgerEntry("finite strain", "small displacements", 0.2 * peak.steepness, note)
+def _finite_strain(height: float | None, peak: Peak) -> LedgerEntry:
+    """Stresses err by the order of the strain, Tabor's 0.2 a/R (1951, ISBN 978-0-19-850776-5), a/R = depth/a.
+
+    Where more, by the share of the depth in the `height`, m, of what is flattened as a whole.
+    """
+    effect, treated, local = "finite strain", "small displacements", 0.2 * peak.steepness
+    if height is not None and peak.depth > local * height:
+        return LedgerEntry(effect, treated, peak.depth / height, "order of magnitude: depth over what is pressed")
+    return LedgerEntry(effect, treated, local, "order of magnitude: Tabor's representative strain 0.2 depth/a")
 
 
 def _deformed_gap(nu: float, peak: Peak) -> LedgerEntry:

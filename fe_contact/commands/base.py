@@ -6,7 +6,7 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
@@ -14,7 +14,7 @@ from fe_contact.numerics import faults
 from fe_contact.progress import Progress, silent
 from lumped.errors import BadInput, Fault
 from lumped.indenter import Indenter
-from lumped.result import Result
+from lumped.result import LedgerEntry, Result
 from lumped.scene import Scene
 from lumped.scene_file import load, load_for_fit, load_indenter, resolved
 from lumped.toml_file import overridden, parse_assignment, parsed
@@ -129,7 +129,23 @@ def report(args: argparse.Namespace, result: Result, where: Path) -> int:
     return DONE if result.converged else NOT_REACHED
 
 
-def warn(result: Result) -> None:
+class Judged(Protocol):
+    """What a result tells of itself."""
+
+    @property
+    def converged(self) -> bool: ...
+
+    @property
+    def message(self) -> str: ...
+
+    @property
+    def model_sufficient(self) -> bool: ...
+
+    @property
+    def model_ledger(self) -> Sequence[LedgerEntry]: ...
+
+
+def warn(result: Judged) -> None:
     """One line each on stderr: a tolerance not reached, a model that is too small."""
     if not result.converged:
         complain(result.message)

@@ -38,8 +38,7 @@ def execute(args: argparse.Namespace) -> int:
         print(json.dumps(found.to_json(), allow_nan=False))
     else:
         print("\n".join([*_lines(found), f"  written to {where}"]))
-    if not found.converged:
-        base.complain(found.message)
+    base.warn(found)
     return base.DONE if found.converged else base.NOT_REACHED
 
 

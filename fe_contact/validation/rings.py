@@ -19,7 +19,6 @@ from lumped.indentation import Indentation
 from lumped.indenter import Indenter
 from lumped.materials import Material
 from lumped.materials.networks import sls
-from lumped.model_ledger import ends
 from lumped.paper.examples import Examples
 from lumped.result import LedgerEntry
 from lumped.shapes import cylinder
@@ -111,7 +110,7 @@ def pressed(case: RingCase) -> RingCurve:
     relative = found.force_error / found.force
     factor = found.force / (0.25 * math.pi * found.modulus * case.length * found.depth)
     exponent, exponent_error = local_exponent(found.depth, found.force, relative)
-    return RingCurve(case, found, factor, relative * factor, exponent, exponent_error, _ledger(case, found))
+    return RingCurve(case, found, factor, relative * factor, exponent, exponent_error, found.model_ledger)
 
 
 def local_exponent(depth: Array, force: Array, relative: Array) -> tuple[Array, Array]:
@@ -120,13 +119,3 @@ def local_exponent(depth: Array, force: Array, relative: Array) -> tuple[Array, 
     left, right = np.maximum(places - 1, 0), np.minimum(places + 1, depth.size - 1)
     width = np.log(depth[right] / depth[left])
     return np.log(force[right] / force[left]) / width, (relative[right] + relative[left]) / width
-
-
-def _ledger(case: RingCase, found: Indentation) -> tuple[LedgerEntry, ...]:
-    """At the largest depth."""
-    indenter = case.indenter
-    strain = float(found.depth.max()) / case.height
-    entries = [LedgerEntry("finite strain", "small displacements", strain, "depth over what is pressed")]
-    if indenter.shape.plane:
-        entries.append(ends(indenter.shape, indenter.target, indenter.material.nu))
-    return tuple(entries)

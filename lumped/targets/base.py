@@ -44,6 +44,10 @@ class Target(ABC):
         """How far the body reaches beneath the contact, m; None where nothing bounds it, or its section is round."""
         return None
 
+    def pressed_height(self, shape: Shape) -> float | None:
+        """What is flattened as a whole, m, which a depth strains by its share; None where only the contact is."""
+        return self.body_depth
+
     @property
     def length_of_place(self) -> float:
         """Length along the surface per unit of its places, m."""

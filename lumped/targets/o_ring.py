@@ -47,6 +47,10 @@ class ORing(Target):
         """1/2: the other half is the other contact's."""
         return 0.5
 
+    def pressed_height(self, shape: Shape) -> float:
+        """The section's height, m."""
+        return 2.0 * self.section_radius
+
     def round_radius(self, shape: Shape) -> float:
         """That of the section."""
         return self.section_radius

@@ -33,6 +33,11 @@ class Plane(Target):
         """depth - height(r)."""
         return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
 
+    def pressed_height(self, shape: Shape) -> float:
+        """The block's, m."""
+        assert isinstance(shape, Block)
+        return shape.thickness
+
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is no block."""
         if not isinstance(shape, Block):

@@ -8,9 +8,14 @@ from dataclasses import replace
 import pytest
 
 from lumped import LedgerEntry, Material, Model, Relaxation, Scene, Sphere, laws, simulate
-from lumped.model_ledger import Peak, model_ledger
+from lumped.indenter import Indenter
+from lumped.model_ledger import Peak, ledger_at_rest, model_ledger
 from lumped.radiation import pulse_energy, radiation_coefficient
+from lumped.shapes import plate
+from lumped.shapes.punch import Punch
 from lumped.targets.layer import Layer
+from lumped.targets.o_ring import ORing
+from lumped.targets.plane import Plane
 
 
 def entry(scene: Scene, effect: str, tolerance: float = 1e-4) -> LedgerEntry:
@@ -84,6 +89,21 @@ def test_constant_bulk_modulus_is_charged_as_published() -> None:
         scene = Scene.load("polymer-sphere", {"target.material.nu": nu, "target.material.E2": 1.8e6 * ratio})
         found = entry(scene, "constant nu against constant bulk modulus").estimate
         assert found == pytest.approx(effect, abs=6e-4)
+
+
+def test_strain_is_that_of_the_body_where_it_is_flattened_as_a_whole() -> None:
+    """A layer under a contact many thicknesses wide, a block, an O-ring: depth over height, not 0.2 depth/a."""
+    soft = Material(Relaxation(1e6), 0.4)
+    for shape, target, depth, radius, strain in (
+        (Sphere(10.0), Layer(1e-3, "bonded"), 5e-4, 0.1, 0.5),
+        (Sphere(1e-3), Layer(1.0, "bonded"), 1e-4, 3e-4, 0.2 / 3.0),
+        (plate.of(1e-4, 2e-3), Plane(), 1e-4, 5.6e-3, 0.05),
+        (Punch(0.03), ORing(0.02, 2e-3), 1e-3, 2e-3, 0.25),
+    ):
+        peak = Peak(force=1.0, depth=depth, contact_radius=radius, duration=math.inf)
+        found = {e.effect: e.estimate for e in ledger_at_rest(Indenter(shape, soft, target), peak)}
+        assert found["finite strain"] == pytest.approx(strain)
+        assert "gravity" not in found, "nothing that asks for a mass"
 
 
 @pytest.mark.parametrize(("thickness", "confined"), [(1e-4, True), (1.0, False)])
