@@ -63,7 +63,7 @@ def follow(
     def attempt(root: float, length: float, state: Array) -> Piece | None:
         motion, found = Motion.over_root(problem, settings.table, root, length), None
         if before is not None:
-            force, _ = before.field(FORCE, root + length * settings.table.nodes)
+            force = before.value(FORCE, root + length * settings.table.nodes)
             found = motion.piece(state, problem.gravity - force)
         return found or motion.piece(state, problem.gravity - float(state[FORCE]))
 
@@ -82,7 +82,7 @@ def approach(problem: Hereditary, end_time: float, settings: Settings, before: A
     slow = AT_REST if problem.modulus.relaxed == 0.0 and problem.gravity == 0.0 else 0.0
     found, end = _to_velocity(problem, end_time, slow, settings, known)
     if slow and found.over:
-        force = float(found.path.at(end)[FORCE])
+        force = float(found.path.state(end)[FORCE])
         if slow > SLOW * force * end**2:
             return Approach(found.path.until(end), False, True, found.steps, found.largest)
         found, end = _to_velocity(problem, end_time, 0.0, settings, known)

@@ -8,24 +8,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import TooManySteps
 from lumped.hereditary.approach import DEPTH, FORCE, VELOCITY, Approach, follow
-from lumped.hereditary.march import Piece, Settings, tail
-from lumped.hereditary.motion import Motion
+from lumped.hereditary.march import Settings
 from lumped.hereditary.path import Path
 from lumped.hereditary.problem import Hereditary
+from lumped.hereditary.shutting import Guess, Shut, shut
 
 Array = NDArray[np.float64]
-SECANT_STEPS, MOST_ATTEMPTS = 12, 300
+MOST_ATTEMPTS = 300
 # The duration is found to this relative change; the first time, with few nodes, this share of the accuracy will do.
 CLOSED, NEARLY_CLOSED = 1e-12, 1e-2
-# A piece that errs by so many times what is allowed will not do, wherever it ends.
-HOPELESS = 30.0
 # Of the force now, what decelerates in the mean until the end of an elastic contact: 0.37 F t^2 = depth.
 MEAN_FORCE = 0.37
 
@@ -34,39 +31,14 @@ MEAN_FORCE = 0.37
 class Closing:
     """The path over r before the last piece (None: there is none) and that piece over q, which ends at `end`.
 
-    Without a last piece the path has reached the end time. `rate`: how fast F over dF/d depth falls with the end.
+    Without a last piece the path has reached the end time. `steep`: dF/dy at the end.
     """
 
     path: Path | None
     last: Path | None
     end: float
-    rate: float
+    steep: float
     steps: int
-
-
-class Guess(NamedTuple):
-    """A duration, the accelerations at the nodes, and how fast F over dF/d depth falls with the duration, or 0."""
-
-    duration: float
-    accelerations: Array
-    rate: float
-
-
-class Shut(NamedTuple):
-    """A last piece, its duration, how fast F over dF/d depth falls with that, and all Newton steps spent on it."""
-
-    piece: Piece
-    duration: float
-    rate: float
-    steps: int
-
-    def error(self, settings: Settings) -> float:
-        """What the last of its polynomials add to the force."""
-        return tail(self.piece.values[FORCE], settings.table)
-
-    def path(self, settings: Settings) -> Path:
-        """The piece over q."""
-        return Path.of([-(self.duration**0.5), 0.0], [self.piece.values], settings.table)
 
 
 def close(
@@ -82,20 +54,20 @@ def close(
         known = _again(problem, path, settings, largest, before, before.last)
         if known and known.end <= end_time:
             return known
+    hoped: Closing | None = None
     for _ in range(MOST_ATTEMPTS):
         zero = path.fall(FORCE)
         if path.end >= limit and zero is None:
             return Closing(path, None, end_time, 0.0, steps)
         begin = path.end if zero is None else float(path.breaks[-2])
-        state = path.at(begin)
-        duration = _until_flat(problem, state) if zero is None else zero**2 - begin**2
-        earlier = _before(path, begin)
-        guess = Guess(duration, np.full(settings.points, problem.gravity - state[FORCE]), 0.0)
-        hopeful = 0.0 < duration < math.inf
-        last = _shut(problem, state, guess, settings, settings.rtol * largest) if hopeful else None
-        if last and begin**2 + last.duration <= end_time:
-            return Closing(earlier, last.path(settings), begin**2 + last.duration, last.rate, steps + last.steps)
-        target = min((begin**2 + min(0.5 * duration, 3.0 * begin**2)) ** 0.5, limit)
+        earlier, state = _before(path, begin), path.state(begin)
+        guess, last = _guess(problem, begin, state, settings, zero, hoped), None
+        if 0.0 < guess.duration < math.inf:
+            last = shut(problem, state, guess, settings, NEARLY_CLOSED * settings.rtol, settings.rtol * largest)
+        hoped = _closing(earlier, begin, last, steps) if last else None
+        if last and hoped and last.fits and hoped.end <= end_time:
+            return hoped
+        target = min((begin**2 + min(0.5 * guess.duration, 3.0 * begin**2)) ** 0.5, limit)
         more = follow(problem, (begin, target), state, target - begin, _released, settings, largest)
         steps += more.steps
         path = earlier.joined(more.path) if earlier else more.path
@@ -108,15 +80,28 @@ def _again(
     """The closing in the pieces of one found before, `over` its last piece; None where they will not do."""
     begin, steps = before.path.end if before.path else 0.0, 0
     if path.end < begin:
-        span, state = (path.end, begin), path.at(path.end)
+        span, state = (path.end, begin), path.state(path.end)
         more = follow(problem, span, state, begin - path.end, _released, settings, largest, before.path)
         path, steps = path.joined(more.path), more.steps
-    earlier, nodes = _before(path, begin), -((before.end - begin**2) ** 0.5) * (1.0 - settings.table.nodes)
-    guess = Guess(before.end - begin**2, problem.gravity - over.field(FORCE, nodes)[0], before.rate)
-    last = _shut(problem, path.at(begin), guess, settings, settings.rtol * largest)
-    if last is None:
+    state, guess = path.state(begin), Guess.of(problem, before.end - begin**2, over, before.steep, settings)
+    last = shut(problem, state, guess, settings, CLOSED, settings.rtol * largest)
+    if last is None or not last.fits:
         return None
-    return Closing(earlier, last.path(settings), begin**2 + last.duration, last.rate, steps + last.steps)
+    return _closing(_before(path, begin), begin, last, steps)
+
+
+def _guess(
+    problem: Hereditary, begin: float, state: Array, settings: Settings, zero: float | None, hoped: Closing | None
+) -> Guess:
+    """Of the last piece from a place on: as it was hoped for earlier, or until a zero of the force, or by the state."""
+    if zero is None and hoped and hoped.last and hoped.end > begin**2:
+        return Guess.of(problem, hoped.end - begin**2, hoped.last, hoped.steep, settings)
+    duration = _until_flat(problem, state) if zero is None else zero**2 - begin**2
+    return Guess(duration, np.full(settings.points, problem.gravity - state[FORCE]))
+
+
+def _closing(path: Path | None, begin: float, last: Shut, steps: int) -> Closing:
+    return Closing(path, last.path, begin**2 + last.duration, last.steep, steps + last.steps)
 
 
 def _released(values: Array) -> bool:
@@ -135,34 +120,3 @@ def _until_flat(problem: Hereditary, state: Array) -> float:
     if speed < 0.0 or force <= 0.0:
         return math.inf
     return 2.0 * depth / (speed + math.sqrt(speed**2 + 4.0 * MEAN_FORCE * force * depth))
-
-
-def _shut(problem: Hereditary, state: Array, start: Guess, settings: Settings, allowed: float) -> Shut | None:
-    """The piece from a state that ends with F = 0: the duration by secants. None where it errs by far too much."""
-    duration, a, rate = start
-    before, steps = (0.0, 0.0), 0
-    for tried in range(SECANT_STEPS):
-        piece = Motion.to_end(problem, settings.table, duration).piece(state, a)
-        if piece is None:
-            return None
-        steps += piece.steps
-        last = Shut(piece, duration, rate, steps)
-        if tried == 1 and last.error(settings) > HOPELESS * allowed:
-            return None
-        left, elastic = _left(problem, piece.values[:, -1])
-        if before[0]:
-            rate = (left - before[1]) / (duration - before[0])
-        change = -left / (rate or elastic) if (rate or elastic) < 0.0 else 0.0
-        if abs(change) <= (CLOSED if start.rate else NEARLY_CLOSED * settings.rtol) * duration:
-            return last if last.error(settings) <= allowed else None
-        before, a = (duration, left), problem.gravity - piece.values[FORCE, 1:]
-        duration = min(max(duration + change, 0.5 * duration), 2.0 * duration)
-    return None
-
-
-def _left(problem: Hereditary, last: Array) -> tuple[float, float]:
-    """F over dF/d depth, a depth that falls straight to zero; and how fast it does in an elastic contact."""
-    load, slope = (float(value[0]) for value in problem.loads(last[:1]))
-    if not slope:
-        return 0.0, 0.0
-    return float(last[FORCE]) / slope, float(last[VELOCITY]) * load / (slope * float(last[DEPTH]))

@@ -18,7 +18,8 @@ from lumped.hereditary.radau import Radau
 
 Array = NDArray[np.float64]
 NEWTON_STEPS = 14
-# Newton's last correction, relative: what is left after it is its square.
+# Newton's last correction, relative: what is left after it is its square, or as many times less as its square is less
+# than that of the one before.
 CONVERGED, DIVERGED = 1e-6, 1e100
 
 
@@ -49,18 +50,18 @@ class Motion:
         # (1 + W/tau_k)^-1, shape (K, N, N): the rise of a memory by the rise of what it remembers.
         eye = np.eye(self.elapsed.size)
         answers = np.asarray(np.linalg.inv(eye + weights * problem.rates[:, None, None]), dtype=float)
-        response = (problem.stiffnesses[:, None, None] * answers).sum(axis=0) + modulus.equilibrium * eye
-        first = float(problem.loads(state[:1])[0][0])
-        kept = modulus.equilibrium * first + (problem.stiffnesses * state[4:]) @ answers.sum(axis=2)
+        response = np.einsum("k,kij->ij", problem.stiffnesses, answers) + modulus.equilibrium * eye
+        left = (problem.stiffnesses * state[4:]) @ answers.sum(axis=2)
         twice, coasted = weights @ weights, state[0] + state[1] * self.elapsed
-        a = np.full(self.elapsed.size, guess)
+        a, before = np.full(self.elapsed.size, guess), 0.0
         for step in range(1, NEWTON_STEPS + 1):
-            depth, velocity = coasted + twice @ a, state[1] + weights @ a
-            load, slope = problem.loads(depth)
-            force = response @ (load - first) + kept
+            depth = coasted + twice @ a
+            load, slopes = problem.loads(np.concatenate([state[:1], depth]))
+            rise, slope = load[1:] - load[0], slopes[1:]
+            force = response @ rise + modulus.equilibrium * load[0] + left
             matrix = (response * slope) @ twice
             if modulus.viscosity:
-                bend = problem.bend(depth, slope)
+                velocity, bend = state[1] + weights @ a, problem.bend(depth, slope)
                 force += modulus.viscosity * slope * velocity
                 matrix += modulus.viscosity * (slope[:, None] * weights + (bend * velocity)[:, None] * twice)
             change = np.linalg.solve(matrix + eye, problem.gravity - force - a)
@@ -68,8 +69,10 @@ class Motion:
             size = math.sqrt(change @ change)
             if not size < DIVERGED:
                 return None
-            if size <= CONVERGED * math.sqrt(a @ a):
-                return Piece(self._values(state, a, load - first + slope * (twice @ change), answers), step)
+            allowed = CONVERGED**2 * math.sqrt(a @ a)
+            if size * CONVERGED <= allowed or size**3 <= allowed * before**2:
+                return Piece(self._values(state, a, rise + slope * (twice @ change), answers), step)
+            before = size
         return None
 
     def _values(self, state: Array, a: Array, rise: Array, answers: Array) -> Array:

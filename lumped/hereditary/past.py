@@ -51,7 +51,7 @@ class Past:
 
     def _faded(self, places: Array, rate: Array | float) -> Array:
         """-d Y / d place."""
-        velocity, _ = self.path.field(self.velocity, -places)
+        velocity = self.path.value(self.velocity, -places)
         return np.asarray(-2.0 * places * velocity * np.exp(-rate * self.age(places)))
 
     @property

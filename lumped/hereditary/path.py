@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -14,7 +15,10 @@ from lumped.hereditary.radau import Radau, slopes
 
 Array = NDArray[np.float64]
 Curve = Callable[[float], float]
-POINTS_PER_PIECE, SAMPLES = 24, 65
+# Shares of a piece that lie densely, and those between which a fall is sought.
+DENSE, CLOSE = np.linspace(0.0, 1.0, 25), np.linspace(0.0, 1.0, 65)
+# So many places are few.
+FEW = 100
 ROOT_STEPS = 100
 ROUNDING = 4e-16
 
@@ -48,17 +52,29 @@ class Path:
         """The same path with another end."""
         return replace(self, end=end)
 
-    def at(self, places: Array | float) -> Array:
-        """All fields at places (n,), shape (fields, n); at one place (fields,)."""
+    def at(self, places: Array) -> Array:
+        """All fields at places (n,), shape (fields, n)."""
         basis, piece = self._basis(places)
-        return np.asarray(np.einsum("...fk,...k->f...", self.coefficients[piece], basis))
+        return np.asarray((self.coefficients[piece] @ basis.T[..., None])[..., 0].T)
+
+    def state(self, place: float) -> Array:
+        """All fields at one place, shape (fields,)."""
+        piece = self._piece(place)
+        low, high = self.breaks[piece : piece + 2].tolist()
+        x = min(max((2.0 * place - low - high) / (high - low), -1.0), 1.0)
+        return np.asarray(self.coefficients[piece] @ np.cos(np.arange(self.coefficients.shape[2]) * math.acos(x)))
+
+    def value(self, index: int, places: Array) -> Array:
+        """One field at places of any shape."""
+        basis, piece = self._basis(places)
+        return np.asarray((self.coefficients[:, index].T[:, piece] * basis).sum(axis=0))
 
     def field(self, index: int, places: Array) -> tuple[Array, Array]:
         """One field and its derivative at places (n,)."""
         basis, piece = self._basis(places)
-        own = self.coefficients[:, index]
-        rise = own @ slopes(own.shape[1]).T * (2.0 / np.diff(self.breaks))[:, None]
-        return (own[piece] * basis).sum(axis=-1), (rise[piece] * basis).sum(axis=-1)
+        own = self.coefficients[:, index].T
+        rise = slopes(len(own)) @ own * (2.0 / np.diff(self.breaks))
+        return (own[:, piece] * basis).sum(axis=0), (rise[:, piece] * basis).sum(axis=0)
 
     def curve(self, index: int, near: float) -> tuple[Curve, Curve]:
         """One field and its derivative as functions of a place in the piece around `near`."""
@@ -76,18 +92,23 @@ class Path:
     def places(self) -> Array:
         """Places that lie densely in every piece, shape (n,)."""
         inside = self.breaks[self.breaks < self.end]
-        ends = np.append(inside[1:], self.end)
-        shares = np.arange(POINTS_PER_PIECE) / POINTS_PER_PIECE
-        return np.append((inside[:, None] + shares * (ends - inside)[:, None]).ravel(), self.end)
+        lengths = np.append(inside[1:], self.end) - inside
+        return np.append((inside[:, None] + DENSE[:-1] * lengths[:, None]).ravel(), self.end)
 
-    @cached_property
-    def sampled(self) -> Array:
-        """All fields at `places`, shape (fields, n)."""
-        return self.at(self.places)
+    def samples(self, index: int) -> Array:
+        """One field at `places`, shape (n,)."""
+        last = int(np.searchsorted(self.breaks, self.end)) - 1
+        low, high = self.breaks[last : last + 2].tolist()
+        series = _at_dense(self.coefficients.shape[2])
+        final = series
+        if self.end < high:
+            final = chebyshev((2.0 * DENSE * (self.end - low)) / (high - low) - 1.0, len(series))
+        before = self.coefficients[:last, index] @ series[:, :-1]
+        return np.append(before.ravel(), self.coefficients[last, index] @ final)
 
     def highest(self, index: int) -> tuple[float, float]:
         """Place and height of the highest point of a field."""
-        values, places = self.sampled[index], self.places.tolist()
+        values, places = self.samples(index), self.places.tolist()
         i = int(np.argmax(values))
         # Each interval between samples lies in one piece, and the top in the one into which the curve rises.
         for low, high in pairwise(places[max(i - 1, 0) : i + 2]):
@@ -100,25 +121,50 @@ class Path:
     def fall(self, index: int, level: float = 0.0) -> float | None:
         """Where a field first falls to a level in the last piece, after its start; None where it does not."""
         low, high = (float(place) for place in self.breaks[-2:])
-        places = np.linspace(low, high, SAMPLES)
-        below = np.flatnonzero(self.field(index, places)[0][1:] <= level)
+        own = self.coefficients[-1, index]
+        below = np.flatnonzero(own @ _at_close(own.size)[:, 1:] <= level)
         if not below.size:
             return None
         value, _ = self.curve(index, 0.5 * (low + high))
-        before, after = places[below[0] : below[0] + 2].tolist()
+        before, after = (low + (high - low) * CLOSE[below[0] : below[0] + 2]).tolist()
         return falling_zero(lambda place: value(place) - level, before, after)
 
     def _piece(self, places: Array | float) -> Array:
         """The index of the piece of each place."""
         return np.minimum(np.searchsorted(self.breaks[1:-1], places, side="right"), len(self.coefficients) - 1)
 
-    def _basis(self, places: Array | float) -> tuple[Array, Array]:
-        """Chebyshev polynomials at places (n,), shape (n, N+1), and the piece of each."""
+    def _basis(self, places: Array) -> tuple[Array, Array]:
+        """Chebyshev polynomials at places of any shape, (N+1, ...), and the piece of each."""
         piece = self._piece(places)
         low, high = self.breaks[piece], self.breaks[piece + 1]
-        x = (2.0 * np.asarray(places) - low - high) / (high - low)
-        angle = np.arccos(np.minimum(np.maximum(x, -1.0), 1.0))
-        return np.cos(angle[..., None] * np.arange(self.coefficients.shape[2])), piece
+        x = (2.0 * places - low - high) / (high - low)
+        return chebyshev(np.minimum(np.maximum(x, -1.0), 1.0), self.coefficients.shape[2]), piece
+
+
+def chebyshev(x: Array, count: int) -> Array:
+    """T_0 to T_{count-1}, two or more, at x: (count, ...). T_{m+k} = 2 T_m T_k - T_{m-k}; sooner told of many."""
+    if x.size < FEW:
+        return np.asarray(np.cos(np.multiply.outer(np.arange(count), np.arccos(x))))
+    found = np.empty((count, *x.shape))
+    found[0], found[1] = 1.0, x
+    last = 1
+    while last < count - 1:
+        more = min(last, count - 1 - last)
+        found[last + 1 : last + more + 1] = 2.0 * found[last] * found[1 : more + 1] - found[last - more : last][::-1]
+        last += more
+    return found
+
+
+@cache
+def _at_dense(count: int) -> Array:
+    """The Chebyshev polynomials at DENSE, shape (count, shares)."""
+    return chebyshev(2.0 * DENSE - 1.0, count)
+
+
+@cache
+def _at_close(count: int) -> Array:
+    """The same at CLOSE."""
+    return chebyshev(2.0 * CLOSE - 1.0, count)
 
 
 def chebyshev_sum(series: list[float], x: float) -> float:

@@ -100,11 +100,18 @@ class Phase:
     @property
     def last(self) -> Array:
         """Depth, velocity, work and force at its end."""
-        return self.path.sampled[self.depth : self.depth + 4, -1]
+        return self.path.state(self.path.end)[self.depth : self.depth + 4]
 
     def at(self, times: Array) -> Array:
         """Depth, velocity, force and the edge's depth at times (n,), shape (4, n)."""
-        return self._seen.at(np.minimum(self.clock.place(times), self.path.end))
+        return self._seen.at(self._places(times))
+
+    def force(self, times: Array) -> Array:
+        """The force at times (n,)."""
+        return self.path.value(self.depth + 3, self._places(times))
+
+    def _places(self, times: Array) -> Array:
+        return np.minimum(self.clock.place(times), self.path.end)
 
     @cached_property
     def _seen(self) -> Path:

@@ -34,6 +34,8 @@ NEWTON_STEPS = 16
 CONVERGED, ROUNDING = 1e-8, 1e-14
 FIRST = 0.5
 DIVERGED, TINY = 1e100, 1e-200
+# A turn with a force above the weight by less than this share of it is none: the striker has crept to rest.
+BORNE = 1e-9
 
 
 class Then(NamedTuple):
@@ -159,7 +161,7 @@ def rebound(
     """
     known = before.path if before else None
     end, start = inward.path.end, _turned(problem, inward)
-    if start[FORCE] <= problem.gravity:
+    if start[FORCE] <= problem.gravity * (1.0 + BORNE):
         return Rebound(Path.of([-end, -end * (1.0 - 1e-12)], [np.repeat(start[:, None], settings.points + 1, 1)],
                                settings.table), End.SECOND_APPROACH, 0)  # fmt: skip
     retreat = Retreat(problem, Past(inward.path, forth.VELOCITY, problem.fadings), settings.table, known)
@@ -178,12 +180,13 @@ def rebound(
     if found.stuck:
         if problem.gravity > 0.0:
             return Rebound(path, End.SECOND_APPROACH, found.steps)
-        raise NotReached(f"the rebound could not be followed beyond {path.at(path.end)[0] * problem.scales.time:.6g} s")
+        last = float(path.state(path.end)[TIME]) * problem.scales.time
+        raise NotReached(f"the rebound could not be followed beyond {last:.6g} s")
     return Rebound(path, End.SEPARATED, found.steps)
 
 
 def _turned(problem: Hereditary, inward: Approach) -> Array:
     """The state at the turn, the force from the memories as everywhere in the rebound."""
-    depth, _, work, _, *memories = inward.path.at(inward.path.end)
+    depth, _, work, _, *memories = inward.path.state(inward.path.end)
     force = problem.springs @ np.append(problem.loads(depth)[0], memories)
     return np.array([inward.end, depth, 0.0, work, force, depth, *np.zeros(2 * problem.springs.size)])

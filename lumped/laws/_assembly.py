@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from time import perf_counter, process_time
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,17 +28,27 @@ LEAST_SHARE = 0.1
 SHARE_OF_HISTORY = {"peak_time": 3.0}
 
 
+class Columns(Protocol):
+    """What a law says of times (n,), s, in SI."""
+
+    def __call__(self, times: Array) -> Array:
+        """Depth, velocity, force and contact radius, shape (4, n)."""
+
+    def force(self, times: Array) -> Array:
+        """The force alone, shape (n,): sooner told, and asked for more often."""
+
+
 @dataclass(frozen=True)
 class Answer:
     """One integration of a law.
 
-    `columns` maps times (n,) to depth, velocity, force and contact radius, shape (4, n), SI; `times` are its
-    own rows; `values` are the quantities (None where undefined), without history_l2. `until`: the last time to
-    follow, s; None: the scene's. `contacts`: the several contacts of one motion.
+    `columns` tells it at any time, `times` are its own rows; `values` are the quantities (None where undefined),
+    without history_l2. `until`: the last time to follow, s; None: the scene's. `contacts`: the several contacts of one
+    motion.
     """
 
     times: Array
-    columns: Callable[[Array], Array]
+    columns: Columns
     values: Mapping[str, float | None]
     end: End
     energy: Mapping[str, float | None] = field(default_factory=dict)
@@ -86,8 +96,8 @@ def force_difference(fine: Answer, coarse: Answer) -> tuple[float, float]:
     t = np.unique(np.concatenate([fine.times, coarse.times]))
     # Where the force jumps, at an end, the two know it to rounding: of times as close as that the first one counts.
     t = t[np.diff(t, prepend=-np.inf) > ROUNDING * t[-1]]
-    force = fine.columns(t)[2]
-    difference = force - coarse.columns(t)[2]
+    force = fine.columns.force(t)
+    difference = force - coarse.columns.force(t)
     norm = float(np.trapezoid(force**2, t))
     return float(np.abs(difference).max()), float(np.sqrt(np.trapezoid(difference**2, t) / norm)) if norm else 0.0
 
@@ -122,7 +132,7 @@ def assemble(
 
     `model` is the model as the law resolves it, where that is not the scene's without inertia.
     """
-    times = densified(answer.rows(scene), lambda t: answer.columns(t)[2], max(tolerance, FINEST_ROWS))
+    times = densified(answer.rows(scene), answer.columns.force, max(tolerance, FINEST_ROWS))
     depth, velocity, force, radius = answer.columns(times)
     depth[0], velocity[0] = 0.0, scene.velocity  # the touch, which the polynomials know to rounding
     # The rows themselves add what linear interpolation errs by, less than the tolerance; the bar is for the

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -56,15 +57,32 @@ class Course:
     def at(self, times: Array) -> Array:
         """Depth, velocity, force and the edge's depth, shape (4, n); a striker at rest stays so, without force."""
         found = np.empty((4, times.size))
-        begin = -np.inf
-        for phase in self.phases:
-            inside = times >= begin
+        for phase, inside in self._shared(times):
             found[:, inside] = phase.at(times[inside])
-            begin = float(phase.times[-1])
-        after = times > begin * (1.0 + 1e-12)
-        if self.end is End.REST:
-            found[1:3, after] = 0.0
+        found[1:3, self._rested(times)] = 0.0
         return found
+
+    def force(self, times: Array) -> Array:
+        """The force alone, shape (n,)."""
+        found = np.empty(times.size)
+        for phase, inside in self._shared(times):
+            found[inside] = phase.force(times[inside])
+        found[self._rested(times)] = 0.0
+        return found
+
+    def _shared(self, times: Array) -> Iterator[tuple[Phase, NDArray[np.bool_]]]:
+        """The phases, and which of the times each knows; where two meet the later one speaks."""
+        which = np.searchsorted(self._ends[:-1], times, side="right")
+        for i, phase in enumerate(self.phases):
+            yield phase, which == i
+
+    def _rested(self, times: Array) -> NDArray[np.bool_]:
+        """Which of the times are those of a striker at rest."""
+        return times > (self._ends[-1] * (1.0 + 1e-12) if self.end is End.REST else np.inf)
+
+    @cached_property
+    def _ends(self) -> list[float]:
+        return [float(phase.times[-1]) for phase in self.phases]
 
 
 class Solve(Protocol):
@@ -140,6 +158,11 @@ class _Columns:
         radius = self.problem.contact_radius(np.maximum(edge, 0.0))
         force = np.maximum(force, 0.0) * scales.force
         return np.array([depth * scales.depth, velocity * scales.velocity, force, radius])
+
+    def force(self, times: Array) -> Array:
+        """The force alone, N."""
+        scales = self.problem.scales
+        return np.asarray(np.maximum(self.course.force(times / scales.time), 0.0) * scales.force)
 
 
 def _energy(scene: Scene, problem: Hereditary, last: Array) -> dict[str, float | None]:

@@ -116,7 +116,7 @@ def _answer(law: ForceLaw, scene: Scene, track: Track, outcomes: Sequence[Outcom
     said = "" if moved.end is End.SEPARATED else moved.end.value
     return Answer(
         track.rows,
-        lambda times: _columns(law, track, times),
+        _Columns(law, track),
         _values(scene, moved, outcomes, until),
         moved.end,
         _energy(law, scene, moved),
@@ -126,13 +126,25 @@ def _answer(law: ForceLaw, scene: Scene, track: Track, outcomes: Sequence[Outcom
     )
 
 
-def _columns(law: ForceLaw, track: Track, times: Array) -> Array:
-    depth, rate, force = track(times)
-    if law.exit == "force":
-        force = np.maximum(force, 0.0)
-    pressed = np.where(force > 0.0, np.maximum(depth, 0.0), 0.0)
-    radius = np.zeros_like(depth) if law.load_curve is None else law.load_curve.contact_radius(pressed)
-    return np.array([depth, rate, force, radius])
+class _Columns(NamedTuple):
+    """Depth, velocity, force and contact radius at times (n,), shape (4, n); no tension where contact ends by force."""
+
+    law: ForceLaw
+    track: Track
+
+    def __call__(self, times: Array) -> Array:
+        depth, rate, force = self.track(times)
+        force, curve = self._pushing(force), self.law.load_curve
+        pressed = np.where(force > 0.0, np.maximum(depth, 0.0), 0.0)
+        radius = np.zeros_like(depth) if curve is None else curve.contact_radius(pressed)
+        return np.array([depth, rate, force, radius])
+
+    def force(self, times: Array) -> Array:
+        """The force alone, shape (n,), N."""
+        return self._pushing(self.track(times)[2])
+
+    def _pushing(self, force: Array) -> Array:
+        return np.maximum(force, 0.0) if self.law.exit == "force" else force
 
 
 def _values(scene: Scene, moved: Motion, outcomes: Sequence[Outcome], until: float) -> Mapping[str, float | None]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -20,6 +21,8 @@ from lumped.spring_row.coarse import coarse, pace_of, problem_of
 from lumped.spring_row.nest import Level, Nest, limit, predicted_turn
 
 Array = NDArray[np.float64]
+# Of the fields of Instant the force, and those which are seen: depth, velocity, force, edge.
+FORCE, SEEN = 4, [1, 2, 4, 5]
 # Limits of two marches err by the fourth power of the steps: over the fourth root of the tolerance, so many steps of
 # the first of three marches suffice mostly.
 INTERVALS, FEWEST, MOST = 1.1, 8, 90
@@ -104,7 +107,7 @@ def _answer(scene: Scene, level: Level) -> Answer:
     dense, whole = _Dense(level, separated), level.approach
     if level.rebound.size:
         whole = _ascending(np.hstack([level.approach, level.rebound[:, 1:]]))
-    time, (depth, velocity, force, _) = whole[0], _seen(whole)
+    time, (depth, velocity, force, _) = whole[0], whole[SEEN]
     if end is End.TIME and time[-1] > level.last:
         time = np.append(time[time < level.last], level.last)
         depth, velocity, force, _ = dense(time)
@@ -129,20 +132,33 @@ class _Dense:
     separated: bool
 
     def __call__(self, times: Array) -> Array:
-        approach, rebound = self.level.approach, _ascending(self.level.rebound)
-        turn, last = self.level.turn, self.level.last
-        columns = np.empty((4, times.size))
-        early = times <= turn
-        columns[:, early] = local(np.sqrt(approach[0]), _seen(approach), np.sqrt(times[early]))
-        late = np.minimum(times[~early], last)
-        if rebound.size and self.separated:
-            columns[:, ~early] = local(-np.sqrt(last - rebound[0]), _seen(rebound), -np.sqrt(last - late))
-        elif rebound.size:
-            columns[:, ~early] = local(rebound[0], _seen(rebound), late)
-        else:  # at rest
-            columns[:, ~early] = np.array([approach[1, -1], 0.0, 0.0, approach[5, -1]])[:, None]
+        columns = self._of(SEEN, times)
         columns[2:] = np.maximum(columns[2:], 0.0)
         return columns
+
+    def force(self, times: Array) -> Array:
+        """The force alone, shape (n,)."""
+        return np.asarray(np.maximum(self._of([FORCE], times)[0], 0.0))
+
+    def _of(self, fields: list[int], times: Array) -> Array:
+        """Fields of Instant, shape (fields, n)."""
+        approach, rebound = self.level.approach, self._rebound
+        turn, last = self.level.turn, self.level.last
+        found = np.empty((len(fields), times.size))
+        early = times <= turn
+        found[:, early] = local(np.sqrt(approach[0]), approach[fields], np.sqrt(times[early]))
+        late = np.minimum(times[~early], last)
+        if rebound.size and self.separated:
+            found[:, ~early] = local(-np.sqrt(last - rebound[0]), rebound[fields], -np.sqrt(last - late))
+        elif rebound.size:
+            found[:, ~early] = local(rebound[0], rebound[fields], late)
+        else:  # at rest
+            found[:, ~early] = np.array([0.0, approach[1, -1], 0.0, 0.0, 0.0, approach[5, -1]])[fields, None]
+        return found
+
+    @cached_property
+    def _rebound(self) -> Array:
+        return _ascending(self.level.rebound)
 
 
 def _ascending(fields: Array) -> Array:
@@ -153,11 +169,6 @@ def _ascending(fields: Array) -> Array:
     later = (np.diff(np.maximum.accumulate(time), prepend=-1.0) > 0.0) & (time < time[-1])
     later[-1] = True
     return fields[:, later]
-
-
-def _seen(fields: Array) -> Array:
-    """Depth, velocity, force and edge of the fields of Instant."""
-    return fields[[1, 2, 4, 5]]
 
 
 def _energy(scene: Scene, level: Level) -> dict[str, float | None]:

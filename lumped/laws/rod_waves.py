@@ -120,6 +120,10 @@ class _Columns:
             columns[3] = radius
         return columns
 
+    def force(self, times: Array) -> Array:
+        """The force alone, shape (n,), N."""
+        return np.asarray(self(times)[2])
+
 
 def _peak(impact: FlatImpact | TippedImpact, breaks: Array) -> tuple[float, float]:
     """Time and height of the greatest force: between two echoes it is smooth, at one it may jump."""
