@@ -14,7 +14,7 @@ from lumped.paper import assumptions, claims, misprints
 from lumped.paper.rules import AGREES, DIFFERS, UNKNOWN, VERDICTS
 
 TABLES = {"paper", "assumptions", "misprints", "grid"}
-FIGURES = {f"fig{number}.{kind}" for number in (6, 7, 8, 10) for kind in ("svg", "png")}
+FIGURES = {f"fig{number}.{kind}" for number in (6, 7, 8, 10, 15) for kind in ("svg", "png")}
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""The paper's figures drawn again: Fig. 6, Fig. 7 and 8 with the exact law beside the clipped one, Fig. 10's cut."""
+"""The paper's figures again: Fig. 6, 7 and 8 with the exact law beside the clipped, Fig. 10's cut, Fig. 15."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fe_contact.report import style
+from fe_contact.report.paper_memory import plot_memory
 from lumped.paper.concrete_impacts import cut_at_measured_peak, proposed
 from lumped.paper.examples import Steel
 from lumped.paper.steel_impacts import R1_of_peak, damped_of_peak, elastic_of_peak, hertz, solid
@@ -32,10 +33,11 @@ LAW_KEY = (
 
 
 def plot_paper(study: Study, where: Path) -> tuple[Path, ...]:
-    """Write ``fig6``, ``fig7``, ``fig8`` and ``fig10`` as SVG and PNG into the folder ``where``; their paths."""
+    """Write ``fig6``, ``fig7``, ``fig8``, ``fig10`` and ``fig15`` as SVG and PNG into ``where``; their paths."""
     with style.look():
         grids = (*_grid(study, 7, where), *_grid(study, 8, where))
-        return (*_fig6(study, where), *grids, *_fig10(study, where))
+        rest = (*_fig10(study, where), *plot_memory(study.examples, where))
+        return (*_fig6(study, where), *grids, *rest)
 
 
 def _fig6(study: Study, where: Path) -> tuple[Path, Path]:

@@ -11,6 +11,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from scipy.optimize import minimize_scalar
 
 from lumped import Scene, laws, simulate
 from lumped.errors import BadInput, NotReached
@@ -18,6 +21,8 @@ from lumped.history import History
 from lumped.paper import Claim, Examples, Value, assumptions, claims, misprints, recompute, rules
 from lumped.paper.assumptions import FAILS, HOLDS, OPEN, Assumption
 from lumped.paper.concrete_impacts import proposed
+from lumped.paper.dented_surface import DentedSurface
+from lumped.paper.examples import Steel
 from lumped.paper.plateau import plateau_cut
 from lumped.paper.ring_impact import impact
 from lumped.paper.rules import AGREES, DIFFERS, UNJUDGED, UNKNOWN, UNPRINTED, Rule, half_unit
@@ -409,3 +414,33 @@ def test_scenes_of_grid_and_concrete_are_the_recomputed_ones(examples: Examples)
         result = simulate(laws.get("correspondence").of(scene), scene)
         for quantity in ("peak_force", "duration", "restitution"):
             assert number(result, quantity) == pytest.approx(number(known, quantity), rel=2e-6)
+
+
+@pytest.mark.parametrize("R1", [5.0, 0.2])
+def test_the_dent_comes_back_and_the_next_ball_finds_what_is_left(R1: float, examples: Examples) -> None:
+    steel, R2 = examples.steel, 2e-5
+    dent, pauses = DentedSurface(steel, R1, R2), np.array([0.0, 0.3, 2.0]) * R2
+    known = solid(steel, R1, R2).quantities
+    assert dent.first.peak_force == pytest.approx(known["peak_force"].value, rel=1e-6)
+    assert dent.parting == pytest.approx(known["duration"].value, rel=1e-6)
+    fallen = dent.surface(dent.parting + pauses)
+    assert fallen == pytest.approx(fallen[0] * np.exp(-pauses / (1.5 * R2)), rel=1e-9)
+    assert fallen[0] > 0.1 * dent.first.peak_depth
+    for pause, depth in zip(pauses, fallen, strict=True):
+        assert dent.second(pause).peak_force == pytest.approx(peak_on_the_dent(steel, R1, R2, depth), rel=1e-6)
+    assert dent.second(100.0 * R2).peak_force == pytest.approx(dent.first.peak_force, rel=1e-6)
+
+
+def peak_on_the_dent(steel: Steel, R1: float, R2: float, depth: float) -> float:
+    """The ball on a surface at a depth, force-free: F + (R2/(1+R1)) F' = D E0 (y + R2 y') by scipy."""
+    factor, tau = 4.0 / 3.0 * math.sqrt(steel.radius) * steel.contact_modulus, R2 / (1.0 + R1)
+
+    def motion(_: float, state: NDArray[np.float64]) -> list[float]:
+        depth, rate, force = state
+        load, rise = depth**1.5, 1.5 * math.sqrt(depth) * rate
+        return [rate, -force / steel.mass, (factor * (load + R2 * rise) - force) / tau]
+
+    start, scales = [depth, steel.velocity, 0.0], [1e-18, 1e-12, 1e-10]
+    found = solve_ivp(motion, (0.0, 1e-5), start, method="DOP853", rtol=1e-11, atol=scales, dense_output=True)
+    top = minimize_scalar(lambda time: -found.sol(time)[2], bounds=(0.0, 9e-6), options={"xatol": 1e-13})
+    return float(-top.fun)
