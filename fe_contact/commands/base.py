@@ -6,9 +6,9 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from fe_contact.numerics import faults
 from fe_contact.progress import Progress, silent
@@ -95,17 +95,13 @@ def number(text: str, option: str) -> float:
         raise BadInput(Fault(option, "", f"{text!r}: accepted a number")) from None
 
 
-class Named(Protocol):
-    """A scene, or whatever else a command works on."""
+def folder(args: argparse.Namespace, command: str, name: str) -> Path:
+    """Where the results of a command on a scene or the like go, by its name.
 
-    @property
-    def name(self) -> str: ...
-
-
-def folder(args: argparse.Namespace, command: str, scene: Named) -> Path:
-    """Where the results of a command go; raises BadInput, before any work, where nothing can be written."""
+    Raises BadInput, before any work, where nothing can be written.
+    """
     chosen: Path | None = args.out
-    where = chosen or Path("fe-contact-out") / f"{command}-{scene.name}"
+    where = chosen or Path("fe-contact-out") / f"{command}-{name}"
     standing = next(place for place in (where, *where.absolute().parents) if place.exists())
     if not standing.is_dir() or not os.access(standing, os.W_OK):
         raise BadInput(Fault("--out", str(where), "accepted: a folder that can be written"))
@@ -117,6 +113,11 @@ def progress_of(args: argparse.Namespace) -> Progress:
     if args.quiet or not sys.stderr.isatty():
         return silent
     return lambda message: print(f"fe-contact: {message} ...", file=sys.stderr)
+
+
+def tell(args: argparse.Namespace, content: Mapping[str, Any], lines: Sequence[str], where: Path) -> None:
+    """On stdout what was found: as JSON, or line by line and where it was written."""
+    print(json.dumps(content, allow_nan=False) if args.json else "\n".join([*lines, f"written to {where}"]))
 
 
 def report(args: argparse.Namespace, result: Result, where: Path) -> int:

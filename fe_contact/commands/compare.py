@@ -41,7 +41,7 @@ def execute(args: argparse.Namespace) -> int:
         reference = result_of(scene, solved)
     progress("lumped laws")
     comparison = compare(solved, reference, names, measured)
-    where = base.folder(args, "compare", scene)
+    where = base.folder(args, "compare", scene.name)
     content = write_comparison(comparison, where)
     plot_comparison(comparison, where)
     if args.json:

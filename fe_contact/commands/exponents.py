@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import json
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 
@@ -13,12 +12,6 @@ if TYPE_CHECKING:
     from fe_contact.validation.exponents_check import Check
 
 SUMMARY = "local exponent and D from the half-space to the thin layer: every profile, base and nu; spots by FE"
-
-
-class Layers(NamedTuple):
-    """What the folder of results is called after."""
-
-    name: str = "layers"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,14 +27,13 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.validation.exponents_check import checks
     from fe_contact.validation.exponents_files import write_exponents
 
-    where = base.folder(args, "exponents", Layers())
+    where = base.folder(args, "exponents", "layers")
     progress = base.progress_of(args)
     found, checked = curves(args.quick, progress), checks(args.quick, progress)
     content = write_exponents(found, checked, where)
     progress("chart")
     plot_exponents(found, checked, where)
-    lines = [*map(_curve, found), *map(_check, checked), f"written to {where}"]
-    print(json.dumps(content, allow_nan=False) if args.json else "\n".join(lines))
+    base.tell(args, content, [*map(_curve, found), *map(_check, checked)], where)
     missed = [check for check in checked if not check.converged]
     if missed:
         base.complain(f"tolerance not reached at {len(missed)} of {len(checked)} places checked by finite elements")

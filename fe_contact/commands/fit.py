@@ -51,7 +51,7 @@ def execute(args: argparse.Namespace) -> int:
     free = None if args.free is None else tuple(name.strip() for name in args.free.split(","))
     fixed = {name: base.number(value, "--fix") for name, value in _pairs(args.fix, "--fix")}
     bounds = dict(_bounds(args.bounds))
-    where = base.folder(args, "fit", scene)
+    where = base.folder(args, "fit", scene.name)
     base.progress_of(args)(f"fit of {args.law}")
     try:
         found = fit(curve, args.law, scene, free, fixed, bounds, args.peak)

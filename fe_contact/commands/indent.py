@@ -31,7 +31,7 @@ def execute(args: argparse.Namespace) -> int:
     indenter, table = base.read_indenter(args)
     given = settings(table, None, indenter.source)
     depths = tuple(base.number(text, "--depths") for text in args.depths.split(","))
-    where = base.folder(args, "indent", indenter)
+    where = base.folder(args, "indent", indenter.name)
     found = _indented(args, indenter, depths, given)
     found.write(where)
     if args.json:

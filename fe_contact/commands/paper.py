@@ -39,7 +39,7 @@ def execute(args: argparse.Namespace) -> int:
     from lumped.toml_file import parse_assignment
 
     examples = Examples.load(dict(parse_assignment(text) for text in args.overrides))
-    where = base.folder(args, "paper", examples)
+    where = base.folder(args, "paper", examples.name)
     progress = base.progress_of(args)
     found = study(examples, progress)
     content = write_study(found, where)

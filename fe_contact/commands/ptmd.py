@@ -40,7 +40,7 @@ def execute(args: argparse.Namespace) -> int:
     from lumped.toml_file import parse_assignment
 
     case = load(args.file, dict(parse_assignment(text) for text in args.overrides))
-    where = base.folder(args, "ptmd", case)
+    where = base.folder(args, "ptmd", case.name)
     try:
         found = study(case, base.progress_of(args))
     except NotReached as failure:

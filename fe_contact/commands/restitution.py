@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import json
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 
@@ -12,12 +11,6 @@ if TYPE_CHECKING:
     from lumped.restitution_table import Line
 
 SUMMARY = "restitution asked for against obtained: every law, exact and published dampings, both exits"
-
-
-class Laws(NamedTuple):
-    """What the folder of results is called after."""
-
-    name: str = "laws"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,14 +24,14 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.validation.restitution_files import write_restitution
     from lumped.restitution_table import table
 
-    where = base.folder(args, "restitution", Laws())
+    where = base.folder(args, "restitution", "laws")
     progress = base.progress_of(args)
     progress("impacts")
     lines = table()
     content = write_restitution(lines, where)
     progress("chart")
     plot_restitution(lines, where)
-    print(json.dumps(content, allow_nan=False) if args.json else "\n".join([*map(_said, lines), f"written to {where}"]))
+    base.tell(args, content, [*map(_said, lines)], where)
     return base.DONE
 
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import json
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 
@@ -12,12 +11,6 @@ if TYPE_CHECKING:
     from fe_contact.validation.rings import RingCurve
 
 SUMMARY = "rod in ring, O-ring and washer by finite elements over depth, against the paper's (27)-(32)"
-
-
-class Paper(NamedTuple):
-    """What the folder of results is called after."""
-
-    name: str = "paper"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,14 +24,13 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.validation.rings import cases, rings
     from fe_contact.validation.rings_files import write_rings
 
-    where = base.folder(args, "ring", Paper())
+    where = base.folder(args, "ring", "paper")
     progress = base.progress_of(args)
     curves = rings(cases(), progress)
     content = write_rings(curves, where)
     progress("chart")
     plot_rings(curves, where)
-    lines = [line for curve in curves for line in _said(curve)]
-    print(json.dumps(content, allow_nan=False) if args.json else "\n".join([*lines, f"written to {where}"]))
+    base.tell(args, content, [line for curve in curves for line in _said(curve)], where)
     missed = [curve.case.name for curve in curves if not curve.found.converged]
     if missed:
         base.complain(f"tolerance not reached: {', '.join(missed)}")

@@ -29,7 +29,7 @@ def execute(args: argparse.Namespace) -> int:
 
     scene, table = base.read_scene(args)
     args.method = args.method or default(scene)
-    where = base.folder(args, "run", scene)
+    where = base.folder(args, "run", scene.name)
     _check(args, scene)
     try:
         return _impact(args, scene, table, where)

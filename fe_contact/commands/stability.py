@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import json
 from collections import Counter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 
@@ -15,12 +14,6 @@ if TYPE_CHECKING:
     from fe_contact.validation.stability.base import Row
 
 SUMMARY = "maps of where methods break: schemes, masses, penalties, locking, relaxation, exits, gaps, far ends"
-
-
-class Bars(NamedTuple):
-    """What the folder of results is called after."""
-
-    name: str = "bars"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -35,13 +28,13 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.report.stability import plot_stability
     from fe_contact.validation.stability_files import rows_of, write_stability
 
-    where = base.folder(args, "stability", Bars())
+    where = base.folder(args, "stability", "bars")
     progress = base.progress_of(args)
     rows = rows_of(args.quick, args.jobs, where, progress)
     content = write_stability(rows, where)
     progress("charts")
     plot_stability(rows, where)
-    print(json.dumps(content, allow_nan=False) if args.json else "\n".join([*_lines(rows), f"written to {where}"]))
+    base.tell(args, content, _lines(rows), where)
     return base.DONE
 
 

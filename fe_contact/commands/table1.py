@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import json
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 
@@ -12,12 +11,6 @@ if TYPE_CHECKING:
     from fe_contact.validation.table1 import Trial
 
 SUMMARY = "the paper's Table 1 on trial: D, alpha and E* of every row by finite elements, with error bars and verdicts"
-
-
-class Paper(NamedTuple):
-    """What the folder of results is called after."""
-
-    name: str = "paper"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -32,16 +25,13 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.validation.table1_files import write_table1
     from fe_contact.validation.table1_verdict import UNDECIDED, verdict
 
-    where = base.folder(args, "table1", Paper())
+    where = base.folder(args, "table1", "paper")
     progress = base.progress_of(args)
     trials = table1(progress)
     content = write_table1(trials, where)
     progress("chart")
     plot_table1(trials, where)
-    if args.json:
-        print(json.dumps(content, allow_nan=False))
-    else:
-        print("\n".join([*(line for trial in trials for line in _said(trial)), f"written to {where}"]))
+    base.tell(args, content, [line for trial in trials for line in _said(trial)], where)
     undecided = [trial.row.name for trial in trials if verdict(trial).word == UNDECIDED]
     if undecided:
         base.complain(f"undecided: {', '.join(undecided)}")

@@ -26,7 +26,7 @@ def execute(args: argparse.Namespace) -> int:
 
     scene, table = base.read_scene(args)
     points = tradeoff(scene, settings(table, None, scene.source), args.quick, base.progress_of(args))
-    where = base.folder(args, "tradeoff", scene)
+    where = base.folder(args, "tradeoff", scene.name)
     content = write_tradeoff(scene, points, where)
     plot_tradeoff(scene, points, where)
     if args.json:
