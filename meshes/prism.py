@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
 from skfem import MeshTri
 
 from meshes._rectangle import rectangle
 from meshes._sizes import checked
 
+NEAR = 2.0  # shorter sides from face and side within which triangles are well shaped: what ends there decays as fast
+
 
 def prism(elements: float, half_height: float, sharp: bool) -> MeshTri:
-    """Triangles of ``0 <= r <= 1``, ``-half_height <= z <= 0``.
+    """Triangles of ``0 <= r <= 1``, ``-half_height <= z <= 0``, the longer the farther they lie from (1, 0).
 
     Parameters
     ----------
@@ -28,4 +34,18 @@ def prism(elements: float, half_height: float, sharp: bool) -> MeshTri:
     """
     n = checked("elements", elements, 0.5, 200.0)
     half_height = checked("half_height", half_height, 1e-4, 1e4)
-    return rectangle(0.0, 1.0, half_height, (), ((1.0, 0.0),) if sharp else (), n)
+    near = NEAR * min(half_height, 1.0)
+    width, height = (float(_drawn_in(side, near)) for side in (1.0, half_height))
+    mesh = rectangle(1.0 - width, 1.0, height, (), ((1.0, 0.0),) if sharp else (), n)
+    r, z = mesh.doflocs
+    return replace(mesh, doflocs=np.array([1.0 - _drawn_out(1.0 - r, near), -_drawn_out(-z, near)]))
+
+
+def _drawn_in(distance: float, near: float) -> float:
+    """A distance that beyond ``near`` counts by its logarithm."""
+    return min(distance, near) * (1.0 + np.log(max(distance / near, 1.0)))
+
+
+def _drawn_out(distance: npt.NDArray[np.float64], near: float) -> npt.NDArray[np.float64]:
+    """The other way round."""
+    return np.minimum(distance, near) * np.exp(np.maximum(distance / near - 1.0, 0.0))

@@ -10,6 +10,7 @@ from typing import Any
 from meshes.errors import GmshMissing
 
 _ONE_AT_A_TIME = threading.Lock()  # gmsh keeps one global model a process
+PLACED = 1e-6  # accuracy of a node's place on a line, in elements: gmsh's own 1e-9 costs more than all the rest
 
 
 @contextmanager
@@ -27,6 +28,7 @@ def session(name: str) -> Iterator[Any]:
             gmsh.option.setNumber("General.Terminal", 0)
             for source in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
                 gmsh.option.setNumber(f"Mesh.MeshSize{source}", 0)
+            gmsh.option.setNumber("Mesh.LcIntegrationPrecision", PLACED)
             gmsh.model.add(name)
             yield gmsh
         finally:
