@@ -25,10 +25,10 @@ class ElasticBody:
     fixed: npt.NDArray[Any]
     surface: Surface
 
-    def operator(self, poisson: float) -> SurfaceOperator:
-        """What the contact surface knows of it with this Poisson's ratio, for E* = 1."""
+    def operator(self, poisson: float, factors: bool = False) -> SurfaceOperator:
+        """What the contact surface knows of it with this Poisson's ratio, for E* = 1; see :func:`condensed`."""
         matrix = self.stiffness(*moduli(poisson)).tocsc()
-        return condensed(self.basis, matrix, self.fixed, poisson, self.surface)
+        return condensed(self.basis, matrix, self.fixed, poisson, self.surface, factors=factors)
 
 
 def moduli(poisson: float) -> tuple[float, float]:

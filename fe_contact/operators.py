@@ -6,15 +6,13 @@ Assembled and factorised once; a unit force on every surface degree of freedom g
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sparse
-import scipy.sparse.linalg as linalg
 from skfem import (
     Basis,
     ElementTriP1,
@@ -28,6 +26,7 @@ from skfem import (
 from fe_contact.far_field import static
 from fe_contact.floating import Floating
 from fe_contact.forms import Array, isotropic, stiffness
+from fe_contact.interior import Interior, Solve
 from fe_contact.surface import Surface, flat
 
 ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
@@ -45,7 +44,8 @@ class SurfaceOperator:
     ``points``, ``weights`` (q,) quadrature of the contact zone, weights including 2 pi r; ``pull`` (q,) of them
     what counts for the force along the motion;
     ``trace`` (q, n) displacement at the points from that of the nodes;
-    ``solve`` maps nodal forces (n,) on the zone to the displacement of the whole mesh (2 N,);
+    ``solve`` maps nodal forces (n,) on the zone to the displacement of the whole mesh (2 N,), factorising anew unless
+    asked to keep its factors;
     ``basis`` the scalar scikit-fem basis, ``poisson`` its Poisson's ratio; ``dimension`` as of :class:`Surface`;
     ``watched`` (n,) how far the place from which depth is measured comes up under unit nodal forces on the zone, None
     where it is at rest.
@@ -59,7 +59,7 @@ class SurfaceOperator:
     weights: Array
     pull: Array
     trace: Array
-    solve: Callable[[Array], Array]
+    solve: Solve
     basis: Any
     poisson: float
     dimension: int
@@ -69,6 +69,10 @@ class SurfaceOperator:
     def degrees_of_freedom(self) -> int:
         """Unknowns of the finite-element system behind the surface."""
         return 2 * int(self.basis.N)
+
+    def without_factors(self) -> SurfaceOperator:
+        """The same, of a size to be kept."""
+        return replace(self, solve=self.solve.interior)
 
     def force(self, scale: float, pressure: Array) -> float:
         """Force along the motion of a unit-mesh pressure (q,) on the mesh scaled by ``scale``."""
@@ -119,6 +123,7 @@ def condensed(
     surface: Surface,
     watch: Any = None,
     floating: Floating | None = None,
+    factors: bool = False,
 ) -> SurfaceOperator:
     """Factorise the stiffness of a body once and condense it to its contact zone.
 
@@ -131,6 +136,7 @@ def condensed(
     surface : where contact may happen, in units of the mesh.
     watch : weights of the displacement of the place from which depth is measured, (1, 2 N); None: it is at rest.
     floating : of a body whose inertia alone balances the load; ``fixed`` then holds it at one point too.
+    factors : whether to keep them.
     """
     order = basis.elem.maxdeg
     corners = surface.coordinate[::order]
@@ -138,21 +144,8 @@ def condensed(
     loaded = (len(zone) - 1) * order + 1
     normal = _normals(surface, matrix.shape[0])
     free = np.setdiff1d(np.arange(matrix.shape[0]), fixed)
-    factor = linalg.splu(
-        matrix[free][:, free],
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-
-    def displacement(forces: Array) -> Array:
-        load = -(normal[:, :loaded] @ forces)  # pressure pushes into the body
-        if floating is not None:
-            load = floating.balanced(load)
-        answer = np.zeros_like(load)
-        answer[free] = factor.solve(load[free])
-        return answer if floating is None else floating.centred(answer)
-
+    interior = Interior(matrix[free][:, free], free, normal[:, :loaded], floating)
+    displacement = interior.factorised()
     response, watched = _influence(displacement, normal, watch, loaded)
     compliance = response[:loaded]
     condensed = np.linalg.inv((compliance + compliance.T) / 2)
@@ -167,7 +160,7 @@ def condensed(
         weights=weights,
         pull=weights * surface.motion(points),
         trace=trace,
-        solve=displacement,
+        solve=displacement if factors else interior,
         basis=basis,
         poisson=poisson,
         dimension=surface.dimension,
@@ -175,9 +168,7 @@ def condensed(
     )
 
 
-def _influence(
-    displacement: Callable[[Array], Array], normal: Any, watch: Any, loaded: int
-) -> tuple[Array, Array | None]:
+def _influence(displacement: Solve, normal: Any, watch: Any, loaded: int) -> tuple[Array, Array | None]:
     """Inward displacement of the surface nodes, (n_s, loaded), and of what is watched, (loaded,), under unit forces."""
     seen = -normal.T if watch is None else sparse.vstack([-normal.T, watch])
     parts = np.array_split(np.eye(loaded), -(-loaded // SOLVED_AT_ONCE), axis=1)

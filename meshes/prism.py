@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -35,7 +36,7 @@ def prism(elements: float, half_height: float, sharp: bool) -> MeshTri:
     n = checked("elements", elements, 0.5, 200.0)
     half_height = checked("half_height", half_height, 1e-4, 1e4)
     near = NEAR * min(half_height, 1.0)
-    width, height = (float(_drawn_in(side, near)) for side in (1.0, half_height))
+    width, height = (_drawn_in(side, near) for side in (1.0, half_height))
     mesh = rectangle(1.0 - width, 1.0, height, (), ((1.0, 0.0),) if sharp else (), n)
     r, z = mesh.doflocs
     return replace(mesh, doflocs=np.array([1.0 - _drawn_out(1.0 - r, near), -_drawn_out(-z, near)]))
@@ -43,7 +44,7 @@ def prism(elements: float, half_height: float, sharp: bool) -> MeshTri:
 
 def _drawn_in(distance: float, near: float) -> float:
     """A distance that beyond ``near`` counts by its logarithm."""
-    return min(distance, near) * (1.0 + np.log(max(distance / near, 1.0)))
+    return min(distance, near) * (1.0 + math.log(max(distance / near, 1.0)))
 
 
 def _drawn_out(distance: npt.NDArray[np.float64], near: float) -> npt.NDArray[np.float64]:

@@ -78,8 +78,8 @@ class Modes:
 @lru_cache(maxsize=32)
 def modes(body: ElasticBody, lowest: float, highest: float) -> Modes:
     """Of a body whose ratio of shear to bulk modulus, G/K > 0, stays within an interval."""
-    operators = [body.operator(poisson(ratio)) for ratio in _ratios(lowest, highest)]
-    middle = operators[len(operators) // 2]
+    operators = [body.operator(poisson(ratio), factors=True) for ratio in _ratios(lowest, highest)]
+    middle = operators[len(operators) // 2].without_factors()
     bulk, shear = moduli(middle.poisson)
     volume_work, shear_work = _projected(body, operators)
     free = _independent(bulk * volume_work + shear * shear_work)

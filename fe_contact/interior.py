@@ -1,0 +1,74 @@
+"""The body behind its surface: from forces on the contact zone to the displacement of the whole mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse.linalg as linalg
+
+from fe_contact.floating import Floating
+from fe_contact.forms import Array
+
+
+class Solve(Protocol):
+    """Displacement (2 N,) of the whole mesh under nodal forces (n,) on the zone; or of (n, m) loads at once."""
+
+    @property
+    def interior(self) -> Interior:
+        """What it solves, without the factors."""
+
+    def __call__(self, forces: Array) -> Array: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Interior:
+    """Answers by factorising anew: the factors, ten times the matrix, are seldom wanted once the surface is condensed.
+
+    ``matrix`` stiffness of the ``free`` degrees of freedom of all (2 N); ``push`` sparse (2 N, n): unit forces on the
+    zone, out of the body; ``floating`` of a body that nothing holds.
+    """
+
+    matrix: Any
+    free: npt.NDArray[np.integer[Any]]
+    push: Any
+    floating: Floating | None = None
+
+    @property
+    def interior(self) -> Interior:
+        """Itself."""
+        return self
+
+    def factorised(self) -> Factorised:
+        """The same with its factors."""
+        factor = linalg.splu(
+            self.matrix,
+            permc_spec="MMD_AT_PLUS_A",
+            diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )
+        return Factorised(self, factor)
+
+    def __call__(self, forces: Array) -> Array:
+        """See :class:`Solve`."""
+        return self.factorised()(forces)
+
+
+@dataclass(frozen=True, eq=False)
+class Factorised:
+    """An interior with its factors: as large as all the rest of a body and ten times more."""
+
+    interior: Interior
+    factor: Any
+
+    def __call__(self, forces: Array) -> Array:
+        """See :class:`Solve`."""
+        body = self.interior
+        load = -(body.push @ forces)  # pressure pushes into the body
+        if body.floating is not None:
+            load = body.floating.balanced(load)
+        answer = np.zeros_like(load)
+        answer[body.free] = self.factor.solve(load[body.free])
+        return answer if body.floating is None else body.floating.centred(answer)
