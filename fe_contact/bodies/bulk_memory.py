@@ -25,6 +25,7 @@ from fe_contact.bodies.struck import Deformable
 from fe_contact.contact import PressedSurface
 from fe_contact.elastic_body import ElasticBody
 from fe_contact.forms import Array
+from fe_contact.kept import kept
 from fe_contact.numerics import SCHEMES, Numerics
 from fe_contact.operators import SurfaceOperator
 from lumped.materials import Relaxation
@@ -32,7 +33,7 @@ from lumped.members import get
 
 # Steps between which the ratio of the moduli is looked for, in contact times; it changes little beyond.
 SHORTEST, LONGEST = 1e-6, 50.0
-SURFACES_KEPT = 32
+SURFACES_KEPT = 4
 OFFERS_KEPT = 64  # step lengths whose condensed stiffness is kept: like marches have like steps
 
 
@@ -177,6 +178,6 @@ def relaxing(body: ElasticBody, moduli: Moduli, numerics: Numerics) -> BulkSurfa
     return _surface(body, moduli, ratios[0], ratios[1])
 
 
-@lru_cache(maxsize=SURFACES_KEPT)
+@kept
 def _surface(body: ElasticBody, moduli: Moduli, lowest: float, highest: float) -> BulkSurface:
     return BulkSurface(modes(body, lowest, highest), moduli)

@@ -14,13 +14,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import eigh
 
 from fe_contact.elastic_body import ElasticBody, moduli
 from fe_contact.forms import Array
+from fe_contact.kept import kept
 from fe_contact.operators import SurfaceOperator
 
 FEWEST, PER_E_FOLD = 3, 0.5  # ratios, at least and for every factor e of the interval: errors below 1e-7
@@ -75,7 +76,7 @@ class Modes:
         return _symmetric(np.asarray(np.linalg.inv(self.compliance(*moduli(poisson(ratio))))))
 
 
-@lru_cache(maxsize=32)
+@kept
 def modes(body: ElasticBody, lowest: float, highest: float) -> Modes:
     """Of a body whose ratio of shear to bulk modulus, G/K > 0, stays within an interval."""
     operators = [body.operator(poisson(ratio), factors=True) for ratio in _ratios(lowest, highest)]

@@ -9,7 +9,7 @@ and Piperno 2011, doi:10.1137/100791440, section 6.2).
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache, cached_property
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -36,6 +36,7 @@ class ExplicitStepper:
         self.body, self.scheme, self.enforced, self.step = body, scheme, enforced, step
         self.laws = [memory.part_law(part, step) for part in body.parts]
         inertia = body.inertia if body.damping is None else body.inertia + step / 2 * body.damping
+        self._surfaces: dict[float, PressedSurface] = {}  # by lever: one, and at first another
         self.accelerate = factorized(inertia[body.massive][:, body.massive])
 
     def begun(self, state: State) -> State:
@@ -89,11 +90,12 @@ class ExplicitStepper:
         overlap = self.body.pressing.overlap(ahead)
         return self.enforced.found(self._heavy(lever), overlap, state.signed_pressure > 0.0, state.time)
 
-    @cache  # noqa: B019 - a stepper lives as long as its march
     def _heavy(self, lever: float) -> PressedSurface:
-        pressing = self.body.pressing
-        moved = self._accelerated(pressing.push.toarray())
-        return surface_of(lever * (pressing.push.T @ moved), pressing.trace, pressing.weights)
+        if lever not in self._surfaces:
+            pressing = self.body.pressing
+            moved = self._accelerated(pressing.push.toarray())
+            self._surfaces[lever] = surface_of(lever * (pressing.push.T @ moved), pressing.trace, pressing.weights)
+        return self._surfaces[lever]
 
     def _settled(self, state: State, change: Array) -> tuple[Array, Found]:
         """The increment with that of the surface without mass, and the pressure on it."""

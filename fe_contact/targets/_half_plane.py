@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -13,11 +12,12 @@ import meshes
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.far_field import half_plane
 from fe_contact.forms import Array, isotropic, plane_stiffness
+from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, condensed, lagrange
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
-from fe_contact.targets._zone import LINE_REFINEMENT, MESHES_KEPT, STRUCK_REFINEMENT, Zone, held, smallest_struck
+from fe_contact.targets._zone import LINE_REFINEMENT, STRUCK_REFINEMENT, Zone, held, smallest_struck
 from lumped.geometry import Geometry
 from lumped.indenter import Indenter
 
@@ -43,7 +43,7 @@ def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
     return _surface(geometry.material.nu, elements, numerics.order, smallest_struck(geometry.shape), depth, size)
 
 
-@lru_cache(maxsize=MESHES_KEPT)
+@kept
 def _surface(poisson: float, elements: float, order: int, smallest: float, datum: float, size: float) -> ScaledSurface:
     """Condensed for unit reference radius; the datum's motion upwards is watched."""
     basis = Basis(meshes.layer(elements, smallest, size, size), ELEMENTS[order](), intorder=2 * order)

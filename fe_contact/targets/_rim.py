@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 from skfem import Basis, FacetBasis
 
@@ -11,11 +9,12 @@ import meshes
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.far_field import static
 from fe_contact.forms import isotropic, stiffness
+from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, condensed
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
-from fe_contact.targets._zone import MESHES_KEPT, REFINEMENT, held
+from fe_contact.targets._zone import REFINEMENT, held
 from lumped.indenter import Indenter
 
 
@@ -26,7 +25,7 @@ def still(indenter: Indenter, radius: float, numerics: Numerics) -> Still:
     return FixedStill(surface, indenter, numerics, radius, radius, np.inf)
 
 
-@lru_cache(maxsize=MESHES_KEPT)
+@kept
 def _surface(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
     """Condensed for unit radius."""
     basis = Basis(meshes.layer_under_rim(elements, far_radius, far_radius), ELEMENTS[order](), intorder=2 * order)

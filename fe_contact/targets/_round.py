@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 from types import ModuleType
 
 import numpy as np
@@ -14,6 +13,7 @@ import meshes
 from fe_contact.bodies.stacked import Side, Stacked, stacked
 from fe_contact.floating import Floating
 from fe_contact.forms import Array, isotropic, plane_stiffness, stiffness
+from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, SurfaceOperator, condensed
 from fe_contact.pressing import Still
@@ -22,7 +22,6 @@ from fe_contact.targets._body import BodyStill, trace_at
 from fe_contact.targets._zone import (
     LINE_REFINEMENT,
     MARGIN,
-    MESHES_KEPT,
     SPHERE_REFINEMENT,
     STRUCK_REFINEMENT,
     Zone,
@@ -76,7 +75,7 @@ def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
     return _together(geometry, ends, STRUCK_REFINEMENT * numerics.elements_per_contact, numerics.order)
 
 
-@lru_cache(maxsize=MESHES_KEPT)
+@kept
 def _together(geometry: Geometry, ends: tuple[float, float], elements: float, order: int) -> Stacked:
     """All bodies that yield, on meshes fine for contacts that end between these radii, m."""
     radii = np.array(ends)
@@ -103,7 +102,7 @@ def _bodies(geometry: Geometry) -> list[_Body]:
     return sorted(bodies, key=lambda body: body.radius)
 
 
-@lru_cache(maxsize=MESHES_KEPT)
+@kept
 def _operator(
     poisson: float, elements: float, order: int, smallest: float, contact: float, support: bool, plane: bool
 ) -> SurfaceOperator:

@@ -20,7 +20,6 @@ STRUCK_REFINEMENT = 4.0  # the same in an impact: its force must be smooth in ti
 FAINT = 1e-4  # share of the peak force below which an impact's contact may be resolved less
 SPHERE_REFINEMENT = 3.0  # the same on spheres, of which two may touch whose meshes do not match
 WIDEST = 1.2  # rad from the first touch: a contact on a circle ends before
-MESHES_KEPT = 8  # of every target, with what contact knows of them: some 10 MB each
 MARGIN = 1.35  # largest radius of the fine mesh over that of the contacts expected
 WIDEST_THIN = 130.0  # thicknesses of the body that a fine mesh may be wide: its elements shrink with the thickness
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import meshes
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.forms import Array
+from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
 from fe_contact.operators import surface_operator
 from fe_contact.pressing import ScaledStill, Still
 from fe_contact.targets import _half_plane as half_plane
 from fe_contact.targets import _rim as rim
-from fe_contact.targets._zone import MESHES_KEPT
 from lumped.geometry import Geometry
 from lumped.indenter import Indenter
 
@@ -38,6 +36,6 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     return ScaledStill(surface(indenter.material.nu, numerics), indenter, numerics)
 
 
-@lru_cache(maxsize=MESHES_KEPT)
+@kept
 def _surface(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
     return ScaledSurface(surface_operator(meshes.half_space(elements, far_radius), order, poisson))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache, partial
+from functools import partial
 from typing import Any
 
 from skfem import Basis, FacetBasis, MeshTri
@@ -12,13 +12,13 @@ from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.elastic_body import ElasticBody
 from fe_contact.far_field import plate
 from fe_contact.forms import Array, elastic, plane_stiffness, stiffness
+from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
 from fe_contact.targets._zone import (
     LINE_REFINEMENT,
-    MESHES_KEPT,
     REFINEMENT,
     STRUCK_REFINEMENT,
     Zone,
@@ -68,13 +68,13 @@ def _shape(geometry: Geometry, numerics: Numerics) -> tuple[Sizes, int, bool, bo
     return (elements, smallest, thickness, width), numerics.order, target.base == "bonded", geometry.shape.plane
 
 
-@lru_cache(maxsize=MESHES_KEPT)
+@kept
 def _surface(poisson: float, sizes: Sizes, order: int, bonded: bool, plane: bool) -> ScaledSurface:
     """Condensed for unit reference radius."""
     return ScaledSurface(_body(sizes, order, bonded, plane).operator(poisson), breathes=False)
 
 
-@lru_cache(maxsize=MESHES_KEPT)
+@kept
 def _body(sizes: Sizes, order: int, bonded: bool, plane: bool) -> ElasticBody:
     """In units of the reference radius."""
     basis = Basis(_mesh(*sizes), ELEMENTS[order](), intorder=2 * order)

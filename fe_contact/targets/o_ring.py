@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 from skfem import Basis
 
@@ -11,6 +9,7 @@ import meshes
 from fe_contact.bodies.stacked import Side, Stacked
 from fe_contact.contact import PressedSurface
 from fe_contact.forms import Array, isotropic, stiffness
+from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, SurfaceOperator, condensed
 from fe_contact.pressing import Still
@@ -19,7 +18,6 @@ from fe_contact.targets._body import BodyStill
 from fe_contact.targets._zone import (
     LINE_REFINEMENT,
     MARGIN,
-    MESHES_KEPT,
     STRUCK_REFINEMENT,
     Zone,
     held,
@@ -60,7 +58,7 @@ def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
     return _struck(geometry, elements, numerics.order, numerics.contact_radius / MARGIN)
 
 
-@lru_cache(maxsize=MESHES_KEPT)
+@kept
 def _struck(geometry: Geometry, elements: float, order: int, largest: float) -> Stacked:
     """For contacts up to a half-width, m."""
     target = geometry.target
@@ -73,7 +71,7 @@ def _struck(geometry: Geometry, elements: float, order: int, largest: float) -> 
     return Stacked(operator, (Side(operator, relaxation, operator.trace, target.lead),), section)
 
 
-@lru_cache(maxsize=MESHES_KEPT)
+@kept
 def _surface(
     poisson: float, elements: float, order: int, smallest: float, contact: float, mean_radius: float
 ) -> tuple[SurfaceOperator, PressedSurface]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ import meshes
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.elastic_body import ElasticBody
 from fe_contact.forms import Array, elastic, polar_stiffness
+from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS
 from fe_contact.pressing import FixedStill, Still
@@ -20,7 +20,6 @@ from fe_contact.surface import flat
 from fe_contact.targets._zone import (
     LINE_REFINEMENT,
     MARGIN,
-    MESHES_KEPT,
     STRUCK_REFINEMENT,
     Zone,
     held,
@@ -68,7 +67,7 @@ def _shape(geometry: Geometry, numerics: Numerics) -> tuple[float, int, float, f
     return elements, numerics.order, smallest_struck(geometry.shape), thickness, angle
 
 
-@lru_cache(maxsize=MESHES_KEPT)
+@kept
 def _surface(
     poisson: float, elements: float, order: int, smallest: float, thickness: float, angle: float
 ) -> ScaledSurface:
@@ -76,7 +75,7 @@ def _surface(
     return ScaledSurface(_body(elements, order, smallest, thickness, angle).operator(poisson), breathes=False)
 
 
-@lru_cache(maxsize=MESHES_KEPT)
+@kept
 def _body(elements: float, order: int, smallest: float, thickness: float, angle: float) -> ElasticBody:
     """In units of the zone's arc length."""
     basis = Basis(meshes.ring(elements, smallest, thickness, math.pi / angle), ELEMENTS[order](), intorder=2 * order)

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 from skfem import Basis
 
 import meshes
 from fe_contact.contact import PressedSurface
 from fe_contact.forms import Array, isotropic, stiffness
+from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, SurfaceOperator, condensed
 from fe_contact.pressing import Still
 from fe_contact.surface import Surface, ring_area
 from fe_contact.targets._body import BodyStill
-from fe_contact.targets._zone import MESHES_KEPT, held, thickness_over
+from fe_contact.targets._zone import held, thickness_over
 from lumped.indenter import Indenter
 from lumped.targets.washer import Washer
 
@@ -41,7 +40,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     )
 
 
-@lru_cache(maxsize=MESHES_KEPT)
+@kept
 def _surface(
     poisson: float, elements: float, order: int, inner: float, outer: float, rim: float, bonded: bool
 ) -> tuple[SurfaceOperator, PressedSurface]:
