@@ -20,7 +20,6 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Press, identify, judge, write, draw; 0, or 3 where bars leave a row undecided."""
-    from fe_contact.report.table1 import plot_table1
     from fe_contact.validation.table1 import table1
     from fe_contact.validation.table1_files import write_table1
     from fe_contact.validation.table1_verdict import UNDECIDED, verdict
@@ -30,6 +29,8 @@ def execute(args: argparse.Namespace) -> int:
     trials = table1(progress)
     content = write_table1(trials, where)
     progress("chart")
+    from fe_contact.report.table1 import plot_table1  # matplotlib, once the two processes are gone
+
     plot_table1(trials, where)
     base.tell(args, content, [line for trial in trials for line in _said(trial)], where)
     undecided = [trial.row.name for trial in trials if verdict(trial).word == UNDECIDED]

@@ -86,10 +86,10 @@ def bodies(row: Row, nu: float) -> tuple[Elastic, ...]:
 
 
 def table1(progress: Progress = silent) -> tuple[Trial, ...]:
-    """Every row of the table, in its order; two at a time, each batch in a process of its own."""
+    """Every row of the table, in its order; two batches at a time, in two processes."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # two processes for two cores: matrices are small
     found: dict[int, Trial] = {}
-    with ProcessPoolExecutor(WORKERS, get_context("spawn"), max_tasks_per_child=1) as pool:
+    with ProcessPoolExecutor(WORKERS, get_context("spawn")) as pool:
         for done in as_completed([pool.submit(_tried, batch) for batch in batches()]):
             for one in done.result():
                 progress(f"row {one.row.number}: {one.row.case}")
@@ -98,9 +98,13 @@ def table1(progress: Progress = silent) -> tuple[Trial, ...]:
 
 
 def batches() -> tuple[tuple[Row, ...], ...]:
-    """Rows tried one after the other in one process, the longest work first; blocks share their bonded ones."""
+    """Rows tried one after the other in one process; blocks share their bonded ones.
+
+    The longest work first: line contact at all its places, then two bodies before one.
+    """
     blocks = tuple(row for row in examples() if row.block)
-    return (*((row,) for row in reversed(examples()) if not row.block), blocks)
+    alone = sorted((row for row in examples() if not row.block), key=lambda row: (row.single, -row.bodies))
+    return (*((row,) for row in alone), blocks)
 
 
 def _tried(rows: tuple[Row, ...]) -> tuple[Trial, ...]:
