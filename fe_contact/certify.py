@@ -136,10 +136,15 @@ def _by_stiffness(
 
 
 def _far_field(runs: _Runs, value: Curve, cheap: Numerics, mesh: Numerics) -> Change | Softening | None:
-    """By one press of either surface where they breathe with the contact; else by a march more, on the varied mesh."""
+    """By one press of either surface where they breathe with the contact; else by a march more, on the varied mesh.
+
+    Bodies that end have none.
+    """
     order = LEAST_ORDER["far_field"]
     far, farther = _other(cheap, "far_radius")
     surface, other = runs.surface(cheap), runs.surface(far)
+    if other is surface:
+        return Softening(value, 0.0)
     if surface.breathes:
         assert isinstance(surface, Deformable)
         assert isinstance(other, Deformable)

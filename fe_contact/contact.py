@@ -39,16 +39,32 @@ class PressedSurface:
     """What contact knows of a body: condensed stiffness (n, n), trace (q, n), weights (q,).
 
     ``recurring``: whether the same sets of points touch again and again, so that their answers are worth keeping.
+    ``compliance`` (q, q), displacement at the points under unit forces there, of surfaces with more nodes than points.
     """
 
     stiffness: Array
     trace: Array
     weights: Array
     recurring: bool = True
+    compliance: Array | None = None
 
     def held(self, springs: Array) -> Array:
         """Stiffness with springs (q,) at the points, (n, n), in the order of columns that LAPACK needs."""
         return np.asarray(self.stiffness + (self._squares @ springs).reshape(self.stiffness.shape)).T
+
+    def gaps(self, springs: Array, overlaps: Array) -> Array:
+        """What is left of overlaps (q, m) where springs (q,) stand between the surfaces."""
+        if self.compliance is not None:
+            return _between_points(self.compliance, springs, overlaps)
+        pushed = self.trace.T @ (springs[:, None] * overlaps)
+        return overlaps - self.trace @ _solved(self.held(springs), pushed)
+
+    def work(self, forces: Array) -> float:
+        """Of forces (q,) at the points on the displacement that they cause."""
+        if self.compliance is not None:
+            return float(forces @ self.compliance @ forces)
+        load = self.trace.T @ forces
+        return float(load @ np.linalg.solve(self.stiffness, load))
 
     def stiffened(self, stiffness: Array) -> PressedSurface:
         """The same points on another stiffness; what is known of the points alone is shared."""
@@ -123,7 +139,7 @@ def solve(problem: ContactProblem, touching: Touching) -> ContactSolution:
         if found == held:
             return _solution(problem, gap, iteration, True)
         if iteration >= UNGUARDED and isinstance(problem.yielding, float):
-            point = _Point(problem.surface.trace.T @ (answer.springs * gap), retreat, gap)
+            point = _Point(answer.springs * gap, retreat, gap)
             if before is not None:
                 point, still = _descended(problem, before, point)
                 gap, found = point.gap, (point.gap > 0.0).tobytes()
@@ -188,52 +204,73 @@ class _Once:
 
 
 def _once(problem: ContactProblem, touching: bytes) -> _Once:
-    trace, springs = problem.surface.trace, problem.penalty * problem.surface.weights * np.frombuffer(touching, bool)
+    springs = problem.penalty * problem.surface.weights * np.frombuffer(touching, bool)
     overlaps = np.column_stack([problem.overlap, np.ones_like(problem.overlap)])
-    pushed = trace.T @ (springs[:, None] * overlaps)
-    _, displacement, failure = dposv(problem.surface.held(springs), pushed, overwrite_a=True, overwrite_b=True)
-    if failure:
-        raise FloatingPointError("the condensed stiffness lost its positive definiteness")
-    gap, lifted = (overlaps - trace @ displacement).T
+    gap, lifted = problem.surface.gaps(springs, overlaps).T
     given = problem.yielding * springs
     retreat = float(given @ gap) / (1.0 + float(given @ lifted))
     return _Once(gap - retreat * lifted, retreat, springs)
 
 
+def _between_points(compliance: Array, springs: Array, overlaps: Array) -> Array:
+    """By the forces of the springs: (1/k + C) forces = overlap where they stand, multiplied by the root of k."""
+    acting = _those(springs)
+    root = np.sqrt(springs[acting])[:, None]
+    if not root.size:
+        return overlaps
+    system = root * compliance[acting][:, acting] * root.T
+    system[np.diag_indices(root.size)] += 1.0
+    scaled = _solved(system.T, root * overlaps[acting])
+    gaps = overlaps - compliance[:, acting] @ (root * scaled)
+    gaps[acting] = scaled / root
+    return gaps
+
+
+def _those(springs: Array) -> slice | npt.NDArray[np.intp]:
+    """Where springs stand: as a rule without a hole, and then nothing has to be copied."""
+    acting = np.flatnonzero(springs)
+    whole = acting.size and acting.size == acting[-1] - acting[0] + 1
+    return slice(acting[0], acting[-1] + 1) if whole else acting
+
+
+def _solved(matrix: Array, right: Array) -> Array:
+    """Of a symmetric positive definite matrix, which it overwrites with its factors. Raises FloatingPointError."""
+    _, solution, failure = dposv(matrix, right, overwrite_a=True, overwrite_b=True)
+    if failure:
+        raise FloatingPointError("the condensed stiffness lost its positive definiteness")
+    return np.asarray(solution)
+
+
 @lru_cache(maxsize=SETS_KEPT)
 def _answer(surface: PressedSurface, penalty: float, touching: bytes) -> _Answer:
     springs = penalty * surface.weights * np.frombuffer(touching, bool)
-    weighted = surface.trace.T * springs
-    _, displacement, failure = dposv(surface.held(springs), weighted)
-    if failure:
-        raise FloatingPointError("the condensed stiffness lost its positive definiteness")
-    left = np.eye(len(springs)) - surface.trace @ displacement
+    left = np.eye(len(springs)) - surface.trace @ _solved(surface.held(springs), surface.trace.T * springs)
     lifted = left.sum(axis=1)
     return _Answer(left, lifted, springs, float(springs @ lifted))
 
 
 @dataclass(frozen=True, eq=False)
 class _Point:
-    """A place between Newton's points: nodal load (n,) that displaces the surface, striker's retreat, gap (q,)."""
+    """A place between Newton's points: forces (q,) that displace the surface, striker's retreat, gap (q,)."""
 
-    load: Array
+    forces: Array
     retreat: float
     gap: Array
 
     def towards(self, other: _Point, share: float) -> _Point:
         """The point at a share of the way to another."""
         return _Point(
-            self.load + share * (other.load - self.load),
+            self.forces + share * (other.forces - self.forces),
             self.retreat + share * (other.retreat - self.retreat),
             self.gap + share * (other.gap - self.gap),
         )
 
     def energy(self, problem: ContactProblem) -> float:
         """J of the module's docstring."""
-        strain = self.load @ np.linalg.solve(problem.surface.stiffness, self.load)
+        strain = problem.surface.work(self.forces)
         striker = self.retreat**2 / float(problem.yielding) if problem.yielding else 0.0
         pressed = problem.surface.weights @ np.maximum(self.gap, 0.0) ** 2
-        return 0.5 * float(strain + striker + problem.penalty * pressed)
+        return 0.5 * (strain + striker + problem.penalty * float(pressed))
 
 
 def _descended(problem: ContactProblem, start: _Point, end: _Point) -> tuple[_Point, bool]:

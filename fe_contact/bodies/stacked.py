@@ -48,6 +48,12 @@ class Side:
         """Displacement times modulus of its nodes under unit nodal forces, (n, n)."""
         return self.operator.compliance / self.share
 
+    @cached_property
+    def at_points(self) -> Array:
+        """Displacement times modulus of the common points under unit forces there, (q, q), symmetric."""
+        found = self.trace @ np.linalg.solve(self.stiffness, self.trace.T)
+        return np.asarray((found + found.T) / 2)
+
 
 @dataclass(frozen=True, eq=False)
 class Stacked(Deformable):
@@ -153,21 +159,21 @@ class StackedBody:
 
     def _pressed(self, weights: tuple[float, ...]) -> PressedSurface:
         """All sides, each with its modulus over the common one."""
-        alike = self._alike
-        blocks = block_diag(*(weight * side.stiffness for side, weight in zip(self.sides, weights, strict=True)))
-        return alike.stiffened(blocks) if len(self.sides) > 1 else alike
+        return stacked(self.operator, self.sides, weights) if len(self.sides) > 1 else self._alone
 
     @cached_property
-    def _alike(self) -> PressedSurface:
-        """All sides, each of the common modulus."""
-        return stacked(self.operator, self.sides, (1.0,) * len(self.sides))
+    def _alone(self) -> PressedSurface:
+        """The one side, whose modulus is the common one."""
+        return stacked(self.operator, self.sides, (1.0,))
 
 
 def stacked(operator: SurfaceOperator, sides: tuple[Side, ...], weights: tuple[float, ...]) -> PressedSurface:
     """The sides under one pressure at the operator's points; ``weights``: modulus of each over the common one."""
     blocks = (weight * side.stiffness for side, weight in zip(sides, weights, strict=True))
     trace = np.hstack([side.trace for side in sides])
-    return PressedSurface(block_diag(*blocks), trace, operator.weights, recurring=False)
+    yields = sum(side.at_points / weight for side, weight in zip(sides, weights, strict=True))
+    compliance = np.asarray(yields) if len(sides) > 1 else None
+    return PressedSurface(block_diag(*blocks), trace, operator.weights, recurring=False, compliance=compliance)
 
 
 def _together(laws: tuple[StepLaw, ...]) -> float:
