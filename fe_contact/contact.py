@@ -16,7 +16,7 @@ line search on ``J`` makes it converge from anywhere; an exhausted budget is rep
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -25,13 +25,16 @@ import scipy.sparse as sparse
 from scipy.linalg.lapack import dposv
 
 from fe_contact.forms import Array
+from fe_contact.kept import Store
 
 MAX_ITERATIONS = 60
 UNGUARDED = 8  # iterations that nearly always suffice, and need no line search
 ENERGY_ROUNDING = 1e-15  # a change of the energy below this share is rounding
-SETS_KEPT = 256  # sets of touching points whose answer is kept
+ROOM = 32e6  # bytes of answers to sets of touching points that are kept: some 300 of them
 
 Touching = npt.NDArray[np.bool_]
+
+_ANSWERS = Store(ROOM)
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,8 +244,14 @@ def _solved(matrix: Array, right: Array) -> Array:
     return np.asarray(solution)
 
 
-@lru_cache(maxsize=SETS_KEPT)
 def _answer(surface: PressedSurface, penalty: float, touching: bytes) -> _Answer:
+    """The one at hand, or a new one."""
+    return _ANSWERS.find(
+        (surface, penalty, touching), lambda: _answered(surface, penalty, touching), 8.0 * surface.weights.size**2
+    )
+
+
+def _answered(surface: PressedSurface, penalty: float, touching: bytes) -> _Answer:
     springs = penalty * surface.weights * np.frombuffer(touching, bool)
     left = np.eye(len(springs)) - surface.trace @ _solved(surface.held(springs), surface.trace.T * springs)
     lifted = left.sum(axis=1)

@@ -1,6 +1,7 @@
-"""One store for meshes and what surfaces know of them: the last few, of all kinds together.
+"""What is dear to make is kept while there is room: the last few answers, whatever they are to.
 
-A cache of its own for every kind would hold as many of each, and a long session a gigabyte of bodies long gone.
+Meshes of all kinds and what surfaces know of them share one store: a cache of its own for every kind would hold as
+many of each, and a long session a gigabyte of bodies long gone.
 """
 
 from __future__ import annotations
@@ -10,12 +11,43 @@ from functools import update_wrapper
 from threading import Lock
 from typing import Any, Generic, ParamSpec, TypeVar
 
-KEPT = 16  # some 7 MB each; an impact on two bodies varies nine
+BODIES = 16  # some 7 MB each; an impact on two bodies varies nine
 
 _Arguments = ParamSpec("_Arguments")
 _Answer = TypeVar("_Answer")
-_store: dict[tuple[Hashable, ...], Any] = {}  # the last one used comes last
-_one_at_a_time = Lock()
+
+
+class Store:
+    """Answers by their keys, the last ones used, as many as have ``room`` together."""
+
+    def __init__(self, room: float) -> None:
+        self._room, self._taken, self._lock = room, 0.0, Lock()
+        self._held: dict[tuple[Hashable, ...], tuple[float, Any]] = {}
+
+    def find(self, key: tuple[Hashable, ...], make: Callable[[], _Answer], size: float = 1.0) -> _Answer:
+        """What is at hand, or made now, and takes the place of what was not asked for longest."""
+        with self._lock:
+            known = self._held.pop(key, None)
+            if known is not None:
+                self._held[key] = known
+                found: _Answer = known[1]
+                return found
+        answer = make()
+        with self._lock:
+            self._taken += size - self._held.pop(key, (0.0, None))[0]
+            self._held[key] = (size, answer)
+            while self._taken > self._room and len(self._held) > 1:
+                self._taken -= self._held.pop(next(iter(self._held)))[0]
+        return answer
+
+    def forget(self, first: Hashable) -> None:
+        """Drop all keys that begin so."""
+        with self._lock:
+            for key in [key for key in self._held if key[0] is first]:
+                self._taken -= self._held.pop(key)[0]
+
+
+_BODIES = Store(BODIES)
 
 
 class kept(Generic[_Arguments, _Answer]):  # noqa: N801 - a decorator, written like functools.cache
@@ -26,19 +58,10 @@ class kept(Generic[_Arguments, _Answer]):  # noqa: N801 - a decorator, written l
         update_wrapper(self, make)
 
     def __call__(self, *arguments: _Arguments.args, **named: _Arguments.kwargs) -> _Answer:
-        """The answer at hand, or a new one in place of that which was not asked for longest."""
+        """The answer at hand, or a new one."""
         key = (self._make, *arguments, *named.items())
-        with _one_at_a_time:
-            known = [_store.pop(key)] if key in _store else []
-        answer: _Answer = known[0] if known else self._make(*arguments, **named)
-        with _one_at_a_time:
-            _store[key] = answer
-            while len(_store) > KEPT:
-                del _store[next(iter(_store))]
-        return answer
+        return _BODIES.find(key, lambda: self._make(*arguments, **named))
 
     def cache_clear(self) -> None:
         """Forget the answers of this function."""
-        with _one_at_a_time:
-            for key in [key for key in _store if key[0] is self._make]:
-                del _store[key]
+        _BODIES.forget(self._make)

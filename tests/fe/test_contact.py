@@ -86,6 +86,24 @@ def test_every_cold_start_reaches_the_same_answer(seed: int) -> None:
 
 
 @given(SEEDS)
+def test_points_and_nodes_tell_the_same(seed: int) -> None:
+    """The forces of the springs found from the compliance of the points, or from the stiffness of the nodes."""
+    rng = np.random.default_rng(seed)
+    problem = replace(random_problem(seed), yielding=float(rng.choice([0.0, 0.7])))
+    surface = replace(problem.surface, recurring=False)
+    yields = surface.trace @ np.linalg.solve(surface.stiffness, surface.trace.T)
+    by_points = replace(surface, compliance=(yields + yields.T) / 2)
+    start = rng.random(surface.weights.size) < 0.5
+    for guarded in (contact.UNGUARDED, 1):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(contact, "UNGUARDED", guarded)
+            one, other = (solve(replace(problem, surface=seen), start) for seen in (surface, by_points))
+        assert one.converged == other.converged
+        scale = np.abs(one.signed_pressure).max()
+        np.testing.assert_allclose(other.signed_pressure, one.signed_pressure, atol=1e-7 * scale)
+
+
+@given(SEEDS)
 def test_the_line_search_reaches_the_same_answer_as_plain_newton(seed: int) -> None:
     problem = random_problem(seed)
     with pytest.MonkeyPatch.context() as patch:
