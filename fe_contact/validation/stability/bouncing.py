@@ -32,7 +32,7 @@ CHART = Chart(
 
 def cases(quick: bool) -> list[Case]:
     """Quick: fewer elements, one penalty, two steps."""
-    steps, penalties, elements = ((1.0, 2.0), (1.0,), 20) if quick else ((0.5, 0.9, 1.0, 2.0), (0.1, 1.0, 10.0), 100)
+    steps, penalties, elements = ((1.0, 2.0), (1.0,), 20) if quick else ((0.5, 1.0, 2.0), (0.1, 1.0, 10.0), 60)
     ways = [(name, penalty) for name in available(ENFORCEMENTS) for penalty in (penalties if name in SOFT else (1.0,))]
     bodies = [*((name, 1.0) for name in available(MASSES)), (DEFAULT["mass"], TIP)]
     every = product(available(SCHEMES), bodies, ways, steps)
