@@ -82,7 +82,7 @@ class FixedStepper:
             memory=Remembered(memory),
         )
         if moved.velocity > 0.0:  # growing, the contact has its radius at the end of the step
-            radius, found_at = half_width(self.places, solution.signed_pressure, self._gap(moved, solution)), moved.time
+            radius, found_at = half_width(self.places, solution.signed_pressure, self._gap(moved, solution), height=self.heights), moved.time
         else:
             radius, moved = self._receded(state, moved, steps, solution, length)
             found_at = state.time + length * self.scheme.SAMPLE
@@ -96,7 +96,7 @@ class FixedStepper:
         known = before.memory.opened or just_open(self._gap(before, solution), len(law.decay))
         memory, stress = opened(known, law, self._gap(after, solution))
         widest = max((earlier.radius for earlier in steps), default=np.inf)
-        radius = half_width(self.places, solution.signed_pressure, stress, widest)
+        radius = half_width(self.places, solution.signed_pressure, stress, widest, self.heights)
         return radius, after._replace(memory=after.memory._replace(opened=memory))
 
     def _gap(self, state: State, solution: ContactSolution) -> Array:

@@ -167,7 +167,7 @@ def contact_end(
     steep = float(points[min(int(rise.searchsorted((1.0 + GAP_REACH) * start)), points.size - 1)])
     reach = min(GAP_REACH * edge, GAP_REACH_OF_THICKNESS * thickness, max(min(touched, steep), fewest) - edge)
     outside = (points > edge + GAP_NEAREST * reach) & (points < edge + reach) & np.isfinite(rise)
-    if np.count_nonzero(outside) <= 2 * GAP_DEGREE:
+    if np.count_nonzero(outside) <= 2 * GAP_DEGREE or rise[outside][0] == rise[outside][-1]:  # the last: past a rim
         return edge
     roots = np.polynomial.Polynomial.fit(rise[outside], np.maximum(gap[outside], 0.0) ** (2 / 3), GAP_DEGREE).roots()
     real = np.real(roots[np.abs(np.imag(roots)) < 1e-9 * start])

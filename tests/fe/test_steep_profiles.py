@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+import fe_contact
 from fe_contact.indentation import indent
-from lumped import Material, Relaxation, Sphere
+from lumped import Material, Relaxation, Scene, Sphere, simulate
 from lumped.indenter import Indenter
+from lumped.laws import ting
 from lumped.shapes import Shape
 from lumped.shapes.power import PowerProfile
 from lumped.targets.layer import Layer
@@ -32,3 +36,15 @@ def test_force_and_contact_radius_under_steep_profiles(shape: Shape) -> None:
     assert np.all(np.abs(found.force - force) <= found.force_error)
     np.testing.assert_allclose(found.force, force, rtol=5e-4)
     np.testing.assert_allclose(found.contact_radius, radius, rtol=2e-3)
+
+
+def test_contact_radius_of_an_impact_under_a_steep_profile() -> None:
+    """Against Ting on the layer's load curve, from shortly after touch, where r^8 opens like t^(1/8), to the end."""
+    scene = Scene.load("polymer-layer", {"striker.velocity": 0.05})
+    blunt = PowerProfile(1e-4 * 1e-3**-8.0, 8.0)
+    scene = replace(scene, shape=blunt)
+    found, exact = fe_contact.run(scene, tolerance=5e-3).history, simulate(ting.of(scene), scene, 1e-6).history
+    share = np.linspace(0.03, 0.97, 200)
+    ours = np.interp(share * found.time[-1], found.time, found.contact_radius)
+    theirs = np.interp(share * exact.time[-1], exact.time, exact.contact_radius)
+    assert np.abs(ours - theirs).max() <= 5e-3 * theirs.max()
