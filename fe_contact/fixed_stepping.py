@@ -82,7 +82,8 @@ class FixedStepper:
             memory=Remembered(memory),
         )
         if moved.velocity > 0.0:  # growing, the contact has its radius at the end of the step
-            radius, found_at = half_width(self.places, solution.signed_pressure, self._gap(moved, solution), height=self.heights), moved.time
+            gap, found_at = self._gap(moved, solution), moved.time
+            radius = half_width(self.places, solution.signed_pressure, gap, height=self.heights)
         else:
             radius, moved = self._receded(state, moved, steps, solution, length)
             found_at = state.time + length * self.scheme.SAMPLE
