@@ -19,8 +19,11 @@ from lumped.members import get
 CELL, LETTER = 0.16, 0.062  # height of a row, width of a letter of its name, in
 DECADES = 2.0  # either side of the limit that the colours span
 TITLE_WIDTH = 132
+FEW = 4  # columns, in whose cells there is room for numbers
+NOT_ASKED = "0.9"
 LINES = [
-    "White: at its limit; green: below it, to a hundredth; red: above it, to a hundredfold. Cross: a named failure.",
+    "White: at its limit; blue: below it, to a hundredth; red: above it, to a hundredfold. Cross: a named failure, or "
+    "nothing to tell. Grey: not asked.",
 ]
 
 
@@ -57,7 +60,7 @@ def _map(rows: Sequence[Row], title: str, chart: Chart) -> Figure:
 
 
 def _panel(axes: Axes, table: Mapping[tuple[int, int], float | None], measure: Measure) -> None:
-    """Colours by the decades from the limit; a cross where there is no number."""
+    """Colours by the decades from the limit; a cross where there is no number, a number where there is room."""
     shape = tuple(1 + max(place[axis] for place in table) for axis in (0, 1))
     colours = np.full(shape, np.nan)
     for place, value in table.items():
@@ -66,7 +69,12 @@ def _panel(axes: Axes, table: Mapping[tuple[int, int], float | None], measure: M
         else:
             size = max(abs(value), measure.limit * 10.0**-DECADES)
             colours[place] = min(math.log10(size / measure.limit), DECADES)
-    axes.imshow(colours, cmap="RdYlGn_r", norm=TwoSlopeNorm(0.0, -DECADES, DECADES), aspect="auto")
+            if shape[1] <= FEW:
+                dark = abs(colours[place]) > DECADES / 2
+                colour = "white" if dark else style.BLACK
+                axes.text(place[1], place[0], f"{value:.2g}", fontsize=5.0, color=colour, ha="center", va="center")
+    axes.set_facecolor(NOT_ASKED)
+    axes.imshow(colours, cmap="RdBu_r", norm=TwoSlopeNorm(0.0, -DECADES, DECADES), aspect="auto")
 
 
 def _table(
@@ -80,11 +88,19 @@ def _table(
 
 
 def _labels(rows: Sequence[Row], keys: Sequence[str]) -> list[str]:
-    """In the order of their first row."""
-    return list(dict.fromkeys(_label(row, keys) for row in rows))
+    """In the order of their first row; a single number's by its size."""
+    ordered = rows
+    if len(keys) == 1 and all(isinstance(row[keys[0]], float) for row in rows):
+        ordered = sorted(rows, key=lambda row: float(row[keys[0]]))
+    return list(dict.fromkeys(_label(row, keys) for row in ordered))
 
 
 def _label(row: Mapping[str, Any], keys: Sequence[str]) -> str:
-    found = [(key, row[key]) for key in keys]
-    words = [f"{key} {value:g}" if isinstance(value, float) else str(value) for key, value in found]
-    return ", ".join(words).replace("_", " ").replace("cfl", "CFL")
+    return ", ".join(_words(key, row[key]) for key in keys).replace("_", " ").replace("cfl", "CFL")
+
+
+def _words(key: str, value: Any) -> str:
+    """A name speaks for itself; a number with what it is of."""
+    if isinstance(value, bool):
+        return key if value else f"no {key}"
+    return value if isinstance(value, str) else f"{key} {value:.4g}"

@@ -23,7 +23,7 @@ from lumped.indenter import Indenter
 from lumped.load_curves.base import LoadCurve
 from lumped.members import available, get
 
-TITLE = "Penalty in units of modulus over contact radius: bias, ripple and condition, contacts begun from the overlap"
+TITLE = "Penalty, in units of modulus over contact radius, over conditioning"
 CHART = Chart(
     rows=("enforcement",),
     columns=("penalty",),
