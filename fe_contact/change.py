@@ -42,7 +42,7 @@ class Change:
             "peak_time": self._peak_time,
             "peak_depth": float(depth[first.dense.depth > PEAK_SHARE * first.dense.depth.max()].max()),
             "duration": float(depth[LATE:].max()) / speed,
-            "impulse": float(np.abs(first.dense.impulse - self.second.dense.impulse)[LATE:].max()),
+            "impulse": self.impulse,
             "restitution": self.velocity / first.strike.velocity,
         }
         errors = {name: self._error(name, value) for name, value in around.items()}
@@ -85,6 +85,11 @@ class Change:
     def velocity(self) -> float:
         """Largest change of the velocity late in the contact, compared at equal shares of it, m/s."""
         return float(np.abs(self.first.dense_velocity - self.second.dense_velocity)[LATE:].max())
+
+    @cached_property
+    def impulse(self) -> float:
+        """The same of the impulse, N s."""
+        return float(np.abs(self.first.dense.impulse - self.second.dense.impulse)[LATE:].max())
 
     @property
     def _history(self) -> float:

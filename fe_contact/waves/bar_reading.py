@@ -9,7 +9,8 @@ import numpy as np
 from fe_contact.dynamics.march import Motion, Sample
 from fe_contact.forms import Array
 from fe_contact.waves.fronts import DEPTH, FORCE, TIME, VELOCITY, with_fronts
-from fe_contact.waves.rod_reading import Contacts, Reading
+from fe_contact.waves.rod_reading import Contacts, Reading, stopped
+from lumped.scene import Scene
 
 SPOILED, TELLING = 8, 8  # steps at the ends of a contact in which its element rings, and those beside them
 DROPPED = 0.6  # of what was to be expected, below which a force drops
@@ -34,9 +35,7 @@ class Ending:
         return self.open and self.begun == self.impacts and away > self.pause
 
 
-def read(
-    found: Motion, total: float, gravity: float, impacts: int, pause: float, echo: int | None
-) -> tuple[Reading, Contacts]:
+def read(found: Motion, total: float, scene: Scene, pause: float, echo: int | None) -> tuple[Reading, Contacts]:
     """Rows up to the last separation and every contact; ``total`` mass, kg; those within a ``pause``, s, are one.
 
     ``echo``: steps after which a front comes back, None where steps do not follow it.
@@ -44,16 +43,18 @@ def read(
     """
     rows = np.array([_row(sample) for sample in found.samples]).T
     spans = clustered(found.contacts, pause)
-    if impacts > 1:
+    if scene.motion.impacts > 1:
         rows = _cleaned(rows, spans)
     elif echo:
         rows = with_fronts(rows, np.arange(echo, rows.shape[1] - 2, echo), spoiled=0)
-    separated = len(spans) == impacts and rows[FORCE, -1] <= 0.0
+    separated = len(spans) == scene.motion.impacts and rows[FORCE, -1] <= 0.0
     if separated:
         rows, end = _ended(rows, spans[-1][1])
         spans[-1] = (spans[-1][0], end)
+    else:
+        rows = stopped(rows, scene.end_time)
     impulses = np.cumsum([sample.impulse for sample in found.samples])
-    contacts = tuple(_contact(rows, found.time, impulses, span, total, gravity) for span in spans)
+    contacts = tuple(_contact(rows, found.time, impulses, span, total, scene.gravity) for span in spans)
     first = contacts[0]  # of the later ones a front that comes a little early or late makes another peak
     quantities = {
         "peak_force": first["peak_force"],
@@ -61,7 +62,7 @@ def read(
         "peak_depth": first["peak_depth"],
         "duration": first["duration"] if separated or len(contacts) > 1 else None,
         "restitution": first["restitution"] if separated or len(contacts) > 1 else None,
-        "impulse": float(impulses[-1]),
+        "impulse": float(np.interp(rows[TIME, -1], found.time, impulses)),
         "history_l2": 0.0,
     }
     return Reading(rows, separated, quantities), contacts

@@ -9,10 +9,14 @@ back within the contact.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
+
+import numpy as np
 
 from fe_contact.certify import CAUSES, SAFETY, Budget, TotalWork
-from fe_contact.change import Change
+from fe_contact.change import LATE, Change
 from fe_contact.curve import Curve
+from fe_contact.forms import Array
 from fe_contact.march import March, Strike
 from fe_contact.numerics import Numerics
 from fe_contact.waves.impact import motion, record
@@ -77,5 +81,28 @@ class _Runs:
         )
 
 
+class Moved(Change):
+    """A change of the motion at equal times, not at equal shares of the contact.
+
+    What chatters at the end of a contact moves the time at which it ends, and hardly the speed after it.
+    """
+
+    @cached_property
+    def velocity(self) -> float:
+        """Largest change of the velocity late in the contact, m/s."""
+        return float(np.abs(self._late(self.first)[1] - self._late(self.second)[1]).max())
+
+    @cached_property
+    def impulse(self) -> float:
+        """The same of the impulse, N s."""
+        return float(np.abs(self._late(self.first)[0] - self._late(self.second)[0]).max())
+
+    def _late(self, curve: Curve) -> tuple[Array, Array]:
+        """Impulse, N s, and velocity, m/s; what has separated presses no more."""
+        time = np.minimum(self.first.dense_time[LATE:], curve.duration)
+        impulse = curve.read(time).impulse
+        return impulse, curve.velocity(time, impulse)
+
+
 def _change(first: Curve | None, second: Curve | None, order: int) -> Change | None:
-    return None if first is None or second is None else Change(first, second, SAFETY / (2**order - 1))
+    return None if first is None or second is None else Moved(first, second, SAFETY / (2**order - 1))

@@ -45,13 +45,14 @@ def read(found: Motion, scene: Scene, elements: int) -> Reading:
     end = found.contacts[-1][1]
     if jumping:
         fronts = np.arange(0, rows.shape[1], 2 * elements, dtype=np.intp)
-        if separated and rows.shape[1] - 2 in fronts:  # a front ends the contact
-            end, rows = rows[TIME, -2], np.hstack([rows[:, :-1], rows[:, -2:-1]])
+        beyond = (rows.shape[1] - 1) % (2 * elements)  # steps behind the last front at which the contact is open
+        if separated and fronts[-1] > 0 and beyond <= SPOILED + 1:  # that front ended it
+            rows = rows[:, : fronts[-1] + 1]
+            end, rows = rows[TIME, -1], np.hstack([rows, rows[:, -1:]])
         rows = with_fronts(rows, fronts, SPOILED)
     elif separated:
         end = _undented(rows)
-    if separated:
-        rows = _ended(rows, end)
+    rows = _ended(rows, end) if separated else stopped(rows, scene.end_time)
     highest = _highest(rows) if jumping else peak(rows[TIME], rows[FORCE])
     time, _, velocity, _, _ = rows[:, -1]
     quantities = {
@@ -78,6 +79,14 @@ def _undented(rows: Array) -> float:
     roots = np.roots(np.polyfit((time - time[-1]) / step, dent, 2))
     ahead = [float(root.real) for root in roots if abs(root.imag) < 1e-9 and 0.0 <= root.real <= 1.0]
     return float(time[-1] + step * min(ahead, default=1.0))
+
+
+def stopped(rows: Array, end: float) -> Array:
+    """Rows up to a time, s, within the last step; those of a march that stopped before as they are."""
+    kept = rows[:, rows[TIME] < end]
+    if kept.shape[1] == rows.shape[1]:
+        return rows
+    return np.hstack([kept, np.array([[np.interp(end, rows[TIME], row)] for row in rows])])
 
 
 def _ended(rows: Array, end: float) -> Array:

@@ -101,10 +101,19 @@ def _nearby(fine: Reading, coarse: Reading) -> dict[str, float]:
     turned = abs(float(fine.rows[VELOCITY, 0] - fine.rows[VELOCITY, -1])) or np.inf
     return {
         "peak_force": float(change[force > PEAK_SHARE * force.max()].max()),
-        "peak_depth": float(np.abs(depth - both[DEPTH])[deep].max(initial=0.0)),
+        "peak_depth": float(np.abs(depth - both[DEPTH])[deep].max(initial=0.0)) + _between_rows(fine),
         "restitution": slower / start,
         "impulse": slower / turned * abs(fine.quantities["impulse"] or 0.0),
     }
+
+
+def _between_rows(fine: Reading) -> float:
+    """How much deeper than its deepest row a motion that turns may have been, m: half a step at that row's speed."""
+    deepest = int(np.argmax(fine.rows[DEPTH]))
+    if deepest in (0, fine.rows.shape[1] - 1):
+        return 0.0
+    around = fine.rows[TIME, deepest - 1 : deepest + 2]
+    return float(0.5 * np.diff(around).max() * abs(fine.rows[VELOCITY, deepest]))
 
 
 def _distance(fine: Reading, coarse: Reading) -> float:

@@ -17,10 +17,12 @@ from fe_contact.waves.half_space_body import moving
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.plan import plan as plan
 from lumped.errors import BadInput, Fault
+from lumped.radiation import shear_speed
 from lumped.result import Result
 from lumped.scene import Scene
 
-ROUNDS = 1  # refinements before giving up
+ROUNDS = 2  # refinements before giving up
+FASTEST = 0.3  # of the speed of shear waves: beyond, strains are not small anywhere
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +59,7 @@ def check(scene: Scene) -> None:
     """Raise BadInput for several impacts, a striker with a rim or in plane strain, and a changing Poisson's ratio."""
     scene.check_single("fe")
     shape, material = scene.geometry.shape, scene.geometry.material
-    faults = []
+    faults = _too_fast(scene)
     if shape.plane or shape.fixed_radius is not None:
         reason = f"{shape.name}: no waves under it in this version; accepted with model.inertia: sphere, cone, power"
         faults.append(Fault(scene.source, "striker.shape", reason))
@@ -66,3 +68,12 @@ def check(scene: Scene) -> None:
         faults.append(Fault(scene.source, "target.material.constant", reason))
     if faults:
         raise BadInput(faults)
+
+
+def _too_fast(scene: Scene) -> list[Fault]:
+    """Nearer to the speed of shear waves than small displacements reach."""
+    speed = shear_speed(scene.geometry.material)
+    if speed is None or scene.velocity < FASTEST * speed:
+        return []
+    reason = f"{scene.velocity:g} m/s: accepted below {FASTEST:g} of the speed of shear waves, {speed:.3g} m/s"
+    return [Fault(scene.source, "striker.velocity", reason)]

@@ -131,7 +131,7 @@ def run(scene: Scene, numerics: WaveNumerics) -> Run:
     ending = Ending(scene.motion.impacts, pause)
     found = march(body, np.full(body.size, -scene.velocity), choices, scene.end_time, watch, ending)
     fronts = 2 * elements if choices.scheme.explicit and not body.massless.size else None
-    reading, contacts = read(found, carried.sum(), scene.gravity, scene.motion.impacts, pause, fronts)
+    reading, contacts = read(found, carried.sum(), scene, pause, fronts)
     last = found.samples[-1].energies
     out = 0.5 * carried.sum() * float(found.samples[-1].velocity[0]) ** 2
     energy = {
