@@ -8,7 +8,8 @@ from typing import NamedTuple
 from lumped.materials import Relaxation
 
 SERIES_BELOW = 0.5
-SERIES = tuple(2.0 * (-1.0) ** j / math.factorial(j + 3) for j in range(12))[::-1]
+# 2 (-1)^j/(j+3)!
+C0, C1, C2, C3, C4, C5, C6, C7, C8, C9, C10, C11 = (2.0 * (-1.0) ** j / math.factorial(j + 3) for j in range(12))
 
 
 class Fading(NamedTuple):
@@ -29,9 +30,8 @@ def fading(tau: float, h: float) -> Fading:
     """The integrals, to full relative precision from h << tau to h >> tau."""
     x = h / tau
     if x < SERIES_BELOW:
-        second = 0.0
-        for coefficient in SERIES:
-            second = second * x + coefficient
+        second = C6 + x * (C7 + x * (C8 + x * (C9 + x * (C10 + x * C11))))
+        second = C0 + x * (C1 + x * (C2 + x * (C3 + x * (C4 + x * (C5 + x * second)))))
         first = 0.5 * (1.0 - x * second)
         zeroth = 1.0 - x * first
         third = first - 0.5 * second - 0.5 * x * first * first

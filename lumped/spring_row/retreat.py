@@ -10,7 +10,7 @@ from lumped.errors import NotReached
 from lumped.spring_row.row import Instant, Row
 from lumped.spring_row.shrinking import Attempt, Shrinking
 
-TRIES, CLOSE, WIDER, BEYOND = 100, 1e-7, 4.0, 1.2
+TRIES, CLOSE, WIDER = 100, 1e-7, 4.0
 WHOLE_STEPS = 4  # the finer of two marches needs two more than the coarser to get as far
 # What to try first at least, of the time so far.
 SHORT = 1e-14
@@ -30,46 +30,51 @@ def retreat(row: Row, start: Instant, end_time: float) -> Retreat:
 
     Raises NotReached.
     """
-    track, lengths = [start], [start.time - row.places[-2].time]
+    track, paces = [start], [1.0]
     while len(row.places) > 1:
         now = track[-1]
         shrinking = Shrinking(row, now)
-        tried, end = _found(shrinking, _next(lengths))
+        tried, end = _found(shrinking, _next(row, paces))
         if now.time + tried.h > end_time:
-            beyond = _beyond(row.copy(), now, lengths)
+            beyond = _beyond(row.copy(), now, paces)
             cut = shrinking.step(shrinking.attempt(end_time - now.time))
             row.take(cut)
             return Retreat(row, [*track, cut.now], End.TIME, beyond)
         step = shrinking.step(tried)
+        paces.append(tried.h / _inward(row))
         row.take(step)
         track.append(step.now)
-        lengths.append(tried.h)
         if end is not End.SEPARATED:
             return Retreat(row, track, end, [])
     return Retreat(row, track, End.SEPARATED, [])
 
 
-def _beyond(row: Row, now: Instant, lengths: list[float]) -> list[Instant]:
+def _beyond(row: Row, now: Instant, paces: list[float]) -> list[Instant]:
     """A few whole steps from an instant on: limits of marches are smooth at these, not within a step."""
-    track, lengths = [now], list(lengths)
+    track, paces = [now], list(paces)
     while len(row.places) > 1 and len(track) <= WHOLE_STEPS:
         shrinking = Shrinking(row, track[-1])
-        tried, end = _found(shrinking, _next(lengths))
+        tried, end = _found(shrinking, _next(row, paces))
         if end is not End.SEPARATED:
             break
         step = shrinking.step(tried)
+        paces.append(tried.h / _inward(row))
         row.take(step)
         track.append(step.now)
-        lengths.append(tried.h)
     return track[1:]
 
 
-def _next(lengths: list[float]) -> float:
-    """How long a step will take, as the last three have; before them stands one of the approach."""
-    last = lengths[-1]
-    before = lengths[-2] if len(lengths) > 2 else last
-    once = lengths[-3] if len(lengths) > 3 else 2.0 * before - last
-    return min(max(3.0 * (last - before) + once, 0.5 * last), 2.0 * last)
+def _next(row: Row, paces: list[float]) -> float:
+    """How long a step will take: as the last three have, over the times that the approach took for their ground."""
+    last = paces[-1]
+    before = paces[-2] if len(paces) > 1 else last
+    once = paces[-3] if len(paces) > 2 else 2.0 * before - last
+    return _inward(row) * min(max(3.0 * (last - before) + once, 0.5 * last), 2.0 * last)
+
+
+def _inward(row: Row) -> float:
+    """The time which the approach took for the ground over which the edge runs back next."""
+    return row.places[-1].time - row.places[-2].time
 
 
 def _found(shrinking: Shrinking, guess: float) -> tuple[Attempt, End]:
@@ -84,7 +89,9 @@ def _found(shrinking: Shrinking, guess: float) -> tuple[Attempt, End]:
         if tried.velocity > 0.0:
             fast = -shrinking.now.velocity or tried.velocity
             return _zero(shrinking, lambda attempt: -attempt.velocity, 0.0, fast, tried), End.SECOND_APPROACH
-        further = h + BEYOND * tried.pull * (h - low) / (left - tried.pull) if tried.pull < left else WIDER * h
+        further = h + tried.pull * (h - low) / (left - tried.pull) if tried.pull < left else WIDER * h
+        if further - h <= CLOSE * h:
+            return tried, End.SEPARATED
         low, left, h = h, tried.pull, min(WIDER * h, further)
     raise NotReached(f"the springs at the edge did not leave after {shrinking.now.time:.6g} s")
 

@@ -34,6 +34,9 @@ class Shrinking:
         modulus, last = row.problem.modulus, row.places[-1]
         self.row, self.now, self.place = row, now, row.places[-2]
         shares = left(modulus, now.time - last.time)
+        # what the spring at the place to which the edge runs lacks now to the one at the axis
+        since = left(modulus, now.time - self.place.time)
+        self.lacking = [kept * share for kept, share in zip(self.place.axis, since, strict=True)]
         self.leaving = last.springs.aged(shares)
         self.kept = [k - own * share for k, own, share in zip(row.kept, last.kept, shares, strict=True)]
         self.staying = row.springs.plus(self.leaving, -1.0)
@@ -43,7 +46,8 @@ class Shrinking:
     @property
     def pull(self) -> float:
         """Force per length, now, of the spring at the place to which the edge runs."""
-        return self._pull(0.0, self.now.depth, self.now.velocity, self.row.axis)
+        lift = self._lift(self.now.depth, self.now.velocity)
+        return lift + sum(self.row.axis) - sum(self.lacking)
 
     def attempt(self, h: float) -> Attempt:
         """A step of this length: m (v1 - v0) = m g h - int F dt with v0 + v1 twice the rate."""
@@ -58,14 +62,15 @@ class Shrinking:
         rate = (now.velocity + 0.5 * h * problem.gravity - passed / problem.mass) / (1.0 + give / problem.mass)
         velocity = 2.0 * rate - now.velocity
         axis = followed(modulus, self.row.axis, faded, now.velocity, velocity, h)
-        return Attempt(h, rate, velocity, faded, shortly, axis, self._pull(h, now.depth + h * rate, velocity, axis))
+        pull = self._lift(now.depth + h * rate, velocity)
+        for z, lack, fade in zip(axis, self.lacking, faded, strict=True):
+            pull += z - lack * fade.left
+        return Attempt(h, rate, velocity, faded, shortly, axis, pull)
 
-    def _pull(self, h: float, depth: float, velocity: float, axis: Values) -> float:
-        modulus, place = self.row.problem.modulus, self.place
-        total = modulus.equilibrium * (depth - place.depth) + modulus.viscosity * velocity
-        for z, kept, share in zip(axis, place.axis, left(modulus, self.now.time + h - place.time), strict=True):
-            total += z - kept * share
-        return total
+    def _lift(self, depth: float, velocity: float) -> float:
+        """What the spring at the place carries without its branches."""
+        modulus = self.row.problem.modulus
+        return modulus.equilibrium * (depth - self.place.depth) + modulus.viscosity * velocity
 
     def step(self, tried: Attempt) -> Step:
         """The step which was tried, not yet taken."""

@@ -87,8 +87,10 @@ def none(modulus: Relaxation) -> Springs:
 
 def yielding(modulus: Relaxation, faded: list[Fading], h: float) -> float:
     """By how much the impulse over a time h rises with the rate at which the depth grows, per width."""
-    branches = sum(stiffness * fade.grown for stiffness, fade in zip(modulus.moduli, faded, strict=True))
-    return 0.5 * modulus.equilibrium * h * h + modulus.viscosity * h + branches
+    total = (0.5 * modulus.equilibrium * h + modulus.viscosity) * h
+    for stiffness, fade in zip(modulus.moduli, faded, strict=True):
+        total += stiffness * fade.grown
+    return total
 
 
 def stretched(modulus: Relaxation, axis: Values, faded: list[Fading], rate: float) -> Values:
