@@ -20,14 +20,14 @@ def local(x: Array, y: Array, at: Array, points: int = POINTS) -> Array:
     """
     points = min(points, x.size)
     first = np.searchsorted(x, at) - (points + 1) // 2
-    stencil = np.clip(first, 0, x.size - points)[:, None] + np.arange(points)
+    stencil = np.clip(first, 0, x.size - points) + np.arange(points)[:, None]
     nodes = x[stencil]
-    weights = np.ones_like(nodes)
+    away, weights = at - nodes, np.ones_like(nodes)
     for j in range(points):
         for i in range(points):
             if i != j:
-                weights[:, j] *= (at - nodes[:, i]) / (nodes[:, j] - nodes[:, i])
-    return np.asarray((weights * y[..., stencil]).sum(axis=-1))
+                weights[j] *= away[i] / (nodes[j] - nodes[i])
+    return np.asarray((weights * y[..., stencil]).sum(axis=-2))
 
 
 def peak(x: Array, y: Array) -> tuple[float, float]:

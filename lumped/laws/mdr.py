@@ -60,10 +60,13 @@ class SpringRow:
         intervals = min(max(FEWEST, round(INTERVALS * tolerance**-0.25)), MOST)
         track = coarse(problem, scene.end_time, intervals)
         nest = Nest.around(problem, scene.end_time, track, pace_of(problem, scene.end_time, intervals), intervals)
-        levels, limits, parts = [nest.level(1, track.approach[-1].time)], list[Level](), 1
+        nest, level, before = nest.begun(track.approach[-1].time)
+        levels, limits, parts = [level], list[Level](), 1
         while parts < MOST_PARTS:
             parts *= 2
-            levels.append(nest.level(parts, predicted_turn(levels)))
+            turn = predicted_turn(before, levels[-1].turn)
+            before = levels[-1].turn
+            levels.append(nest.level(parts, turn))
             limits.append(limit(levels[-2], levels[-1], 2))
             if len(limits) > 1:
                 answer = _answer(scene, limit(limits[-2], limits[-1], 4))

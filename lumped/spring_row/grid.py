@@ -34,8 +34,14 @@ class Grid:
         if t.size > 2:
             weights = np.append(weights[:-1], weights[-1] * min((roots[-1] - roots[-2]) / (roots[-2] - roots[-3]), 1.0))
         index = np.append(0.0, np.cumsum(weights))
-        count = max(intervals, round(float(index[-1])))
+        count = 2 * round(0.5 * max(intervals, float(index[-1])))  # even, so that every second place is a grid too
         return cls(np.interp(np.linspace(0.0, index[-1], count + 1), index, roots))
+
+    @classmethod
+    def through(cls, instants: Sequence[Instant]) -> Grid:
+        """The grid of a march as it is."""
+        t = np.array([instant.time for instant in instants])
+        return cls(np.sqrt(t / t[-1]))
 
     def times(self, end: float, parts: int) -> list[float]:
         """Ends of the steps, s, each step of the grid cut into `parts`; the start itself is left out."""

@@ -7,7 +7,7 @@ import math
 from lumped.errors import NotReached
 from lumped.spring_row.memory import Fading, fadings
 from lumped.spring_row.row import Instant, Place, Row, Step, followed, followed_bend
-from lumped.spring_row.springs import Springs, Values, none, stretched, yielding
+from lumped.spring_row.springs import Springs, Values, stretched, yielding
 
 SECANTS = 60
 # The last correction of the rate; what is left after it is the product of two such.
@@ -27,7 +27,7 @@ def grown(row: Row, now: Instant, h: float) -> Step:
     joined = Springs.one(width, rest, [z - mine for z, mine in zip(even, own, strict=True)])
     springs = row.springs.aged([fade.left for fade in faded]).plus(joined)
     spent = row.springs.spent(modulus, row.even, faded, h, rate)
-    spent += none(modulus)._replace(width=width).spent(modulus, fresh, shortly, pressed, rate)
+    spent += Springs(width, 0.0, 0.0, fresh, fresh).spent(modulus, fresh, shortly, pressed, rate)
     velocity, depth, edge = 2.0 * rate - now.velocity, now.depth + h * rate, now.edge + width
     axis = followed(modulus, row.axis, faded, now.velocity, velocity, h)
     kept = _kept(row, now, (velocity, edge, now.edge * rate + width * (depth - rest) / h), axis, faded, h)

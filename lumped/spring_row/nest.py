@@ -5,8 +5,7 @@ The row of springs errs by even powers of h: the limit of two marches errs by h^
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +14,7 @@ from lumped.ending import End
 from lumped.errors import NotReached
 from lumped.interpolation import local
 from lumped.spring_row.grid import Grid
-from lumped.spring_row.march import Track, approach, rebound
+from lumped.spring_row.march import Inward, Track, approach, rebound
 from lumped.spring_row.pace import Adaptive, Prescribed
 from lumped.spring_row.row import Instant, Problem
 
@@ -67,6 +66,19 @@ class Nest:
             weights[-i] = max(1.0, share ** (1.0 / 3.0))
         return cls(problem, end_time, Grid.of(track.approach, weights, intervals), track.end is End.REST)
 
+    def begun(self, turn: float) -> tuple[Nest, Level, float]:
+        """The nest whose grid is that of its coarsest march, with an expected time of the turn, s; that march.
+
+        And when one of half as many steps turns, s: it tells when the finer ones will.
+        """
+        times = self.grid.times(turn, 1)
+        inward, half = self._approach(times), self._approach(times[1::2])
+        level = self._level(rebound(inward, self.end_time), len(inward.instants) + len(half.instants))
+        return replace(self, grid=Grid.through(inward.instants)), level, half.instants[-1].time
+
+    def _approach(self, times: list[float]) -> Inward:
+        return approach(self.problem, self.end_time, Prescribed(times), 2 * len(times), at_rest=0.0)
+
     def level(self, parts: int, turn: float) -> Level:
         """March with every step cut into `parts`, again with a better time of the turn, s, until that is met.
 
@@ -75,7 +87,7 @@ class Nest:
         steps, tried, missed = 0, 0.0, 0.0
         for _ in range(ALIGNING_TRIES):
             times = self.grid.times(turn, parts)
-            inward = approach(self.problem, self.end_time, Prescribed(times), 2 * len(times), at_rest=0.0)
+            inward = self._approach(times)
             steps += len(inward.instants)
             *_, before, last = (instant.time for instant in inward.instants)
             if len(inward.instants) == len(times) + 1 and abs(last - turn) <= NEARLY * (last - before):
@@ -96,10 +108,8 @@ class Nest:
         return Level(_columns(track.approach), _columns(outward), end, last.time, steps, energies)
 
 
-def predicted_turn(levels: Sequence[Level]) -> float:
-    """When the approach of the next level will end, s: the difference of the last two falls by 4."""
-    last = levels[-1].turn
-    before = levels[-2].turn if len(levels) > 1 else last
+def predicted_turn(before: float, last: float) -> float:
+    """When the approach of the next level will end, s: the difference of those of the last two falls by 4."""
     return last + 0.25 * (last - before)
 
 

@@ -109,7 +109,7 @@ class Row:
     ) -> Instant:
         """The motion with its force: that of pressed springs which have kept as much."""
         modulus, mass, gravity = self.problem.modulus, self.problem.mass, self.problem.gravity
-        force = 2.0 * springs._replace(kept=kept).force(modulus, depth, velocity, axis)
+        force = 2.0 * springs.force(modulus, depth, velocity, axis, kept)
         return Instant(time, depth, velocity, gravity - force / mass, force, edge)
 
 

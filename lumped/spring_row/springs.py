@@ -45,10 +45,10 @@ class Springs(NamedTuple):
         square = [c * share * share for c, share in zip(self.kept_square, left, strict=True)]
         return Springs(self.width, self.rest, self.rest_square, kept, square)
 
-    def force(self, modulus: Relaxation, depth: float, velocity: float, axis: Values) -> float:
-        """What they carry, N."""
+    def force(self, modulus: Relaxation, depth: float, velocity: float, axis: Values, kept: Values) -> float:
+        """What they carry, N, when they have kept this."""
         lift = modulus.equilibrium * depth + modulus.viscosity * velocity + sum(axis)
-        return lift * self.width - modulus.equilibrium * self.rest - sum(self.kept)
+        return lift * self.width - modulus.equilibrium * self.rest - sum(kept)
 
     def impulse(self, modulus: Relaxation, depth: float, axis: Values, faded: list[Fading], h: float) -> float:
         """What they pass on over a time h from this state while the depth rests, N s."""

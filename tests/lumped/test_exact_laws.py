@@ -104,9 +104,10 @@ def test_spring_row_errs_by_even_powers_of_its_steps(case: str, impact: Callable
     problem = problem_of(scene)
     track = coarse(problem, scene.end_time, 16)
     nest = Nest(problem, scene.end_time, Grid(np.linspace(0.0, 1.0, 17)))
-    levels = [nest.level(1, track.approach[-1].time)]
+    levels, before = [nest.level(1, track.approach[-1].time)], track.approach[-1].time
     for parts in (2, 4, 8):
-        levels.append(nest.level(parts, predicted_turn(levels)))
+        turn, before = predicted_turn(before, levels[-1].turn), levels[-1].turn
+        levels.append(nest.level(parts, turn))
     for order, near in ((2, 0.05), (4, 0.7)):
         for values in ([level.last for level in levels], [level.rebound[2, -1] for level in levels]):
             differences = np.abs(np.diff(values))
