@@ -2,35 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from lumped.materials import Material, Relaxation
-from lumped.scales import stiffest_impact
 from lumped.scene import Scene
 
 
-def with_constant_nu(scene: Scene) -> Scene:
-    """As stiff as the scene at once and, if it is a solid, in the end: both by the target's own load curve.
+def with_constant_nu(scene: Scene, stiffness: Callable[[Material], float]) -> Scene:
+    """As stiff as the scene at once and, if it is a solid, in the end.
 
-    What lies between is the network's, and the viscosity counts as a spring does.
+    ``stiffness`` of the target, made of an elastic material, N or any unit; a striker that relaxes counts as the
+    half-space that it is near its contact.
     """
-    material = scene.geometry.material
+    striker = scene.striker_material
+    return replace(
+        scene,
+        material=_alike(scene.geometry.material, stiffness),
+        striker_material=None if striker is None else _alike(striker, half_space_stiffness),
+    )
+
+
+def half_space_stiffness(elastic: Material) -> float:
+    """Contact modulus of an elastic material, Pa."""
+    return elastic.contact_modulus().glassy
+
+
+def _alike(material: Material, stiffness: Callable[[Material], float]) -> Material:
+    """What lies between the stiffness at once and in the end is the network's, and the viscosity counts as a spring."""
+    if material.constant == "poisson":
+        return material
     sudden = material.elastic(instant=True)
     slow = material.elastic(instant=False) if material.young.relaxed > 0.0 else None
     nu = sudden.nu if slow is None else slow.nu
-    springs = material.young.glassy - material.young.relaxed
-    wanted = _stiffness(scene, sudden) / _stiffness(scene, Material(Relaxation(1.0), nu))
-    share = (wanted - material.young.relaxed) / springs if springs > 0.0 else 1.0
     young = material.young
+    springs = young.glassy - young.relaxed
+    wanted = stiffness(sudden) / stiffness(Material(Relaxation(1.0), nu))
+    share = (wanted - young.relaxed) / springs if springs > 0.0 else 1.0
     network = Relaxation(
         young.equilibrium, tuple(share * modulus for modulus in young.moduli), young.times, share * young.viscosity
     )
-    return replace(scene, material=replace(material, young=network, nu=nu, constant="poisson", bulk_modulus=None))
-
-
-def _stiffness(scene: Scene, elastic: Material) -> float:
-    """Force of an elastic target at about the depth of the impact, N."""
-    shape, stiffest = scene.geometry.shape, scene.contact_modulus
-    depth = stiffest_impact(shape, stiffest, scene.reduced_mass, scene.velocity).depth
-    curve = scene.target.load_curve(scene.profile, elastic.nu)
-    return elastic.contact_modulus().glassy * float(curve.force(depth))
+    return replace(material, young=network, nu=nu, constant="poisson", bulk_modulus=None)

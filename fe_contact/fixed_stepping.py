@@ -81,13 +81,24 @@ class FixedStepper:
             impulse=state.impulse + length * force,
             memory=Remembered(memory),
         )
-        if moved.velocity > 0.0:  # growing, the contact has its radius at the end of the step
-            gap, found_at = self._gap(moved, solution), moved.time
-            radius = half_width(self.places, solution.signed_pressure, gap, height=self.heights)
-        else:
-            radius, moved = self._receded(state, moved, steps, solution, length)
-            found_at = state.time + length * self.scheme.SAMPLE
-        return Step(length, moved, force, radius, found_at, axis, solution, self.scale, work)
+        radius, found_at, ended = self._ended(state, moved, steps, solution, length)
+        return Step(length, ended, force, radius, found_at, axis, solution, self.scale, work)
+
+    def _ended(
+        self, before: State, after: State, steps: Sequence[Step], solution: ContactSolution, length: float
+    ) -> tuple[float, float, State]:
+        """Contact radius, m, when that was, s, and the state with what has opened.
+
+        Growing, the contact has its radius at the end of the step; receding, where the scheme samples the pressure.
+        """
+        sampled = before.time + length * self.scheme.SAMPLE
+        if self.surface.rim is not None:
+            return self.surface.rim, sampled, after
+        if after.velocity > 0.0:
+            gap = self._gap(after, solution)
+            return half_width(self.places, solution.signed_pressure, gap, height=self.heights), after.time, after
+        radius, after = self._receded(before, after, steps, solution, length)
+        return radius, sampled, after
 
     def _receded(
         self, before: State, after: State, steps: Sequence[Step], solution: ContactSolution, length: float
@@ -197,6 +208,6 @@ class FixedStepper:
         edge = solution.edge(places)
         if edge == 0.0:
             raise ContactLost(time)
-        if not np.isfinite(edge):
+        if not np.isfinite(edge) and self.surface.rim is None:
             raise MemoryTooSmall(places[-1])
         return solution

@@ -110,7 +110,7 @@ def check_target(scene: Scene) -> None:
     if not fixed and not hasattr(get(TARGETS, geometry.target.name), "struck"):
         reason = f"no impact on {geometry.target.name} by finite elements in this version; accepted: indent"
         raise BadInput(Fault(scene.source, "target.shape", reason))
-    if not geometry.surface_remembers and not hasattr(get(TARGETS, geometry.target.name), "meshed"):
+    if not geometry.surface_remembers and not hasattr(get(TARGETS, geometry.target.name), "relaxing"):
         reason = f'"bulk": no impact on {geometry.target.name} with it in this version; accepted: "poisson"'
         raise BadInput(Fault(scene.source, "target.material.constant", reason))
 

@@ -7,11 +7,13 @@ answers at a few depths.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from fe_contact.bodies.flat_end import FlatEnd
-from fe_contact.bulk_scales import with_constant_nu
+from fe_contact.bulk_scales import half_space_stiffness, with_constant_nu
 from fe_contact.numerics import TARGETS, Numerics
 from fe_contact.pressing import Still
 from lumped.answered import Answered
@@ -21,7 +23,9 @@ from lumped.laws import correspondence, mdr
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.sampled import SampledCurve
+from lumped.materials import Material
 from lumped.members import get
+from lumped.scales import stiffest_impact
 from lumped.scene import Scene
 from lumped.targets import HalfSpace
 
@@ -36,11 +40,22 @@ def scales(scene: Scene, numerics: Numerics) -> mdr.ImpactScales:
     geometry = scene.geometry
     if isinstance(geometry.target, HalfSpace) and geometry.shape.fixed_radius is None and not geometry.shape.plane:
         return mdr.estimate(scene, SPRINGS)
+    coarse = numerics.varied(**COARSE)
     if not geometry.surface_remembers:
-        return correspondence.estimate(with_constant_nu(scene))
+        scene = with_constant_nu(scene, partial(_stiffness, scene, coarse))
     if not has_curve(scene):
-        scene = Answered.by(scene, _answer(scene, numerics.varied(**COARSE)))
+        scene = Answered.by(scene, _answer(scene, coarse))
     return correspondence.estimate(scene)
+
+
+def _stiffness(scene: Scene, coarse: Numerics, elastic: Material) -> float:
+    """Of an elastic target, in any unit; a round body counts as the half-space that it is near its contact."""
+    geometry, modulus = replace(scene.geometry, material=elastic), half_space_stiffness(elastic)
+    fixed = geometry.target.fixed_radius(geometry.shape)
+    if has_curve(scene):
+        stiffest = stiffest_impact(geometry.shape, scene.contact_modulus, scene.reduced_mass, scene.velocity)
+        return modulus * float(geometry.target.load_curve(scene.profile, elastic.nu).force(stiffest.depth))
+    return modulus if fixed is None else modulus * FlatEnd.of(geometry, fixed, coarse).stiffness
 
 
 def has_curve(scene: Scene) -> bool:

@@ -19,20 +19,12 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
-from fe_contact.bodies.modes import Modes, modes
-from fe_contact.bodies.offer import Offer
-from fe_contact.bodies.struck import Deformable
+from fe_contact.bodies.modes import Modes
+from fe_contact.bodies.offer import Offer, Recalled
 from fe_contact.contact import PressedSurface
-from fe_contact.elastic_body import ElasticBody
 from fe_contact.forms import Array
-from fe_contact.kept import kept
-from fe_contact.numerics import SCHEMES, Numerics
-from fe_contact.operators import SurfaceOperator
-from lumped.materials import Relaxation
-from lumped.members import get
+from lumped.materials import Material, Relaxation
 
-# Steps between which the ratio of the moduli is looked for, in contact times; it changes little beyond.
-SHORTEST, LONGEST = 1e-6, 50.0
 SURFACES_KEPT = 4
 OFFERS_KEPT = 64  # step lengths whose condensed stiffness is kept: like marches have like steps
 
@@ -42,6 +34,11 @@ class Moduli(NamedTuple):
 
     bulk: Relaxation
     shear: Relaxation
+
+    @classmethod
+    def of(cls, material: Material, length: float) -> Moduli:
+        """Of a material of constant bulk modulus; ``length``, m, over which forces are totals, else 1."""
+        return cls(Relaxation(material.bulk).scaled(length), material.shear.scaled(length))
 
 
 class BulkMemory(NamedTuple):
@@ -64,37 +61,15 @@ class BulkLaw(NamedTuple):
         return float(4.0 * shear * (3.0 * bulk + shear) / (3.0 * bulk + 4.0 * shear))
 
 
-@dataclass(frozen=True, eq=False)
-class BulkSurface(Deformable):
-    """A body before the impact, seen through its surface."""
-
-    modes: Modes
-    moduli: Moduli
-    breathes: bool = False
-
     @property
-    def operator(self) -> SurfaceOperator:
-        """Of the elastic body at one of the ratios: places, weights and scale are those of all."""
-        return self.modes.operator
-
-    @property
-    def factorizations(self) -> int:
-        """One for every ratio of the moduli at which the body was condensed, whatever the steps."""
-        return self.modes.ratios
-
-    @property
-    def solves(self) -> int:
-        """Two a node of the contact zone and ratio: for the compliance, and for the motion of the whole."""
-        return 2 * self.modes.ratios * len(self.operator.stiffness)
-
-    def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> BulkBody:
-        """The body on its mesh of unit length ``scale``, m; its E*(t) follows from its own moduli."""
-        return BulkBody(self.modes, self.moduli, scheme, scale)
+    def ratio(self) -> float:
+        """Shear over bulk modulus."""
+        return self.shear.now / self.bulk.now
 
 
 @dataclass(frozen=True, eq=False)
 class BulkBody:
-    """Contract of :class:`fe_contact.bodies.offer.Body`; ``scale``, m, is the mesh's unit of length."""
+    """Contracts of :class:`fe_contact.bodies.offer.Body` and ``Half``; ``scale``, m, is the mesh's unit of length."""
 
     modes: Modes
     moduli: Moduli
@@ -116,23 +91,33 @@ class BulkBody:
     def offer(self, memory: BulkMemory, length: float) -> Offer:
         """What contact meets in a step of a length, s."""
         law = self._law(length)
-        modulus = law.contact_modulus
-        past = self.modes.operator.trace @ (self.modes.shape @ (self._carried(memory, law) / self._now(law)))
-        ratio = law.shear.now / law.bulk.now
-        return Offer(length, modulus, modulus * past, _pressed(self.modes, ratio))
+        now, past = law.contact_modulus, self._past(memory, law)
+        return Offer(length, now, self.modes.operator.trace @ past, _pressed(self.modes, law.ratio))
+
+    def recalled(self, memory: BulkMemory, length: float) -> Recalled:
+        """The same at the nodes."""
+        law = self._law(length)
+        return Recalled(law.contact_modulus, self._past(memory, law), _pressed(self.modes, law.ratio).stiffness)
 
     def after(self, memory: BulkMemory, offer: Offer, pressure: Array) -> tuple[BulkMemory, float]:
         """The memory after the step under a pressure (q,), and the axis' elastic displacement times modulus."""
-        law, operator = self._law(offer.length), self.modes.operator
+        operator = self.modes.operator
         load = operator.trace.T @ (operator.weights * pressure)
-        amplitude = (self.modes.shape.T @ load - self._carried(memory, law)) / self._now(law)
-        volume = memory.volume.advanced(law.bulk, amplitude[None])
-        shear = memory.shear.advanced(law.shear, amplitude[None])
-        return BulkMemory(volume, shear), float(operator.response[0] @ load)
+        return self.pushed(memory, offer.length, load), float(operator.response[0] @ load)
+
+    def pushed(self, memory: BulkMemory, length: float, load: Array) -> BulkMemory:
+        """The memory after a step of a length, s, under forces at the nodes, (n,)."""
+        law = self._law(length)
+        amplitude = ((self.modes.shape.T @ load - self._carried(memory, law)) / self._now(law))[None]
+        return BulkMemory(memory.volume.advanced(law.bulk, amplitude), memory.shear.advanced(law.shear, amplitude))
 
     def displacement(self, memory: BulkMemory) -> Array:
         """Inward displacement of the surface at the quadrature points, (q,), m."""
-        return np.asarray(self.modes.operator.trace @ (self.modes.shape @ memory.shear.strain[0]))
+        return np.asarray(self.modes.operator.trace @ self.sunk(memory))
+
+    def sunk(self, memory: BulkMemory) -> Array:
+        """The same of the nodes, (n,), m."""
+        return np.asarray(self.modes.shape @ memory.shear.strain[0])
 
     def stored(self, memory: BulkMemory) -> float:
         """Elastic energy in all springs of both networks, J."""
@@ -149,6 +134,10 @@ class BulkBody:
     def _now(self, law: BulkLaw) -> Array:
         """Stiffness of the modes against new strain, (m,), Pa."""
         return self.modes.volume * law.bulk.now + self.modes.shear * law.shear.now
+
+    def _past(self, memory: BulkMemory, law: BulkLaw) -> Array:
+        """What the past adds to displacement x contact modulus at the nodes, (n,), Pa m."""
+        return np.asarray(law.contact_modulus * (self.modes.shape @ (self._carried(memory, law) / self._now(law))))
 
     def _carried(self, memory: BulkMemory, law: BulkLaw) -> Array:
         """Force on the modes, (m,), that the past fixes."""
@@ -167,17 +156,3 @@ def _points(modes: Modes) -> PressedSurface:
 def _pressed(modes: Modes, ratio: float) -> PressedSurface:
     """What contact knows of the body in a step, for unit contact modulus."""
     return _points(modes).stiffened(modes.stiffness(ratio))
-
-
-def relaxing(body: ElasticBody, moduli: Moduli, numerics: Numerics) -> BulkSurface:
-    """A meshed body of a material with these moduli, in an impact with these settings."""
-    scheme = get(SCHEMES, numerics.scheme)
-    extremes = [share * numerics.contact_time for share in (SHORTEST, LONGEST)]
-    laws = [[step_law(modulus, scheme, length).now for modulus in moduli] for length in extremes]
-    ratios = sorted(shear / bulk for bulk, shear in laws)
-    return _surface(body, moduli, ratios[0], ratios[1])
-
-
-@kept
-def _surface(body: ElasticBody, moduli: Moduli, lowest: float, highest: float) -> BulkSurface:
-    return BulkSurface(modes(body, lowest, highest), moduli)

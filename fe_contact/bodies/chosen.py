@@ -5,12 +5,10 @@ Under an end that no depth widens one stiffness is enough.
 
 from __future__ import annotations
 
-from fe_contact.bodies.bulk_memory import Moduli, relaxing
 from fe_contact.bodies.flat_end import FlatEnd
 from fe_contact.bodies.struck import Struck
 from fe_contact.numerics import TARGETS, Numerics
 from lumped.geometry import Geometry
-from lumped.materials import Relaxation
 from lumped.members import get
 
 
@@ -20,6 +18,5 @@ def struck(geometry: Geometry, numerics: Numerics) -> Struck:
     if geometry.surface_remembers:
         body: Struck = target.struck(geometry, numerics) if flat is None else FlatEnd.of(geometry, flat, numerics)
         return body
-    material, length = geometry.material, geometry.shape.total
-    moduli = Moduli(Relaxation(material.bulk).scaled(length), material.shear.scaled(length))
-    return relaxing(target.meshed(geometry, numerics), moduli, numerics)
+    relaxing: Struck = target.relaxing(geometry, numerics)
+    return relaxing

@@ -13,7 +13,7 @@ there, X_i^T (K_j V + G_j S) X_j = C_i, two equations for every pair. On the dia
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -24,9 +24,9 @@ from fe_contact.forms import Array
 from fe_contact.kept import kept
 from fe_contact.operators import SurfaceOperator
 
-FEWEST, PER_E_FOLD = 3, 0.5  # ratios, at least and for every factor e of the interval: errors below 1e-7
+FEWEST, PER_E_FOLD = 3, 0.5  # ratios, at least and for every factor e of the interval: errors of some 1e-7
 LEAST_HALF_WIDTH = 0.3  # of the interval's logarithm: closer ratios would cancel
-STIFFEST = 30.0  # ratio from which on volume is so soft beside shape that the answer bends no more
+STIFFEST = 1e3  # ratio from which on volume is so soft beside shape that not even what is free to swell bends more
 TABULATED = 1e-10  # accuracy of the stiffness between the ratios at which it is known
 INDEPENDENT = 1e-12  # share of the largest energy below which a direction is rounding
 
@@ -45,6 +45,10 @@ class Modes:
     operator: SurfaceOperator
     ratios: int
     interval: tuple[float, float]
+
+    def stiffer(self, share: float) -> Modes:
+        """Of a body so many times as stiff."""
+        return replace(self, volume=share * self.volume, shear=share * self.shear)
 
     def compliance(self, bulk: float, shear: float) -> Array:
         """Normal displacement of the contact zone's nodes under unit forces there, (n, n), symmetric."""

@@ -20,6 +20,42 @@ class Offer(NamedTuple):
     surface: PressedSurface
 
 
+class Recalled(NamedTuple):
+    """A step at the contact zone's own n nodes: displacement x ``now`` = unit compliance x forces - ``past`` (n,).
+
+    ``now``: contact modulus of the step, Pa; ``stiffness``: inverse of the unit compliance, (n, n).
+    """
+
+    now: float
+    past: Array
+    stiffness: Array
+
+
+class Half(Protocol):
+    """One of the bodies under a common pressure, by the nodes of its own contact zone."""
+
+    def at_rest(self) -> Any:
+        """Memory of a relaxed, undeformed body."""
+
+    def modulus(self, length: float) -> float:
+        """Contact modulus against new strain in a step of a length, s; Pa."""
+
+    def recalled(self, memory: Any, length: float) -> Recalled:
+        """What its past makes of a step of a length, s."""
+
+    def pushed(self, memory: Any, length: float, load: Array) -> Any:
+        """The memory after a step of a length, s, under forces at the nodes, (n,)."""
+
+    def sunk(self, memory: Any) -> Array:
+        """Inward displacement of the nodes, (n,), m."""
+
+    def stored(self, memory: Any) -> float:
+        """Elastic energy in all springs, J."""
+
+    def dissipated(self, before: Any, after: Any, length: float) -> float:
+        """Heat of a step, J."""
+
+
 class Body(Protocol):
     """A deformable body; its memory is its own affair, and passed in and out."""
 

@@ -57,6 +57,11 @@ class Deformable:
         @property
         def breathes(self) -> bool: ...
 
+    @property
+    def rim(self) -> float | None:
+        """Where all contacts end, m, if the body is loaded no farther."""
+        return None
+
     def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> Body:
         """The body with a contact modulus E*(t), Pa, marched by a scheme, on a mesh whose unit is ``scale``, m."""
         raise NotImplementedError

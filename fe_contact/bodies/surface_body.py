@@ -12,7 +12,7 @@ from types import ModuleType
 import numpy as np
 
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
-from fe_contact.bodies.offer import Offer
+from fe_contact.bodies.offer import Offer, Recalled
 from fe_contact.contact import PressedSurface
 from fe_contact.forms import Array
 from fe_contact.operators import SurfaceOperator
@@ -21,13 +21,17 @@ from lumped.materials import Relaxation
 
 @dataclass(frozen=True, eq=False)
 class SurfaceBody:
-    """Contract of :class:`fe_contact.bodies.offer.Body`; ``scale``, m, is the mesh's unit of length."""
+    """Contracts of :class:`fe_contact.bodies.offer.Body` and ``Half``; ``scale``, m, is the mesh's unit of length.
+
+    ``share``: its stiffness over that of its operator.
+    """
 
     operator: SurfaceOperator
     pressed: PressedSurface
     relaxation: Relaxation
     scheme: ModuleType
     scale: float
+    share: float = 1.0
 
     def at_rest(self) -> SurfaceMemory:
         """A relaxed, undeformed body."""
@@ -40,21 +44,34 @@ class SurfaceBody:
 
     def offer(self, memory: SurfaceMemory, length: float) -> Offer:
         """What contact meets in a step of a length, s."""
+        now, past, _ = self.recalled(memory, length)
+        return Offer(length, now, self.operator.trace @ past, self.pressed)
+
+    def recalled(self, memory: SurfaceMemory, length: float) -> Recalled:
+        """The same at the nodes."""
         law = self._law(length)
-        return Offer(length, law.now, self.operator.trace @ memory.carried(law)[0], self.pressed)
+        return Recalled(law.now, memory.carried(law)[0], self.pressed.stiffness)
 
     def after(self, memory: SurfaceMemory, offer: Offer, pressure: Array) -> tuple[SurfaceMemory, float]:
         """The memory after the step under a pressure (q,), and the axis' elastic displacement times modulus."""
-        law, operator = self._law(offer.length), self.operator
+        operator = self.operator
         load = operator.trace.T @ (operator.weights * pressure)
-        displacement = operator.compliance @ load
-        force = load * self.scale ** (operator.dimension - 2)
-        strain = (np.array([displacement, force]) - memory.carried(law)) / law.now
-        return memory.advanced(law, strain), float(displacement[0])
+        return self.pushed(memory, offer.length, load), float(operator.compliance[0] @ load)
+
+    def pushed(self, memory: SurfaceMemory, length: float, load: Array) -> SurfaceMemory:
+        """The memory after a step of a length, s, under forces at the nodes, (n,)."""
+        law = self._law(length)
+        displacement = self.operator.compliance @ load / self.share
+        force = load * self.scale ** (self.operator.dimension - 2)
+        return memory.advanced(law, (np.array([displacement, force]) - memory.carried(law)) / law.now)
 
     def displacement(self, memory: SurfaceMemory) -> Array:
         """Inward displacement of the surface at the quadrature points, (q,), m."""
-        return np.asarray(self.operator.trace @ memory.strain[0])
+        return np.asarray(self.operator.trace @ self.sunk(memory))
+
+    def sunk(self, memory: SurfaceMemory) -> Array:
+        """The same of the nodes, (n,), m."""
+        return np.asarray(memory.strain[0])
 
     def stored(self, memory: SurfaceMemory) -> float:
         """Elastic energy in all springs, J."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from types import ModuleType
 
 import numpy as np
@@ -10,12 +11,16 @@ import numpy.typing as npt
 from skfem import Basis
 
 import meshes
-from fe_contact.bodies.stacked import Side, Stacked, stacked
+from fe_contact.bodies.bulk_memory import Moduli
+from fe_contact.bodies.bulk_surface import Pace
+from fe_contact.bodies.sides import BulkSide, Side, stacked
+from fe_contact.bodies.stacked import Stacked
+from fe_contact.elastic_body import ElasticBody, axisymmetric, plane
 from fe_contact.floating import Floating
-from fe_contact.forms import Array, isotropic, plane_stiffness, stiffness
+from fe_contact.forms import Array
 from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
-from fe_contact.operators import ELEMENTS, SurfaceOperator, condensed
+from fe_contact.operators import ELEMENTS, SurfaceOperator
 from fe_contact.pressing import Still
 from fe_contact.surface import crown
 from fe_contact.targets._body import BodyStill, trace_at
@@ -30,6 +35,7 @@ from fe_contact.targets._zone import (
 from lumped.geometry import Geometry
 from lumped.indenter import Indenter
 from lumped.materials import Material
+from lumped.shapes import Shape
 from lumped.targets._round import Round
 
 SPARE = 1.05  # the larger body's fine mesh over what the contact may reach on the smaller
@@ -43,9 +49,9 @@ class _Body:
     material: Material
     held: bool
 
-    def operator(self, zone: Zone, elements: float, order: int, plane: bool) -> SurfaceOperator:
-        """Condensed in units of its radius; ``elements`` along a contact's half-width."""
-        return _operator(self.material.nu, elements, order, zone.smallest, zone.reference, self.held, plane)
+    def meshed(self, zone: Zone, elements: float, order: int, plane: bool) -> ElasticBody:
+        """In units of its radius; ``elements`` along a contact's half-width."""
+        return _meshed(elements, order, zone.smallest, zone.reference, self.held, plane)
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
@@ -70,26 +76,51 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 
 def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
     """Both bodies in an impact whose contact grows from nothing to the radius that the settings expect."""
+    elements = STRUCK_REFINEMENT * numerics.elements_per_contact
+    return _together(geometry, _ends(geometry, numerics), elements, numerics.order)
+
+
+def relaxing(geometry: Geometry, numerics: Numerics) -> Stacked:
+    """The same where at least one is of constant bulk modulus and relaxes."""
+    elements = STRUCK_REFINEMENT * numerics.elements_per_contact
+    return _together(geometry, _ends(geometry, numerics), elements, numerics.order, Pace.of(numerics))
+
+
+def _ends(geometry: Geometry, numerics: Numerics) -> tuple[float, float]:
+    """Radii between which the contacts of an impact end, m."""
     largest = numerics.contact_radius / MARGIN
-    ends = (smallest_struck(geometry.shape) * largest, largest)
-    return _together(geometry, ends, STRUCK_REFINEMENT * numerics.elements_per_contact, numerics.order)
+    return smallest_struck(geometry.shape) * largest, largest
 
 
 @kept
-def _together(geometry: Geometry, ends: tuple[float, float], elements: float, order: int) -> Stacked:
-    """All bodies that yield, on meshes fine for contacts that end between these radii, m."""
+def _together(
+    geometry: Geometry, ends: tuple[float, float], elements: float, order: int, pace: Pace | None = None
+) -> Stacked:
+    """All bodies that yield, on meshes fine for contacts that end between these radii, m.
+
+    ``pace`` of the impact, where bodies of constant bulk modulus relax.
+    """
     radii = np.array(ends)
     first, *others = _bodies(geometry)
     shape = geometry.shape
-    own = first.operator(Zone.round(radii, first.radius), elements, order, shape.plane)
-    sides = [Side(own, shape.modulus(first.material).scaled(shape.total), own.trace)]
+    own = _side(first, first.meshed(Zone.round(radii, first.radius), elements, order, shape.plane), shape, pace)
+    sides = [own]
     for other in others:
-        larger = other.operator(Zone.round(SPARE * radii, other.radius), elements, order, shape.plane)
-        ratio = first.radius / other.radius
-        trace = trace_at(larger, np.arcsin(np.minimum(ratio * np.sin(own.points), 1.0)))
-        relaxation = shape.modulus(other.material).scaled(shape.total)
-        sides.append(Side(larger, relaxation, trace, ratio ** (2 - own.dimension)))
-    return Stacked(own, tuple(sides), first.radius)
+        larger = other.meshed(Zone.round(SPARE * radii, other.radius), elements, order, shape.plane)
+        ratio, power = first.radius / other.radius, 2 - own.operator.dimension
+        side = _side(other, larger, shape, pace)
+        trace = trace_at(side.operator, np.arcsin(np.minimum(ratio * np.sin(own.operator.points), 1.0)))
+        sides.append(replace(side, trace=trace, share=ratio**power))
+    return Stacked(own.operator, tuple(sides), first.radius)
+
+
+def _side(body: _Body, meshed: ElasticBody, shape: Shape, pace: Pace | None) -> Side:
+    """One of the bodies under a pressure at its own points."""
+    material, relaxation = body.material, shape.modulus(body.material).scaled(shape.total)
+    if pace is not None and material.constant == "bulk" and not material.young.is_elastic:
+        return BulkSide.of(meshed, Moduli.of(material, shape.total), pace, relaxation)
+    operator = _operator(meshed, material.nu)
+    return Side(operator, relaxation, operator.trace)
 
 
 def _bodies(geometry: Geometry) -> list[_Body]:
@@ -103,20 +134,24 @@ def _bodies(geometry: Geometry) -> list[_Body]:
 
 
 @kept
-def _operator(
-    poisson: float, elements: float, order: int, smallest: float, contact: float, support: bool, plane: bool
-) -> SurfaceOperator:
-    """Condensed for unit radius, points and ``contact`` in rad from the pole; ``support``: whether it is held."""
+def _operator(body: ElasticBody, poisson: float) -> SurfaceOperator:
+    return body.operator(poisson)
+
+
+@kept
+def _meshed(elements: float, order: int, smallest: float, contact: float, support: bool, in_plane: bool) -> ElasticBody:
+    """Of unit radius, points and ``contact`` in rad from the pole; ``support``: whether it is held."""
     module: ModuleType = meshes
-    mesh = (module.cylinder if plane else module.sphere)(elements, smallest, contact)
+    mesh = (module.cylinder if in_plane else module.sphere)(elements, smallest, contact)
     basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
-    law = isotropic(1.0 - poisson**2, poisson)
-    matrix = (plane_stiffness(basis, law) if plane else stiffness(basis, law)).tocsc()
-    around = 1.0 if plane else 2.0 * np.pi * np.asarray(basis.global_coordinates())[0]
-    floating = None if support else Floating.of(basis, around * np.asarray(basis.dx))
-    fixed = _fixed(basis, support)
-    surface = crown(basis, contact, None if plane else 0.0)
-    return condensed(basis, matrix, fixed, poisson, surface, floating=floating)
+    around = 1.0 if in_plane else 2.0 * np.pi * np.asarray(basis.global_coordinates())[0]
+    return ElasticBody(
+        basis,
+        partial(plane if in_plane else axisymmetric, basis),
+        _fixed(basis, support),
+        crown(basis, contact, None if in_plane else 0.0),
+        None if support else Floating.of(basis, around * np.asarray(basis.dx)),
+    )
 
 
 def _fixed(basis: Basis, support: bool) -> npt.NDArray[np.int64]:

@@ -19,3 +19,8 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
     """Both bodies in an impact."""
     return _round.struck(geometry, numerics)
+
+
+def relaxing(geometry: Geometry, numerics: Numerics) -> Stacked:
+    """The same where one is of constant bulk modulus."""
+    return _round.relaxing(geometry, numerics)

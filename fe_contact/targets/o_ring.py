@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from skfem import Basis
 
 import meshes
-from fe_contact.bodies.stacked import Side, Stacked
+from fe_contact.bodies.bulk_memory import Moduli
+from fe_contact.bodies.bulk_surface import Pace
+from fe_contact.bodies.sides import BulkSide, Side
+from fe_contact.bodies.stacked import Stacked
 from fe_contact.contact import PressedSurface
-from fe_contact.forms import Array, isotropic, stiffness
+from fe_contact.elastic_body import ElasticBody, axisymmetric
+from fe_contact.forms import Array
 from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
-from fe_contact.operators import ELEMENTS, SurfaceOperator, condensed
+from fe_contact.operators import ELEMENTS, SurfaceOperator
 from fe_contact.pressing import Still
 from fe_contact.surface import crown
 from fe_contact.targets._body import BodyStill
@@ -25,7 +31,10 @@ from fe_contact.targets._zone import (
 )
 from lumped.geometry import Geometry
 from lumped.indenter import Indenter
+from lumped.materials import Relaxation
 from lumped.targets.o_ring import ORing
+
+Sizes = tuple[float, int, float, float, float]  # elements, order, smallest contact, contact, mean radius: see _body
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
@@ -54,30 +63,57 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 
 def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
     """The O-ring in an impact; its other half moves alike, so that both together are half as stiff as one."""
+    target, sizes = _sizes(geometry, numerics)
+    return _struck(geometry.material.nu, geometry.shape.modulus(geometry.material), target, sizes)
+
+
+def relaxing(geometry: Geometry, numerics: Numerics) -> Stacked:
+    """The same of constant bulk modulus."""
+    target, sizes = _sizes(geometry, numerics)
+    relaxation, moduli = geometry.shape.modulus(geometry.material), Moduli.of(geometry.material, geometry.shape.total)
+    return _relaxing(relaxation, moduli, target, sizes, Pace.of(numerics))
+
+
+def meshed(geometry: Geometry, numerics: Numerics) -> ElasticBody:
+    """Half of it for every Poisson's ratio."""
+    return _body(*_sizes(geometry, numerics)[1])
+
+
+def _sizes(geometry: Geometry, numerics: Numerics) -> tuple[ORing, Sizes]:
+    """The ring, and its mesh for contacts that grow from nothing to the half-width that the settings expect."""
+    target = geometry.target
+    assert isinstance(target, ORing)
+    largest = numerics.contact_radius / MARGIN
+    zone = Zone.round(largest * np.array([smallest_struck(geometry.shape), 1.0]), target.section_radius)
     elements = STRUCK_REFINEMENT * numerics.elements_per_contact
-    return _struck(geometry, elements, numerics.order, numerics.contact_radius / MARGIN)
+    mean_radius = target.mean_radius / target.section_radius
+    return target, (elements, numerics.order, zone.smallest, zone.reference, mean_radius)
 
 
 @kept
-def _struck(geometry: Geometry, elements: float, order: int, largest: float) -> Stacked:
-    """For contacts up to a half-width, m."""
-    target = geometry.target
-    assert isinstance(target, ORing)
-    section = target.section_radius
-    zone = Zone.round(largest * np.array([smallest_struck(geometry.shape), 1.0]), section)
-    sizes = (elements, order, zone.smallest, zone.reference, target.mean_radius / section)
-    operator, _ = _surface(geometry.material.nu, *sizes)
-    relaxation = geometry.shape.modulus(geometry.material)
-    return Stacked(operator, (Side(operator, relaxation, operator.trace, target.lead),), section)
+def _struck(poisson: float, relaxation: Relaxation, target: ORing, sizes: Sizes) -> Stacked:
+    operator = _body(*sizes).operator(poisson)
+    return Stacked(operator, (Side(operator, relaxation, operator.trace, target.lead),), target.section_radius)
+
+
+@kept
+def _relaxing(relaxation: Relaxation, moduli: Moduli, target: ORing, sizes: Sizes, pace: Pace) -> Stacked:
+    side = BulkSide.of(_body(*sizes), moduli, pace, relaxation, target.lead)
+    return Stacked(side.operator, (side,), target.section_radius)
 
 
 @kept
 def _surface(
     poisson: float, elements: float, order: int, smallest: float, contact: float, mean_radius: float
 ) -> tuple[SurfaceOperator, PressedSurface]:
-    """Condensed for unit radius of the section, points and ``contact`` in rad from its top."""
-    basis = Basis(meshes.o_ring(elements, smallest, contact, mean_radius), ELEMENTS[order](), intorder=2 * order)
-    matrix = stiffness(basis, isotropic(1.0 - poisson**2, poisson)).tocsc()
-    fixed = held(basis, along=(), across=("base",))
-    operator = condensed(basis, matrix, fixed, poisson, crown(basis, contact, mean_radius))
+    """Condensed for unit radius of the section."""
+    operator = _body(elements, order, smallest, contact, mean_radius).operator(poisson)
     return operator, PressedSurface(operator.stiffness, operator.trace, operator.weights, recurring=False)
+
+
+@kept
+def _body(elements: float, order: int, smallest: float, contact: float, mean_radius: float) -> ElasticBody:
+    """In units of the section's radius, points and ``contact`` in rad from its top."""
+    basis = Basis(meshes.o_ring(elements, smallest, contact, mean_radius), ELEMENTS[order](), intorder=2 * order)
+    fixed = held(basis, along=(), across=("base",))
+    return ElasticBody(basis, partial(axisymmetric, basis), fixed, crown(basis, contact, mean_radius))

@@ -9,6 +9,9 @@ import numpy as np
 from skfem import Basis
 
 import meshes
+from fe_contact.bodies import bulk_surface
+from fe_contact.bodies.bulk_memory import Moduli
+from fe_contact.bodies.bulk_surface import BulkSurface
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.elastic_body import ElasticBody
 from fe_contact.forms import Array, elastic, polar_stiffness
@@ -50,6 +53,12 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
     """The ring in an impact whose contact grows from nothing to the arc that the settings expect."""
     return _surface(geometry.material.nu, *_shape(geometry, numerics))
+
+
+def relaxing(geometry: Geometry, numerics: Numerics) -> BulkSurface:
+    """The same of constant bulk modulus."""
+    moduli = Moduli.of(geometry.material, geometry.shape.total)
+    return bulk_surface.relaxing(meshed(geometry, numerics), moduli, numerics)
 
 
 def meshed(geometry: Geometry, numerics: Numerics) -> ElasticBody:

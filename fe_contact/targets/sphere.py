@@ -29,3 +29,8 @@ def struck(geometry: Geometry, numerics: Numerics) -> Deformable:
     if geometry.target.support is not None:
         return _round.struck(geometry, numerics)
     return half_space.surface(geometry.material.nu, numerics)
+
+
+def relaxing(geometry: Geometry, numerics: Numerics) -> Deformable:
+    """The same where one of true size is of constant bulk modulus: a half-space's surface remembers all."""
+    return _round.relaxing(geometry, numerics)

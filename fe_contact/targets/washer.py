@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from skfem import Basis
 
 import meshes
+from fe_contact.bodies import bulk_surface
+from fe_contact.bodies.bulk_memory import Moduli
+from fe_contact.bodies.bulk_surface import BulkSurface
 from fe_contact.contact import PressedSurface
-from fe_contact.forms import Array, isotropic, stiffness
+from fe_contact.elastic_body import ElasticBody, axisymmetric
+from fe_contact.forms import Array
 from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
-from fe_contact.operators import ELEMENTS, SurfaceOperator, condensed
+from fe_contact.operators import ELEMENTS, SurfaceOperator
 from fe_contact.pressing import Still
 from fe_contact.surface import Surface, ring_area
 from fe_contact.targets._body import BodyStill
 from fe_contact.targets._zone import held, thickness_over
+from lumped.geometry import Geometry
 from lumped.indenter import Indenter
+from lumped.targets import Target
 from lumped.targets.washer import Washer
 
+Sizes = tuple[float, int, float, float, float, bool]  # elements, order, radii of hole, edge and rim, bonded: see _body
 COARSER = 0.75  # elements along the shortest length over those along a contact that may end anywhere
 
 
@@ -25,10 +34,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The washer at rest; ``radii``, m: where the contact ends, alike at every depth."""
     target = indenter.target
     assert isinstance(target, Washer)
-    thickness_over(2.0 * (target.outer_radius - target.inner_radius), target.height)  # fine from both of its ends
-    inner, outer, rim = (length / target.height for length in (target.inner_radius, target.outer_radius, radii.max()))
-    elements, bonded = COARSER * numerics.elements_per_contact, target.base == "bonded"
-    operator, surface = _surface(indenter.material.nu, elements, numerics.order, inner, outer, rim, bonded)
+    operator, surface = _surface(indenter.material.nu, *_sizes(target, float(radii.max()), numerics))
     return BodyStill(
         surface=surface,
         operator=operator,
@@ -40,13 +46,38 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     )
 
 
+def relaxing(geometry: Geometry, numerics: Numerics) -> BulkSurface:
+    """The washer of constant bulk modulus in an impact."""
+    target, rim = geometry.target, geometry.target.fixed_radius(geometry.shape)
+    assert isinstance(target, Washer)
+    moduli = Moduli.of(geometry.material, geometry.shape.total)
+    return bulk_surface.relaxing(meshed(geometry, numerics), moduli, numerics, target.height, rim)
+
+
+def meshed(geometry: Geometry, numerics: Numerics) -> ElasticBody:
+    """The same for every Poisson's ratio."""
+    return _body(*_sizes(geometry.target, geometry.target.fixed_radius(geometry.shape) or 0.0, numerics))
+
+
+def _sizes(target: Target, rim: float, numerics: Numerics) -> Sizes:
+    """In units of the height; contact ends at ``rim``, m."""
+    assert isinstance(target, Washer)
+    thickness_over(2.0 * (target.outer_radius - target.inner_radius), target.height)  # fine from both of its ends
+    inner, outer, end = (length / target.height for length in (target.inner_radius, target.outer_radius, rim))
+    return COARSER * numerics.elements_per_contact, numerics.order, inner, outer, end, target.base == "bonded"
+
+
 @kept
-def _surface(
-    poisson: float, elements: float, order: int, inner: float, outer: float, rim: float, bonded: bool
-) -> tuple[SurfaceOperator, PressedSurface]:
-    """Condensed for unit height, loaded up to the rim alone."""
+def _surface(poisson: float, *sizes: *Sizes) -> tuple[SurfaceOperator, PressedSurface]:
+    """Condensed for unit height."""
+    operator = _body(*sizes).operator(poisson)
+    return operator, PressedSurface(operator.stiffness, operator.trace, operator.weights, recurring=False)
+
+
+@kept
+def _body(elements: float, order: int, inner: float, outer: float, rim: float, bonded: bool) -> ElasticBody:
+    """Of unit height, loaded up to the rim alone."""
     basis = Basis(meshes.washer(elements, inner, outer, rim, bonded), ELEMENTS[order](), intorder=2 * order)
-    matrix = stiffness(basis, isotropic(1.0 - poisson**2, poisson)).tocsc()
     fixed = held(basis, along=("base",) if bonded else (), across=("base",))
     dofs = basis.get_dofs("surface").flatten()
     dofs = dofs[np.argsort(basis.doflocs[0, dofs])]
@@ -59,5 +90,4 @@ def _surface(
         zone=rim * (1.0 - 1e-12),
         dimension=3,
     )
-    operator = condensed(basis, matrix, fixed, poisson, surface)
-    return operator, PressedSurface(operator.stiffness, operator.trace, operator.weights, recurring=False)
+    return ElasticBody(basis, partial(axisymmetric, basis), fixed, surface)
