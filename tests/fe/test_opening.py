@@ -68,8 +68,8 @@ def test_it_tells_the_edge_where_the_gap_does_not() -> None:
     steps = 32
     middle = END - 0.5 * END / steps
     rough = edge(middle) - 0.01  # what the pressure tells
-    found = contact_end(PLACES, rough, followed(steps), touched=1.0)
-    plain = contact_end(PLACES, rough, gap(middle), touched=1.0)
+    found = contact_end(PLACES, rough, followed(steps), PLACES**2, touched=1.0)
+    plain = contact_end(PLACES, rough, gap(middle), PLACES**2, touched=1.0)
     assert found == pytest.approx(edge(middle), abs=5e-4)
     assert abs(plain - edge(middle)) > 3.0 * abs(found - edge(middle))
 
