@@ -12,6 +12,7 @@ that the points are the nodes of the element, at (x, y, z) = (r, z, 0) m with th
     stress_rr, stress_zz, stress_hoop, stress_rz    Pa, tension positive, averaged over the elements at a node
     pressure       Pa, on the contact surface; zero elsewhere
     contact        1 where the bodies touch, 0 elsewhere
+    velocity       (v_r, v_z, 0), m/s, of a body with inertia, whose fields are those of the march itself
 """
 
 from __future__ import annotations
@@ -74,12 +75,17 @@ def check_fields(scene: Scene) -> None:
 
 def write_fields(scene: Scene, solved: Solved, where: Path) -> Path:
     """Write ``fields.vtu`` into the folder ``where``, made when it is not there; its path. Raises BadInput."""
+    return written(fields_at_peak(scene, solved), where)
+
+
+def written(fields: Fields, where: Path, velocity: Array | None = None) -> Path:
+    """The file ``fields.vtu`` in a folder, with the velocity (n, 2), m/s, of a body with inertia; its path."""
     import meshio
 
-    fields = fields_at_peak(scene, solved)
     data: dict[str, np.ndarray[Any, Any]] = {"displacement": _lifted(fields.displacement)}
     data |= dict(zip(STRESSES, fields.stress.T, strict=True))
     data |= {"pressure": fields.pressure, "contact": fields.contact}
+    data |= {} if velocity is None else {"velocity": _lifted(velocity)}
     where.mkdir(parents=True, exist_ok=True)
     path = where / "fields.vtu"
     meshio.Mesh(_lifted(fields.points), [("triangle", fields.triangles)], point_data=data).write(path)

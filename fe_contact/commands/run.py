@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.result import write_failure
+from lumped.result import Result, write_failure
 from lumped.scene import Scene
+
+if TYPE_CHECKING:  # finite elements are loaded when they are needed
+    from fe_contact.reference import Solved
 
 SUMMARY = "one impact: history.csv and result.json, with error bars"
 
@@ -49,10 +52,8 @@ def _impact(args: argparse.Namespace, scene: Scene, table: dict[str, Any], where
     else:
         solved, result = None, simulate(scene, args.method, table, progress=base.progress_of(args))
     result.write(where)
-    if args.fields and solved is not None:
-        from fe_contact.fields import write_fields
-
-        write_fields(scene, solved, where)
+    if args.fields:
+        _write_fields(scene, solved, result, where)
     if args.plot:
         from fe_contact.report.history import plot_history
 
@@ -66,8 +67,26 @@ def _check(args: argparse.Namespace, scene: Scene) -> None:
         return
     if args.method != "fe":
         raise BadInput(Fault("--fields", "", "only with --method fe"))
-    if scene.model.inertia:
-        raise BadInput(Fault("--fields", "", "not with model.inertia = true in this version"))
     from fe_contact.fields import check_fields
 
-    check_fields(scene)
+    if scene.model.inertia and not hasattr(_moving_target(scene), "write_fields"):
+        reason = f"{scene.target.name}: accepted with --fields and model.inertia: half_space"
+        raise BadInput(Fault(scene.source, "target.shape", reason))
+    if not scene.model.inertia:
+        check_fields(scene)
+
+
+def _moving_target(scene: Scene) -> Any:
+    from fe_contact.numerics import WAVES
+    from lumped.members import get
+
+    return get(WAVES, scene.target.name)
+
+
+def _write_fields(scene: Scene, solved: Solved | None, result: Result, where: Path) -> None:
+    from fe_contact.fields import write_fields
+
+    if solved is None:
+        _moving_target(scene).write_fields(scene, result, where)
+    else:
+        write_fields(scene, solved, where)

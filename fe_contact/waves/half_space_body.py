@@ -29,7 +29,13 @@ BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 
 @dataclass(frozen=True, eq=False)
 class UnitBody:
-    """Matrices for contact radius, E* and density one, sparse (N, N), the striker last; ``push`` and the points."""
+    """Matrices for contact radius, E* and density one, sparse (N, N), the striker last; ``push`` and the points.
+
+    ``basis``: scalar scikit-fem basis; ``free``: those of its degrees of freedom, two a node, that the matrices have.
+    """
+
+    basis: Any
+    free: Nodes
 
     stiffness: Any
     mass: Any
@@ -43,7 +49,7 @@ class UnitBody:
 def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
     """The half-space of a scene at first touch, in SI units."""
     material, modulus, a = scene.geometry.material, scene.contact_modulus, numerics.contact_radius
-    unit = unit_body(material.nu, numerics.elements_per_contact, numerics.order, numerics.far_radius, numerics.mass)
+    unit = unit_of(scene, numerics)
     density = material.density or 0.0
     rigid, gravity = np.zeros(unit.mass.shape[0]), np.zeros(unit.mass.shape[0])
     rigid[-1], gravity[-1] = scene.reduced_mass, scene.gravity
@@ -61,6 +67,12 @@ def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
     return Moving(body, scene.velocity, a * unit.points, endless=True)
 
 
+def unit_of(scene: Scene, numerics: WaveNumerics) -> UnitBody:
+    """The body of unit size that a scene's is scaled from."""
+    nu = scene.geometry.material.nu
+    return unit_body(nu, numerics.elements_per_contact, numerics.order, numerics.far_radius, numerics.mass)
+
+
 @lru_cache(maxsize=8)
 def unit_body(poisson: float, elements: float, order: int, far_radius: float, masses: str) -> UnitBody:
     """Mesh and assemble; made once for all steps and penalties."""
@@ -74,6 +86,8 @@ def unit_body(poisson: float, elements: float, order: int, far_radius: float, ma
     normal = 2 * surface.dofs + 1
     inertia = get(MASSES, masses).of(mass(basis), vector_dofs(basis.element_dofs), 2 * basis.N, normal)
     return UnitBody(
+        basis=basis,
+        free=free,
         stiffness=with_striker(system_matrix(basis, poisson), free),
         mass=with_striker(inertia, free),
         dashpots=with_striker(absorbing.dashpots(far, poisson), free),

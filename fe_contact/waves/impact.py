@@ -24,13 +24,17 @@ def motion(moving: Moving, scene: Scene, numerics: WaveNumerics) -> Motion:
 
     Raises the named failures of :mod:`fe_contact.errors`.
     """
+    return march(moving.body, moving.velocity, choices_of(scene, numerics), scene.end_time, moving.watch, left)
+
+
+def choices_of(scene: Scene, numerics: WaveNumerics) -> Choices:
+    """How the march is solved."""
     penalty = numerics.penalty * _stiffness(scene, numerics) / numerics.contact_radius
-    choices = Choices(
+    return Choices(
         scheme=get(WAVE_SCHEMES, numerics.scheme).of(numerics.rho),
         enforced=Enforced(get(ENFORCEMENTS, numerics.enforcement), penalty),
         step=numerics.contact_time / numerics.steps,
     )
-    return march(moving.body, moving.velocity, choices, scene.end_time, moving.watch, left)
 
 
 def _stiffness(scene: Scene, numerics: WaveNumerics) -> float:

@@ -13,6 +13,7 @@ from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
 from fe_contact.reference import refined_for, result_of, strike_of
 from fe_contact.waves.certify import certify
+from fe_contact.waves.fields import write_fields as write_fields
 from fe_contact.waves.half_space_body import moving
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.plan import plan as plan

@@ -33,6 +33,7 @@ STEPS = 400  # along the contact time of the scene, at the default tolerance
 FEWEST, MANY, MOST = 48, 2_500, 20_000  # elements: at first, and at all
 LIGHT = 16.0  # of them in the part of the rod that is as heavy as the striker
 DENTED = 64.0  # of them which a wave crosses while the striker dents the rod
+RELAXED = 6.0  # of them which it crosses in the shortest relaxation time
 
 
 def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
@@ -59,13 +60,21 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
         mass="lumped" if flat else "redistributed",
     ).varied(**given)
     shape = scene.profile.hertz_impact(scene.contact_modulus.glassy, scene.reduced_mass, scene.velocity)
-    fewest = min(max(FEWEST, LIGHT * rod_mass(scene) / scene.reduced_mass), MANY)
-    if not flat:
-        fewest = min(max(fewest, DENTED * rod.length / (speed(scene) * shape.duration)), MANY)
-    more = max(fewest / elements(scene, coarse), 1.0)
+    more = max(_fewest(scene, None if flat else shape.duration) / elements(scene, coarse), 1.0)
     settings = coarse if "steps" in given else coarse.varied(steps=math.ceil(coarse.steps * more))
     scales = Peak(shape.force, shape.depth, shape.contact_radius, contact_time)
     return Plan(settings, frozenset(given) - {"tolerance"}, model_ledger(scene, scales))
+
+
+def _fewest(scene: Scene, dent: float | None) -> float:
+    """Elements at first: what the striker's mass, a dent that lasts so long, s, and a relaxation need."""
+    rod, times = scene.target, scene.geometry.material.uniaxial_modulus().times
+    assert isinstance(rod, Rod)
+    transit = rod.length / speed(scene)
+    needs = [FEWEST, LIGHT * rod_mass(scene) / scene.reduced_mass]
+    needs += [] if dent is None else [DENTED * transit / dent]
+    needs += [RELAXED * transit / min(times)] if times else []
+    return min(max(needs), MANY)
 
 
 def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
