@@ -15,6 +15,7 @@ from fe_contact.report.exponents import plot_exponents
 from fe_contact.validation.exponents import PROFILES, Curve, Profile, curve, curves
 from fe_contact.validation.exponents_check import TOLERANCE, Check, check
 from fe_contact.validation.exponents_files import COLUMNS, write_exponents
+from fe_contact.validation.finite_spheres import SHARES, Pair, pairs
 from lumped.load_curves.layer import Layer
 from lumped.load_curves.thin_layer import compressible, incompressible
 
@@ -34,6 +35,11 @@ def checked() -> tuple[Check, ...]:
     places = ((CONE, "bonded", 0.3, 1.0), (SPHERE, "bonded", 0.49, 1.0), (SPHERE, "sliding", None, 1.0),
               (CYLINDER, "bonded", 0.3, 1.0))  # fmt: skip
     return tuple(check(*place) for place in places)
+
+
+@pytest.fixture(scope="module")
+def spheres() -> tuple[Pair, ...]:
+    return pairs(quick=True)
 
 
 def test_limits_of_the_thin_layer() -> None:
@@ -119,8 +125,10 @@ def test_a_check_off_its_bar_is_told(checked: tuple[Check, ...]) -> None:
     assert not replace(checked[0], exact_exponent=1.01 * checked[0].exact_exponent).covered
 
 
-def test_files(tmp_path: Path, found: tuple[Curve, ...], checked: tuple[Check, ...]) -> None:
-    content = write_exponents(found, checked, tmp_path)
+def test_files(
+    tmp_path: Path, found: tuple[Curve, ...], checked: tuple[Check, ...], spheres: tuple[Pair, ...]
+) -> None:
+    content = write_exponents(found, checked, spheres, tmp_path)
     with (tmp_path / "exponents.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert list(rows[0]) == list(COLUMNS)
@@ -131,6 +139,23 @@ def test_files(tmp_path: Path, found: tuple[Curve, ...], checked: tuple[Check, .
     assert json.loads((tmp_path / "exponents.json").read_text(encoding="utf-8")) == content
     assert len(content["curves"]) == len(found)
     assert content["all_covered"]
+    with (tmp_path / "finite_spheres.csv").open(newline="", encoding="utf-8") as file:
+        lines = list(csv.DictReader(file))
+    assert len(lines) == len(spheres) * SHARES.size
+    for line, share in zip(lines, np.tile(SHARES, len(spheres)), strict=True):
+        assert float(line["a_over_R"]) == pytest.approx(share, rel=0.01), "the exact sphere's, not the parabola's"
+
+
+def test_free_spheres_leave_hertz_by_the_share_of_their_radius(spheres: tuple[Pair, ...]) -> None:
+    """Their slope is flat but for a logarithm; a body held from its middle plane on differs in c, not in the log."""
+    free, held = (one.size for one in spheres)
+    for size in (free, held):
+        terms = {name: term.value or 0.0 for name, term in size.terms.items()}
+        fitted = size.share * (terms["c"] + terms["k"] * np.log(size.share) + terms["d"] * size.share)
+        assert np.all(np.abs(fitted - size.deviation) <= size.error + 1e-5)
+    logs = [size.terms["k"] for size in (free, held)]
+    assert abs((logs[0].value or 0.0) - (logs[1].value or 0.0)) <= sum(one.error or 0.0 for one in logs)
+    assert free.slope.value != pytest.approx(held.slope.value, rel=0.02)
 
 
 def test_the_chart_is_the_same_every_time(tmp_path: Path, found: tuple[Curve, ...], checked: tuple[Check, ...]) -> None:
@@ -143,6 +168,7 @@ def test_the_command(
     tmp_path: Path,
     found: tuple[Curve, ...],
     checked: tuple[Check, ...],
+    spheres: tuple[Pair, ...],
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
     converged: bool,
@@ -150,10 +176,12 @@ def test_the_command(
 ) -> None:
     spots = (*checked[:-1], replace(checked[-1], converged=converged))
     monkeypatch.setattr("fe_contact.validation.exponents_check.checks", lambda quick, progress: spots)
+    monkeypatch.setattr("fe_contact.validation.finite_spheres.pairs", lambda quick, progress: spheres)
     assert main(["exponents", "--quick", "--out", str(tmp_path / "out"), "--quiet"]) == code
     said = capsys.readouterr()
-    assert len(said.out.splitlines()) == len(found) + len(spots) + 1
-    assert ("tolerance not reached at 1 of 4" in said.err) == (code == 3)
+    assert len(said.out.splitlines()) == len(found) + len(spots) + len(spheres) + 1
+    assert ("tolerance not reached at 1 of 6" in said.err) == (code == 3)
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
-        f"exponents.{kind}" for kind in ("csv", "json", "svg", "png")
+        "finite_spheres.csv",
+        *(f"exponents.{kind}" for kind in ("csv", "json", "svg", "png")),
     }

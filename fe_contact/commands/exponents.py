@@ -11,7 +11,10 @@ if TYPE_CHECKING:
     from fe_contact.validation.exponents import Curve
     from fe_contact.validation.exponents_check import Check
 
-SUMMARY = "local exponent and D from the half-space to the thin layer: every profile, base and nu; spots by FE"
+SUMMARY = (
+    "local exponent and D from the half-space to the thin layer: every profile, base and nu; spots by FE; and how far "
+    "finite spheres are from Hertz"
+)
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -26,17 +29,19 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.validation.exponents import curves
     from fe_contact.validation.exponents_check import checks
     from fe_contact.validation.exponents_files import write_exponents
+    from fe_contact.validation.finite_spheres import pairs
 
     where = base.folder(args, "exponents", "layers")
     progress = base.progress_of(args)
     found, checked = curves(args.quick, progress), checks(args.quick, progress)
-    content = write_exponents(found, checked, where)
+    spheres = pairs(args.quick, progress)
+    content = write_exponents(found, checked, spheres, where)
     progress("chart")
     plot_exponents(found, checked, where)
-    base.tell(args, content, [*map(_curve, found), *map(_check, checked)], where)
-    missed = [check for check in checked if not check.converged]
-    if missed:
-        base.complain(f"tolerance not reached at {len(missed)} of {len(checked)} places checked by finite elements")
+    base.tell(args, content, [*map(_curve, found), *map(_check, checked), *(pair.told for pair in spheres)], where)
+    reached = [*(check.converged for check in checked), *(pair.converged for pair in spheres)]
+    if missed := reached.count(False):
+        base.complain(f"tolerance not reached at {missed} of {len(reached)} places checked by finite elements")
     return base.NOT_REACHED if missed else base.DONE
 
 

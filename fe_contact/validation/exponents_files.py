@@ -1,4 +1,4 @@
-"""What ``fe-contact exponents`` writes: a line a point as CSV, a line a curve as JSON."""
+"""What ``fe-contact exponents`` writes: a line a point as CSV, a line a curve as JSON, and the finite spheres."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from fe_contact.validation.exponents import Curve, Profile
 from fe_contact.validation.exponents_check import Check
+from fe_contact.validation.finite_spheres import Pair
 from fe_contact.validation.tables import plain, write_csv, write_json
 
 SCHEMA = "fe-contact/exponents/1"
@@ -18,18 +19,23 @@ COLUMNS = (
     "shape", "profile_exponent", "base", "nu", "a_over_h", "method", "exponent", "exponent_error", "D_over_row",
     "D_over_row_error", "depth_over_height", "force_over_height", "row_exponent", "thin_exponent",
 )  # fmt: skip
+SPHERE_COLUMNS = ("support", "nu", "a_over_R", "F_over_Hertz_minus_1", "error")
 
 
-def write_exponents(curves: Sequence[Curve], checks: Sequence[Check], where: Path) -> dict[str, Any]:
-    """Write ``exponents.csv`` and ``exponents.json`` into a folder; the content of the latter."""
+def write_exponents(
+    curves: Sequence[Curve], checks: Sequence[Check], pairs: Sequence[Pair], where: Path
+) -> dict[str, Any]:
+    """Write ``exponents.csv``, ``finite_spheres.csv`` and ``exponents.json`` into a folder; the content of the last."""
     where.mkdir(parents=True, exist_ok=True)
     rows = [line for curve in curves for line in _points(curve)] + [_checked(check) for check in checks]
     write_csv(where / "exponents.csv", COLUMNS, rows)
+    write_csv(where / "finite_spheres.csv", SPHERE_COLUMNS, [line for pair in pairs for line in pair.rows()])
     content: dict[str, Any] = plain(
         {
             "schema": SCHEMA,
             "curves": [_described(curve) for curve in curves],
             "checks": [asdict(check) | {"covered": check.covered} for check in checks],
+            "finite_spheres": [pair.to_dict() for pair in pairs],
             "all_covered": all(check.covered for check in checks),
         }
     )
