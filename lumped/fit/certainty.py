@@ -10,6 +10,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.errors import BadInput, NotReached
 from lumped.fit.problem import Problem
 from lumped.fit.record import Estimate
 from lumped.fit.space import TOUCH
@@ -101,12 +102,21 @@ def _slopes(problem: Problem, values: Mapping[str, float], guess: Mapping[str, f
         known = [whole[name] for name in problem.space.free]
         return np.concatenate([known, [found.force_at_depth(depth)], problem.error_of(whole, found)])
 
+    def aside(name: str, place: float) -> tuple[float, Array]:
+        """The state with one value changed; the state found where no law has that value beside the others."""
+        try:
+            return place, state({**values, name: place})
+        except (BadInput, NotReached):
+            return values[name], state(values)
+
     columns = []
     for name, scale in zip(names, _scales(problem, values, guess), strict=True):
         low, high = problem.space.limits(name, guess[name])
-        below, above = max(values[name] - STEP * scale, low), min(values[name] + STEP * scale, high)
-        difference = state({**values, name: above}) - state({**values, name: below})
-        columns.append(difference / (above - below))
+        below, before = aside(name, max(values[name] - STEP * scale, low))
+        above, after = aside(name, min(values[name] + STEP * scale, high))
+        if above == below:
+            raise NotReached(f"no law has another {name} than {values[name]:.6g}; cure: hold it, or free another one")
+        columns.append((after - before) / (above - below))
     size = len(problem.space.free) + 1 + problem.measured.time.size
     return np.array(columns).T if columns else np.zeros((size, 0))
 

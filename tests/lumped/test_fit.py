@@ -226,6 +226,14 @@ def test_a_damping_that_is_not_there_is_not_told_from_none() -> None:
     assert any(text.startswith(("xi is at its bound", "the interval of xi reaches")) for text in found.warnings)
 
 
+@pytest.mark.parametrize(("law", "peak"), [("linear_spring", True), ("hertz", False)])
+def test_a_loop_is_fitted_to_what_has_none(law: str, peak: bool) -> None:
+    """The slope after the yield can only come as near as the first: a step beyond it is no law."""
+    found = fit(history(law, **TRUTHS[law]), "impact_bilinear", BODY, peak=peak)
+    assert found.values["k2"] <= found.values["k1"]
+    assert found.force_at_depth.value == pytest.approx(0.5 * found.history.force.max(), rel=2e-2)
+
+
 def test_a_parameter_without_effect_has_no_interval() -> None:
     """A relaxation far slower than the contact: the peak is R1's, and any R2 does."""
     scene = Scene.load("steel-ball", {"model.profile": "parabola"})
