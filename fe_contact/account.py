@@ -16,7 +16,7 @@ def record(
     stepper: Stepping, states: Sequence[State], steps: Sequence[Step], separated: bool, end_spread: float
 ) -> March:
     """Gather what a march leaves behind; ``end_spread`` as in :class:`fe_contact.march.March`."""
-    works = [step.work for step in steps]
+    works, last = [step.work for step in steps], states[len(steps)]
     return March(
         time=np.array([state.time for state in states]),
         depth=np.array([state.depth for state in states]),
@@ -29,11 +29,16 @@ def record(
         energy=_energy(stepper, states, steps) if stepper.accounted else {},
         end_spread=end_spread,
         work=Work(len(steps), sum(w.contact_problems for w in works), sum(w.iterations for w in works)),
+        memory=last.memory,
+        memory_time=last.time,
     )
 
 
 def _energy(stepper: Stepping, states: Sequence[State], steps: Sequence[Step]) -> dict[str, float]:
-    """Terms in J; ``contact`` is what the penalty's springs hold if the bodies have not separated."""
+    """Terms in J; ``contact`` is what the penalty's springs hold if the bodies have not separated.
+
+    What the body still stored at touch goes in too.
+    """
     strike, last = stepper.strike, states[-1]
     memories = [state.memory for state in states[: len(steps) + 1]]
     heats = [
@@ -41,7 +46,9 @@ def _energy(stepper: Stepping, states: Sequence[State], steps: Sequence[Step]) -
         for (before, after), step in zip(pairwise(memories), steps, strict=True)
     ]
     terms = {
-        "in": 0.5 * strike.mass * strike.velocity**2 + strike.mass * strike.gravity * last.depth,
+        "in": 0.5 * strike.mass * strike.velocity**2
+        + strike.mass * strike.gravity * (last.depth - strike.depth)
+        + stepper.stored(memories[0]),
         "out": 0.5 * strike.mass * last.velocity**2,
         "stored": stepper.stored(last.memory),
         "viscous": sum(heats),

@@ -2,8 +2,9 @@
 
 Time steps in the ratio 1 : 2 : 4 give a value (extrapolated from the two finest) and its change from the
 pair before. Mesh and penalty are varied on the coarsest of them, where a march is cheapest: what they change does
-not depend on the step. The far field of a mesh that breathes with the contact takes no march. A change
-between settings in the ratio 1 : 2 bounds the error by
+not depend on the step. The far field of a mesh that breathes with the contact takes no march, unless further contacts
+follow, each of which is judged like the first from the same runs. A change between settings in the ratio 1 : 2 bounds
+the error by
 
     SAFETY / (2^order - 1) x change ,
 
@@ -16,24 +17,24 @@ is left out of one march.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from fe_contact.bodies.chosen import struck
 from fe_contact.bodies.flat_end import FlatEnd
 from fe_contact.bodies.struck import Deformable, Struck
 from fe_contact.change import Change
 from fe_contact.curve import Curve, extrapolated
 from fe_contact.forms import Array
-from fe_contact.impact import march
+from fe_contact.impacts import Followed
 from fe_contact.march import March, Strike
 from fe_contact.numerics import SCHEMES, Numerics
 from fe_contact.plan import SETTING
+from fe_contact.runs import Runs, TotalWork
 from fe_contact.softening import Softening, compliance_change
 from fe_contact.trusted_order import trusted_orders
-from lumped.errors import NotReached
 from lumped.geometry import Geometry
 from lumped.members import get
 
@@ -46,20 +47,7 @@ LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 20.0, "far_radiu
 CAUSES = ("mesh", "penalty", "time_step", "far_field")
 ROUNDING = 1e-9  # of a solve of nearly incompressible bodies
 
-
-@dataclass(frozen=True)
-class TotalWork:
-    """Counted work of a certified impact: unknowns of the finest mesh; factorisations and back-substitutions
-    of all meshes; marches, time steps, contact problems and Newton iterations of all runs.
-    """
-
-    degrees_of_freedom: int
-    factorizations: int
-    solves: int
-    marches: int
-    steps: int
-    contact_problems: int
-    iterations: int
+Causes = tuple[Change | Softening | None, ...]  # what one setting changes, None: unknown
 
 
 @dataclass(frozen=True)
@@ -71,8 +59,13 @@ class Budget:
 
     curve: Curve
     march: March
-    changes: Mapping[str, tuple[Change | Softening | None, ...]]
+    changes: Mapping[str, Causes]
     work: TotalWork
+
+    @property
+    def row(self) -> tuple[Budget, ...]:
+        """All contacts in order, this one first."""
+        return (self,)
 
     def error(self, name: str, cause: str) -> float:
         """Error of a quantity by one cause, in its unit; infinite where a variation failed."""
@@ -91,41 +84,60 @@ class Budget:
 
 @dataclass(frozen=True)
 class Certified(Budget):
-    """The same with the ``surface`` that the finest run was on."""
+    """The same with the ``surface`` of the finest run, all contacts ``followed`` in it, budgets of the ``later``."""
 
     surface: Struck
+    followed: Followed
+    later: tuple[Budget, ...]
+
+    @property
+    def row(self) -> tuple[Budget, ...]:
+        return (self, *self.later)
 
 
-def certify(strike: Strike, geometry: Geometry, numerics: Numerics) -> Certified:
-    """March with ``numerics`` and with each setting varied; raises where the march itself fails."""
-    runs = _Runs(strike, geometry)
-    finest = runs.march(numerics)
-    steps = _time_steps(runs, Curve.of(finest, strike), numerics)
-    cheap = numerics.varied(steps=steps.cheap)
+def certify(strike: Strike, geometry: Geometry, numerics: Numerics, impacts: int = 1) -> Certified:
+    """March with ``numerics`` and with each setting varied; raises where the march itself fails.
+
+    Up to so many ``impacts``: the budget is that of the first, those of the ``later`` ones stand in it.
+    """
+    runs = Runs(strike, geometry, impacts)
+    followed = runs.follow(numerics)
+    judged = [_judged(runs, number, numerics, impacts == 1) for number in range(len(followed.contacts))]
     surface = runs.surface(numerics)
-    if isinstance(surface, FlatEnd):
+    work = runs.work(surface)
+    row = [
+        Budget(curve, contact.march, changes, work)
+        for (curve, changes), contact in zip(judged, followed.contacts, strict=True)
+    ]
+    return Certified(row[0].curve, row[0].march, row[0].changes, work, surface, followed, tuple(row[1:]))
+
+
+def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[Curve, Mapping[str, Causes]]:
+    """One contact of all runs, where it is ``alone`` with the fewest marches."""
+    curve = partial(runs.curve, number)
+    steps = _time_steps(curve, numerics)
+    surface = runs.surface(numerics)
+    if alone and isinstance(surface, FlatEnd):
         held = _by_stiffness(runs, steps.value, surface, numerics)
-        changes = held | {"time_step": (steps.change, *steps.jitter)}
-        return Certified(steps.value, finest, changes, runs.work(surface), surface)
-    base = runs.curve(cheap)
+        return steps.value, held | {"time_step": (steps.change, *steps.jitter)}
+    cheap = numerics.varied(steps=steps.cheap)
+    base = curve(cheap)
     mesh, finer_mesh = _other(cheap, "elements_per_contact")
     penalty, stiffer = _other(cheap, "penalty")
     order = MESH_ORDER[numerics.order] if surface.breathes else MESH_ORDER_ANYWHERE
-    changes = {
-        "mesh": (_change(base, runs.curve(mesh), order, finer_mesh), *steps.jitter),
-        "penalty": (_change(base, runs.curve(penalty), LEAST_ORDER["penalty"], stiffer),),
+    changes: dict[str, Causes] = {
+        "mesh": (_change(base, curve(mesh), order, finer_mesh), *steps.jitter),
+        "penalty": (_change(base, curve(penalty), LEAST_ORDER["penalty"], stiffer),),
         "time_step": (steps.change,),
-        "far_field": (_far_field(runs, steps.value, cheap, mesh),),
+        "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
     }
-    return Certified(steps.value, finest, changes, runs.work(surface), surface)
+    return steps.value, changes
 
 
-def _by_stiffness(
-    runs: _Runs, value: Curve, end: FlatEnd, numerics: Numerics
-) -> dict[str, tuple[Change | Softening | None, ...]]:
+def _by_stiffness(runs: Runs, value: Curve, end: FlatEnd, numerics: Numerics) -> dict[str, Causes]:
     """What the other causes change of the one stiffness under a flat end, without a march."""
     orders = {"mesh": min(MESH_ORDER[numerics.order], end.mesh_order)} | LEAST_ORDER
-    found: dict[str, tuple[Change | Softening | None, ...]] = {}
+    found: dict[str, Causes] = {}
     for cause, order in orders.items():
         settings, finer = _other(numerics, SETTING[cause])
         other = runs.surface(settings)
@@ -135,8 +147,10 @@ def _by_stiffness(
     return found
 
 
-def _far_field(runs: _Runs, value: Curve, cheap: Numerics, mesh: Numerics) -> Change | Softening | None:
-    """By one press of either surface where they breathe with the contact; else by a march more, on the varied mesh.
+def _far_field(
+    runs: Runs, value: Curve, cheap: Numerics, mesh: Numerics, number: int, alone: bool
+) -> Change | Softening | None:
+    """By one press of either surface where they breathe with one contact; else by a march more, on the varied mesh.
 
     Bodies that end have none.
     """
@@ -145,11 +159,12 @@ def _far_field(runs: _Runs, value: Curve, cheap: Numerics, mesh: Numerics) -> Ch
     surface, other = runs.surface(cheap), runs.surface(far)
     if other is surface:
         return Softening(value, 0.0)
-    if surface.breathes:
+    if alone and surface.breathes:
         assert isinstance(surface, Deformable)
         assert isinstance(other, Deformable)
         return Softening(value, _factor(order, farther) * compliance_change(surface, other))
-    return _change(runs.curve(mesh), runs.curve(mesh.varied(far_radius=far.far_radius)), order, farther)
+    before, after = runs.curve(number, mesh), runs.curve(number, mesh.varied(far_radius=far.far_radius))
+    return _change(before, after, order, farther)
 
 
 @dataclass(frozen=True)
@@ -162,81 +177,29 @@ class _TimeSteps:
     cheap: int
 
 
-def _time_steps(runs: _Runs, fine: Curve, numerics: Numerics) -> _TimeSteps:
+def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics) -> _TimeSteps:
     """Halve the number of steps twice and extrapolate; double it twice where it is too small for that."""
-    order = get(SCHEMES, numerics.scheme).ORDER
+    order, fine = get(SCHEMES, numerics.scheme).ORDER, curve(numerics)
+    assert fine is not None
     if numerics.steps < LEAST_HALVED:
-        double = runs.curve(numerics.varied(steps=2 * numerics.steps))
-        fourfold = runs.curve(numerics.varied(steps=4 * numerics.steps))
+        double = curve(numerics.varied(steps=2 * numerics.steps))
+        fourfold = curve(numerics.varied(steps=4 * numerics.steps))
         if double is None or fourfold is None or fourfold.separated != double.separated:
             return _TimeSteps(fine, None, (), 4 * numerics.steps)
         best = extrapolated(fourfold, double, order)
         return _TimeSteps(fine, Change(fine, best, SAFETY), (), 4 * numerics.steps)
-    half = runs.curve(numerics.varied(steps=numerics.steps // 2))
-    quarter = runs.curve(numerics.varied(steps=numerics.steps // 4))
+    half = curve(numerics.varied(steps=numerics.steps // 2))
+    quarter = curve(numerics.varied(steps=numerics.steps // 4))
     if half is None or quarter is None or not fine.separated == half.separated == quarter.separated:
         return _TimeSteps(fine, None, (), numerics.steps)
     value, before = extrapolated(fine, half, order), extrapolated(half, quarter, order)
-    orders = trusted_orders((fine, half, quarter), order, runs.step_in_relaxations(numerics))
+    steps = numerics.contact_time / numerics.steps / np.asarray(fine.strike.relaxation.times)
+    orders = trusted_orders((fine, half, quarter), order, steps)
     least = SAFETY / (2 ** orders.pop("force") - 1)
     weights = {name: SAFETY / (2**trusted - 1) / least for name, trusted in orders.items()}
     change = Change(value, before, least, weights)
     jitter = Change(fine, fine.thinned(), 1.0)
     return _TimeSteps(value, change, (jitter,), numerics.steps // 4)
-
-
-class _Runs:
-    """Marches of one strike with different settings, and a count of what they cost."""
-
-    def __init__(self, strike: Strike, geometry: Geometry) -> None:
-        self._strike, self._geometry = strike, geometry
-        self._marches: list[March] = []
-        self._radii: dict[int, Array] = {}
-        self._surfaces: dict[int, Struck] = {}
-        self._curves: dict[Numerics, Curve | None] = {}
-
-    def march(self, settings: Numerics) -> March:
-        """One run, its contact radii expected to be those of the first with as many steps; raises where it fails."""
-        surface = self.surface(settings)
-        expected = self._radii.get(settings.steps, ())
-        self._marches.append(march(self._strike, surface, settings, not self._marches, expected))
-        self._radii.setdefault(settings.steps, self._marches[-1].radius)
-        return self._marches[-1]
-
-    def step_in_relaxations(self, settings: Numerics) -> Array:
-        """Length of a step over every relaxation time."""
-        return settings.contact_time / settings.steps / np.asarray(self._strike.relaxation.times)
-
-    def surface(self, settings: Numerics) -> Struck:
-        """What contact sees of the struck body."""
-        surface = struck(self._geometry, settings)
-        self._surfaces[id(surface)] = surface
-        return surface
-
-    def curve(self, settings: Numerics) -> Curve | None:
-        """One run as a curve, None where it fails: its cause of error is then unknown.
-
-        Settings asked for again are not run again: the fewest steps serve every other variation as base.
-        """
-        if settings not in self._curves:
-            try:
-                self._curves[settings] = Curve.of(self.march(settings), self._strike)
-            except NotReached:
-                self._curves[settings] = None
-        return self._curves[settings]
-
-    def work(self, finest: Struck) -> TotalWork:
-        """What all runs cost together."""
-        works = [m.work for m in self._marches]
-        return TotalWork(
-            degrees_of_freedom=finest.degrees_of_freedom,
-            factorizations=sum(s.factorizations for s in self._surfaces.values()),
-            solves=sum(s.solves for s in self._surfaces.values()),
-            marches=len(works),
-            steps=sum(w.steps for w in works),
-            contact_problems=sum(w.contact_problems for w in works),
-            iterations=sum(w.iterations for w in works),
-        )
 
 
 def _error(change: Change | Softening | None, name: str) -> float:

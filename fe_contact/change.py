@@ -8,12 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
-from fe_contact.curve import DENSE, PEAK_SHARE, Curve, Reading
+from fe_contact.curve import PEAK_SHARE, Curve, Reading
 from fe_contact.forms import Array
 
 SMOOTHING = 0.06  # share of the contact over which a pointwise change counts as the error of its neighbours
 UNRESOLVED = 1.25  # factor within a first step
-LATE = int(np.searchsorted(DENSE, 0.75))  # from here on path and speed count for those at separation
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ class Change:
             "peak_force": float(self._force_change[first.near_peak].max()),
             "peak_time": self._peak_time,
             "peak_depth": float(depth[first.dense.depth > PEAK_SHARE * first.dense.depth.max()].max()),
-            "duration": float(depth[LATE:].max()) / speed,
+            "duration": float(depth[first.late :].max()) / speed,
             "impulse": self.impulse,
             "restitution": self.velocity / first.strike.velocity,
         }
@@ -84,12 +83,13 @@ class Change:
     @cached_property
     def velocity(self) -> float:
         """Largest change of the velocity late in the contact, compared at equal shares of it, m/s."""
-        return float(np.abs(self.first.dense_velocity - self.second.dense_velocity)[LATE:].max())
+        second = self.second.velocity(self.second.duration * self.first.shares, self._alike.impulse)
+        return float(np.abs(self.first.dense_velocity - second)[self.first.late :].max())
 
     @cached_property
     def impulse(self) -> float:
         """The same of the impulse, N s."""
-        return float(np.abs(self.first.dense.impulse - self.second.dense.impulse)[LATE:].max())
+        return float(np.abs(self.first.dense.impulse - self._alike.impulse)[self.first.late :].max())
 
     @property
     def _history(self) -> float:
@@ -97,6 +97,13 @@ class Change:
         time = self.first.dense_time
         change = np.trapezoid(self._force_change**2, time)
         return float(np.sqrt(change / np.trapezoid(self.first.dense_force**2, time)))
+
+    @cached_property
+    def _alike(self) -> Reading:
+        """The second curve at equal shares of its contact."""
+        if self.second.shares is self.first.shares:
+            return self.second.dense
+        return self.second.read(self.second.duration * self.first.shares)
 
     @cached_property
     def _second(self) -> Reading:

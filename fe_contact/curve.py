@@ -20,6 +20,7 @@ from fe_contact.march import March, Strike
 
 PEAK_SHARE = 0.98  # of its peak above which a force is near it
 SHARES = np.linspace(0.0, 1.0, 601)
+LATE = 0.75  # of the contact: from here on path and speed count for those at separation
 DENSE = SHARES**2 * (3 - 2 * SHARES)  # shares of the contact, crowded at its ends, for peaks and norms
 
 
@@ -103,9 +104,23 @@ class Curve:
         return np.sqrt(np.minimum(np.maximum(time / self.duration, 0.0), 1.0))
 
     @cached_property
+    def shares(self) -> Array:
+        """Of the contact: crowded at both ends, or with the steps where gravity may have swung it for long."""
+        if self.separated or self.strike.gravity <= 0.0:
+            return DENSE
+        count = len(self.x)
+        places = np.linspace(0.0, count - 1.0, max(len(DENSE), 2 * count - 1))
+        return np.asarray(np.interp(places, np.arange(count), self.x) ** 2)
+
+    @cached_property
+    def late(self) -> int:
+        """The first of :attr:`dense_time` at which path and speed count for those at the end."""
+        return int(np.searchsorted(self.shares, LATE))
+
+    @cached_property
     def dense_time(self) -> Array:
-        """Times that crowd at both ends of the contact, s."""
-        return self.duration * DENSE
+        """Times as dense as the contact may ask for, s."""
+        return self.duration * self.shares
 
     @cached_property
     def dense(self) -> Reading:
@@ -160,7 +175,7 @@ def extrapolated(fine: Curve, coarse: Curve, order: int) -> Curve:
 
     (mean, depth), _ = coarse.polynomials.at(fine.x)
     return Curve(
-        strike=fine.strike,
+        strike=_onwards(fine.strike, coarse.strike, weight),
         duration=fine.duration + weight * (fine.duration - coarse.duration),
         separated=fine.separated,
         x=fine.x,
@@ -170,3 +185,10 @@ def extrapolated(fine: Curve, coarse: Curve, order: int) -> Curve:
         radius_squared=fine.radius_squared + weight * (fine.radius_squared - coarse.radius_squared_at(fine.radius_x)),
         end_spread=fine.end_spread + weight * (fine.end_spread + coarse.end_spread),
     )
+
+
+def _onwards(fine: Strike, coarse: Strike, weight: float) -> Strike:
+    """The strike of which the touch is extrapolated too: of a first one all settings know it."""
+    touches = [np.array([strike.touched_at, strike.depth, strike.velocity]) for strike in (fine, coarse)]
+    touched_at, depth, velocity = (touches[0] + weight * (touches[0] - touches[1])).tolist()
+    return replace(fine, touched_at=touched_at, depth=depth, velocity=velocity)

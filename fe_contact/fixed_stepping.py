@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from fe_contact.bodies.struck import Deformable
 
 BEYOND = 1e3  # overlap, in reference radii, that radii past the striker's rim lack
-FIRST = 0.5  # share of the first overlap up to which the profile is guessed to touch
+FIRST = 0.5  # share of the first overlap from which on places are guessed to touch
 LEAST_KEPT = 0.05  # share of its area that a contact is guessed to keep over a step
 WIDTH = 0.1  # of the first contact, in the mesh's unit, for the penalty alone
 SECANTS, PRECISE = 20, 1e-13
@@ -57,8 +57,22 @@ class FixedStepper:
         self.accounted = accounted
 
     def touch(self) -> State:
-        """The striker at the surface at rest."""
-        return State(0.0, 0.0, self.strike.velocity, 0.0, Remembered(self.body.at_rest()))
+        """The striker at the surface, at rest or with what it remembers."""
+        strike = self.strike
+        return State(0.0, strike.depth, strike.velocity, 0.0, Remembered(strike.memory or self.body.at_rest()))
+
+    def remembered(self, memory: Remembered) -> Any:
+        """The surface's, on a body which has one for it."""
+        return memory.body
+
+    def standing(self) -> int:
+        """The node at the first touch."""
+        operator = self.surface.operator
+        return int(np.abs(operator.nodes[: operator.trace.shape[1]]).argmin())
+
+    def clearance(self, surface: SurfaceMemory, depth: float) -> Array:
+        """Gap of the surfaces at the quadrature points, m."""
+        return np.asarray(self.body.displacement(surface) - self._overlap(depth))
 
     def step(self, state: State, steps: Sequence[Step], length: float) -> Step:
         """The step of a length, s, from a state reached by ``steps``.
@@ -70,7 +84,7 @@ class FixedStepper:
         lever = self.scheme.LEVER * length**2
         free_depth = state.depth + length * state.velocity + lever * strike.gravity
         settle = self._settled if strike.overlap is None else self._settled_by_secants
-        guesses = self._guesses(steps, state.time + length, free_depth)
+        guesses = self._guesses(offer, steps, state.time + length, free_depth)
         solution, work = settle(offer, free_depth, lever / strike.mass, steps, guesses, state.time)
         force = operator.force(self.scale, solution.pressure)
         memory, axis = self.body.after(state.memory.body, offer, solution.pressure)
@@ -183,10 +197,11 @@ class FixedStepper:
             known, depth = (depth, excess), depth - excess / slope
         raise ContactNotSettled(time)
 
-    def _guesses(self, steps: Sequence[Step], until: float, free_depth: float) -> Guesses:
+    def _guesses(self, offer: Offer, steps: Sequence[Step], until: float, free_depth: float) -> Guesses:
         """Points that may touch in the coming step: those of the last one, and what its contact gains or loses."""
         if not steps:
-            return (self.heights < FIRST * free_depth,)
+            free = offer.now * self._overlap(free_depth) + offer.past
+            return (free > FIRST * free.max(),)
         known = [(0.0, 0.0), *((step.radius_time, step.radius**2) for step in steps[-3:])][-3:]
         last, square = steps[-1], extrapolated(known, until)
         distance = np.abs(self.places)

@@ -10,6 +10,7 @@ import numpy as np
 from fe_contact.bodies.memory import SurfaceMemory, step_law
 from fe_contact.contact import ContactSolution
 from fe_contact.errors import ContactLost
+from fe_contact.forms import Array
 from fe_contact.march import Snapshot, Strike, Work
 from fe_contact.numerics import SCHEMES, Numerics
 from fe_contact.steps import State, Step
@@ -30,12 +31,25 @@ class FlatStepper:
     def __init__(self, strike: Strike, stiffness: float, radius: float, numerics: Numerics) -> None:
         self.strike, self.stiffness, self.radius, self.numerics = strike, stiffness, radius, numerics
         self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
-        self.first_force = strike.relaxation.viscosity * stiffness * strike.velocity
+        self.first_force = stiffness * (strike.relaxation.viscosity * strike.velocity + self._held(self.touch().memory))
 
     def touch(self) -> State:
-        """The striker at the body at rest."""
-        memory = SurfaceMemory.at_rest(np.ones(1), self.strike.relaxation, fields=2)
-        return State(0.0, 0.0, self.strike.velocity, 0.0, memory)
+        """The striker at the body, at rest or with what it remembers."""
+        strike = self.strike
+        memory = strike.memory or SurfaceMemory.at_rest(np.ones(1), strike.relaxation, fields=2)
+        return State(0.0, strike.depth, strike.velocity, 0.0, memory)
+
+    def remembered(self, memory: SurfaceMemory) -> SurfaceMemory:
+        """All that is remembered."""
+        return memory
+
+    def standing(self) -> int:
+        """The one place there is."""
+        return 0
+
+    def clearance(self, surface: SurfaceMemory, depth: float) -> Array:
+        """Gap of the surfaces, m, (1,)."""
+        return np.asarray(surface.strain[0] - depth)
 
     def step(self, state: State, steps: Sequence[Step], length: float) -> Step:
         """The step of a length, s: force = stiffness (now depth + past), depth = free depth - lever force / mass.
@@ -66,6 +80,11 @@ class FlatStepper:
     def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
         """None: the pressure is that of the indentation, infinite at a rim."""
         return ()
+
+    def _held(self, memory: SurfaceMemory) -> float:
+        """What the springs press with, Pa m, which a dashpot alone holds back until touch."""
+        relaxation, strain = self.strike.relaxation, memory.strain[0, 0]
+        return float(relaxation.equilibrium * strain + np.array(relaxation.moduli) @ memory.branches[:, 0, 0])
 
     def stored(self, memory: SurfaceMemory) -> float:
         """Elastic energy, J."""

@@ -14,13 +14,15 @@ from fe_contact.march import March, Strike
 from fe_contact.numerics import Numerics
 from fe_contact.separation import time_left
 from fe_contact.steps import State, Step, Stepping
-from fe_contact.time_grid import share_of_rest, step_length
+from fe_contact.time_grid import GROWTH_AFTER, share_of_rest, step_length
 
 PREDICTIONS = 2  # of the separation: how far they lie apart tells how well its time can be read
 NOISE = 1e-4  # share of the peak force below which a contact problem may drown in the mesh's error
 AT_REST = 1e-4  # share of the velocity at touch below which a fluid has stopped the striker
 REST_ROWS = 12
 FAINT = 1e-3  # share of the peak force below which contact may end
+LONGEST = 2.0  # under gravity, of the mean step: about the largest one within an expected contact
+SETTLED = 1e-2  # share of gravity below which neither force nor velocity swing any more
 STEPS_ALLOWED = 20  # multiple of the settings' steps after which the march gives up
 
 
@@ -38,7 +40,12 @@ def march(
 
     Raises the named failures of :mod:`fe_contact.errors` where a step does not converge.
     """
-    return _Marcher(struck.stepper(strike, numerics, accounted, expected)).run()
+    return marched(struck.stepper(strike, numerics, accounted, expected))
+
+
+def marched(stepper: Stepping) -> March:
+    """The same with what takes its steps."""
+    return _Marcher(stepper).run()
 
 
 class _Marcher:
@@ -90,6 +97,8 @@ class _Marcher:
         length = numerics.contact_time * step_length(len(steps), numerics.steps, numerics.peak_share)
         if left is not None:
             length = min(length, left * share_of_rest(left / numerics.contact_time, numerics.steps))
+        if self.strike.gravity > 0.0 and steps:
+            length = min(length, self._longest(steps[-1]))
         length = min(length, self.strike.end_time - state.time)
         while True:
             try:
@@ -100,6 +109,13 @@ class _Marcher:
                 length /= 2
                 if length < self.shortest:
                     return None
+
+    def _longest(self, last: Step) -> float:
+        """What does not separate swings about its weight, which no long step would see, until it has settled."""
+        strike, time = self.strike, self.numerics.contact_time
+        swing = abs(last.force / strike.mass - strike.gravity) + abs(last.state.velocity) / time
+        settled = GROWTH_AFTER * last.length if swing < SETTLED * strike.gravity else 0.0
+        return max(settled, LONGEST * time / self.numerics.steps)
 
     def _flight(self, state: State, left: float) -> list[State]:
         """The little time to separation, over which the force is below any rounding that matters."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from fe_contact.forms import Array
 from lumped.materials import Relaxation
@@ -14,8 +14,11 @@ from lumped.materials import Relaxation
 @dataclass(frozen=True)
 class Strike:
     """Physics of an impact: profile height(r), m; mass, kg; velocity, m/s; gravity along the motion, m/s2;
-    contact modulus E*(t); time at which to stop, s; where it is not depth - height, overlap(arc, depth), m; and the
-    length over which forces and modulus are totals in plane strain, m, else 1.
+    contact modulus E*(t); time at which to stop, s after touch; where it is not depth - height, overlap(arc, depth), m;
+    and the length over which forces and modulus are totals in plane strain, m, else 1.
+
+    A later one of several begins with a touch at a time, s since the first one, and a depth, m, on a body with a
+    ``memory``, None: at rest.
     """
 
     height: Callable[[Array], Array]
@@ -26,6 +29,9 @@ class Strike:
     end_time: float
     overlap: Callable[[Array, float], Array] | None = None
     total: float = 1.0
+    touched_at: float = 0.0
+    depth: float = 0.0
+    memory: Any = None
 
 
 @dataclass(frozen=True)
@@ -57,7 +63,7 @@ class March:
     ``time``, ``depth``, ``impulse`` (n,) at the ends of the steps, the first row at touch, the last at
     separation or ``end_time``; ``first_force``, N, right at touch; ``radius_time``, ``radius`` (n,) of the contact;
     ``photograph`` makes a snapshot a step; ``energy`` J, each term computed on its own; ``end_spread`` s, how far
-    the last predictions of the separation lie apart.
+    the last predictions of the separation lie apart; ``memory`` of the body after the last step, at ``memory_time``, s.
     """
 
     time: Array
@@ -71,6 +77,8 @@ class March:
     energy: dict[str, float]
     end_spread: float
     work: Work
+    memory: Any = None
+    memory_time: float = 0.0
 
     @cached_property
     def snapshots(self) -> tuple[Snapshot, ...]:

@@ -59,7 +59,8 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
     chosen = _settings(scene, tolerance)
     size = scales(scene, chosen)
-    contact_time = size.duration or scene.end_time
+    # gravity holds what does not separate, and swings it
+    contact_time = size.duration or (2.0 * size.peak_time if scene.gravity > 0.0 else scene.end_time)
     peak_share = min(max(size.peak_time / contact_time, SOONEST_PEAK), 1.0)
     placed = chosen.varied(
         steps=_steps(tolerance, peak_share),

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from fe_contact.bodies.chosen import struck
 from fe_contact.certify import CAUSES, Budget, Certified, certify
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.march import Strike
@@ -16,15 +17,15 @@ from fe_contact.numerics import RANGES, TARGETS, Numerics
 from fe_contact.plan import SETTING, Plan, plan, refined
 from fe_contact.progress import Progress, silent
 from fe_contact.recovery import indentation_left, recovers
+from fe_contact.several import whole
+from fe_contact.told import history, quantities_of
 from lumped.errors import BadInput, Fault
-from lumped.history import History, densified
 from lumped.members import get
-from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity, Result, meets, provenance, unmet
+from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Result, meets, provenance, unmet
 from lumped.scene import Scene
 
 CURE = "cure: a larger tolerance, or fewer numerics of your own"
 ROUNDS = 4  # refinements before giving up
-ROWS_SHARE = 0.1  # of the tolerance that a line between two rows may err
 DOMINANT = 0.5  # causes above this share of the largest one are refined together
 
 
@@ -72,19 +73,20 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     given : checked settings that the plan must keep.
     progress : told, in a line, what happens.
 
-    Raises NotReached where no march came to an end, BadInput for a scene without geometry, of several impacts, or that
-    goes deeper than its bodies.
+    Raises NotReached where no march came to an end, BadInput for a scene without geometry, of several impacts on a body
+    that does not remember by its surface alone, or that goes deeper than its bodies.
     """
-    scene.check_single("fe")
     check_target(scene)
     cpu, wall = time.process_time(), time.perf_counter()
     chosen = plan(scene, given)
+    if scene.motion.impacts > 1 and not struck(scene.geometry, chosen.numerics).recovers:
+        scene.check_single("fe, on what remembers by its bulk or by two surfaces,")
     strike = strike_of(scene)
     numerics, certified, outgrown = chosen.numerics, None, None
     for attempt in range(ROUNDS + 1):
         progress(f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements along the contact radius")
         try:
-            certified = certify(strike, scene.geometry, numerics)
+            certified = certify(strike, scene.geometry, numerics, scene.motion.impacts)
         except MemoryTooSmall as failure:
             outgrown = failure
             numerics = numerics.varied(contact_radius=1.5 * numerics.contact_radius)
@@ -95,8 +97,8 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
         numerics = finer
     if certified is None:
         raise outgrown or MemoryTooSmall(numerics.contact_radius)
-    curve = certified.curve
-    scene.check_sunk(curve.quantities["peak_depth"] or 0.0, float(np.sqrt(curve.radius_squared.max())))
+    for curve in (budget.curve for budget in certified.row):
+        scene.check_sunk(curve.quantities["peak_depth"] or 0.0, float(np.sqrt(curve.radius_squared.max())))
     return Solved(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall)
 
 
@@ -134,9 +136,9 @@ def strike_of(scene: Scene) -> Strike:
 
 def refined_for(certified: Budget, numerics: Numerics, chosen: Plan) -> Numerics | None:
     """Settings with less of the causes that stand in the way, or None where nothing helps or is needed."""
-    if meets(_quantities(certified), numerics.tolerance):
+    if all(meets(quantities_of(one), numerics.tolerance) for one in certified.row):
         return None
-    excess = {cause: _excess(certified, numerics.tolerance, cause) for cause in CAUSES}
+    excess = {cause: max(_excess(one, numerics.tolerance, cause) for one in certified.row) for cause in CAUSES}
     free = {cause: value for cause, value in excess.items() if SETTING[cause] not in chosen.pinned}
     worst = max(excess.values())
     finer = numerics
@@ -160,10 +162,16 @@ def _excess(certified: Budget, tolerance: float, cause: str) -> float:
 
 
 def result_of(scene: Scene, solved: Answer) -> Result:
-    """The record of a certified impact."""
+    """The record of a certified impact, or of several."""
+    first, certified = _first(scene, solved), solved.certified
+    return whole(first, certified) if isinstance(certified, Certified) and scene.motion.impacts > 1 else first
+
+
+def _first(scene: Scene, solved: Answer) -> Result:
+    """That of the first one."""
     certified, numerics = solved.certified, solved.numerics
     curve, tolerance = certified.curve, numerics.tolerance
-    quantities = _quantities(certified)
+    quantities = quantities_of(certified)
     by_quantity = {name: {cause: certified.error(name, cause) for cause in CAUSES} for name in UNITS}
     peak = quantities["peak_force"].value or np.inf
     converged = meets(quantities, tolerance)
@@ -185,29 +193,5 @@ def result_of(scene: Scene, solved: Answer) -> Result:
         timing={"cpu_s": solved.cpu, "wall_s": solved.wall},
         work=asdict(certified.work),
         message="" if converged else f"{unmet(quantities, tolerance)}; {CURE}",
-        recovery=indentation_left(certified) if recovers(scene, curve) else None,
-    )
-
-
-def _quantities(certified: Budget) -> dict[str, Quantity]:
-    """Values with their bars; the history's own value is no distance from itself."""
-    values = {**certified.curve.quantities, "history_l2": 0.0}
-    return {
-        name: Quantity(values[name], None if values[name] is None else certified.total(name), unit)
-        for name, unit in UNITS.items()
-    }
-
-
-def history(certified: Budget, tolerance: float) -> History:
-    """Rows dense enough for linear interpolation, with the force's error band."""
-    curve = certified.curve
-    rows = densified(curve.dense_time[::3], curve.force, ROWS_SHARE * tolerance)
-    read = curve.read(rows)
-    return History(
-        time=rows,
-        depth=read.depth,
-        velocity=curve.velocity(rows, read.impulse),
-        force=read.force,
-        contact_radius=curve.radius_at(rows),
-        force_error=certified.force_error(rows),
+        recovery=indentation_left(certified) if recovers(scene, curve) and len(certified.row) == 1 else None,
     )

@@ -5,7 +5,7 @@ Where the edge turns out to lie outside the mesh's finest elements, the mesh is 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING
 
@@ -57,14 +57,28 @@ class Stepper:
         self.enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
         self.radii = np.linspace(0.0, MEMORY_REACH * numerics.contact_radius, MEMORY_POINTS)
         self.heights = strike.height(self.radii)
-        self.accounted, self.expected = accounted, expected
+        # a memory that keeps its pressure goes on to do so
+        self.accounted = accounted if strike.memory is None else len(strike.memory.strain) == 2
+        self.expected = expected
         self.unit = count(surface.operator.points < 1.0)
 
     def touch(self) -> State:
-        """The striker at the surface at rest."""
-        fields = 2 if self.accounted else 1
-        memory = SurfaceMemory.at_rest(area_weights(self.radii), self.strike.relaxation, fields)
-        return State(0.0, 0.0, self.strike.velocity, 0.0, memory)
+        """The striker at the surface, at rest or with what it remembers."""
+        strike, fields = self.strike, 2 if self.accounted else 1
+        memory = strike.memory or SurfaceMemory.at_rest(area_weights(self.radii), strike.relaxation, fields)
+        return State(0.0, strike.depth, strike.velocity, 0.0, memory)
+
+    def remembered(self, memory: SurfaceMemory) -> SurfaceMemory:
+        """All that is remembered."""
+        return memory
+
+    def standing(self) -> int:
+        """The axis."""
+        return 0
+
+    def clearance(self, surface: SurfaceMemory, depth: float) -> Array:
+        """Gap of the surfaces at the memory's radii, m."""
+        return np.asarray(surface.strain[0] + self.heights - depth)
 
     def step(self, state: State, steps: Sequence[Step], length: float) -> Step:
         """The step of a length, s, from a state reached by ``steps``.
@@ -124,7 +138,7 @@ class Stepper:
     ) -> tuple[float, float, ContactSolution, Work]:
         """Scale the mesh until the contact edge lies in its finest elements: scale, edge on the unit mesh, solution."""
         points, limit = self.surface.operator.points, self.radii[-1]
-        scale = self._expected_radius(state, steps, free_depth, length)
+        scale = self._expected_radius(state, steps, length) or self._overlap_radius(law, carried, free_depth)
         guesses = self._guesses(steps)
         iterations = 0
         for attempt in range(RESCALINGS):
@@ -158,17 +172,26 @@ class Stepper:
         by = self.unit - count(solution.sets[-1])
         return tuple(moved(touching, by) for touching in solution.sets)
 
-    def _expected_radius(self, state: State, steps: Sequence[Step], depth: float, length: float) -> float:
-        """Contact radius in the coming step, if it is not told: its square is smooth in time, and zero at touch."""
+    def _expected_radius(self, state: State, steps: Sequence[Step], length: float) -> float:
+        """Contact radius in the coming step, if it is not told: its square is smooth in time, and zero at touch.
+
+        Zero in the first step, of which nothing is known.
+        """
         if len(steps) < len(self.expected):
             return float(self.expected[len(steps)])
         if not steps:
-            return _overlap_radius(self.strike.height, depth, self.radii[-1])
+            return 0.0
         known = [(step.radius_time, step.radius**2) for step in steps[-3:]]
         if len(known) < 3:
             known.insert(0, (0.0, 0.0))
         square = extrapolated(known, self._radius_time(state.velocity, state.time, length))
         return float(np.sqrt(max(square, 0.05 * known[-1][1])))
+
+    def _overlap_radius(self, law: StepLaw, carried: Array, free_depth: float) -> float:
+        """About the radius up to which the striker would overlap a surface that nothing presses."""
+        radii = self.radii[-1] * COARSE
+        open_ = law.now * (free_depth - self.strike.height(radii)) + interpolate(carried, self.radii[1], radii) <= 0.0
+        return float(radii[int(open_.argmax()) if open_.any() else -1])
 
     def _radius_time(self, velocity: float, time: float, length: float) -> float:
         """When the contact has the radius of a step: growing, at its end; receding, where the force is sampled."""
@@ -201,9 +224,3 @@ def extrapolated(known: Sequence[tuple[float, float]], at: float) -> float:
     first, start = known[0]
     bend = (slope - (previous - start) / (before - first)) / (last - first)
     return value + (at - last) * (slope + bend * (at - before))
-
-
-def _overlap_radius(height: Callable[[Array], Array], depth: float, reach: float) -> float:
-    """About the radius at which the undeformed profile lies ``depth`` above its tip."""
-    radii = reach * COARSE
-    return float(radii[min(int(height(radii).searchsorted(depth)), len(radii) - 1)])

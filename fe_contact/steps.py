@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from types import ModuleType
 from typing import Any, NamedTuple, Protocol
 
+from fe_contact.bodies.memory import SurfaceMemory
 from fe_contact.contact import ContactSolution
+from fe_contact.forms import Array
 from fe_contact.march import Snapshot, Strike, Work
 from fe_contact.numerics import Numerics
 
@@ -55,7 +57,16 @@ class Stepping(Protocol):
     first_force: float
 
     def touch(self) -> State:
-        """The striker at the surface at rest."""
+        """The striker at the surface, at rest or with what it remembers."""
+
+    def remembered(self, memory: Any) -> SurfaceMemory:
+        """What the surface remembers, of a body that recovers."""
+
+    def standing(self) -> int:
+        """Which place of that memory lies at the first touch."""
+
+    def clearance(self, surface: SurfaceMemory, depth: float) -> Array:
+        """Gap of the surfaces at all places of the body, m, where the striker is at a depth, m."""
 
     def step(self, state: State, steps: Sequence[Step], length: float) -> Step:
         """The step of a length, s, from a state reached by ``steps``; raises ContactLost and its like."""

@@ -6,6 +6,7 @@ import math
 from functools import lru_cache
 
 GROWTH_AFTER = 1.25  # ratio of successive steps once the expected contact time is over
+LONG_AGO = 100  # steps later their length is beyond any use
 LAST_SHARE = (0.4, 0.75)  # least and largest share of the time left that a step near separation may take
 
 
@@ -24,7 +25,7 @@ def step_length(done: int, steps: int, peak_share: float) -> float:
     if done < steps:
         return elapsed((done + 1) / steps, peak_share) - elapsed(done / steps, peak_share)
     last = 1 - elapsed((steps - 1) / steps, peak_share)
-    return last * GROWTH_AFTER ** (done - steps + 1)
+    return last * GROWTH_AFTER ** min(done - steps + 1, LONG_AGO)
 
 
 def share_of_rest(left: float, steps: int) -> float:

@@ -61,6 +61,11 @@ class BulkSurface(Deformable):
         return self.modes.operator
 
     @property
+    def recovers(self) -> bool:
+        """Its bulk remembers."""
+        return False
+
+    @property
     def factorizations(self) -> int:
         """One for every ratio of the moduli at which the body was condensed, whatever the steps."""
         return self.modes.ratios

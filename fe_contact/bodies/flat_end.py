@@ -36,6 +36,7 @@ class FlatEnd:
     degrees_of_freedom: int
     mesh_order: float
     breathes: bool = False
+    recovers: bool = True
     factorizations: int = 1
     solves: int = 1
 

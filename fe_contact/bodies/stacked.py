@@ -37,6 +37,11 @@ class Stacked(Deformable):
     breathes: bool = False
 
     @property
+    def recovers(self) -> bool:
+        """Each side has a memory of its own."""
+        return False
+
+    @property
     def factorizations(self) -> int:
         """Of all meshes."""
         return sum(side.factorizations for side in self.sides)

@@ -17,13 +17,17 @@ from lumped.materials import Relaxation
 
 
 class Struck(Protocol):
-    """What is struck, with one setting of everything: ``breathes`` where its mesh follows the contact.
+    """What is struck, with one setting of everything: ``breathes`` where its mesh follows the contact, ``recovers``
+    where one surface alone remembers, so that what nothing presses is known at any time.
 
     ``factorizations`` and back-substitutions, ``solves``, that it took; unknowns of its meshes.
     """
 
     @property
     def breathes(self) -> bool: ...
+
+    @property
+    def recovers(self) -> bool: ...
 
     @property
     def factorizations(self) -> int: ...
@@ -65,6 +69,11 @@ class Deformable:
     def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> Body:
         """The body with a contact modulus E*(t), Pa, marched by a scheme, on a mesh whose unit is ``scale``, m."""
         raise NotImplementedError
+
+    @property
+    def recovers(self) -> bool:
+        """Here it does."""
+        return True
 
     @property
     def factorizations(self) -> int:

@@ -173,4 +173,14 @@ def summary(result: Result, where: Path) -> str:
             lines.append(f"  {name:13s} undefined: no separation")
         else:
             lines.append(f"  {name:13s} {quantity.value:.6g} +- {quantity.error or 0.0:.1e} {quantity.unit}")
+    lines += [_contact(number, contact) for number, contact in enumerate(result.contacts, start=1)]
+    if result.contacts and result.converged and result.message:
+        lines.append(f"  {result.message}")
     return "\n".join([*lines, f"  written to {where}"])
+
+
+def _contact(number: int, contact: Mapping[str, float | None]) -> str:
+    """One of several contacts in a line."""
+    names = {"duration": "s", "restitution": "", "peak_force": "N"}
+    told = [f"{name} {contact[name]:.6g} {unit}".rstrip() for name, unit in names.items() if contact[name] is not None]
+    return f"  contact {number} at {contact['start']:.6g} s: {', '.join(told)}"

@@ -37,6 +37,7 @@ def execute(args: argparse.Namespace) -> int:
     if scene.model.inertia:
         solved, reference = None, simulate(scene, "fe", given, progress=progress)
     else:
+        scene.check_single("compare")
         solved = solve(scene, given, progress)
         reference = result_of(scene, solved)
     progress("lumped laws")

@@ -20,6 +20,7 @@ from lumped.scene import Scene
 
 HEIGHT = 4.35  # in
 BAND_VISIBLE = 0.01  # share of the peak below which the band is a hair line and is drawn magnified
+READABLE = {"facecolor": "white", "alpha": 0.85, "linewidth": 0.0, "pad": 0.8}  # where a flight runs behind a text
 CAPTION_WIDTH = 78  # characters
 
 
@@ -129,7 +130,8 @@ def _motion(axes: Axes, history: History) -> None:
     for row, (name, values, colour, line) in enumerate(known):
         axes.plot(second * history.time, values / values.max(), color=colour, linestyle=line)
         text = f"{name} / {readable(values.max(), 'm', 3)}"
-        axes.text(0.5, 0.21 - 0.13 * row, text, color=colour, fontsize=6.2, ha="center", transform=axes.transAxes)
+        below = axes.text(0.5, 0.21 - 0.13 * row, text, color=colour, fontsize=6.2, ha="center")
+        below.set(transform=axes.transAxes, bbox=READABLE)
     axes.set(xlabel=f"time, {time_unit}", ylabel="share of the largest", xlim=(0, second * history.time[-1]))
     axes.set_ylim(min(0.0, float(history.depth.min() / history.depth.max())), 1.08)
     axes.set_yticks((0.0, 0.5, 1.0))

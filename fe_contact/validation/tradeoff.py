@@ -16,10 +16,11 @@ from typing import Any, TypeVar
 import numpy as np
 
 from fe_contact.bodies.struck import Deformable
-from fe_contact.certify import Certified, TotalWork, certify
+from fe_contact.certify import Certified, certify
 from fe_contact.forms import Array
 from fe_contact.numerics import Numerics
 from fe_contact.reference import check_target, strike_of
+from fe_contact.runs import TotalWork
 from fe_contact.targets import half_space
 from fe_contact.validation.design import defaults, variations
 from lumped import laws, simulate
@@ -65,6 +66,7 @@ class Point:
 
 def tradeoff(scene: Scene, given: Mapping[str, Any], quick: bool, progress: Progress) -> tuple[Point, ...]:
     """Measure every point of the study. Raises NotReached where the exact impact itself has no answer."""
+    scene.check_single("tradeoff")
     check_target(scene)
     exact = _simulate(scene, "mdr", EXACT_TOLERANCE)
     planned = defaults(scene, given)

@@ -13,12 +13,13 @@ from functools import cached_property
 
 import numpy as np
 
-from fe_contact.certify import CAUSES, SAFETY, Budget, TotalWork
-from fe_contact.change import LATE, Change
+from fe_contact.certify import CAUSES, SAFETY, Budget
+from fe_contact.change import Change
 from fe_contact.curve import Curve
 from fe_contact.forms import Array
 from fe_contact.march import March, Strike
 from fe_contact.numerics import Numerics
+from fe_contact.runs import TotalWork
 from fe_contact.waves.impact import motion, record
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
@@ -99,7 +100,7 @@ class Moved(Change):
 
     def _late(self, curve: Curve) -> tuple[Array, Array]:
         """Impulse, N s, and velocity, m/s; what has separated presses no more."""
-        time = np.minimum(self.first.dense_time[LATE:], curve.duration)
+        time = np.minimum(self.first.dense_time[self.first.late :], curve.duration)
         impulse = curve.read(time).impulse
         return impulse, curve.velocity(time, impulse)
 

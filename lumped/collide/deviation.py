@@ -56,9 +56,7 @@ def deviations(track: Track, bodies: Bodies, one: Contact) -> list[Deviation]:
     return found
 
 
-def _of(
-    law: PointLaw, bodies: Bodies, phase: Phase, row: Row, start: tuple[float, float], stage: Stage
-) -> Deviation:
+def _of(law: PointLaw, bodies: Bodies, phase: Phase, row: Row, start: tuple[float, float], stage: Stage) -> Deviation:
     """That of one phase which begins with the deviations `start`; `stage` as it should be."""
     terms, slopes = _terms()
     share, pace = paced(NODES.places, *(what[:, None] for what in (row.powers, row.begun, row.mirrored)))

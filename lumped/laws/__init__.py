@@ -16,7 +16,6 @@ def get(name: str) -> Any:
     return _members.get(__name__, name, source="law")
 
 
-
 def __getattr__(name: str) -> Any:
     """The law's module, imported when it is first asked for: `lumped.laws.ting`."""
     if name in available():

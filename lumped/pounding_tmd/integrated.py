@@ -90,9 +90,7 @@ def _scales(equations: Equations, start: Start) -> Array:
     return np.array([*bodies, *surfaces, *squares, *[energy] * (INTEGRALS - len(squares))])
 
 
-def _terminal(
-    level: Callable[[Array], Array], size: int, start: float, rises: bool
-) -> Callable[[float, Array], float]:
+def _terminal(level: Callable[[Array], Array], size: int, start: float, rises: bool) -> Callable[[float, Array], float]:
     """The level in scipy's manner: attributes of the function say that it ends the run, and only falling.
 
     `rises`: from the start on. Then a fall within the first step is not that at the start.

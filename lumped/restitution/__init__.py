@@ -41,7 +41,6 @@ def damping(family: Family, e: float, exit: str = "force", formula: str = EXACT)
     return family.published[formula](e)
 
 
-
 def __getattr__(name: str) -> Family:
     """The family's module, imported when it is first asked for: `lumped.restitution.kelvin`."""
     if name in available():

@@ -1,0 +1,81 @@
+"""Several impacts of one striker with one set of settings: contact, flight, contact on what the body remembers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from fe_contact.bodies.struck import Struck
+from fe_contact.errors import TooManySteps
+from fe_contact.flight import FAINTEST, Grounded, Landing, landing
+from fe_contact.forms import Array
+from fe_contact.impact import marched
+from fe_contact.march import March, Strike
+from fe_contact.numerics import Numerics
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One contact: its strike, begun by a touch, its march, and the heat of the surface in the flight before, J."""
+
+    strike: Strike
+    march: March
+    flight_heat: float = 0.0
+
+
+@dataclass(frozen=True)
+class Followed:
+    """The contacts of a march in order, and why there are fewer than were asked for, None: there are not."""
+
+    contacts: tuple[Contact, ...]
+    grounded: Grounded | None
+
+
+def follow(
+    strike: Strike,
+    struck: Struck,
+    impacts: int,
+    placed: Callable[[int, Strike], Numerics],
+    accounted: bool = True,
+    expected: Sequence[Sequence[float] | Array] = (),
+) -> Followed:
+    """Up to ``impacts`` contacts.
+
+    Parameters
+    ----------
+    placed : settings for the contact of a number, from 0, and its strike, which say how long it is expected to last.
+    accounted, expected : as of :func:`fe_contact.impact.march`, radii a contact.
+
+    Raises the named failures of :mod:`fe_contact.errors` where a step does not converge.
+    """
+    contacts, begun, heat = list[Contact](), strike, 0.0
+    while True:
+        radii = expected[len(contacts)] if len(contacts) < len(expected) else ()
+        stepper = struck.stepper(begun, placed(len(contacts), begun), accounted, radii)
+        try:
+            march = marched(stepper)
+        except TooManySteps:
+            if not contacts:
+                raise
+            return Followed(tuple(contacts), Grounded.SWINGS)
+        contacts.append(Contact(begun, march, heat))
+        if len(contacts) == impacts or not march.separated:
+            return Followed(tuple(contacts), None)
+        touch = landing(stepper, march)
+        if isinstance(touch, Grounded):
+            return Followed(tuple(contacts), touch)
+        if touch.velocity < FAINTEST * strike.velocity:
+            return Followed(tuple(contacts), Grounded.REST)
+        begun, heat = _again(begun, touch), touch.heat
+
+
+def _again(strike: Strike, touch: Landing) -> Strike:
+    """The strike that begins with a touch."""
+    return replace(
+        strike,
+        velocity=touch.velocity,
+        depth=touch.depth,
+        memory=touch.memory,
+        touched_at=strike.touched_at + touch.time,
+        end_time=strike.end_time - touch.time,
+    )

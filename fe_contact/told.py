@@ -1,0 +1,33 @@
+"""What a certified contact tells: its quantities with bars, and the rows of its history."""
+
+from __future__ import annotations
+
+from fe_contact.certify import Budget
+from lumped.history import History, densified
+from lumped.result import UNITS, Quantity
+
+ROWS_SHARE = 0.1  # of the tolerance that a line between two rows may err
+
+
+def quantities_of(certified: Budget) -> dict[str, Quantity]:
+    """Values with their bars; the history's own value is no distance from itself."""
+    values = {**certified.curve.quantities, "history_l2": 0.0}
+    return {
+        name: Quantity(values[name], None if values[name] is None else certified.total(name), unit)
+        for name, unit in UNITS.items()
+    }
+
+
+def history(certified: Budget, tolerance: float) -> History:
+    """Rows dense enough for linear interpolation, with the force's error band."""
+    curve = certified.curve
+    rows = densified(curve.dense_time[::3], curve.force, ROWS_SHARE * tolerance)
+    read = curve.read(rows)
+    return History(
+        time=rows,
+        depth=read.depth,
+        velocity=curve.velocity(rows, read.impulse),
+        force=read.force,
+        contact_radius=curve.radius_at(rows),
+        force_error=certified.force_error(rows),
+    )

@@ -1,0 +1,228 @@
+"""Several impacts in a row: alike on elastic bodies, like a first one on what has recovered; fewer have a reason."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import fe_contact
+import lumped
+from fe_contact.bodies.memory import SurfaceMemory, area_weights
+from fe_contact.bodies.released import Released
+from fe_contact.cli import main
+from fe_contact.plan import plan
+from fe_contact.reference import strike_of
+from fe_contact.runs import Runs
+from lumped.laws import mdr
+from lumped.materials import Relaxation
+
+Scenes = Callable[..., lumped.Scene]
+ELASTIC = {"law": "elastic", "E": 1e6}
+SLS = {"law": "prony", "E_inf": 1e6, "E": [1e6], "tau": [1.35e-2]}
+SPRINGS = 2000
+MODULI = {
+    "solid": Relaxation(1.0, (2.0, 0.5, 1.0), (0.1, 1.0, 7.0)),
+    "fluid": Relaxation(0.0, (2.0, 0.5), (0.1, 1.0)),
+    "damped solid": Relaxation(1.0, (2.0,), (0.3,), 0.2),
+    "damped fluid": Relaxation(0.0, (2.0,), (0.3,), 0.2),
+    "kelvin_voigt": Relaxation(1.0, (), (), 0.4),
+}
+
+
+def thrown(scene_of: Scenes, material: Mapping[str, Any], impacts: int = 2, **tables: Any) -> lumped.Scene:
+    """A ball of 20 g at 0.15 m/s: contacts of 6 to 8 ms, flights of about 30 ms."""
+    motion = {"impacts": impacts, "end_time": tables.pop("end_time", 2.0)}
+    striker = {"velocity": 0.15} | tables.pop("striker", {})
+    gravity = tables.pop("gravity", 9.81)
+    return scene_of(dict(material), striker=striker, model={"gravity": gravity}, motion=motion, **tables)
+
+
+@pytest.fixture(scope="module")
+def polymer(scene_of: Scenes) -> tuple[lumped.Scene, lumped.Result]:
+    scene = thrown(scene_of, SLS, 3)
+    return scene, fe_contact.run(scene, tolerance=1e-3)
+
+
+# elastic
+
+
+def test_every_bounce_of_an_elastic_body_is_the_same(scene_of: Scenes) -> None:
+    """It comes back as fast as it came: after n contacts and flights of 2 v/g the next one begins at n (T + 2 v/g)."""
+    scene = thrown(scene_of, ELASTIC, 3)
+    exact = mdr.estimate(scene, SPRINGS)
+    assert exact.duration is not None
+    period = exact.duration + 2 * scene.velocity / scene.gravity
+    contacts = fe_contact.run(scene, tolerance=1e-3).contacts
+    values = {"velocity": scene.velocity, "duration": exact.duration, "restitution": 1.0}
+    values |= {"peak_force": exact.peak_force, "peak_depth": exact.peak_depth}
+    assert len(contacts) == 3
+    for number, contact in enumerate(contacts):
+        assert contact["start"] == pytest.approx(number * period, abs=contact["start_error"])
+        assert contact["start_error"] < 1e-3 * period * (number + 1)
+        for name, value in values.items():
+            assert contact[name] == pytest.approx(value, abs=contact[f"{name}_error"] + 1e-6 * value), (number, name)
+
+
+def test_a_layer_gives_back_what_it_got_too(scene_of: Scenes) -> None:
+    """On a mesh that stays, by the steps of the march alone, which lose a thousandth."""
+    layer = {"shape": "layer", "thickness": 4e-3, "base": "bonded", "material": ELASTIC | {"nu": 0.3}}
+    scene = thrown(scene_of, ELASTIC, target=layer)
+    followed = Runs(strike_of(scene), scene.geometry, 2).follow(plan(scene, {"tolerance": 3e-3}).numerics)
+    first, second = followed.contacts
+    assert second.strike.depth == pytest.approx(0.0, abs=1e-9 * first.march.depth.max())
+    assert second.strike.velocity == pytest.approx(scene.velocity, rel=2e-3)
+    flight = 2 * second.strike.velocity / scene.gravity
+    assert second.strike.touched_at == pytest.approx(first.march.time[-1] + flight, rel=1e-4)
+    assert second.march.time[-1] == pytest.approx(first.march.time[-1], rel=1e-3)
+    assert second.march.depth.max() == pytest.approx(first.march.depth.max(), rel=2e-3)
+
+
+# what remembers
+
+
+@pytest.mark.parametrize("name", MODULI)
+def test_a_surface_that_nothing_presses_obeys_its_springs_and_dashpots(name: str) -> None:
+    """And what it loses of its energy is the heat of the dashpots."""
+    modulus, rng = MODULI[name], np.random.default_rng(7)
+    moduli, taus = np.array(modulus.moduli), np.array(modulus.times)
+    radii = np.linspace(0.0, 1.0, 5)
+    strain, dashpots = rng.uniform(0.2, 1.0, (2, 5)), rng.uniform(0.1, 0.9, (taus.size, 2, 5))
+    if not modulus.viscosity:
+        strain = np.tensordot(moduli, dashpots, 1) / modulus.glassy
+    before = SurfaceMemory(area_weights(radii), strain, strain - dashpots)
+
+    def creep(_: float, state: np.ndarray) -> np.ndarray:
+        now, flowed = state[:10], state[10:].reshape(-1, 10)
+        pull = modulus.equilibrium * now + moduli @ (now - flowed)
+        springy = -(moduli * (1 / taus)) @ (now - flowed) / modulus.glassy if not modulus.viscosity else 0.0
+        rate = -pull / modulus.viscosity if modulus.viscosity else -springy
+        return np.concatenate([rate, ((now - flowed) / taus[:, None]).ravel()])
+
+    later = solve_ivp(creep, (0.0, 0.7), np.r_[strain.ravel(), dashpots.ravel()], rtol=1e-10, atol=1e-12).y[:, -1]
+    free = Released.of(modulus, before)
+    after = free.after(0.7)
+    assert after.strain.ravel() == pytest.approx(later[:10], rel=1e-7)
+    assert (after.strain - after.branches).ravel() == pytest.approx(later[10:], rel=1e-7)
+    assert free.displacement(2, 0.7) == pytest.approx(later[2], rel=1e-7)
+    assert before.stored(modulus) - after.stored(modulus) == pytest.approx(free.dissipated(0.7), rel=1e-10)
+
+
+def test_long_after_the_surface_is_as_new(scene_of: Scenes) -> None:
+    """Flights of 4000 relaxation times: the second contact is a first one at its speed, by the row of springs."""
+    scene = thrown(scene_of, SLS | {"tau": [2e-3]}, gravity=0.03, end_time=100.0)
+    contact = fe_contact.run(scene, tolerance=1e-3).contacts[1]
+    fresh = mdr.estimate(
+        thrown(scene_of, SLS | {"tau": [2e-3]}, 1, gravity=0.03, striker={"velocity": contact["velocity"]}), SPRINGS
+    )
+    for name in ("duration", "restitution", "peak_force", "peak_depth"):
+        value = getattr(fresh, name)
+        # as slowly as it may have been thrown: the force goes with the velocity to the power 6/5
+        slower = 1.2 * value * contact["velocity_error"] / contact["velocity"]
+        assert contact[name] == pytest.approx(value, abs=contact[f"{name}_error"] + slower + 1e-6 * value), name
+
+
+def test_a_finer_run_is_within_both_bars(polymer: tuple[lumped.Scene, lumped.Result]) -> None:
+    scene, coarse = polymer
+    fine = fe_contact.run(scene, tolerance=5e-5)
+    assert abs(fine.energy["residual"]) < 0.5 * abs(coarse.energy["residual"])
+    for first, second in zip(coarse.contacts, fine.contacts, strict=True):
+        for name in ("start", "velocity", "duration", "restitution", "peak_force", "peak_depth"):
+            bars = first[f"{name}_error"] + second[f"{name}_error"]
+            assert second[name] == pytest.approx(first[name], abs=bars), name
+    assert fine.contacts[1]["restitution_error"] < 0.5 * coarse.contacts[1]["restitution_error"]
+
+
+def test_later_contacts_keep_the_schemes_order(polymer: tuple[lumped.Scene, lumped.Result]) -> None:
+    scene, _ = polymer
+    numerics = plan(scene, {"tolerance": 1e-3}).numerics
+    runs = Runs(strike_of(scene), scene.geometry, 3)
+    found = []
+    for steps in (80, 40, 20):
+        settings = numerics.varied(steps=steps)
+        runs.follow(settings)
+        curves = [runs.curve(number, settings) for number in (1, 2)]
+        found.append([(c.strike.touched_at, c.duration, c.leaving_speed) for c in curves if c is not None])
+    fine, coarse = np.abs(np.diff(np.array(found), axis=0))
+    assert np.all(np.log2(coarse / fine) > 1.8)
+
+
+def test_energy_is_accounted_for_over_contacts_and_flights(polymer: tuple[lumped.Scene, lumped.Result]) -> None:
+    scene, result = polymer
+    numerics = plan(scene, {"tolerance": 1e-3}).numerics
+    energy, last = result.energy, result.history
+    given = 0.5 * scene.mass * scene.velocity**2 + scene.mass * scene.gravity * last.depth[-1]
+    assert energy["in"] == pytest.approx(given, rel=1e-4)
+    assert energy["out"] == pytest.approx(0.5 * scene.mass * last.velocity[-1] ** 2, rel=1e-2)
+    assert abs(energy["residual"]) < 5e-3 * energy["in"]
+    assert energy["viscous"] > 0.2 * energy["in"]
+    followed = Runs(strike_of(scene), scene.geometry, 3).follow(numerics)
+    stored = [contact.march.energy["stored"] for contact in followed.contacts]
+    assert 0.0 < followed.contacts[1].flight_heat < stored[0]
+
+
+# what is told
+
+
+def test_the_history_runs_through_the_flights(polymer: tuple[lumped.Scene, lumped.Result]) -> None:
+    scene, result = polymer
+    history, (first, second, _) = result.history, result.contacts
+    flying = (history.time > first["duration"]) & (history.time < second["start"])
+    assert np.count_nonzero(flying) > 20
+    assert np.all(history.force[flying] == 0.0)
+    assert np.all(history.contact_radius[flying] == 0.0)
+    assert np.all(np.diff(history.time) >= 0.0)
+    flight = np.polyfit(history.time[flying] - first["duration"], history.depth[flying], 2)
+    assert 2 * flight[0] == pytest.approx(scene.gravity, rel=1e-6)
+    assert flight[1] == pytest.approx(-first["restitution"] * scene.velocity, rel=1e-4)
+    impulse = np.trapezoid(history.force, history.time)
+    assert impulse == pytest.approx(result.quantities["impulse"].value, rel=1e-4)
+    peak = history.force_error[np.argmin(np.abs(history.time - second["start"] - 0.2 * second["duration"]))]
+    assert peak > first["restitution_error"] * second["peak_force"], "a contact that may come later may press later"
+
+
+@pytest.mark.parametrize(
+    ("changes", "count", "said"),
+    [
+        ({"gravity": 0.0}, 1, "without model.gravity"),
+        ({"end_time": 0.02}, 1, "motion.end_time comes before the next touch"),
+        ({"end_time": 0.036}, 2, ""),
+    ],
+)
+def test_fewer_contacts_than_asked_for_have_a_reason(
+    changes: Mapping[str, Any], count: int, said: str, scene_of: Scenes
+) -> None:
+    result = fe_contact.run(thrown(scene_of, SLS, **changes), tolerance=3e-3)
+    assert len(result.contacts) == count
+    assert said in result.message
+    assert result.separated == (said != "")
+    assert result.contacts[-1]["duration"] is None or result.contacts[-1]["restitution"] is not None
+
+
+def test_a_striker_that_gravity_holds_comes_to_rest_under_its_weight(scene_of: Scenes) -> None:
+    material = {"law": "prony", "E_inf": 1e6, "E": [2e6, 1e6], "tau": [3e-4, 4e-3]}
+    result = fe_contact.run(thrown(scene_of, material, gravity=100.0, end_time=0.05), tolerance=1e-2)
+    depth = (0.02 * 100.0 / (4 / 3 * 1e6 / 0.91 * 0.1)) ** (2 / 3)
+    assert [contact["duration"] for contact in result.contacts] == [None]
+    assert not result.separated
+    assert result.history.force[-1] == pytest.approx(2.0, rel=1e-2)
+    assert result.history.depth[-1] == pytest.approx(depth, rel=1e-2)
+
+
+def test_a_bulk_that_remembers_is_refused_by_name(scene_of: Scenes) -> None:
+    layer = {"shape": "layer", "thickness": 4e-3, "base": "bonded", "material": SLS | {"nu": 0.3, "constant": "bulk"}}
+    with pytest.raises(lumped.BadInput, match=r"motion\.impacts"):
+        fe_contact.run(thrown(scene_of, SLS, target=layer), tolerance=3e-3)
+
+
+def test_the_packaged_ball_bounces_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "ball-bouncing", "--tolerance", "1e-2", "--out", str(tmp_path)]) == 0
+    content = json.loads((tmp_path / "result.json").read_text())
+    assert [contact["restitution"] is not None for contact in content["contacts"]] == [True] * 4
+    assert "contact 4 at " in capsys.readouterr().out
+    assert not (tmp_path / "recovery.csv").exists(), "that is told of a surface which is left alone"
