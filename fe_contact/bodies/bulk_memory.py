@@ -60,7 +60,6 @@ class BulkLaw(NamedTuple):
         bulk, shear = self.bulk.now, self.shear.now
         return float(4.0 * shear * (3.0 * bulk + shear) / (3.0 * bulk + 4.0 * shear))
 
-
     @property
     def ratio(self) -> float:
         """Shear over bulk modulus."""

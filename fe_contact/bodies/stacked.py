@@ -27,6 +27,7 @@ from lumped.materials import Relaxation
 
 Memory = tuple[Any, ...]
 
+
 @dataclass(frozen=True, eq=False)
 class Stacked(Deformable):
     """One body or two before the impact; ``operator`` of the one that has the points, angles on its ``radius``, m."""

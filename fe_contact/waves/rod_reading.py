@@ -13,12 +13,13 @@ import numpy as np
 
 from fe_contact.dynamics.march import Motion, Sample
 from fe_contact.forms import Array
-from fe_contact.waves.fronts import DENT, DEPTH, FORCE, TIME, VELOCITY, with_fronts
+from fe_contact.waves.fronts import DENT, DEPTH, FORCE, TELLING, TIME, VELOCITY, with_fronts
 from fe_contact.waves.impact import left
 from lumped.interpolation import peak
 from lumped.scene import Scene
 
 SPOILED = 2  # steps behind a front
+LASTING = 0.5  # of the force before a front, which it would still have had
 
 
 Contacts = tuple[Mapping[str, float | None], ...]
@@ -45,8 +46,7 @@ def read(found: Motion, scene: Scene, elements: int) -> Reading:
     end = found.contacts[-1][1]
     if jumping:
         fronts = np.arange(0, rows.shape[1], 2 * elements, dtype=np.intp)
-        beyond = (rows.shape[1] - 1) % (2 * elements)  # steps behind the last front at which the contact is open
-        if separated and fronts[-1] > 0 and beyond <= SPOILED + 1:  # that front ended it
+        if separated and _ended_by(rows[FORCE], fronts[-1]):
             rows = rows[:, : fronts[-1] + 1]
             end, rows = rows[TIME, -1], np.hstack([rows, rows[:, -1:]])
         rows = with_fronts(rows, fronts, SPOILED)
@@ -79,6 +79,15 @@ def _undented(rows: Array) -> float:
     roots = np.roots(np.polyfit((time - time[-1]) / step, dent, 2))
     ahead = [float(root.real) for root in roots if abs(root.imag) < 1e-9 and 0.0 <= root.real <= 1.0]
     return float(time[-1] + step * min(ahead, default=1.0))
+
+
+def _ended_by(force: Array, front: int) -> bool:
+    """Whether a front ended the contact: the last row, open, follows at once, and the force would have gone on."""
+    late = force.size - 1 - front
+    if front < TELLING or late > SPOILED + 1:
+        return False
+    onwards = force[front - 1] + 0.5 * (force[front - 1] - force[front - TELLING]) * (late + 1)
+    return bool(onwards > LASTING * force[front - 1])
 
 
 def stopped(rows: Array, end: float) -> Array:
