@@ -182,7 +182,13 @@ class Scene:
     @property
     def end_time(self) -> float:
         """When to stop if the bodies have not separated, s."""
-        return self.motion.end_time or END_IN_CONTACT_TIMES * self.elastic_contact_time * self.motion.impacts
+        return self.end_time_of(self.elastic_contact_time)
+
+    def end_time_of(self, contact_time: float) -> float:
+        """That of a law with this elastic contact time, s: time for every impact, and for every flight between two."""
+        impacts = self.motion.impacts
+        flights = 2.0 * self.velocity / self.gravity * (impacts - 1) if self.gravity > 0.0 else 0.0
+        return self.motion.end_time or END_IN_CONTACT_TIMES * contact_time * impacts + flights
 
     def to_dict(self) -> dict[str, Any]:
         """The tables of a scene file that gives this scene back."""

@@ -17,7 +17,7 @@ from lumped.collide.track import Track
 from lumped.ending import End
 from lumped.laws._assembly import Answer, Clock, assemble, bars, impulse_of
 from lumped.result import UNITS, Quantity, Result, meets
-from lumped.scene import END_IN_CONTACT_TIMES, Scene
+from lumped.scene import Scene
 
 if TYPE_CHECKING:
     from lumped.laws._force_law import ForceLaw
@@ -103,7 +103,7 @@ def _ends_well(quantities: Mapping[str, Quantity]) -> bool:
 
 
 def _until(law: ForceLaw, scene: Scene) -> float:
-    return scene.motion.end_time or END_IN_CONTACT_TIMES * law.elastic_contact_time(scene) * scene.motion.impacts
+    return scene.end_time_of(law.elastic_contact_time(scene))
 
 
 def _track(law: ForceLaw, scene: Scene, impacts: int, step_tolerance: float) -> Track:
@@ -113,7 +113,7 @@ def _track(law: ForceLaw, scene: Scene, impacts: int, step_tolerance: float) -> 
 def _answer(law: ForceLaw, scene: Scene, track: Track, outcomes: Sequence[Outcome]) -> Answer:
     """What a march says."""
     moved, until = track.motion, _until(law, scene)
-    said = "" if moved.end is End.SEPARATED else moved.end.value
+    said = _fewer(scene, len(outcomes)) if moved.end is End.SEPARATED else moved.end.value
     return Answer(
         track.rows,
         _Columns(law, track),
@@ -124,6 +124,12 @@ def _answer(law: ForceLaw, scene: Scene, track: Track, outcomes: Sequence[Outcom
         until,
         tuple(outcome._asdict() for outcome in outcomes) if scene.motion.impacts > 1 else (),
     )
+
+
+def _fewer(scene: Scene, contacts: int) -> str:
+    """What to say when the bodies parted after fewer contacts than asked for."""
+    asked = scene.motion.impacts
+    return "" if contacts == asked else f"{contacts} of {asked} impacts: the bodies did not meet again before the end"
 
 
 class _Columns(NamedTuple):

@@ -172,3 +172,22 @@ def test_the_bilinear_loop_of_a_cone_is_fitted_to_the_cone_s_exponent() -> None:
     loop, expected = (laws.impact_bilinear.of(scene) for scene in (cone, alone))
     for key in ("k1", "k2", "yield_depth"):
         assert getattr(loop, key) == pytest.approx(getattr(expected, key), rel=1e-12)
+
+
+@pytest.mark.parametrize("velocity", [0.1, 5.0])
+def test_impacts_asked_for_are_waited_for(velocity: float) -> None:
+    """A flight of 2 v/g lasts hundreds of contacts of a stiff body."""
+    table = {
+        "striker": {"mass": 0.4, "velocity": velocity},
+        "law": {"name": "jankowski", "k": 1e10, "e": 0.9},
+        "model": {"gravity": 9.81},
+        "motion": {"impacts": 4},
+    }
+    scene, _ = read(table)
+    bouncing = laws.jankowski.of(scene).simulate(scene, 1e-6)
+    assert len(bouncing.contacts) == 4
+    assert not bouncing.message
+    scene, _ = read({**table, "model": {}})
+    leaving = laws.jankowski.of(scene).simulate(scene, 1e-6)
+    assert len(leaving.contacts) == 1
+    assert leaving.message.startswith("1 of 4 impacts")
