@@ -50,12 +50,13 @@ def shear_speed(material: Material) -> float | None:
 def radiated_share(material: Material, pulse: Pulse) -> float | None:
     """Share of the energy which a Hertz pulse radiates into a half-space; None where its waves are not known.
 
-    A body with memory sends them as fast as what is left of its modulus after half the pulse.
+    A solid with memory sends them as fast as what is left of its modulus after half the pulse.
     """
-    density = material.density
-    if shear_speed(material) is None or density is None or pulse.duration == 0.0:
+    speed, density, shear = shear_speed(material), material.density, material.shear
+    if speed is None or density is None or pulse.duration == 0.0:
         return None
-    speed = math.sqrt(float(material.shear(0.5 * pulse.duration)) / density)
+    if shear.relaxed:
+        speed = math.sqrt(float(shear(0.5 * pulse.duration)) / density)
     return pulse_energy(material.nu, density, speed, pulse.force, pulse.duration) / pulse.energy
 
 
