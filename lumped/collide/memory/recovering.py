@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.collide.bodies import Bodies, State
 from lumped.collide.flight import bisected, flown
 from lumped.collide.hereditary import HereditaryLoad
-from lumped.materials import Relaxation
+from lumped.materials.recovery import Recovery
 
 Array = NDArray[np.float64]
 
@@ -29,36 +31,28 @@ def returned(load: HereditaryLoad, bodies: Bodies, last: State) -> tuple[float, 
     return time, flown(last, bodies.gravity, time)._replace(memory=memory)
 
 
+@dataclass(frozen=True)
 class FreeSurface:
-    """A surface without force: E_glassy y + eta y' = sum E_k w_k, w_k' = (y - w_k)/tau_k; linear, so exponentials."""
+    """A surface without force, its load y recovering; the memories, (K,), m2, follow: w_k' = (y - w_k)/tau_k."""
 
-    def __init__(self, rates: Array, modes: Array, weights: Array) -> None:
-        self._rates, self._modes, self._weights = rates, modes, weights
+    load: Recovery
+    remembered: Array
+    times: Array
 
     @classmethod
     def of(cls, load: HereditaryLoad, last: State) -> FreeSurface:
-        """From the end of a contact on."""
-        modulus, memory = load.modulus, np.array(last.memory)
-        moduli = np.array(modulus.moduli)
-        standing = float(load.load(last.depth))
-        if modulus.viscosity == 0.0:
-            standing = float(moduli @ memory) / modulus.glassy
-        rates, modes = np.linalg.eig(_matrix(modulus))
-        return cls(rates, modes, np.linalg.solve(modes, np.array([standing, *memory])))
+        """From the end of a contact on: memories of the load are what the dashpots of a strain y have yielded."""
+        recovery = Recovery.of(load.modulus, float(load.load(last.depth)), last.memory)
+        return cls(recovery, np.array(last.memory), np.array(load.modulus.times))
 
     def at(self, time: float) -> Array:
         """y and the memories w_k, shape (1 + K,), m2."""
-        return np.real(self._modes @ (self._weights * np.exp(self._rates * time)))
-
-
-def _matrix(modulus: Relaxation) -> Array:
-    """d/dt of (y, w_1 ... w_K)."""
-    moduli, times = np.array(modulus.moduli), np.array(modulus.times)
-    matrix = np.zeros((1 + moduli.size, 1 + moduli.size))
-    matrix[1:, 0] = 1.0 / times
-    matrix[1:, 1:] = -np.diag(1.0 / times)
-    if modulus.viscosity > 0.0:
-        matrix[0] = np.concatenate([[-modulus.glassy], moduli]) / modulus.viscosity
-    else:
-        matrix[0] = moduli @ matrix[1:] / modulus.glassy
-    return matrix
+        rates = 1.0 / self.times
+        left = np.exp(-time * rates)
+        memories = self.remembered * left + self.load.permanent * (1.0 - left)
+        for amplitude, tau in zip(self.load.amplitudes, self.load.times, strict=True):
+            # of two exponentials the slower one, and what the other fills of it
+            apart, slower = np.abs(rates - 1.0 / tau), np.exp(-time * np.minimum(rates, 1.0 / tau))
+            filled = np.divide(-np.expm1(-time * apart), apart, out=np.full_like(left, time), where=apart != 0.0)
+            memories += amplitude * rates * slower * filled
+        return np.append(self.load(time), memories)
