@@ -24,7 +24,15 @@ class Law(Protocol):
 def simulate(model: Law, scene: Scene, tolerance: float = 1e-6) -> Result:
     """The impacts of a scene under the law `model`, every ruled quantity to `tolerance`.
 
-    Raises NotReached, or BadInput for a scene that the law has no answer for.
+    Raises NotReached, or BadInput for a scene that the law has no answer for. A study of many impacts needs a function
+    of its own, and a pool::
+
+        def restitution(speed: float) -> float | None:
+            scene = Scene.load("steel-ball-sls", {"striker.velocity": speed})
+            return simulate(laws.correspondence.of(scene), scene, 1e-3).quantities["restitution"].value
+
+        with concurrent.futures.ProcessPoolExecutor() as pool:
+            found = list(pool.map(restitution, numpy.linspace(0.1, 2.0, 10_000), chunksize=100))
     """
     scene.check_mass("a lumped law")
     return model.simulate(scene, tolerance)
