@@ -39,13 +39,14 @@ DOMINANT = 0.5  # causes above this share of the largest one are refined togethe
 class Pressing:
     """Force over modulus, m^2, and contact radius, m, at every depth, (n,); counted work.
 
-    ``mesh_order``: the most that the mesh's order can be, where the contact ends.
+    ``mesh_order``: the most that the mesh's order can be, where the contact ends; ``ends``: whether the body does.
     """
 
     force: Array
     contact_radius: Array
     work: Mapping[str, int]
     mesh_order: float
+    ends: bool
 
 
 def indent(
@@ -124,21 +125,23 @@ def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) ->
         found = body.press(float(depth[i]), growth * float(radii[i]))
         force[i], radius[i], growth = found.force, found.contact_radius, found.contact_radius / radii[i]
         problems, iterations = problems + found.problems, iterations + found.iterations
-    counted = {"contact_problems": problems, "iterations": iterations}
-    return Pressing(force, radius, {"degrees_of_freedom": body.degrees_of_freedom, **counted}, body.mesh_order)
+    work = {"degrees_of_freedom": body.degrees_of_freedom, "contact_problems": problems, "iterations": iterations}
+    return Pressing(force, radius, work, body.mesh_order, body.ends)
 
 
 def _budget(base: Pressing, run: Callable[[Numerics], Pressing], numerics: Numerics) -> dict[str, Array]:
     """Relative error of the force by cause, at every depth.
 
-    The far field is varied on the other mesh, which as a rule is the cheaper one; the penalty costs no mesh.
+    The far field is varied on the other mesh, which as a rule is the cheaper one, unless the body ends before; the
+    penalty costs no mesh.
     """
     other = _other(numerics, "mesh")
     on_other = run(other)
+    farther = on_other if on_other.ends else run(_other(other, "far_field"))
     return {
         "mesh": _error(numerics, "mesh", base, on_other),
         "penalty": _error(numerics, "penalty", base, run(_other(numerics, "penalty"))),
-        "far_field": _error(numerics, "far_field", on_other, run(_other(other, "far_field"))),
+        "far_field": _error(numerics, "far_field", on_other, farther),
     }
 
 

@@ -50,6 +50,10 @@ class Still(Protocol):
     def mesh_order(self) -> float:
         """The most that the order of the mesh's error in the force can be, whatever that of the elements."""
 
+    @property
+    def ends(self) -> bool:
+        """Whether the mesh is all of the body, so that there is no far field to err."""
+
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m; ``guess``: a contact radius to begin with, m. Raises NotReached."""
 
@@ -71,6 +75,11 @@ class ScaledStill:
     def mesh_order(self) -> float:
         """That of the elements: the edge is a node but for little."""
         return np.inf
+
+    @property
+    def ends(self) -> bool:
+        """Never."""
+        return False
 
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m. Raises IndentationNotSettled."""
@@ -114,6 +123,11 @@ class FixedStill:
     def mesh_order(self) -> float:
         """Less where the edge may lie anywhere in an element, at which the pressure has no slope."""
         return EDGE_ORDER if self.indenter.shape.fixed_radius is None else np.inf
+
+    @property
+    def ends(self) -> bool:
+        """Its sides are far away."""
+        return False
 
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m; raises IndentationNotSettled, ContactTooWide."""

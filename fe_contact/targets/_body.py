@@ -40,6 +40,11 @@ class BodyStill:
         """Less where the edge may lie anywhere in an element; a rim is a node."""
         return EDGE_ORDER if self.indenter.target.fixed_radius(self.indenter.shape) is None else np.inf
 
+    @property
+    def ends(self) -> bool:
+        """It does."""
+        return True
+
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m; raises IndentationNotSettled, or ContactTooWide where a contact leaves the fine mesh."""
         target, shape = self.indenter.target, self.indenter.shape

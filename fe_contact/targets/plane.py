@@ -37,6 +37,11 @@ class BlockStill:
         """That of the elements: nothing moves over the mesh."""
         return np.inf
 
+    @property
+    def ends(self) -> bool:
+        """It does."""
+        return True
+
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m."""
         return Pressed(self.stiffness * depth, self.radius, 1, 1)
