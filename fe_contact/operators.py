@@ -7,7 +7,6 @@ Assembled and factorised once; a unit force on every surface degree of freedom g
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -28,9 +27,9 @@ from fe_contact.floating import Floating
 from fe_contact.forms import Array, isotropic, stiffness
 from fe_contact.interior import Interior, Solve
 from fe_contact.surface import Surface, flat
+from fe_contact.trace import contact_quadrature
 
 ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
-FACET_POINTS = 4  # quadrature points a facet beyond the element order: the contact edge is a kink
 SOLVED_AT_ONCE = 32  # right-hand sides: more of them leave the processor's cache
 
 
@@ -191,29 +190,3 @@ def system_matrix(basis: Any, poisson: float) -> Any:
     far = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["far"], intorder=2 * order + 4)
     body = stiffness(basis, isotropic(1 - poisson**2, poisson))
     return (body + static.robin(far, poisson)).tocsc()
-
-
-def contact_quadrature(corners: Array, order: int) -> tuple[Array, Array, Array]:
-    """Gauss points, weights in the coordinate, and Lagrange trace on the facets between ``corners``."""
-    gauss, weight = np.polynomial.legendre.leggauss(order + FACET_POINTS)
-    left, length = corners[:-1, None], np.diff(corners)[:, None]
-    points = (left + length * (gauss + 1) / 2).ravel()
-    weights = (length * weight / 2).ravel()
-    local = lagrange((gauss + 1) / 2, order)
-    trace = np.zeros((len(points), (len(corners) - 1) * order + 1))
-    for facet in range(len(corners) - 1):
-        rows = slice(facet * len(gauss), (facet + 1) * len(gauss))
-        trace[rows, facet * order : (facet + 1) * order + 1] = local
-    return points, weights, trace
-
-
-def lagrange(x: Array, order: int) -> Array:
-    """Equispaced Lagrange polynomials on [0, 1] at ``x``, shape (len(x), order + 1)."""
-    return np.vander(x, order + 1, increasing=True) @ monomials(order)
-
-
-@cache
-def monomials(order: int) -> Array:
-    """Coefficients (power, function) of the equispaced Lagrange polynomials on [0, 1]."""
-    nodes: Array = np.arange(order + 1) / order
-    return np.asarray(np.linalg.inv(np.vander(nodes, increasing=True)), dtype=np.float64)

@@ -19,8 +19,9 @@ from fe_contact.validation import blocks as blocks_module
 from fe_contact.validation import datum
 from fe_contact.validation.blocks import Block, within
 from fe_contact.validation.datum import DEPTH, Place, curve
-from fe_contact.validation.table1 import LIMIT, RATIOS, Reach, Trial, bodies, trial
+from fe_contact.validation.table1 import RATIOS, Trial, bodies, trial
 from fe_contact.validation.table1_files import COLUMNS, write_table1
+from fe_contact.validation.table1_reach import LIMIT, Reach
 from fe_contact.validation.table1_verdict import HOLDS, RANGE, UNDECIDED, UNTRIED, WRONG, deviations, verdict
 from lumped.load_curves import Hertz, SneddonSphere
 from lumped.result import Quantity

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple, Protocol
 
-from fe_contact.contact import PressedSurface
 from fe_contact.forms import Array
+from fe_contact.pressed_surface import PressedSurface
 
 
 class Offer(NamedTuple):

@@ -20,13 +20,15 @@ import numpy.typing as npt
 
 from fe_contact.bodies.struck import Deformable
 from fe_contact.bodies.surface_body import SurfaceBody
-from fe_contact.contact import ContactProblem, PressedSurface
+from fe_contact.contact import ContactProblem
 from fe_contact.forms import Array
 from fe_contact.march import Snapshot, Strike
 from fe_contact.numerics import Numerics
-from fe_contact.operators import SurfaceOperator, monomials
+from fe_contact.operators import SurfaceOperator
+from fe_contact.pressed_surface import PressedSurface
 from fe_contact.stepping import Stepper
 from fe_contact.steps import Stepping
+from fe_contact.trace import monomials
 from lumped.materials import Relaxation
 
 

@@ -16,10 +16,10 @@ from fe_contact.bodies.bulk_surface import Pace
 from fe_contact.bodies.modes import Modes, modes
 from fe_contact.bodies.offer import Half
 from fe_contact.bodies.surface_body import SurfaceBody
-from fe_contact.contact import PressedSurface
 from fe_contact.elastic_body import ElasticBody
 from fe_contact.forms import Array
 from fe_contact.operators import SurfaceOperator
+from fe_contact.pressed_surface import PressedSurface
 from lumped.materials import Relaxation
 
 

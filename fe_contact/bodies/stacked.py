@@ -19,10 +19,10 @@ from scipy.linalg import block_diag
 from fe_contact.bodies.offer import Half, Offer, Recalled
 from fe_contact.bodies.sides import Side, stacked
 from fe_contact.bodies.struck import Deformable
-from fe_contact.contact import PressedSurface
 from fe_contact.forms import Array
 from fe_contact.march import Snapshot
 from fe_contact.operators import SurfaceOperator
+from fe_contact.pressed_surface import PressedSurface
 from lumped.materials import Relaxation
 
 Memory = tuple[Any, ...]

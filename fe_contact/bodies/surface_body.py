@@ -13,9 +13,9 @@ import numpy as np
 
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
 from fe_contact.bodies.offer import Offer, Recalled
-from fe_contact.contact import PressedSurface
 from fe_contact.forms import Array
 from fe_contact.operators import SurfaceOperator
+from fe_contact.pressed_surface import PressedSurface
 from lumped.materials import Relaxation
 
 

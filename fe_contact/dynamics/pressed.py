@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fe_contact.contact import ContactProblem, ContactSolution, PressedSurface, Touching
+from fe_contact.contact import ContactProblem, ContactSolution, Touching
 from fe_contact.errors import ContactNotSettled
 from fe_contact.forms import Array
+from fe_contact.pressed_surface import PressedSurface
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,8 +12,9 @@ from functools import lru_cache
 import numpy as np
 
 from fe_contact import contact
-from fe_contact.contact import ContactProblem, ContactSolution, PressedSurface, Touching
+from fe_contact.contact import ContactProblem, ContactSolution, Touching
 from fe_contact.forms import Array
+from fe_contact.pressed_surface import PressedSurface
 
 SOLVES = 1
 SURFACES_KEPT = 8

@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 
 from fe_contact.report import style
 from fe_contact.validation.datum import DEPTH
-from fe_contact.validation.table1 import LIMIT, RATIOS, Trial, bodies
+from fe_contact.validation.table1 import RATIOS, Trial, bodies
+from fe_contact.validation.table1_reach import LIMIT
 from fe_contact.validation.table1_verdict import verdict
 from lumped.result import Quantity
 

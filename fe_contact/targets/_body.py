@@ -7,12 +7,14 @@ from types import ModuleType
 
 import numpy as np
 
-from fe_contact.contact import ContactProblem, PressedSurface
+from fe_contact.contact import ContactProblem
 from fe_contact.errors import ContactTooWide, IndentationNotSettled
 from fe_contact.forms import Array
 from fe_contact.numerics import ENFORCEMENTS, Numerics
-from fe_contact.operators import SurfaceOperator, lagrange
+from fe_contact.operators import SurfaceOperator
+from fe_contact.pressed_surface import PressedSurface
 from fe_contact.pressing import BEYOND, EDGE_ORDER, Pressed, half_width
+from fe_contact.trace import lagrange
 from lumped.indenter import Indenter
 from lumped.members import get
 

@@ -14,10 +14,11 @@ from fe_contact.far_field import half_plane
 from fe_contact.forms import Array, isotropic, plane_stiffness
 from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
-from fe_contact.operators import ELEMENTS, condensed, lagrange
+from fe_contact.operators import ELEMENTS, condensed
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
 from fe_contact.targets._zone import LINE_REFINEMENT, STRUCK_REFINEMENT, Zone, held, smallest_struck
+from fe_contact.trace import lagrange
 from lumped.geometry import Geometry
 from lumped.indenter import Indenter
 

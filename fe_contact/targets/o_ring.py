@@ -12,12 +12,12 @@ from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.bulk_surface import Pace
 from fe_contact.bodies.sides import BulkSide, Side
 from fe_contact.bodies.stacked import Stacked
-from fe_contact.contact import PressedSurface
 from fe_contact.elastic_body import ElasticBody, axisymmetric
 from fe_contact.forms import Array
 from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS, SurfaceOperator
+from fe_contact.pressed_surface import PressedSurface
 from fe_contact.pressing import Still
 from fe_contact.surface import crown
 from fe_contact.targets._body import BodyStill

@@ -6,7 +6,6 @@ ratios over it tell E*. Line contact tells its E* by the slope of its logarithm.
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -16,12 +15,12 @@ from multiprocessing import get_context
 
 import numpy as np
 
-from fe_contact.forms import Array
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.validation.blocks import Block, blocks
 from fe_contact.validation.datum import Place, places
 from fe_contact.validation.table1_impact import FromImpact, line_impacts, power_law_impacts
+from fe_contact.validation.table1_reach import Reach, reach
 from lumped.errors import NotReached
 from lumped.indentation import Indentation, power_law
 from lumped.indenter import Indenter
@@ -37,27 +36,6 @@ LINE = (1e-5, 1e-4)  # line contact has no power law to look for
 TOLERANCE = 3e-4
 LINE_TOLERANCE = 1e-4  # the slope of a logarithm is a difference
 WORKERS = 2
-LIMIT = 0.01  # departure from the power law that counts as its end
-LEAST = 1e-9  # departure below which rounding rules
-
-
-@dataclass(frozen=True)
-class Reach:
-    """Depths over the row's length: tried `first` to `last`, the power law within 1 % up to `held` (with a bar).
-
-    `departure`, shape (n,): force over the corrected row's, less one, at `depth`, the worst of all nu.
-    """
-
-    first: float
-    last: float
-    held: Quantity
-    depth: Array
-    departure: Array
-
-    @property
-    def throughout(self) -> bool:
-        """Whether it holds at every depth tried."""
-        return self.held.value == self.last
 
 
 @dataclass(frozen=True)
@@ -127,7 +105,14 @@ def _power_law(row: Row) -> Trial:
     law = identified_law(row, curves[0.0])
     stuck = _bonded() if row.block else ()
     struck = power_law_impacts(row, {nu: bodies(row, nu) for nu in RATIOS})
-    return Trial(row, *law, identified_moduli(row, curves), reach(row, far), bonded=stuck, impact=struck)
+    return Trial(
+        row,
+        *law,
+        identified_moduli(row, curves),
+        reach(row, far, {nu: bodies(row, nu) for nu in far}),
+        bonded=stuck,
+        impact=struck,
+    )
 
 
 @cache
@@ -178,37 +163,3 @@ def logarithms_modulus(row: Row, curve: Indentation) -> Quantity:
     fall, growth = float(compliance[0] - compliance[1]), float(np.log(curve.force[1] / curve.force[0]))
     value = growth / (np.pi * length * fall)
     return Quantity(value, value * float(relative.sum() / growth + compliance @ relative / fall), "Pa")
-
-
-def reach(row: Row, curves: Mapping[float, Indentation]) -> Reach:
-    """How deep the corrected row holds within 1 %, at every nu."""
-    departures, bars = [], []
-    for nu, curve in curves.items():
-        departures.append(curve.force / row.force(curve.depth, *bodies(row, nu)) - 1.0)
-        bars.append(curve.force_error / curve.force)
-    every = np.array(departures)
-    worst = every[np.abs(every).argmax(axis=0), np.arange(every.shape[1])]
-    share = next(iter(curves.values())).depth / row.length
-    held = _held(share, np.abs(worst), np.max(bars, axis=0))
-    return Reach(float(share[0]), float(share[-1]), held, share, worst)
-
-
-def _held(share: Array, departure: Array, bar: Array) -> Quantity:
-    """The first depth at which a departure passes the limit, by a parabola through three depths, all in logarithms.
-
-    Its bar: how far the bars of the forces move it, and how far it lies from the straight line's answer.
-    """
-    beyond = np.flatnonzero(departure > LIMIT)
-    if not beyond.size:
-        return Quantity(float(share[-1]), 0.0, "1")
-    if beyond[0] == 0:
-        return Quantity(0.0, float(share[0]), "1")
-    end = int(beyond[0])
-    near = slice(max(end - 2, 0), end + 1)
-    x, y = np.log(share[near]), np.log(np.maximum(departure[near], LEAST) / LIMIT)
-    slope = (y[-1] - y[-2]) / (x[-1] - x[-2])
-    straight = x[-1] - y[-1] / slope
-    roots = np.real(np.polynomial.Polynomial.fit(x, y, x.size - 1).roots())
-    bent = float(roots[np.abs(roots - straight).argmin()])
-    moved = abs(bent - straight) + float(bar[end]) / (LIMIT * slope)
-    return Quantity(math.exp(bent), math.exp(bent) * math.expm1(moved), "1")

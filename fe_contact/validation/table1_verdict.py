@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 
 from fe_contact.validation.blocks import WIDTHS, within
-from fe_contact.validation.table1 import LIMIT, Trial, bodies
+from fe_contact.validation.table1 import Trial, bodies
+from fe_contact.validation.table1_reach import LIMIT
 from lumped.result import Quantity
 
 HOLDS, RANGE, WRONG = "holds", "holds within a range", "wrong, corrected"

@@ -16,8 +16,9 @@ from fe_contact.dynamics.mass.consistent import Nodes
 from fe_contact.far_field import absorbing
 from fe_contact.forms import Array, mass, vector_dofs
 from fe_contact.numerics import MASSES
-from fe_contact.operators import ELEMENTS, contact_quadrature, system_matrix
+from fe_contact.operators import ELEMENTS, system_matrix
 from fe_contact.surface import flat
+from fe_contact.trace import contact_quadrature
 from fe_contact.waves.moving import Moving, with_striker
 from fe_contact.waves.numerics import WaveNumerics
 from lumped.members import get

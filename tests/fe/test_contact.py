@@ -11,9 +11,10 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 from fe_contact import contact
-from fe_contact.contact import ContactProblem, ContactSolution, PressedSurface, solve
+from fe_contact.contact import ContactProblem, ContactSolution, solve
 from fe_contact.enforcement import augmented, corrected, exact, penalty
 from fe_contact.numerics import ENFORCEMENTS
+from fe_contact.pressed_surface import PressedSurface
 from lumped.members import available, get
 
 SEEDS = st.integers(0, 2**32 - 1)

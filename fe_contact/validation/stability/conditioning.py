@@ -12,11 +12,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fe_contact.contact import ContactProblem, ContactSolution, PressedSurface
+from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.enforcement import is_soft
 from fe_contact.forms import Array
 from fe_contact.indentation import settings
 from fe_contact.numerics import ENFORCEMENTS, TARGETS
+from fe_contact.pressed_surface import PressedSurface
 from fe_contact.pressing import FixedStill
 from fe_contact.validation.stability.base import Case, Chart, Measure
 from lumped.indenter import Indenter

@@ -1,0 +1,94 @@
+"""What contact knows of a body: how the points of its surface give way to the springs between it and the striker."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sparse
+from scipy.linalg.lapack import dposv
+
+from fe_contact.forms import Array
+
+
+@dataclass(frozen=True, eq=False)
+class PressedSurface:
+    """What contact knows of a body: condensed stiffness (n, n), trace (q, n), weights (q,).
+
+    ``recurring``: whether the same sets of points touch again and again, so that their answers are worth keeping.
+    ``compliance`` (q, q), displacement at the points under unit forces there, of surfaces with more nodes than points.
+    """
+
+    stiffness: Array
+    trace: Array
+    weights: Array
+    recurring: bool = True
+    compliance: Array | None = None
+
+    def held(self, springs: Array) -> Array:
+        """Stiffness with springs (q,) at the points, (n, n), in the order of columns that LAPACK needs."""
+        return np.asarray(self.stiffness + (self._squares @ springs).reshape(self.stiffness.shape)).T
+
+    def gaps(self, springs: Array, overlaps: Array) -> Array:
+        """What is left of overlaps (q, m) where springs (q,) stand between the surfaces."""
+        if self.compliance is not None:
+            return _between_points(self.compliance, springs, overlaps)
+        pushed = self.trace.T @ (springs[:, None] * overlaps)
+        return overlaps - self.trace @ solved(self.held(springs), pushed)
+
+    def work(self, forces: Array) -> float:
+        """Of forces (q,) at the points on the displacement that they cause."""
+        if self.compliance is not None:
+            return float(forces @ self.compliance @ forces)
+        load = self.trace.T @ forces
+        return float(load @ np.linalg.solve(self.stiffness, load))
+
+    def stiffened(self, stiffness: Array) -> PressedSurface:
+        """The same points on another stiffness; what is known of the points alone is shared."""
+        other = replace(self, stiffness=stiffness)
+        vars(other)["_squares"] = self._squares
+        return other
+
+    @cached_property
+    def _squares(self) -> Any:
+        """Every point's trace times itself as a column, sparse (n n, q): a point sees the nodes of its facet alone."""
+        points, nodes = self.trace.shape
+        rows = sparse.csr_matrix(self.trace)
+        seen = [rows.indices[start:end] for start, end in zip(rows.indptr, rows.indptr[1:], strict=False)]
+        pairs = [(ours[:, None] * nodes + ours).ravel() for ours in seen]
+        values = [np.outer(own := self.trace[i, ours], own).ravel() for i, ours in enumerate(seen)]
+        columns = np.repeat(np.arange(points), [len(pair) for pair in pairs])
+        entries = (np.concatenate(values), (np.concatenate(pairs), columns))
+        return sparse.csr_matrix(entries, shape=(nodes * nodes, points))
+
+
+def _between_points(compliance: Array, springs: Array, overlaps: Array) -> Array:
+    """By the forces of the springs: (1/k + C) forces = overlap where they stand, multiplied by the root of k."""
+    acting = _those(springs)
+    root = np.sqrt(springs[acting])[:, None]
+    if not root.size:
+        return overlaps
+    system = root * compliance[acting][:, acting] * root.T
+    system[np.diag_indices(root.size)] += 1.0
+    scaled = solved(system.T, root * overlaps[acting])
+    gaps = overlaps - compliance[:, acting] @ (root * scaled)
+    gaps[acting] = scaled / root
+    return gaps
+
+
+def _those(springs: Array) -> slice | npt.NDArray[np.intp]:
+    """Where springs stand: as a rule without a hole, and then nothing has to be copied."""
+    acting = np.flatnonzero(springs)
+    whole = acting.size and acting.size == acting[-1] - acting[0] + 1
+    return slice(acting[0], acting[-1] + 1) if whole else acting
+
+
+def solved(matrix: Array, right: Array) -> Array:
+    """Of a symmetric positive definite matrix, which it overwrites with its factors. Raises FloatingPointError."""
+    _, solution, failure = dposv(matrix, right, overwrite_a=True, overwrite_b=True)
+    if failure:
+        raise FloatingPointError("the condensed stiffness lost its positive definiteness")
+    return np.asarray(solution)
