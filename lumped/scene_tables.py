@@ -8,7 +8,7 @@ from typing import Any
 
 from lumped.errors import BadInput, Fault
 from lumped.keys import Choice, Count, Flag, Key, Number, Text, check_fields, read_table
-from lumped.members import get
+from lumped.members import available, get
 from lumped.targets import Target
 
 LEAST_MASS = 1e-21
@@ -27,7 +27,7 @@ MOTION_KEYS: Mapping[str, Key] = {
 }
 NAME_KEYS: Mapping[str, Key] = {"name": Text(required=False)}
 SECOND_BODY_KEYS: Mapping[str, Key] = {"target_mass": Number(1e-21, 1e12, "kg", required=False)}
-LAWS = "lumped.laws"
+LAWS, TARGETS = "lumped.laws", "lumped.targets"
 
 
 @dataclass(frozen=True)
@@ -76,10 +76,17 @@ def inertia_faults(source: str, inertia: bool, density: float | None, target: Ta
     faults = []
     if target is None or not target.has_inertia:
         where = "a law of its own" if target is None else target.name
-        reason = f"true is not available for {where} in this version; accepted: false"
+        reason = f"true is not available for {where} in this version; accepted: false, or target.shape {_moving()}"
         faults.append(Fault(source, "model.inertia", reason))
     if target is not None and density is None:
         reason = "missing; model.inertia = true needs it, in kg/m3; the equivalent E* of two bodies is no wave medium"
         owner = "target" if target.deformable else "striker"
         faults.append(Fault(source, f"{owner}.material.density", reason))
     return faults
+
+
+def _moving() -> str:
+    """Names of the targets whose waves can be followed."""
+    members = [value for name in available(TARGETS) for value in vars(get(TARGETS, name)).values()]
+    targets = {member for member in members if isinstance(member, type) and issubclass(member, Target)}
+    return ", ".join(sorted(target.name for target in targets if getattr(target, "has_inertia", False)))

@@ -125,9 +125,7 @@ def test_a_check_off_its_bar_is_told(checked: tuple[Check, ...]) -> None:
     assert not replace(checked[0], exact_exponent=1.01 * checked[0].exact_exponent).covered
 
 
-def test_files(
-    tmp_path: Path, found: tuple[Curve, ...], checked: tuple[Check, ...], spheres: tuple[Pair, ...]
-) -> None:
+def test_files(tmp_path: Path, found: tuple[Curve, ...], checked: tuple[Check, ...], spheres: tuple[Pair, ...]) -> None:
     content = write_exponents(found, checked, spheres, tmp_path)
     with (tmp_path / "exponents.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))

@@ -178,6 +178,12 @@ def test_an_equivalent_modulus_is_no_wave_medium() -> None:
         Scene.load("steel-ball", {"model.inertia": True})
 
 
+@pytest.mark.parametrize("name", ["polymer-layer", "rod-in-ring", "polymer-o-ring"])
+def test_a_target_without_waves_names_those_that_have_them(name: str) -> None:
+    with pytest.raises(BadInput, match=r"model\.inertia.*false, or target\.shape half_space, plane, rod"):
+        Scene.load(name, {"model.inertia": True})
+
+
 def test_a_study_without_an_exact_impact_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["tradeoff", "steel-ball-waves", "--out", str(tmp_path / "out")]) == 2
     assert "model.inertia" in capsys.readouterr().err
