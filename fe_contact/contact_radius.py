@@ -17,7 +17,12 @@ INSIDE = np.arange(1, 8)[:, None] / 8  # places put into every interval
 
 
 def squared_radius(march: March) -> tuple[Array, Array]:
-    """Shares of the contact (n,), from touch to the end, and squared radius there, m^2."""
+    """Shares of the contact (n,), from touch to the end, and squared radius there, m^2.
+
+    Under a flat end it is the same from the first touch to the last.
+    """
+    if np.ptp(march.radius) == 0.0:
+        return np.array([0.0, 1.0]), np.full(2, march.radius[0] ** 2)
     duration = float(march.time[-1])
     keep = march.radius_time < duration * (1 - 1e-9)
     time, square = march.radius_time[keep], march.radius[keep] ** 2

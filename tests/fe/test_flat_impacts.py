@@ -73,6 +73,7 @@ def test_lee_and_radok_are_within_bar_and_tolerance(campaign_size: Callable[[int
         found = fe_contact.run(scene, TOLERANCE)
         agree(found, exact(scene))
         assert abs(found.energy["residual"] or 0.0) <= 1e-9 * (found.energy["in"] or 0.0)
+        assert found.history.contact_radius == pytest.approx(scene.geometry.shape.fixed_radius), "from touch to the end"
 
 
 def test_the_dashpot_is_felt_at_first_touch() -> None:
