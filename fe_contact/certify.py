@@ -125,10 +125,11 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[C
     mesh, finer_mesh = _other(cheap, "elements_per_contact")
     penalty, stiffer = _other(cheap, "penalty")
     order = MESH_ORDER[numerics.order] if surface.breathes else MESH_ORDER_ANYWHERE
+    swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long
     changes: dict[str, Causes] = {
-        "mesh": (_change(base, curve(mesh), order, finer_mesh), *steps.jitter),
+        "mesh": (_change(base, curve(mesh), order, finer_mesh), *(() if swings else steps.jitter)),
         "penalty": (_change(base, curve(penalty), LEAST_ORDER["penalty"], stiffer),),
-        "time_step": (steps.change,),
+        "time_step": (steps.change, *(steps.jitter if swings else ())),
         "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
     }
     return steps.value, changes
