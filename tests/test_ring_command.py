@@ -13,7 +13,9 @@ from scipy.optimize import brentq
 
 from fe_contact.validation.rings import RingCurve, cases, local_exponent, pressed
 from fe_contact.validation.rings_files import write_rings
+from fe_contact.validation.rings_impact import JUDGED, RingStruck, _struck
 from fe_contact.validation.rings_verdict import verdict
+from lumped import laws, simulate
 from lumped.paper.examples import Examples
 from lumped.paper.ring_impact import stiffness
 
@@ -76,3 +78,35 @@ def test_the_files_say_what_was_found(curves: dict[str, RingCurve], tmp_path: Pa
     for row in rows:
         assert (row["beyond_small_strain"] == "True") == (float(row["strain"]) > 0.05)
         assert float(row["row_deviation"]) == pytest.approx(float(row["row_force_N"]) / float(row["force_N"]) - 1.0)
+
+
+@pytest.fixture(scope="module")
+def impact() -> RingStruck:
+    return _struck(CASES["paper-ring-10mm"], 0.01)
+
+
+def test_the_impacts_verdict_is_what_the_exact_ring_says(impact: RingStruck) -> None:
+    """Ting on the annulus, without an element: how far (30)-(32) are off is the same within the bars."""
+    scene = impact.found.scene
+    exact = simulate(laws.ting.of(scene), scene, 1e-6).quantities
+    for name in JUDGED:
+        off, bar = impact.deviation(name)
+        value, row = exact[name].value, impact.by_row(name)
+        assert abs(off - (row - value if name == "restitution" else row / value - 1.0)) <= bar + 1e-5, name
+    assert not impact.holds
+    assert impact.deviation("duration")[0] < -0.1  # far too stiff for a touch that has just begun
+
+
+def test_the_bulk_modulus_matters_more_than_the_bars_and_less_than_the_ledger_says(impact: RingStruck) -> None:
+    (told,) = [one for one in impact.found.model_ledger if one.effect == "constant nu against constant bulk modulus"]
+    change, bar = impact.of_bulk("peak_force")
+    assert bar < abs(change) < 1.05 * (told.estimate or 0.0)
+
+
+def test_an_impact_is_written(impact: RingStruck, curves: dict[str, RingCurve], tmp_path: Path) -> None:
+    (one,) = write_rings(tuple(curves.values()), tmp_path, [impact])["impacts"]
+    with (tmp_path / "ring_impacts.csv").open(encoding="utf-8") as file:
+        (row,) = csv.DictReader(file)
+    assert float(row["duration"]) == one["duration"] == impact.found.quantities["duration"].value
+    assert one["duration_row_deviation"] == pytest.approx(one["duration_by_row"] / one["duration"] - 1.0)
+    assert one["verdict"].startswith("wrong")

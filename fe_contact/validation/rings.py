@@ -1,7 +1,7 @@
 """What rings really do when they are pressed slowly, against the paper's row for them, F = (pi/4) E* l depth (27)-(29).
 
-With a constant Poisson's ratio the force over E* is the same against a slow and a sudden indentation, and, while the
-contact grows, in an impact (30)-(32), whose modulus is the same relaxation function: one verdict for all.
+With a constant Poisson's ratio the force over E* is the same against a slow and a sudden indentation: one verdict for
+both. Impacts, (30)-(32), have one of their own: :mod:`fe_contact.validation.rings_impact`.
 """
 
 from __future__ import annotations

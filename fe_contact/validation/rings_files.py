@@ -1,4 +1,4 @@
-"""What ``fe-contact ring`` writes: a line a depth as CSV, an entry a ring as JSON."""
+"""What ``fe-contact ring`` writes: a line a depth, and a line an impact, as CSV; an entry for each as JSON."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from fe_contact.validation.rings import SMALL_STRAIN, RingCurve
+from fe_contact.validation.rings_impact import JUDGED, RingStruck
 from fe_contact.validation.rings_verdict import verdict
 from fe_contact.validation.tables import plain, write_csv, write_json
 
@@ -20,11 +21,16 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def write_rings(curves: Sequence[RingCurve], where: Path) -> dict[str, Any]:
-    """Write ``ring.csv`` and ``ring.json`` into a folder; the content of the latter."""
+def write_rings(curves: Sequence[RingCurve], where: Path, impacts: Sequence[RingStruck] = ()) -> dict[str, Any]:
+    """Write ``ring.csv``, ``ring_impacts.csv`` and ``ring.json`` into a folder; the content of the last."""
     where.mkdir(parents=True, exist_ok=True)
     write_csv(where / "ring.csv", COLUMNS, [line for curve in curves for line in _lines(curve)])
-    content: dict[str, Any] = plain({"schema": SCHEMA, "rings": [_described(curve) for curve in curves]})
+    struck = [_struck(one) for one in impacts]
+    if struck:
+        write_csv(where / "ring_impacts.csv", tuple(struck[0]), [list(one.values()) for one in struck])
+    content: dict[str, Any] = plain(
+        {"schema": SCHEMA, "rings": [_described(curve) for curve in curves], "impacts": struck}
+    )
     write_json(where / "ring.json", content)
     return content
 
@@ -53,3 +59,19 @@ def _described(curve: RingCurve) -> dict[str, Any]:
         "model_ledger": [asdict(entry) for entry in curve.ledger],
         "error_budget": {cause: float(np.max(error)) for cause, error in curve.found.budget.items()},
     }
+
+
+def _struck(one: RingStruck) -> dict[str, Any]:
+    """An impact: what the ring does, how far (30)-(32) are from it, and what constant bulk modulus would change."""
+    table: dict[str, Any] = {
+        "ring": one.ring,
+        "strain": one.strain,
+        "mass_kg": one.mass,
+        "velocity_m_per_s": one.velocity,
+    }
+    for name in JUDGED:
+        quantity = one.found.quantities[name]
+        table |= {name: quantity.value, f"{name}_error": quantity.error, f"{name}_by_row": one.by_row(name)}
+        table |= dict(zip((f"{name}_row_deviation", f"{name}_row_deviation_error"), one.deviation(name), strict=True))
+        table |= dict(zip((f"{name}_of_bulk", f"{name}_of_bulk_error"), one.of_bulk(name), strict=True))
+    return table | {"converged": one.found.converged and one.bulk.converged, "verdict": one.verdict}
