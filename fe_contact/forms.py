@@ -121,7 +121,8 @@ def plane_stiffness(basis: Any, law: Array) -> sparse.coo_matrix:
 def _assembled(basis: Any, law: Array, strain: Array, weight: Array) -> sparse.coo_matrix:
     """``int sigma(u):eps(v)`` with strains (elements, points, 4, functions) and weights (elements, points)."""
     elements, points, _, functions = strain.shape
-    stress = np.matmul(law, strain) * weight[:, :, None, None]
+    stress = np.matmul(law, strain)
+    stress *= weight[:, :, None, None]  # in place: the largest array of all
     flat = (elements, 4 * points, functions)
     local = np.matmul(strain.reshape(flat).transpose(0, 2, 1), stress.reshape(flat))
     return scatter(local, vector_dofs(basis.element_dofs), 2 * basis.N)

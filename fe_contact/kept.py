@@ -11,7 +11,7 @@ from functools import update_wrapper
 from threading import Lock
 from typing import Any, Generic, ParamSpec, TypeVar
 
-BODIES = 16  # some 7 MB each; an impact on two bodies varies nine
+BODIES = 12  # some 7 MB each; an impact on two bodies varies nine
 
 _Arguments = ParamSpec("_Arguments")
 _Answer = TypeVar("_Answer")
