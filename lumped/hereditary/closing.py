@@ -67,7 +67,8 @@ def close(
         hoped = _closing(earlier, begin, last, steps) if last else None
         if last and hoped and last.fits and hoped.end <= end_time:
             return hoped
-        target = min((begin**2 + min(0.5 * guess.duration, 3.0 * begin**2)) ** 0.5, limit)
+        most = 3.0 * begin**2 or (0.5 * path.end) ** 2  # turned and parted within the very first piece: half of it
+        target = min((begin**2 + min(0.5 * guess.duration or most, most)) ** 0.5, limit)
         more = follow(problem, (begin, target), state, target - begin, _released, settings, largest)
         steps += more.steps
         path = earlier.joined(more.path) if earlier else more.path

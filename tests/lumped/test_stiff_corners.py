@@ -9,9 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lumped import Model, Motion, Scene, laws
-from lumped.errors import TooManySteps
+from lumped import Material, Model, Motion, Relaxation, Scene, laws
+from lumped.errors import BadInput, TooManySteps
+from lumped.laws import correspondence
 from lumped.scene_tables import LawChoice
+from lumped.shapes.power import PowerProfile
+from lumped.targets.layer import Layer
 
 NAMES = [name for name in laws.available() if "k" in laws.get(name).KEYS]
 DAMPINGS = ("xi", "c", "chi", "A", "alpha_t")
@@ -62,3 +65,12 @@ def test_every_corner_ends_or_says_why_not(name: str, campaign_size: Callable[[i
         assert energy["out"] <= energy["in"] * (1.0 + 1e-9), scene
         if e is not None and not scene.gravity and "e" in scene.law.values:
             assert e == pytest.approx(scene.law.values["e"], abs=1e-6), scene
+
+
+def test_a_weight_far_above_the_impact_is_named_not_divided_by() -> None:
+    """It turns and would part within the very first piece of a rough march; the layer gives way before."""
+    soft = Material(Relaxation(2.29e6, (1.79e6, 2.01e6), (5.7e-3, 2.34e-2)), 0.49)
+    blunt, layer = PowerProfile(2316.7, 2.615), Layer(1.524e-4, "sliding")
+    scene = Scene(blunt, 0.18423, 8.179e-5, soft, target=layer, model=Model(gravity=9.81))
+    with pytest.raises(BadInput, match="below the thickness"):
+        correspondence.estimate(scene)
