@@ -165,11 +165,13 @@ class _Dense:
 
 
 def _ascending(fields: Array) -> Array:
-    """The last row and those before which ascend to it: springs may leave at one time but for rounding."""
+    """The last row and those before which ascend to it: springs may leave at one time but for rounding, that of the
+    time left until the last.
+    """
     if not fields.size:
         return fields
-    time = fields[0]
-    later = (np.diff(np.maximum.accumulate(time), prepend=-1.0) > 0.0) & (time < time[-1])
+    left = np.sqrt(np.maximum(fields[0, -1] - fields[0], 0.0))
+    later = (np.diff(np.minimum.accumulate(left), prepend=np.inf) < 0.0) & (left > 0.0)
     later[-1] = True
     return fields[:, later]
 

@@ -208,6 +208,18 @@ def test_springs_that_leave_at_one_time_but_for_rounding(tolerance: float, impac
     closes(scene, tolerance)
 
 
+def test_a_solid_damped_a_million_times_too_much_is_no_crash() -> None:
+    """Rows of the row's rebound lie so near to each other that the root of the time left does not tell them apart."""
+    material = {"law": "kelvin_voigt", "E": 2539808694.4017277, "eta": 551145149801.6862, "nu": -0.22848906917747086}
+    striker = {"shape": "power", "coefficient": 0.8865284314772984, "exponent": 5.005565559648419}
+    motion = {"mass": 2.6558002194930284, "velocity": 2.561505671775805}
+    scene = Scene.from_dict({"striker": striker | motion, "target": {"shape": "half_space", "material": material}})
+    result = simulate(laws.mdr.of(scene), scene, 1e-4)
+    assert np.isfinite(result.history.force).all()
+    assert result.converged or "not reached" in result.message
+    assert result.quantities["restitution"].value == pytest.approx(0.0, abs=1e-6)
+
+
 def test_a_law_that_cannot_go_on_says_so(impact: Callable[..., Scene]) -> None:
     scene = impact(0.2, (0.8,), (0.1,), gravity=9.81)
     for result in both(scene):
