@@ -18,7 +18,7 @@ from fe_contact.validation.stability.base import Case, Chart, Measure
 from lumped import Scene, laws, simulate
 from lumped.members import available
 
-TITLE = "Relaxation time over time step: a sphere on a standard linear solid, one march without error budget"
+TITLE = "Relaxation time over time step: one march of a sphere on a standard linear solid"
 CHART = Chart(
     rows=("scheme", "steps"),
     columns=("ratio",),
