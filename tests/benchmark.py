@@ -113,7 +113,7 @@ def cold() -> float:
     return cpu["imports"]
 
 
-def study(*command: str, bound: float) -> None:
+def commanded(*command: str, bound: float) -> None:
     """A study, its two processes together, by the clock and by their CPU, against bare imports."""
     with tempfile.TemporaryDirectory() as folder:
         start = time.perf_counter()
@@ -284,8 +284,8 @@ def study() -> None:
 if __name__ == "__main__":
     imports = cold()
     indent_rows()
-    study("table1", bound=TABLE1_BOUND)
-    study("stability", "--quick", bound=STABILITY_BOUND)
+    commanded("table1", bound=TABLE1_BOUND)
+    commanded("stability", "--quick", bound=STABILITY_BOUND)
     waves()
     marginal(imports)
     lumped_laws(imports)
