@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -17,7 +17,7 @@ from lumped.laws._half_space import KEYS as KEYS
 from lumped.laws._half_space import check
 from lumped.result import Result, meets
 from lumped.scene import Scene
-from lumped.spring_row.coarse import coarse, pace_of, problem_of
+from lumped.spring_row.coarse import coarse, coarse_beyond, pace_of, problem_of
 from lumped.spring_row.nest import Level, Nest, limit, predicted_turn
 
 Array = NDArray[np.float64]
@@ -27,6 +27,8 @@ FORCE, SEEN = 4, [1, 2, 4, 5]
 # the first of three marches suffice mostly.
 INTERVALS, FEWEST, MOST = 1.1, 8, 90
 MOST_PARTS = 64
+# Rows through which the polynomials of a rebound run that goes on beyond the end.
+ROWS_BEYOND = 6
 # Did limits of two err by h^2 alone, that of three would err by a third of what it differs from the first; twice that.
 SAFETY = 2.0 / 3.0
 
@@ -58,8 +60,10 @@ class SpringRow:
         clock = Clock()
         problem = problem_of(scene)
         intervals = min(max(FEWEST, round(INTERVALS * tolerance**-0.25)), MOST)
-        track = coarse(problem, scene.end_time, intervals)
-        nest = Nest.around(problem, scene.end_time, track, pace_of(problem, scene.end_time, intervals), intervals)
+        track, stop = coarse_beyond(problem, scene.end_time, intervals)
+        nest = Nest.around(problem, stop, track, pace_of(problem, stop, intervals), intervals)
+        if stop > scene.end_time:
+            nest = replace(nest, cut=scene.end_time)
         nest, level, before = nest.begun(track.approach[-1].time)
         levels, limits, parts = [level], list[Level](), 1
         while parts < MOST_PARTS:
@@ -154,7 +158,7 @@ class _Dense:
         if rebound.size and self.separated:
             found[:, ~early] = local(-np.sqrt(last - rebound[0]), rebound[fields], -np.sqrt(last - late))
         elif rebound.size:
-            found[:, ~early] = local(rebound[0], rebound[fields], late)
+            found[:, ~early] = local(rebound[0], rebound[fields], late, ROWS_BEYOND)
         else:  # at rest
             found[:, ~early] = np.array([0.0, approach[1, -1], 0.0, 0.0, 0.0, approach[5, -1]])[fields, None]
         return found

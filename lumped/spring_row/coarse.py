@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from lumped.ending import End
 from lumped.scales import stiffest_impact
 from lumped.scene import Scene
 from lumped.spring_row.march import Track, march
@@ -9,6 +10,8 @@ from lumped.spring_row.pace import Adaptive
 from lumped.spring_row.row import Problem
 
 MOST_STEPS = 10_000
+# An end time is near a turn that comes before so many times it, and not more than so many steps before it.
+FURTHER, NEAR = 1.2, 1.5
 
 
 def problem_of(scene: Scene) -> Problem:
@@ -19,6 +22,26 @@ def problem_of(scene: Scene) -> Problem:
 def coarse(problem: Problem, end_time: float, elements: int) -> Track:
     """One march with steps by their error and by the travel of the edge, 1/elements. Raises NotReached."""
     return march(problem, end_time, pace_of(problem, end_time, elements), MOST_STEPS)
+
+
+def coarse_beyond(problem: Problem, end_time: float, elements: int) -> tuple[Track, float]:
+    """One march with when it stops, s: at the end time or, where that lies within some steps of the turn, beyond both.
+
+    Finer marches than this turn at other times: if all go further none of them is cut short of the turn, or by it.
+    Raises NotReached.
+    """
+    track = coarse(problem, end_time, elements)
+    if track.end is not End.TIME:
+        return track, end_time
+    further = coarse(problem, FURTHER * end_time, elements)
+    if not further.rebound:
+        return track, end_time
+    *_, before, last, turn = (instant.time for instant in further.approach)
+    later = max(end_time, turn) + 2.0 * NEAR * (last - before)
+    if end_time > turn + NEAR * (last - before):
+        return track, end_time
+    beyond = coarse(problem, later, elements)
+    return (beyond, later) if beyond.end is End.TIME else (track, end_time)
 
 
 def pace_of(problem: Problem, end_time: float, elements: int) -> Adaptive:

@@ -47,12 +47,16 @@ class Level:
 
 @dataclass(frozen=True)
 class Nest:
-    """A problem, when to stop (s), the grid of its approach, and whether the striker counts as at rest then."""
+    """A problem, when to stop (s), the grid of its approach, and whether the striker counts as at rest then.
+
+    `cut`: when the history is to end, s, where marches go on beyond it.
+    """
 
     problem: Problem
     end_time: float
     grid: Grid
     rests: bool = False
+    cut: float | None = None
 
     @classmethod
     def around(cls, problem: Problem, end_time: float, track: Track, pace: Adaptive, intervals: int) -> Nest:
@@ -73,7 +77,7 @@ class Nest:
         """
         times = self.grid.times(turn, 1)
         inward, half = self._approach(times), self._approach(times[1::2])
-        level = self._level(rebound(inward, self.end_time), len(inward.instants) + len(half.instants))
+        level = self._level(rebound(inward, self.end_time), times, len(inward.instants) + len(half.instants))
         return replace(self, grid=Grid.through(inward.instants)), level, half.instants[-1].time
 
     def _approach(self, times: list[float]) -> Inward:
@@ -91,21 +95,26 @@ class Nest:
             steps += len(inward.instants)
             *_, before, last = (instant.time for instant in inward.instants)
             if len(inward.instants) == len(times) + 1 and abs(last - turn) <= NEARLY * (last - before):
-                return self._level(rebound(inward, self.end_time), steps)
+                return self._level(rebound(inward, self.end_time), times, steps)
             # The turn hardly depends on where it was expected, mostly: the slope is -1, else the secant's.
             slope = min((last - turn - missed) / (turn - tried), LEAST_SLOPE) if tried else -1.0
             tried, missed = turn, last - turn
             turn -= missed / slope
         raise NotReached("finer and coarser steps of the spring row do not follow the same course of events")
 
-    def _level(self, track: Track, steps: int) -> Level:
-        mass, last = self.problem.mass, (track.rebound or track.approach)[-1]
-        motion = [mass * self.problem.gravity * last.depth, 0.5 * mass * last.velocity**2]
+    def _level(self, track: Track, times: list[float], steps: int) -> Level:
         steps += len(track.rebound) + len(track.beyond)
         outward = [*track.rebound[:-1], *track.beyond] if track.beyond else track.rebound
-        energies = np.array([*motion, track.spent, track.held])
+        ended = track if self.cut is None else self._ended(times, self.cut)
+        mass, last = self.problem.mass, (ended.rebound or ended.approach)[-1]
+        motion = [mass * self.problem.gravity * last.depth, 0.5 * mass * last.velocity**2]
+        energies = np.array([*motion, ended.spent, ended.held])
         end = End.REST if self.rests else track.end
         return Level(_columns(track.approach), _columns(outward), end, last.time, steps, energies)
+
+    def _ended(self, times: list[float], cut: float) -> Track:
+        """The march of these steps to where the history ends."""
+        return rebound(approach(self.problem, cut, Prescribed(times), 2 * len(times), at_rest=0.0), cut)
 
 
 def predicted_turn(before: float, last: float) -> float:
