@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.errors import TooManySteps
+from lumped.errors import NotReached, TooManySteps
 from lumped.hereditary.approach import DEPTH, FORCE, VELOCITY, Approach, follow
-from lumped.hereditary.march import Settings
+from lumped.hereditary.march import SHORTEST, Settings
 from lumped.hereditary.path import Path
 from lumped.hereditary.problem import Hereditary
 from lumped.hereditary.shutting import Guess, Shut, shut
@@ -69,6 +69,8 @@ def close(
             return hoped
         most = 3.0 * begin**2 or (0.5 * path.end) ** 2  # turned and parted within the very first piece: half of it
         target = min((begin**2 + min(0.5 * guess.duration or most, most)) ** 0.5, limit)
+        if target - begin <= SHORTEST * begin:
+            raise NotReached(f"the end of contact was lost in rounding at {begin**2 * problem.scales.time:.6g} s")
         more = follow(problem, (begin, target), state, target - begin, _released, settings, largest)
         steps += more.steps
         path = earlier.joined(more.path) if earlier else more.path

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from lumped import Material, Model, Relaxation, Result, Scene, Sphere, data, laws, simulate
 from lumped.ending import End
+from lumped.errors import NotReached
 from lumped.hereditary.march import Settings
 from lumped.interpolation import local, peak
 from lumped.laws import correspondence, ting
@@ -324,6 +325,17 @@ def test_without_clipping_the_law_pulls_until_the_depth_is_zero(
 
 
 # Ends.
+
+
+def test_an_end_lost_in_rounding_is_named() -> None:
+    """So much damping that the depth is gained in a millionth of the contact and lost in a billion of them."""
+    young = {"law": "kelvin_voigt", "E": 2501.105958672859, "eta": 19064076.196947463}
+    material = young | {"nu": 0.03551702916116983, "constant": "bulk"}
+    profile = {"shape": "power", "coefficient": 14.657326491738827, "exponent": 2.4397997608551476}
+    striker = profile | {"mass": 0.0003582831361312809, "velocity": 5.866415260068059}
+    scene = Scene.from_dict({"striker": striker, "target": {"shape": "half_space", "material": material}})
+    with pytest.raises(NotReached, match="lost in rounding"):
+        simulate(laws.correspondence.of(scene), scene, 1e-3)
 
 
 def ended(law: str, scene: Scene) -> Result:
