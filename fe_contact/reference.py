@@ -26,7 +26,7 @@ from lumped.scene import Scene
 
 CURE = "cure: a larger tolerance, or fewer numerics of your own"
 ROUNDS = 4  # refinements before giving up
-DOMINANT = 0.5  # causes above this share of the largest one are refined together
+DOMINANT = 0.5  # causes above this share of the largest one, or of the tolerance, are refined together
 
 
 @dataclass(frozen=True)
@@ -144,7 +144,7 @@ def refined_for(certified: Budget, numerics: Numerics, chosen: Plan) -> Numerics
     finer = numerics
     for cause, value in free.items():
         candidate = refined(finer, cause)
-        if value >= DOMINANT * worst and getattr(candidate, SETTING[cause]) <= RANGES[SETTING[cause]][1]:
+        if value >= DOMINANT * min(worst, 1.0) and getattr(candidate, SETTING[cause]) <= RANGES[SETTING[cause]][1]:
             finer = candidate
     return None if finer == numerics else finer
 
