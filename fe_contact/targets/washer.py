@@ -62,7 +62,7 @@ def meshed(geometry: Geometry, numerics: Numerics) -> ElasticBody:
 def _sizes(target: Target, rim: float, numerics: Numerics) -> Sizes:
     """In units of the height; contact ends at ``rim``, m."""
     assert isinstance(target, Washer)
-    thickness_over(2.0 * (target.outer_radius - target.inner_radius), target.height)  # fine from both of its ends
+    thickness_over(target.outer_radius - target.inner_radius, target.height)
     inner, outer, end = (length / target.height for length in (target.inner_radius, target.outer_radius, rim))
     return COARSER * numerics.elements_per_contact, numerics.order, inner, outer, end, target.base == "bonded"
 
