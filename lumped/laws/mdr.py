@@ -29,8 +29,9 @@ INTERVALS, FEWEST, MOST = 1.1, 8, 90
 MOST_PARTS = 64
 # Rows through which the polynomials of a rebound run that goes on beyond the end.
 ROWS_BEYOND = 6
-# Did limits of two err by h^2 alone, that of three would err by a third of what it differs from the first; twice that.
-SAFETY = 2.0 / 3.0
+# Did limits of two err by h^2 alone, that of three would err by a third of what it differs from the first. A force that
+# begins like t^(1/n), of a dashpot under a profile r^n, errs more at once, and so does a peak between coarse rows.
+SAFETY = 2.0
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,69 @@
+"""Error bars of the row of springs over profiles, networks and decades of relaxation, judged by Ting's integrals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lumped import Result, Scene, laws, simulate
+
+CASES = 250
+EXACT = 1e-8
+QUANTITIES = ("peak_force", "peak_time", "peak_depth", "duration", "restitution", "impulse")
+
+
+def striker(rng: np.random.Generator) -> dict[str, Any]:
+    """Any profile up to r^6, light or heavy, slow or fast."""
+    exponent = float(rng.uniform(1.0, 6.0))
+    profiles: list[dict[str, Any]] = [
+        {"shape": "sphere", "radius": 10.0 ** rng.uniform(-2.5, -1.5)},
+        {"shape": "cone", "angle": rng.uniform(5.0, 40.0)},
+        {"shape": "power", "exponent": exponent, "coefficient": rng.uniform(0.3, 3.0) * 0.01 ** (1.0 - exponent)},
+    ]
+    motion = {"mass": 10.0 ** rng.uniform(-2.0, 0.0), "velocity": 10.0 ** rng.uniform(-2.0, -0.5)}
+    return profiles[rng.integers(3)] | motion
+
+
+def material(rng: np.random.Generator) -> dict[str, Any]:
+    """Solids of every network, relaxing within a thousandth of a contact or long after it."""
+    E, time, branches = 10.0 ** rng.uniform(5.5, 7.0), 10.0 ** rng.uniform(-3.5, 0.3), rng.integers(1, 5)
+    laws_: list[dict[str, Any]] = [
+        {"law": "elastic", "E": E},
+        {"law": "sls", "E1": E, "E2": E * 10.0 ** rng.uniform(-1.0, 1.0), "C1": E * time},
+        {"law": "kelvin_voigt", "E": E, "eta": 0.1 * E * time},
+        {
+            "law": "prony",
+            "E_inf": E,
+            "E": [float(E * 10.0 ** rng.uniform(-1.0, 0.7)) for _ in range(branches)],
+            "tau": [float(time * 10.0 ** rng.uniform(-1.5, 1.0)) for _ in range(branches)],
+        },
+    ]
+    return laws_[rng.integers(4)] | {"nu": rng.uniform(0.0, 0.49)}
+
+
+def missed(found: Result, exact: Result) -> dict[str, float]:
+    """Errors over the bars that should cover them, where they are larger: of quantities, and of the force."""
+    over = {}
+    for name in QUANTITIES:
+        value, truth = found.quantities[name], exact.quantities[name]
+        if value.value is not None and truth.value is not None:
+            over[name] = abs(value.value - truth.value) / ((value.error or 0.0) + (truth.error or 0.0))
+    rows, bar = found.history, exact.history.force_error.max()
+    over["force"] = float(np.max(np.abs(rows.force - exact.history.force_at(rows.time)) / (rows.force_error + bar)))
+    return {name: ratio for name, ratio in over.items() if not ratio <= 1.0}
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
+def test_every_bar_covers(tolerance: float, campaign_size: Callable[[int], int]) -> None:
+    rng = np.random.default_rng(41)
+    converged = []
+    for _ in range(campaign_size(CASES)):
+        target = {"shape": "half_space", "material": material(rng)}
+        scene = Scene.from_dict({"name": "row", "striker": striker(rng), "target": target})
+        found = simulate(laws.mdr.of(scene), scene, tolerance)
+        converged.append(found.converged)
+        assert not missed(found, simulate(laws.ting.of(scene), scene, EXACT)), scene
+    assert np.mean(converged) >= 0.95
