@@ -20,15 +20,17 @@ from lumped.scene import Scene
 DEFAULT_TOLERANCE = 3e-3  # of a peak force; what chatter at the contact's edge leaves is about a third
 SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
 ELEMENTS = 9.0  # along every contact radius
-VISCOUS = 2.0  # times as many under a dashpot in parallel, which differentiates the mesh's error
+VISCOUS = 2.0  # times as many where a dashpot in parallel carries much: it differentiates the mesh's error
+PENALTY = 120.0
+STIFF = 4.0  # times as much there, of an edge that advances fast
+MUCH = 0.2  # of the first answer's stiffness: less than this of a dashpot's asks for less than all of both
 STEPS = 320  # along a contact
 MOST_EARLY = 4.0  # times as many at most for a force that peaks early
 TRAVEL = 0.5  # of the contact time: an echo from the far radius returns after the contact
 NEAREST = 20.0  # contact radii: the far springs' own need
-SPREAD = 2.0  # lengths over which a dashpot in parallel, which has no wave speed, spreads a motion in a contact
+SPREAD = 3.0  # lengths over which a dashpot in parallel, which has no wave speed, spreads a motion in a contact
 DEFAULTS: Mapping[str, Any] = {
     "order": 3,
-    "penalty": 120.0,
     "enforcement": "corrected",
     "scheme": "generalised_alpha",
     "rho": 0.5,
@@ -46,10 +48,12 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     contact_time = scales.duration or scene.end_time
     finer = max(1.0, DEFAULT_TOLERANCE / tolerance)
     peak_share = min(max(scales.peak_time / contact_time, SOONEST_PEAK), 1.0)
+    viscous = min(_dashpot_share(scene, peak_share * contact_time) / MUCH, 1.0)
     chosen = {
         **DEFAULTS,
         "tolerance": tolerance,
-        "elements_per_contact": ELEMENTS * math.sqrt(finer) * (VISCOUS if scene.contact_modulus.viscosity else 1.0),
+        "elements_per_contact": ELEMENTS * math.sqrt(finer) * (1.0 + (VISCOUS - 1.0) * viscous),
+        "penalty": PENALTY * (1.0 + (STIFF - 1.0) * viscous),
         "steps": 4 * math.ceil(STEPS * math.sqrt(finer) * min(max(1.0, EARLY_PEAK / peak_share), MOST_EARLY) / 4),
         "far_radius": _far_radius(scene, scales.contact_radius, contact_time),
         "contact_radius": scales.contact_radius,
@@ -58,6 +62,12 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     }
     peak = Peak(scales.peak_force, scales.peak_depth, scales.contact_radius, 2 * scales.peak_time)
     return Plan(WaveNumerics(**{**chosen, **given}), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
+
+
+def _dashpot_share(scene: Scene, peak_time: float) -> float:
+    """How much of the stiffness until the force peaks, s, is a dashpot's in parallel."""
+    dashpot = scene.contact_modulus.viscosity / peak_time
+    return dashpot / (scene.contact_modulus.glassy + dashpot)
 
 
 def _far_radius(scene: Scene, contact_radius: float, contact_time: float) -> float:
