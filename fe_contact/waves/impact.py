@@ -12,11 +12,9 @@ from fe_contact.numerics import ENFORCEMENTS, WAVE_SCHEMES
 from fe_contact.pressing import half_width
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
+from fe_contact.waves.parting import parting
 from lumped.members import get
 from lumped.scene import Scene
-
-READ, STRAIGHT = 5, 3  # last steps in which something presses: what tells when contact ends, and what its line asks
-SOONEST = 0.05  # steps after the last one in which something presses
 
 
 def motion(moving: Moving, scene: Scene, numerics: WaveNumerics) -> Motion:
@@ -76,24 +74,8 @@ def record(moving: Moving, found: Motion, scene: Scene) -> March:
 
 
 def _parting(found: Motion, exponent: float) -> tuple[float, float]:
-    """When contact ends, s, and how well that is read: a force depth^n falls to zero as (time left)^n.
-
-    Only near its end: where the edge recedes faster than waves run, the last thousandth of the force falls otherwise,
-    and under a dashpot almost the whole contact is such a tail.
-    """
-    force, time = found.force, found.time
-    last, step = int(np.flatnonzero(force > 0.0)[-1]), time[-1] - time[-2]
-    late = slice(last + 1 - READ, last + 1)
-    if last + 1 - READ <= force.argmax() or not (force[late] > 0.0).all():
-        return found.contacts[-1][1], step
-    x, root = (time[late] - time[last]) / step, force[late] ** (1.0 / exponent)
-    slope, start = np.polyfit(x[-STRAIGHT:], root[-STRAIGHT:], 1)
-    straight = -start / slope
-    ends = [float(r.real) for r in np.roots(np.polyfit(x, root, 2)) if r.imag == 0.0]
-    if not ends:
-        return float(time[last] + step * min(max(straight, SOONEST), 1.0)), step
-    curved = min(ends, key=lambda end: abs(end - straight))
-    return float(time[last] + step * min(max(curved, SOONEST), 1.0)), step * min(abs(curved - straight), 1.0)
+    """When contact ends, s, and how well that is read: to a step where too few of them tell."""
+    return parting(found.time, found.force, exponent) or (found.contacts[-1][1], found.time[-1] - found.time[-2])
 
 
 def _radius(moving: Moving, sample: Sample) -> float:

@@ -22,6 +22,7 @@ from fe_contact.methods import simulate
 from fe_contact.reference import strike_of
 from fe_contact.waves.half_space_body import moving
 from fe_contact.waves.impact import motion, record
+from fe_contact.waves.parting import parting
 from fe_contact.waves.targets import half_space
 from lumped import BadInput, Result, Scene, laws
 from lumped.radiation import radiation_coefficient
@@ -94,6 +95,25 @@ def test_without_density_it_is_the_impact_without_inertia() -> None:
     truth = laws.get("mdr").of(scene).simulate(scene, 1e-6).quantities
     for key in ("peak_force", "duration", "restitution", "peak_depth", "impulse"):
         assert quantities[key] == pytest.approx(truth[key].value, rel=1e-4), key
+
+
+@pytest.mark.parametrize("exponent", [1.5, 2.0])
+@pytest.mark.parametrize("fading", [0.0, 1.0, 12.0])
+def test_the_end_of_contact_is_read_within_a_step_though_its_tail_is_faint(exponent: float, fading: float) -> None:
+    """Forces known in closed form: symmetric ones, and those that all but vanish long before they end."""
+    rng, off = np.random.default_rng(5), list[float]()
+    for steps in rng.uniform(100.0, 700.0, 100):
+        time = np.arange(math.ceil(steps) + 1) / steps
+        left = np.maximum(1.0 - time, 0.0)
+        read = parting(time, time * left**exponent * np.exp(-fading * time), exponent)
+        assert read is not None
+        off.append(steps * abs(read[0] - 1.0))
+    assert max(off) < 0.06  # of a step, the twentieth within which no end follows a step
+
+
+def test_too_few_steps_tell_no_end() -> None:
+    time = np.arange(8.0)
+    assert parting(time, np.array([0.0, 1.0, 2.0, 3.0, 2.0, 1.0, 0.5, 0.0]), 1.5) is None
 
 
 @pytest.fixture(scope="module")
