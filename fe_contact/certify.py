@@ -10,9 +10,9 @@ the error by
 
 with the lowest order that theory or the scheme promises, not the higher one that is usually seen (Roache's
 grid convergence index, doi:10.1115/1.2910291). Extrapolation leaves the order after the scheme's own, if the
-three step lengths show that order; where they do not, order one is all that is trusted. What steps do not
-cure, the jitter that rounding and mesh leave in the force of a viscous contact, shows when every other step
-is left out of one march.
+three step lengths show that order; where they do not, order one is all that is trusted. What extrapolation does not
+cure, the jitter of a viscous contact's force, shows when every other step is left out of one march. It counts with
+the steps where it falls with them, as at the touch of a dashpot; else mesh and rounding leave it.
 """
 
 from __future__ import annotations
@@ -45,6 +45,7 @@ MESH_ORDER_ANYWHERE = 1  # where the edge falls anywhere in an element: 1.6 is w
 LEAST_HALVED = 40  # steps below which halving them twice would leave too few to tell anything
 LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 20.0, "far_radius": 5.0}
 CAUSES = ("mesh", "penalty", "time_step", "far_field")
+FALLS = 0.7  # share of a jitter which half the step leaves, if the step is its cause
 MOST_APART = 1.5  # durations by different steps that tell of one and the same end
 ROUNDING = 1e-9  # of a solve of nearly incompressible bodies
 
@@ -127,10 +128,11 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[C
     penalty, stiffer = _other(cheap, "penalty")
     order = MESH_ORDER[numerics.order] if surface.breathes else MESH_ORDER_ANYWHERE
     swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long
+    by_steps = swings or steps.jitter_falls
     changes: dict[str, Causes] = {
-        "mesh": (_change(base, curve(mesh), order, finer_mesh), *(() if swings else steps.jitter)),
+        "mesh": (_change(base, curve(mesh), order, finer_mesh), *(() if by_steps else steps.jitter)),
         "penalty": (_change(base, curve(penalty), LEAST_ORDER["penalty"], stiffer),),
-        "time_step": (steps.change, *(steps.jitter if swings else ())),
+        "time_step": (steps.change, *(steps.jitter if by_steps else ())),
         "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
     }
     return steps.value, changes
@@ -177,6 +179,7 @@ class _TimeSteps:
     change: Change | None
     jitter: tuple[Change, ...]
     cheap: int
+    jitter_falls: bool = False
 
 
 def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics) -> _TimeSteps:
@@ -200,8 +203,9 @@ def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics) -
     least = SAFETY / (2 ** orders.pop("force") - 1)
     weights = {name: SAFETY / (2**trusted - 1) / least for name, trusted in orders.items()}
     change = Change(value, before, least, weights)
-    jitter = Change(fine, fine.thinned(), 1.0)
-    return _TimeSteps(value, change, (jitter,), numerics.steps // 4)
+    jitter, coarser = (Change(one, one.thinned(), 1.0) for one in (fine, half))
+    falls = jitter.errors["history_l2"] < FALLS * coarser.errors["history_l2"]
+    return _TimeSteps(value, change, (jitter,), numerics.steps // 4, falls)
 
 
 def _end_alike(*curves: Curve) -> bool:

@@ -13,6 +13,7 @@ import pytest
 
 import fe_contact
 import lumped
+from fe_contact.plan import plan
 from lumped.laws import mdr
 from lumped.result import RULED_RELATIVE
 
@@ -54,3 +55,25 @@ def test_the_bars_cover_and_few_marches_do(exact: list[lumped.Result], tolerance
             error = abs(quantity.value - wanted)
             assert error <= quantity.error, f"{answer.scene.name}: {name} is not covered"
             assert error <= tolerance * (1.0 if name == "restitution" else abs(wanted))
+
+
+def roller(number: int) -> lumped.Scene:
+    """A cylinder on a half-plane whose dashpot takes up to a third of its speed: at touch the force grows as the half-width."""
+    rng = np.random.default_rng((20261122, number))
+    eta, datum = 1e6 * 6e-3 * 10 ** rng.uniform(-2.0, -1.0), 10 ** rng.uniform(-1.5, 0.5)
+    striker = {"shape": "cylinder", "radius": 0.006, "length": 0.03, "mass": 0.05, "velocity": 0.02}
+    material = {"law": "kelvin_voigt", "E": 1e6, "eta": eta, "nu": float(rng.uniform(0.0, 0.49))}
+    target = {"shape": "half_space", "datum_depth": datum, "material": material}
+    return lumped.Scene.from_dict({"name": f"roller-{number}", "striker": striker, "target": target})
+
+
+def test_what_falls_with_the_steps_asks_for_no_finer_mesh(campaign_size: Callable[[int], int]) -> None:
+    """A finer mesh would leave the touch of a dashpot as rough as it was, at a hundred times the cost."""
+    for number in range(campaign_size(20)):
+        scene = roller(number)
+        found, exact = fe_contact.run(scene, 1e-3), lumped.simulate(lumped.laws.ting.of(scene), scene, 1e-7)
+        assert found.converged
+        assert found.numerics["elements_per_contact"] <= 2.0 * plan(scene, {}).numerics.elements_per_contact
+        for name in RULED:
+            quantity, wanted = found.quantities[name], exact.quantities[name].value
+            assert abs(quantity.value - wanted) <= quantity.error, f"{scene.name}: {name} is not covered"
