@@ -58,7 +58,7 @@ def test_the_bars_cover_and_few_marches_do(exact: list[lumped.Result], tolerance
 
 
 def roller(number: int) -> lumped.Scene:
-    """A cylinder on a half-plane whose dashpot takes up to a third of its speed: at touch the force grows as the half-width."""
+    """A cylinder on a half-plane whose dashpot takes up to a third of its speed: at touch it pushes like the edge."""
     rng = np.random.default_rng((20261122, number))
     eta, datum = 1e6 * 6e-3 * 10 ** rng.uniform(-2.0, -1.0), 10 ** rng.uniform(-1.5, 0.5)
     striker = {"shape": "cylinder", "radius": 0.006, "length": 0.03, "mass": 0.05, "velocity": 0.02}
