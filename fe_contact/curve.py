@@ -150,6 +150,8 @@ class Curve:
 
     @property
     def _force_peak(self) -> tuple[float, float]:
+        if self.near_peak.stop == len(self.shares):  # the striker comes to rest there: no hill to fit
+            return peak(self.dense_time, self.dense_force)
         near = self.dense_time[self.near_peak]
         return fitted_peak(float(near[0]), float(near[-1]), self.force(np.linspace(near[0], near[-1], PLACES)))
 

@@ -125,3 +125,15 @@ def test_a_weight_that_swings_back_to_its_touch_is_named_where_steps_disagree_on
     scene = Scene(Punch(5.82e-5), 0.79, 1.53e-5, Material(Relaxation(1.394e6), 0.0), target=Layer(6.7e-4, "bonded"))
     with pytest.raises(BadInput, match="below the layer's thickness"):
         fe_contact.run(replace(scene, model=Model(gravity=9.81)), TOLERANCE)
+
+
+@pytest.mark.parametrize("eta", [200.0, 500.0, 1000.0])
+def test_a_punch_that_sinks_faster_and_faster_presses_at_most_with_its_weight(eta: float) -> None:
+    """A fluid so thin that force never exceeds it: no hill, and nothing fitted to one."""
+    striker = {"shape": "punch", "radius": 0.003, "mass": 0.05, "velocity": 0.02}
+    target = {"shape": "half_space", "material": {"law": "maxwell", "E": 1e6, "eta": eta, "nu": 0.4}}
+    table = {"name": "sinking", "striker": striker, "target": target, "model": {"gravity": 9.81}}
+    found = fe_contact.run(Scene.from_dict(table), 1e-3)
+    peak = found.quantities["peak_force"]
+    assert found.converged
+    assert abs(peak.value - 0.05 * 9.81) <= peak.error <= 1e-3 * peak.value
