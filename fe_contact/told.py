@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fe_contact.certify import Budget
 from lumped.history import History, densified
 from lumped.result import UNITS, Quantity
@@ -21,7 +23,8 @@ def quantities_of(certified: Budget) -> dict[str, Quantity]:
 def history(certified: Budget, tolerance: float) -> History:
     """Rows dense enough for linear interpolation, with the force's error band."""
     curve = certified.curve
-    rows = densified(curve.dense_time[::3], curve.force, ROWS_SHARE * tolerance)
+    start = np.append(curve.dense_time[:-1:3], curve.dense_time[-1])
+    rows = densified(start, curve.force, ROWS_SHARE * tolerance)
     read = curve.read(rows)
     return History(
         time=rows,

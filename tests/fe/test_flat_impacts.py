@@ -137,3 +137,12 @@ def test_a_punch_that_sinks_faster_and_faster_presses_at_most_with_its_weight(et
     peak = found.quantities["peak_force"]
     assert found.converged
     assert abs(peak.value - 0.05 * 9.81) <= peak.error <= 1e-3 * peak.value
+
+
+@pytest.mark.parametrize("end_time", [0.17, 0.3, 0.4])
+def test_the_last_row_of_what_does_not_part_is_at_the_end_time(end_time: float) -> None:
+    striker = {"shape": "punch", "radius": 0.003, "mass": 0.05, "velocity": 0.02}
+    target = {"shape": "half_space", "material": {"law": "maxwell", "E": 1e6, "eta": 3000.0, "nu": 0.4}}
+    motion = {"end_time": end_time}
+    table = {"name": "sinking", "striker": striker, "target": target, "model": {"gravity": 9.81}, "motion": motion}
+    assert fe_contact.run(Scene.from_dict(table), 1e-3).history.time[-1] == pytest.approx(end_time, rel=1e-12)
