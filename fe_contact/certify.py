@@ -173,7 +173,10 @@ def _far_field(
 
 @dataclass(frozen=True)
 class _TimeSteps:
-    """What the variation of the step length yields: value, its change, jitter, and steps for other variations."""
+    """What the variation of the step length yields: value, its change, jitter, steps for other variations.
+
+    ``jitter_falls``: with the step, which then is its cause.
+    """
 
     value: Curve
     change: Change | None
@@ -204,7 +207,7 @@ def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics) -
     weights = {name: SAFETY / (2**trusted - 1) / least for name, trusted in orders.items()}
     change = Change(value, before, least, weights)
     jitter, coarser = (Change(one, one.thinned(), 1.0) for one in (fine, half))
-    falls = jitter.errors["history_l2"] < FALLS * coarser.errors["history_l2"]
+    falls = jitter.history < FALLS * coarser.history
     return _TimeSteps(value, change, (jitter,), numerics.steps // 4, falls)
 
 

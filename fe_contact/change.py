@@ -45,7 +45,7 @@ class Change:
             "restitution": self.velocity / first.strike.velocity,
         }
         errors = {name: self._error(name, value) for name, value in around.items()}
-        return errors | {"history_l2": self.factor * self._history}
+        return errors | {"history_l2": self.factor * self.history}
 
     def _error(self, name: str, around: float) -> float:
         first, second = self.first.quantities[name], self.second.quantities[name]
@@ -91,8 +91,8 @@ class Change:
         """The same of the impulse, N s."""
         return float(np.abs(self.first.dense.impulse - self._alike.impulse)[self.first.late :].max())
 
-    @property
-    def _history(self) -> float:
+    @cached_property
+    def history(self) -> float:
         """Norm of the force's change over the norm of the force."""
         time = self.first.dense_time
         change = np.trapezoid(self._force_change**2, time)

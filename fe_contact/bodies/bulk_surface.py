@@ -72,8 +72,8 @@ class BulkSurface(Deformable):
 
     @property
     def solves(self) -> int:
-        """Two a node of the contact zone and ratio: for the compliance, and for the motion of the whole."""
-        return 2 * self.modes.ratios * len(self.operator.stiffness)
+        """Those of its modes."""
+        return self.modes.solves
 
     def unit(self, contact_radius: float) -> float:
         """The mesh's unit of length, m."""

@@ -46,6 +46,11 @@ class Modes:
     ratios: int
     interval: tuple[float, float]
 
+    @property
+    def solves(self) -> int:
+        """Two a node of the contact zone and ratio: for the compliance, and for the motion of the whole."""
+        return 2 * self.ratios * len(self.operator.stiffness)
+
     def stiffer(self, share: float) -> Modes:
         """Of a body so many times as stiff."""
         return replace(self, volume=share * self.volume, shear=share * self.shear)

@@ -102,8 +102,8 @@ class BulkSide(Side):
 
     @property
     def solves(self) -> int:
-        """Two a node and ratio."""
-        return 2 * self.modes.ratios * len(self.operator.stiffness)
+        """Those of its modes."""
+        return self.modes.solves
 
     def half(self, scheme: ModuleType, scale: float) -> Half:
         """The body, whose bulk remembers; ``scale``, m, is the common unit."""
