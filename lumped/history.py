@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.csv_file import read_columns, write_columns
 from lumped.errors import BadInput, Fault
 
 Array = NDArray[np.float64]
@@ -72,41 +72,13 @@ class History:
 
     def write_csv(self, path: Path) -> None:
         """Write the columns, every value with all its digits."""
-        table = np.column_stack([getattr(self, name) for name in COLUMNS])
-        np.savetxt(path, table, fmt="%.17g", delimiter=",", header=",".join(COLUMNS.values()), comments="")
+        write_columns(path, tuple(COLUMNS.values()), [getattr(self, name) for name in COLUMNS])
 
     @classmethod
     def read_csv(cls, path: Path) -> History:
         """Read what `write_csv` wrote; more columns may follow. Raises BadInput."""
         table = read_columns(path, tuple(COLUMNS.values()))
         return cls(**{name: table[column] for name, column in COLUMNS.items()})
-
-
-def read_columns(path: Path, wanted: tuple[str, ...]) -> dict[str, Array]:
-    """The `wanted` columns of a CSV file with a header, each of shape (rows,). Raises BadInput."""
-    source = str(path)
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            rows = [row for row in csv.reader(file) if any(cell.strip() for cell in row)]
-    except OSError as error:
-        raise BadInput(Fault(source, "", f"cannot be read: {error.strerror or error}")) from error
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise BadInput(Fault(source, "", "cannot be read: no CSV text")) from error
-    header = [cell.strip() for cell in rows[0]] if rows else []
-    missing = [name for name in wanted if name not in header]
-    if missing:
-        raise BadInput(Fault(source, name, f"missing column; accepted header: {','.join(wanted)}") for name in missing)
-    return {name: _column(source, name, rows, header.index(name)) for name in wanted}
-
-
-def _column(source: str, name: str, rows: list[list[str]], index: int) -> Array:
-    try:
-        column = np.array([float(row[index]) for row in rows[1:]])
-    except (ValueError, IndexError) as error:
-        raise BadInput(Fault(source, name, "a row holds no number in this column")) from error
-    if column.size < 2 or not np.all(np.isfinite(column)):
-        raise BadInput(Fault(source, name, "accepted: at least two rows, every value finite"))
-    return column
 
 
 def densified(times: ArrayLike, force: Callable[[Array], Array], tolerance: float) -> Array:

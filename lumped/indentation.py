@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -12,11 +11,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.csv_file import write_columns
 from lumped.dimensionless import groups_at_rest
 from lumped.finite_size import FiniteSize, finite_size
 from lumped.indenter import Indenter
+from lumped.json_file import plain, write_json
 from lumped.model_ledger import Peak, ledger_at_rest
-from lumped.result import LedgerEntry, Quantity, plain, provenance
+from lumped.result import LedgerEntry, Quantity, provenance
 
 Array = NDArray[np.float64]
 SCHEMA = "fe-contact/indentation/1"
@@ -110,11 +111,9 @@ class Indentation:
     def write(self, directory: Path) -> None:
         """Write indentation.csv and result.json into `directory`, made when it is not there."""
         directory.mkdir(parents=True, exist_ok=True)
-        table = np.column_stack([self.depth, self.force, self.contact_radius, self.force_error])
-        path = directory / "indentation.csv"
-        np.savetxt(path, table, fmt="%.17g", delimiter=",", header=",".join(COLUMNS), comments="")
-        text = json.dumps(self.to_json(), indent=2, allow_nan=False, ensure_ascii=False)
-        (directory / "result.json").write_text(text + "\n", encoding="utf-8")
+        columns = [self.depth, self.force, self.contact_radius, self.force_error]
+        write_columns(directory / "indentation.csv", COLUMNS, columns)
+        write_json(directory / "result.json", self.to_json())
 
 
 def power_law(depth: Array, force: Array, error: Array, row: float) -> dict[str, Quantity]:

@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.csv_file import write_columns
+
 Array = NDArray[np.float64]
-HEADER = "time_after_separation_s,depth_m,depth_error_m"
+COLUMNS = ("time_after_separation_s", "depth_m", "depth_error_m")
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,5 +42,4 @@ class IndentationLeft:
 
     def write_csv(self, path: Path) -> None:
         """Write the rows, every value with all its digits."""
-        table = np.column_stack([self.time, self.depth, self.error])
-        np.savetxt(path, table, fmt="%.17g", delimiter=",", header=HEADER, comments="")
+        write_columns(path, COLUMNS, [self.time, self.depth, self.error])

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import math
 import platform
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -17,6 +15,7 @@ from lumped.dimensionless import groups
 from lumped.history import History
 from lumped.indentation_left import IndentationLeft
 from lumped.interpolation import peak
+from lumped.json_file import plain, write_json
 from lumped.scene import Scene
 from lumped.scene_tables import Model
 
@@ -125,8 +124,7 @@ class Result:
         self.history.write_csv(directory / "history.csv")
         if self.recovery is not None:
             self.recovery.write_csv(directory / "recovery.csv")
-        text = json.dumps(self.to_json(), indent=2, allow_nan=False, ensure_ascii=False)
-        (directory / "result.json").write_text(text + "\n", encoding="utf-8")
+        write_json(directory / "result.json", self.to_json())
 
 
 def write_failure(directory: Path, scene: Scene, method: str, message: str) -> None:
@@ -144,8 +142,7 @@ def write_failure(directory: Path, scene: Scene, method: str, message: str) -> N
         "provenance": provenance(),
     }
     directory.mkdir(parents=True, exist_ok=True)
-    text = json.dumps(plain(content), indent=2, allow_nan=False, ensure_ascii=False)
-    (directory / "result.json").write_text(text + "\n", encoding="utf-8")
+    write_json(directory / "result.json", plain(content))
 
 
 def quantities_of(history: History, separated: bool) -> dict[str, float | None]:
@@ -195,18 +192,3 @@ def provenance() -> Mapping[str, str]:
         except PackageNotFoundError:
             found[package] = "not installed"
     return found
-
-
-def plain(value: Any) -> Any:
-    """Python's own types only, None for what is not finite."""
-    if isinstance(value, Mapping):
-        return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain(item) for item in value]
-    if isinstance(value, np.generic):
-        return plain(value.item())
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.csv_file import read_columns
 from lumped.errors import BadInput, Fault
-from lumped.history import History, read_columns
+from lumped.history import History
 from lumped.interpolation import peak
 
 Array = NDArray[np.float64]

@@ -12,8 +12,8 @@ import pytest
 
 from fe_contact.cli import main
 from fe_contact.report.ptmd import plot_study
+from lumped.csv_file import read_columns
 from lumped.errors import BadInput
-from lumped.history import read_columns
 from lumped.pounding_tmd import Memory, march
 from lumped.pounding_tmd import study as studies
 from lumped.pounding_tmd.case_file import load, names, read

@@ -27,7 +27,7 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.reference import result_of, solve
     from fe_contact.report.compare import plot_comparison
     from fe_contact.validation.compare import compare
-    from fe_contact.validation.tables import write_comparison
+    from fe_contact.validation.compare_files import write_comparison
     from lumped.score import read_curve
 
     scene, table = base.read_scene(args)

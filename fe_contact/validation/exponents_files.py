@@ -12,7 +12,8 @@ import numpy as np
 from fe_contact.validation.exponents import Curve, Profile
 from fe_contact.validation.exponents_check import Check
 from fe_contact.validation.finite_spheres import Pair
-from fe_contact.validation.tables import plain, write_csv, write_json
+from lumped.csv_file import write_csv
+from lumped.json_file import plain, write_json
 
 SCHEMA = "fe-contact/exponents/1"
 COLUMNS = (

@@ -7,7 +7,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from fe_contact.validation.tables import plain, write_csv, write_json
+from lumped.csv_file import write_csv
+from lumped.json_file import plain, write_json
 from lumped.paper.claims import Judged, counts
 from lumped.paper.study import GridRow, Study
 from lumped.paper.value import Value

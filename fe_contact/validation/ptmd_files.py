@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from fe_contact.validation.tables import plain, write_csv, write_json
+from lumped.csv_file import write_csv
+from lumped.json_file import plain, write_json
 from lumped.pounding_tmd.case import Case
 from lumped.pounding_tmd.result import COLUMNS
 from lumped.pounding_tmd.study import Study

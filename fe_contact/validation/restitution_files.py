@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from fe_contact.validation.tables import plain, write_csv, write_json
+from lumped.csv_file import write_csv
+from lumped.json_file import plain, write_json
 from lumped.restitution_table import Line
 
 SCHEMA = "fe-contact/restitution/1"

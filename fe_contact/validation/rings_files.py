@@ -12,7 +12,8 @@ import numpy as np
 from fe_contact.validation.rings import SMALL_STRAIN, RingCurve
 from fe_contact.validation.rings_impact import JUDGED, RingStruck
 from fe_contact.validation.rings_verdict import verdict
-from fe_contact.validation.tables import plain, write_csv, write_json
+from lumped.csv_file import write_csv
+from lumped.json_file import plain, write_json
 
 SCHEMA = "fe-contact/ring/1"
 COLUMNS = (

@@ -12,7 +12,8 @@ from typing import Any
 from fe_contact import __version__
 from fe_contact.progress import Progress
 from fe_contact.validation.stability.base import STUDIES, Case, Row, row
-from fe_contact.validation.tables import plain, write_csv, write_json
+from lumped.csv_file import write_csv
+from lumped.json_file import plain, write_json
 from lumped.members import available, get
 
 SCHEMA = "fe-contact/stability/1"

@@ -12,7 +12,8 @@ from fe_contact.validation.datum import DEPTH
 from fe_contact.validation.table1 import Trial, bodies
 from fe_contact.validation.table1_impact import FromImpact
 from fe_contact.validation.table1_verdict import Deviation, deviations, verdict
-from fe_contact.validation.tables import plain, write_csv, write_json
+from lumped.csv_file import write_csv
+from lumped.json_file import plain, write_json
 from lumped.result import Quantity
 
 SCHEMA = "fe-contact/table1/1"

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -12,7 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.csv_file import write_csv
 from lumped.history import History
+from lumped.json_file import write_json
 from lumped.result import Result
 from lumped.scene import Scene
 
@@ -83,18 +83,15 @@ class Fit:
     def write(self, directory: Path) -> None:
         """Write fit.json, fit.csv (the fitted history) and parameters.csv into `directory`, made when not there."""
         directory.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(self.to_json(), indent=2, allow_nan=False, ensure_ascii=False)
-        (directory / "fit.json").write_text(text + "\n", encoding="utf-8")
+        write_json(directory / "fit.json", self.to_json())
         self.history.write_csv(directory / "fit.csv")
-        with (directory / "parameters.csv").open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(["parameter", "value", "low", "high", "unit"])
-            writer.writerows([name, *asdict(estimate).values()] for name, estimate in self.parameters.items())
-            writer.writerows([name, value, "", "", ""] for name, value in self.held.items())
+        rows = [[name, *asdict(estimate).values()] for name, estimate in self.parameters.items()]
+        rows += [[name, value, None, None, ""] for name, value in self.held.items()]
+        write_csv(directory / "parameters.csv", ("parameter", "value", "low", "high", "unit"), rows)
 
 
 def write_failure(directory: Path, law: str, message: str) -> None:
     """Write the fit.json of a search that did not converge."""
     directory.mkdir(parents=True, exist_ok=True)
     content = {"schema": SCHEMA, "law": law, "converged": False, "message": message, "parameters": None}
-    (directory / "fit.json").write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+    write_json(directory / "fit.json", content)

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.csv_file import read_columns
 from lumped.errors import BadInput, Fault
-from lumped.history import read_columns
 from lumped.materials.relaxation import Relaxation
 
 Array = NDArray[np.float64]
