@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.load_curves import line_profile
+from lumped.shapes._outlines import parabola, parabola_slope
 from lumped.shapes.cylinder import Cylinder
 
 
@@ -20,11 +21,11 @@ class ParabolicCylinder(Cylinder):
 
     def height(self, r: ArrayLike) -> NDArray[np.float64]:
         """r^2/(2R)."""
-        return np.asarray(np.asarray(r, dtype=float) ** 2 / (2.0 * self.radius))
+        return parabola(r, self.radius)
 
     def slope(self, r: ArrayLike) -> NDArray[np.float64]:
         """r/R."""
-        return np.asarray(np.abs(np.asarray(r, dtype=float)) / self.radius)
+        return parabola_slope(r, self.radius)
 
     @property
     def line_profile(self) -> line_profile.LineProfile:

@@ -15,6 +15,7 @@ from lumped.keys import Key, Number, check_fields
 from lumped.load_curves import line_profile
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
+from lumped.shapes._outlines import circle, circle_slope
 from lumped.shapes.base import Shape
 
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "length": Number(1e-9, 1e6, "m")}
@@ -34,16 +35,12 @@ class Cylinder(Shape):
         check_fields("cylinder", self, KEYS)
 
     def height(self, r: ArrayLike) -> NDArray[np.float64]:
-        """R - sqrt(R^2 - r^2), which cancels no digit; infinite beyond R."""
-        ratio = np.abs(np.asarray(r, dtype=float)) / self.radius
-        rise = self.radius * ratio**2 / (1.0 + np.sqrt(np.maximum(1.0 - ratio**2, 0.0)))
-        return np.where(ratio <= 1.0, rise, np.inf)
+        """R - sqrt(R^2-r^2), infinite beyond R."""
+        return circle(r, self.radius)
 
     def slope(self, r: ArrayLike) -> NDArray[np.float64]:
-        """r/sqrt(R^2 - r^2), infinite from R on."""
-        ratio = np.abs(np.asarray(r, dtype=float)) / self.radius
-        with np.errstate(divide="ignore"):
-            return np.where(ratio < 1.0, ratio / np.sqrt(np.maximum(1.0 - ratio**2, 0.0)), np.inf)
+        """r/sqrt(R^2-r^2), infinite from R on."""
+        return circle_slope(r, self.radius)
 
     def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
         """None: dimensionality reduction is for axisymmetric contact. Raises BadInput."""

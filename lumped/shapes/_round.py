@@ -1,0 +1,38 @@
+"""What the sphere and its paraboloid share: a tip of one radius of curvature."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from lumped.keys import Key, Number, check_fields
+from lumped.load_curves.hertz import HertzImpact, hertz_impact
+from lumped.shapes.base import Shape
+
+KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}
+
+
+@dataclass(frozen=True)
+class Round(Shape):
+    """A profile with this radius at its tip, m. Raises BadInput for a radius out of range."""
+
+    radius: float
+    keys: ClassVar[Mapping[str, Key]] = KEYS
+
+    def __post_init__(self) -> None:
+        check_fields(self.name, self, KEYS)
+
+    @property
+    def exponent_of_force(self) -> float:
+        """3/2."""
+        return 1.5
+
+    @property
+    def tip_radius(self) -> float:
+        """Its radius, m."""
+        return self.radius
+
+    def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
+        """Scales of the Hertz impact, exact for the paraboloid."""
+        return hertz_impact(self.radius, modulus, mass, velocity)
