@@ -103,8 +103,7 @@ class TippedImpact:
     def starts(self) -> Array:
         """Times at which echoes arrive, from touch on, s."""
         pieces, end, _ = self.pieces
-        delay = self.waves.delay if len(pieces) > 1 else 0.0
-        return np.asarray(np.minimum(delay * np.arange(len(pieces)), end))
+        return self.waves.arrivals(len(pieces), end)
 
     def columns(self, times: Array) -> Array:
         """Depth, velocity, force, and what leaves, f', at times (n,): SI, shape (4, n)."""

@@ -38,6 +38,11 @@ class Waves:
         """Time to the other end and back, s; infinite where nothing comes back."""
         return 2.0 * self.transit if self.echo else math.inf
 
+    def arrivals(self, pieces: int, end: float) -> Array:
+        """When so many pieces of a motion begin, s, (pieces,): at touch and with every echo, none after the end."""
+        delay = self.delay if pieces > 1 else 0.0
+        return np.asarray(np.minimum(delay * np.arange(pieces), end))
+
     @classmethod
     def of(cls, scene: Scene) -> Waves:
         """Of a scene whose target is an elastic rod."""
