@@ -63,9 +63,9 @@ class Row(ABC):
     def length(self) -> float:
         """The length which depths are compared with, m."""
 
-    @abstractmethod
     def modulus(self, *bodies: Elastic) -> float:
-        """E* as it should be, Pa."""
+        """E* as it should be, Pa: of half-spaces in series, so E/(1-nu^2) of one alone, unless a row says otherwise."""
+        return contact_modulus(*bodies)
 
     def printed_modulus(self, *bodies: Elastic) -> float:
         """E* as printed, Pa: the right one unless a row says otherwise."""

@@ -10,7 +10,7 @@ from typing import ClassVar
 from lumped.indenter import Indenter
 from lumped.keys import Key, Number
 from lumped.shapes import cone
-from lumped.table1.base import Elastic, Row, contact_modulus, pressed
+from lumped.table1.base import Elastic, Row, pressed
 from lumped.targets import half_space
 
 KEYS: Mapping[str, Key] = {"angle": Number(0.01, 80.0, "degrees, between face and undeformed surface")}
@@ -43,10 +43,6 @@ class Cone(Row):
     def length(self) -> float:
         """A metre: a cone has no length of its own."""
         return 1.0
-
-    def modulus(self, *bodies: Elastic) -> float:
-        """E/(1-nu^2), Pa."""
-        return contact_modulus(*bodies)
 
     def printed_modulus(self, *bodies: Elastic) -> float:
         """E, Pa."""

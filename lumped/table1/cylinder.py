@@ -10,7 +10,7 @@ from typing import ClassVar
 from lumped.indenter import Indenter
 from lumped.keys import Key, Number
 from lumped.shapes import cylinder
-from lumped.table1.base import Elastic, Row, contact_modulus, pressed
+from lumped.table1.base import Elastic, Row, pressed
 from lumped.targets import layer
 
 LAYER = 10.0  # thickness over radius
@@ -47,10 +47,6 @@ class Cylinder(Row):
     def length(self) -> float:
         """The radius, m."""
         return self.radius
-
-    def modulus(self, *bodies: Elastic) -> float:
-        """E/(1-nu^2), Pa."""
-        return contact_modulus(*bodies)
 
     def scene(self, *bodies: Elastic) -> Indenter:
         """Its parabola on a thick layer, whose thickness stands for the datum."""

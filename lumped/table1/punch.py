@@ -9,7 +9,7 @@ from typing import ClassVar
 from lumped.indenter import Indenter
 from lumped.keys import Key, Number
 from lumped.shapes import punch
-from lumped.table1.base import Elastic, Row, contact_modulus, pressed
+from lumped.table1.base import Elastic, Row, pressed
 from lumped.targets import half_space
 
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}
@@ -39,10 +39,6 @@ class Punch(Row):
     def length(self) -> float:
         """The radius, m."""
         return self.radius
-
-    def modulus(self, *bodies: Elastic) -> float:
-        """E/(1-nu^2), Pa."""
-        return contact_modulus(*bodies)
 
     def scene(self, *bodies: Elastic) -> Indenter:
         """On the half-space."""

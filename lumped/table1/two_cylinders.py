@@ -10,7 +10,7 @@ from typing import ClassVar
 from lumped.indenter import Indenter
 from lumped.keys import Key, Number
 from lumped.shapes import cylinder
-from lumped.table1.base import Elastic, Row, contact_modulus, pressed
+from lumped.table1.base import Elastic, Row, pressed
 from lumped.targets import cylinder as targets
 
 KEYS: Mapping[str, Key] = {
@@ -55,10 +55,6 @@ class TwoCylinders(Row):
     def length(self) -> float:
         """R of the gap, 1/R = 1/R_a + 1/R_b, m."""
         return self.radius * self.other_radius / (self.radius + self.other_radius)
-
-    def modulus(self, *bodies: Elastic) -> float:
-        """E*, Pa."""
-        return contact_modulus(*bodies)
 
     def scene(self, *bodies: Elastic) -> Indenter:
         """Their parabolas, the struck one held at its middle plane."""

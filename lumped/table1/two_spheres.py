@@ -10,7 +10,7 @@ from typing import ClassVar
 from lumped.indenter import Indenter
 from lumped.keys import Key, Number
 from lumped.shapes import sphere
-from lumped.table1.base import Elastic, Row, contact_modulus, pressed
+from lumped.table1.base import Elastic, Row, pressed
 from lumped.targets import sphere as targets
 
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "other_radius": Number(1e-9, 1e4, "m")}
@@ -45,10 +45,6 @@ class TwoSpheres(Row):
     def length(self) -> float:
         """R of the gap, m."""
         return self.radius * self.other_radius / (self.radius + self.other_radius)
-
-    def modulus(self, *bodies: Elastic) -> float:
-        """E*, Pa."""
-        return contact_modulus(*bodies)
 
     def scene(self, *bodies: Elastic) -> Indenter:
         """Two half-spaces under the gap of both spheres."""
