@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 from lumped.collide.bodies import Stage
+from lumped.laws._parameters import Parameters
 from lumped.laws._power_law import PowerLaw
+from lumped.scene import Scene
 
 # The exponent for which the dampings of a given restitution are told.
 TOLD_FOR = 1.5
@@ -24,6 +26,17 @@ class OscillatorDamped(PowerLaw):
     c: float
     alpha: float = 1.5
     rebounds: ClassVar[bool]
+
+    @classmethod
+    def damped_by(cls, scene: Scene, key: str, unit: float = 1.0) -> Self:
+        """The law for a scene with c = unit times the damping called `key` times sqrt(m k). Raises BadInput."""
+        given = Parameters(scene, cls.name)
+        alpha = given.exponent()
+        k = given.stiffness(alpha)
+        kind, damping = given.damping((key,))
+        if kind == "e":
+            damping = _at_exponent(given.meeting(cls.name, damping), alpha)
+        return cls(k=k, c=unit * damping * math.sqrt(scene.reduced_mass * k), alpha=alpha, **given.common())
 
     def exponents(self, stage: Stage) -> tuple[float, ...]:
         """The spring's and the damper's."""
@@ -46,6 +59,6 @@ class OscillatorDamped(PowerLaw):
         return self.rebounds or stage.approaching
 
 
-def at_exponent(damping: float, alpha: float) -> float:
+def _at_exponent(damping: float, alpha: float) -> float:
     """The damping with the ratio, and so the restitution, that `damping` gives at alpha = 3/2."""
     return damping * math.sqrt((alpha + 1.0) / (TOLD_FOR + 1.0))

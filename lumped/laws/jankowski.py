@@ -6,22 +6,13 @@ paper. Doi 10.1002/eqe.434.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.keys import Key
-from lumped.laws._oscillator_damped import OscillatorDamped, at_exponent
-from lumped.laws._parameters import (
-    COMMON,
-    EXPONENT_FROM_ONE,
-    RESTITUTION,
-    STIFFNESS,
-    Parameters,
-    damping_keys,
-    formula_key,
-)
+from lumped.laws._oscillator_damped import OscillatorDamped
+from lumped.laws._parameters import COMMON, EXPONENT_FROM_ONE, RESTITUTION, STIFFNESS, damping_keys, formula_key
 from lumped.scene import Scene
 
 KEYS: Mapping[str, Key] = {
@@ -44,11 +35,4 @@ class Jankowski(OscillatorDamped):
 
 def of(scene: Scene) -> Jankowski:
     """The law for a scene. Raises BadInput."""
-    given = Parameters(scene, Jankowski.name)
-    alpha = given.exponent()
-    k = given.stiffness(alpha)
-    kind, xi = given.damping(("xi",))
-    if kind == "e":
-        xi = at_exponent(given.meeting("jankowski", xi), alpha)
-    common = given.common()
-    return Jankowski(k=k, c=2.0 * xi * math.sqrt(scene.reduced_mass * k), alpha=alpha, **common)
+    return Jankowski.damped_by(scene, "xi", unit=2.0)

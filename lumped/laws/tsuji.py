@@ -5,22 +5,13 @@ Alpha = 3/2 in doi 10.1016/0032-5910(92)88030-L. With `exit = "depth"` the dampe
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.keys import Key
-from lumped.laws._oscillator_damped import OscillatorDamped, at_exponent
-from lumped.laws._parameters import (
-    COMMON,
-    EXPONENT_FROM_ONE,
-    RESTITUTION,
-    STIFFNESS,
-    Parameters,
-    damping_keys,
-    formula_key,
-)
+from lumped.laws._oscillator_damped import OscillatorDamped
+from lumped.laws._parameters import COMMON, EXPONENT_FROM_ONE, RESTITUTION, STIFFNESS, damping_keys, formula_key
 from lumped.scene import Scene
 
 KEYS: Mapping[str, Key] = {
@@ -44,11 +35,4 @@ class Tsuji(OscillatorDamped):
 
 def of(scene: Scene) -> Tsuji:
     """The law for a scene. Raises BadInput."""
-    given = Parameters(scene, Tsuji.name)
-    alpha = given.exponent()
-    k = given.stiffness(alpha)
-    kind, alpha_t = given.damping(("alpha_t",))
-    if kind == "e":
-        alpha_t = at_exponent(given.meeting("tsuji", alpha_t), alpha)
-    common = given.common()
-    return Tsuji(k=k, c=alpha_t * math.sqrt(scene.reduced_mass * k), alpha=alpha, **common)
+    return Tsuji.damped_by(scene, "alpha_t")
