@@ -1,4 +1,4 @@
-"""Scales of an impact on a material with memory: which of its answers is the stiffest."""
+"""Scales of an impact on a material with memory: its stiffest answer, its relaxed one, and a depth beyond both."""
 
 from __future__ import annotations
 
@@ -22,3 +22,20 @@ def stiffest_impact(shape: Shape, modulus: Relaxation, mass: float, velocity: fl
     if modulus.viscosity:
         springs.append(dashpot_as_spring(shape, modulus.viscosity, mass, velocity))
     return shape.hertz_impact(max(springs), mass, velocity)
+
+
+def relaxed_impact(shape: Shape, modulus: Relaxation, mass: float, velocity: float) -> HertzImpact:
+    """The Hertz impact with the relaxed modulus; of a fluid with the glassy one, or that of its dashpot."""
+    spring = modulus.relaxed or modulus.glassy
+    return shape.hertz_impact(spring, mass, velocity) if spring else stiffest_impact(shape, modulus, mass, velocity)
+
+
+def absurd_depth(shape: Shape, modulus: Relaxation, mass: float, velocity: float) -> str:
+    """What to say where even the stiffest answer lets a round striker sink in deeper than it is round; else empty."""
+    impact = stiffest_impact(shape, modulus, mass, velocity)
+    if shape.tip_radius is None or impact.contact_radius > impact.depth:
+        return ""
+    return (
+        f"the striker sinks in by {impact.depth:.3g} m, deeper than its radius: no small-displacement theory "
+        "holds; accepted: a lower velocity or mass, or a stiffer material"
+    )

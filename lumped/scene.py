@@ -16,10 +16,9 @@ from lumped.materials import Material, Relaxation
 from lumped.members import get
 from lumped.pair import check_striker_material, contact_modulus
 from lumped.pair import tables as bodies
-from lumped.scales import stiffest_impact
+from lumped.scales import absurd_depth, relaxed_impact
 from lumped.scene_tables import (
     LAWS,
-    LEAST_MASS,
     NAME_KEYS,
     SECOND_BODY_KEYS,
     STRIKER_KEYS,
@@ -27,6 +26,7 @@ from lumped.scene_tables import (
     Model,
     Motion,
     inertia_faults,
+    mass_faults,
 )
 from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
@@ -68,12 +68,14 @@ class Scene:
             check_striker_material(self.source, self.target, self.striker_material)
         density = None if self.material is None else self.material.density
         target = self.target if self.has_geometry else None
-        faults = inertia_faults(self.source, self.model.inertia, density, target) + self._mass_faults()
+        faults = inertia_faults(self.source, self.model.inertia, density, target)
+        faults += mass_faults(self.source, self.mass, self.swinging_mass)
         if faults:
             raise BadInput(faults)
-        message = self._absurd_depth() if self.has_geometry else ""
-        if message:
-            raise BadInput(Fault(self.source, "striker.velocity", message))
+        if self.shape is not None:
+            reason = absurd_depth(self.shape, self.contact_modulus, self.swinging_mass, self.velocity)
+            if reason:
+                raise BadInput(Fault(self.source, "striker.velocity", reason))
 
     @classmethod
     def load(cls, source: str | Path, overrides: Mapping[str, object] | None = None) -> Scene:
@@ -89,12 +91,6 @@ class Scene:
 
         return read(table, source)[0]
 
-    def check_half_space(self, method: str) -> None:
-        """Raise BadInput for a target which `method` has no answer for."""
-        if self.shape is not None and (not isinstance(self.target, HalfSpace) or self.shape.plane):
-            reason = f"{self.target.name}: {method} is for the half-space; accepted: half_space, or another method"
-            raise BadInput(Fault(self.source, "target.shape", reason))
-
     @property
     def has_geometry(self) -> bool:
         """Whether the scene has a shape and a material, not a law's parameters alone."""
@@ -105,12 +101,6 @@ class Scene:
         if self.motion.impacts > 1:
             reason = f"{self.motion.impacts}: {method} follows one impact; accepted: 1, or a law between two masses"
             raise BadInput(Fault(self.source, "motion.impacts", reason))
-
-    def check_mass(self, method: str) -> None:
-        """Raise BadInput for a striker without a mass of its own, whose waves `method` does not know."""
-        if self.mass == 0.0:
-            reason = f"0: {method} moves a rigid mass; accepted: more, or --method fe"
-            raise BadInput(Fault(self.source, "striker.mass", reason))
 
     @property
     def geometry(self) -> Geometry:
@@ -168,16 +158,8 @@ class Scene:
             law = get(LAWS, self.law.name).of(self)
             return float(law.elastic_contact_time(self))
         geometry = self.geometry
-        return geometry.target.contact_time(self._local_contact_time, geometry.material, self.reduced_mass)
-
-    @property
-    def _local_contact_time(self) -> float:
-        """That of the half-space."""
-        shape, modulus = self.geometry.shape, self.contact_modulus
-        if modulus.relaxed or modulus.glassy:
-            stiffness = modulus.relaxed or modulus.glassy
-            return shape.hertz_impact(stiffness, self.swinging_mass, self.velocity).duration
-        return stiffest_impact(shape, modulus, self.swinging_mass, self.velocity).duration
+        local = relaxed_impact(geometry.shape, self.contact_modulus, self.swinging_mass, self.velocity).duration
+        return geometry.target.contact_time(local, geometry.material, self.reduced_mass)
 
     @property
     def end_time(self) -> float:
@@ -218,21 +200,3 @@ class Scene:
         """The end time, where the scene alone tells it."""
         known = self.motion.end_time is not None or self.has_geometry or self.law is not None
         return {"end_time": self.end_time} if known else {}
-
-    def _mass_faults(self) -> list[Fault]:
-        """Too little mass: none at all is for a block whose own inertia moves it."""
-        if self.mass >= LEAST_MASS or (self.mass == 0.0 and self.swinging_mass > 0.0):
-            return []
-        reason = f"{self.mass:g}: accepted a number from {LEAST_MASS:g} to 1e+12 kg; 0 of a block with model.inertia"
-        return [Fault(self.source, "striker.mass", reason)]
-
-    def _absurd_depth(self) -> str:
-        """Even the stiffest answer of the material lets a round striker sink in deeper than it is round."""
-        shape = self.geometry.shape
-        impact = stiffest_impact(shape, self.contact_modulus, self.swinging_mass, self.velocity)
-        if shape.tip_radius is not None and impact.contact_radius <= impact.depth:
-            return (
-                f"the striker sinks in by {impact.depth:.3g} m, deeper than its radius: no small-displacement theory "
-                "holds; accepted: a lower velocity or mass, or a stiffer material"
-            )
-        return ""

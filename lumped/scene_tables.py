@@ -26,7 +26,7 @@ MOTION_KEYS: Mapping[str, Key] = {
     "end_time": Number(1e-15, 1e12, "s", required=False),
 }
 NAME_KEYS: Mapping[str, Key] = {"name": Text(required=False)}
-SECOND_BODY_KEYS: Mapping[str, Key] = {"target_mass": Number(1e-21, 1e12, "kg", required=False)}
+SECOND_BODY_KEYS: Mapping[str, Key] = {"target_mass": Number(LEAST_MASS, 1e12, "kg", required=False)}
 LAWS, TARGETS = "lumped.laws", "lumped.targets"
 
 
@@ -83,6 +83,14 @@ def inertia_faults(source: str, inertia: bool, density: float | None, target: Ta
         owner = "target" if target.deformable else "striker"
         faults.append(Fault(source, f"{owner}.material.density", reason))
     return faults
+
+
+def mass_faults(source: str, mass: float, swinging: float) -> list[Fault]:
+    """Too little mass, kg: none at all is for a block whose own inertia swings."""
+    if mass >= LEAST_MASS or (mass == 0.0 and swinging > 0.0):
+        return []
+    reason = f"{mass:g}: accepted a number from {LEAST_MASS:g} to 1e+12 kg; 0 of a block with model.inertia"
+    return [Fault(source, "striker.mass", reason)]
 
 
 def _moving() -> str:

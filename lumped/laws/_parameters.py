@@ -10,6 +10,7 @@ from typing import Any
 from lumped import restitution
 from lumped.errors import BadInput, Fault
 from lumped.keys import Choice, Key, Number
+from lumped.laws._half_space import check_half_space
 from lumped.laws._impacts import bodies_of
 from lumped.laws._power_law import spring_of_peak
 from lumped.load_curves.base import LoadCurve
@@ -85,7 +86,7 @@ class Parameters:
         if not self.scene.has_geometry:
             self.missing("k", "the stiffness in N/m^alpha; or a scene with shape and material")
             return 1.0
-        self.scene.check_half_space(self.name)
+        check_half_space(self.scene, self.name)
         relaxed = self.scene.contact_modulus.relaxed
         if relaxed == 0.0:
             reason = "a fluid has no relaxed modulus to take a stiffness from; accepted: a solid, or law.k"
