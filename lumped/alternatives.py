@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import ModuleType
 
-from lumped.keys import Key, optional
+from lumped.key_table import optional
+from lumped.keys import Key
 from lumped.members import available, get
 
 

@@ -1,16 +1,13 @@
-"""What a key of a scene accepts. One kind of value a class; a table is checked against a mapping of keys.
+"""What a key of a scene accepts, one kind of value a class.
 
 Ranges are generous but finite: inside them no product of a scene's scales leaves double precision.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
-
-from lumped.errors import BadInput, Fault, nearest
 
 
 class Key(Protocol):
@@ -144,58 +141,3 @@ class File:
         if not isinstance(value, str | Path) or not str(value).strip() or not str(value).isprintable():
             raise ValueError
         return Path(value)
-
-
-def read_table(
-    source: str, path: str, table: Mapping[str, object], keys: Mapping[str, Key]
-) -> tuple[dict[str, Any], list[Fault]]:
-    """Check a table against its keys: the accepted values, and every fault (unknown, missing, refused)."""
-    values: dict[str, Any] = {}
-    faults = [Fault(source, _join(path, name), unknown_key(name, keys)) for name in table if name not in keys]
-    for name, key in keys.items():
-        if name not in table:
-            if key.required:
-                faults.append(Fault(source, _join(path, name), f"missing; accepted: {key.accepted}"))
-            continue
-        try:
-            values[name] = key.read(table[name])
-        except ValueError as error:
-            faults.append(Fault(source, _join(path, name), str(error) or _refused(key, table[name])))
-    return values, faults
-
-
-def placed(values: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """The same values, files from this folder on."""
-    return {name: folder / value if isinstance(value, Path) else value for name, value in values.items()}
-
-
-def optional(keys: Mapping[str, Any]) -> dict[str, Any]:
-    """The same keys, none of them required."""
-    return {name: replace(key, required=False) for name, key in keys.items()}
-
-
-def check_fields(owner: str, record: object, keys: Mapping[str, Key]) -> None:
-    """Check the attributes of a record built in Python; raises BadInput naming every one that is refused."""
-    present = {name: getattr(record, name) for name in keys if getattr(record, name) is not None}
-    _, faults = read_table(owner, "", present, keys)
-    if faults:
-        raise BadInput(faults)
-
-
-def unknown_key(name: str, names: Iterable[str]) -> str:
-    """What to say of a key which is none of `names`."""
-    names = sorted(names)
-    return f"unknown key; accepted: {', '.join(names)}{nearest(name, names)}"
-
-
-def _join(path: str, name: str) -> str:
-    return f"{path}.{name}" if path else name
-
-
-def _refused(key: Key, value: object) -> str:
-    return f"{_shown(value)} is not accepted; accepted: {key.accepted}"
-
-
-def _shown(value: object) -> str:
-    text = str(value).lower() if isinstance(value, bool) else repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."

@@ -10,7 +10,7 @@ from typing import Any
 
 from lumped.errors import BadInput, Fault
 from lumped.geometry import Geometry
-from lumped.keys import check_fields
+from lumped.key_table import check_fields
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material, Relaxation
 from lumped.members import get

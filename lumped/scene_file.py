@@ -12,7 +12,8 @@ from lumped import data
 from lumped.alternatives import alternatives
 from lumped.errors import BadInput, Fault
 from lumped.indenter import Indenter
-from lumped.keys import Key, optional, placed, read_table, unknown_key
+from lumped.key_table import optional, placed, read_table, unknown_key
+from lumped.keys import Key
 from lumped.materials import Material
 from lumped.materials.material import KEYS as MATERIAL_KEYS
 from lumped.materials.material import bulk_fault

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import Choice, Count, Flag, Key, Number, Text, check_fields, read_table
+from lumped.key_table import check_fields, read_table
+from lumped.keys import Choice, Count, Flag, Key, Number, Text
 from lumped.members import available, get
 from lumped.targets import Target
 

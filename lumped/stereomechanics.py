@@ -10,7 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import Key, Number, check_fields
+from lumped.key_table import check_fields
+from lumped.keys import Key, Number
 
 VELOCITY = Number(-1e9, 1e9, "m/s")
 KEYS: Mapping[str, Key] = {

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import Choice, Key, Number, check_fields
+from lumped.key_table import check_fields
+from lumped.keys import Choice, Key, Number
 from lumped.materials.relaxation import Relaxation
 
 KEYS: Mapping[str, Key] = {

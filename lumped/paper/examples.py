@@ -9,7 +9,8 @@ from typing import Any
 
 from lumped.data import directory
 from lumped.errors import BadInput, Fault
-from lumped.keys import Key, Number, Numbers, read_table, unknown_key
+from lumped.key_table import read_table, unknown_key
+from lumped.keys import Key, Number, Numbers
 from lumped.toml_file import overridden, parsed
 
 LENGTH, MASS, VELOCITY = Number(1e-9, 1e4, "m"), Number(1e-9, 1e12, "kg"), Number(1e-9, 1e5, "m/s")

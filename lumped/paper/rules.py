@@ -8,7 +8,8 @@ from decimal import Decimal
 
 from lumped.data import directory
 from lumped.errors import BadInput, Fault, nearest
-from lumped.keys import Choice, Key, Number, Text, read_table
+from lumped.key_table import read_table
+from lumped.keys import Choice, Key, Number, Text
 from lumped.paper.value import Value
 from lumped.toml_file import parsed
 

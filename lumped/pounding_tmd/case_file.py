@@ -10,7 +10,8 @@ from typing import Any
 from lumped import data
 from lumped.alternatives import alternatives
 from lumped.errors import BadInput, Fault, nearest
-from lumped.keys import Choice, Key, Number, Text, placed, read_table, unknown_key
+from lumped.key_table import placed, read_table, unknown_key
+from lumped.keys import Choice, Key, Number, Text
 from lumped.materials import Material
 from lumped.materials.material import KEYS as MATERIAL_KEYS
 from lumped.members import Member

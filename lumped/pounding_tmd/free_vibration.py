@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from lumped.errors import BadInput, Fault, nearest
-from lumped.keys import Number, read_table
+from lumped.key_table import read_table
+from lumped.keys import Number
 from lumped.pounding_tmd import reading
 from lumped.pounding_tmd.equations import Equations
 from lumped.pounding_tmd.march import march, route_of

@@ -9,7 +9,8 @@ from enum import Enum
 import numpy as np
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import Key, Number, check_fields
+from lumped.key_table import check_fields
+from lumped.keys import Key, Number
 from lumped.materials import Relaxation
 
 MASS, STIFFNESS, DAMPING = Number(1e-9, 1e12, "kg"), Number(1e-9, 1e18, "N/m"), Number(0.0, 1e15, "N s/m")

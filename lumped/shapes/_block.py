@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import read_table
+from lumped.key_table import read_table
 from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.hertz import HertzImpact, power_impact
 from lumped.materials import Material, Relaxation

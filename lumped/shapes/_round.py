@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lumped.keys import Key, Number, check_fields
+from lumped.key_table import check_fields
+from lumped.keys import Key, Number
 from lumped.load_curves.hertz import HertzImpact, hertz_impact
 from lumped.shapes.base import Shape
 

@@ -10,7 +10,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.keys import Key, Number, check_fields
+from lumped.key_table import check_fields
+from lumped.keys import Key, Number
 from lumped.load_curves import cone
 from lumped.load_curves.hertz import HertzImpact, power_impact
 from lumped.shapes.base import Shape

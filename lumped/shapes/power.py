@@ -9,7 +9,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.keys import Key, Number, check_fields
+from lumped.key_table import check_fields
+from lumped.keys import Key, Number
 from lumped.load_curves.hertz import HertzImpact, power_impact
 from lumped.load_curves.power import Power
 from lumped.shapes.base import Shape

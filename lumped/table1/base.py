@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
 from lumped.indenter import Indenter
-from lumped.keys import Key, check_fields
+from lumped.key_table import check_fields
+from lumped.keys import Key
 from lumped.materials import Material, Relaxation
 from lumped.scene_tables import Model
 from lumped.shapes import Shape

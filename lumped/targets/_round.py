@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import check_fields
+from lumped.key_table import check_fields
 from lumped.shapes.base import Shape
 from lumped.targets.base import Target
 

@@ -10,7 +10,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.keys import Choice, Key, Number, check_fields
+from lumped.key_table import check_fields
+from lumped.keys import Choice, Key, Number
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material
 from lumped.radiation import Pulse

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import Choice, Key, Number, check_fields
+from lumped.key_table import check_fields
+from lumped.keys import Choice, Key, Number
 from lumped.materials import Material
 from lumped.radiation import Pulse
 from lumped.shapes.base import Shape
