@@ -29,7 +29,7 @@ from lumped.pounding_tmd.system import (
     Ring,
     Start,
 )
-from lumped.scene_file import NETWORKS
+from lumped.scene_reader import NETWORKS
 from lumped.toml_file import overridden, parsed
 
 FOLDER, DEFAULT = "ptmd", "paper"

@@ -1,0 +1,197 @@
+"""Reading the tables of a scene: what they describe, and every fault on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from lumped.alternatives import alternatives
+from lumped.errors import BadInput, Fault
+from lumped.indenter import Indenter
+from lumped.key_table import optional, placed, read_table, unknown_key
+from lumped.keys import Key
+from lumped.materials import Material
+from lumped.materials.material import KEYS as MATERIAL_KEYS
+from lumped.materials.material import bulk_fault
+from lumped.members import Member, get
+from lumped.pair import striker_material_faults
+from lumped.scene import Scene
+from lumped.scene_tables import (
+    LAWS,
+    MODEL_KEYS,
+    MOTION_KEYS,
+    NAME_KEYS,
+    SECOND_BODY_KEYS,
+    STRIKER_KEYS,
+    TARGETS,
+    LawChoice,
+    Model,
+    Motion,
+    inertia_faults,
+)
+from lumped.targets import Target
+
+TABLES = ("striker", "target", "model", "motion", "law", "numerics")
+NETWORKS, SHAPES = "lumped.materials.networks", "lumped.shapes"
+TARGET_KEYS: Mapping[str, Key] = {"mass": SECOND_BODY_KEYS["target_mass"]}
+
+Table = dict[str, Any]
+
+
+class Reader:
+    """Walks the tables once and keeps every fault on the way; files are named from `folder` on."""
+
+    def __init__(self, source: str, raw: Table, folder: Path = Path()) -> None:
+        self.source = source
+        self.raw = raw
+        self.folder = folder
+        self.faults: list[Fault] = []
+
+    def scene(self, law_known: bool = True) -> tuple[Scene, Table]:
+        """The scene and the raw numerics; raises BadInput when anything is wrong.
+
+        Without geometry a law has to be known, unless it is yet to be found.
+        """
+        name, law = self.name(), self.law()
+        lawful = "law" in self.raw or not law_known
+        alone = lawful and "shape" not in self.table("striker", required=False, quiet=True)
+        bodies = self.masses_alone() if alone else self.bodies()
+        model = self.checked("model", self.table("model", required=False), MODEL_KEYS)
+        motion = self.checked("motion", self.table("motion", required=False), MOTION_KEYS)
+        numerics = self.table("numerics", required=False)
+        if alone or bodies["target"] is not None:
+            self.inertia(model, bodies.get("target"))
+        if self.faults:
+            raise BadInput(self.faults)
+        built = Scene(**bodies, law=law, model=Model(**model), motion=Motion(**motion), name=name, source=self.source)
+        if law is not None and law_known:
+            get(LAWS, law.name).of(built)
+        return built, numerics
+
+    def indenter(self) -> tuple[Indenter, Table]:
+        """The scene without its motion; raises BadInput when anything is wrong."""
+        name = self.name()
+        bodies = self.bodies(optional(STRIKER_KEYS))
+        model = self.checked("model", self.table("model", required=False), MODEL_KEYS)
+        numerics = self.table("numerics", required=False)
+        if self.faults:
+            raise BadInput(self.faults)
+        own = {key: bodies[key] for key in ("shape", "material", "target", "striker_material")}
+        return Indenter(**own, model=Model(**model), name=name, source=self.source), numerics
+
+    def bodies(self, striker_keys: Mapping[str, Key] = STRIKER_KEYS) -> Table:
+        """Striker, target and material of a scene with geometry; None for what has a fault."""
+        striker, shape = self.body("striker", SHAPES, striker_keys)
+        held, target = self.body("target", TARGETS, TARGET_KEYS)
+        own = {"shape": shape, "target": target, "target_mass": held.get("mass")}
+        return {**striker, **own, **self.materials(target)}
+
+    def materials(self, target: Target | None) -> dict[str, Material | None]:
+        """The target's material, or the striker's where the target is rigid, and that of a striker that yields too."""
+        given = "material" in self.table("striker", required=False, quiet=True)
+        if target is None or target.deformable:
+            allowed = target is not None and target.yielding_strikers
+            if given and not allowed and target is not None:
+                self.faults += striker_material_faults(self.source, target)
+            striker = self.material("striker") if given and allowed else None
+            return {"material": self.material("target"), "striker_material": striker}
+        if "material" in self.table("target", required=False, quiet=True):
+            self.faults.append(Fault(self.source, "target.material", f"a {target.name} is rigid; leave it out"))
+        return {"material": self.material("striker"), "striker_material": None}
+
+    def masses_alone(self) -> Table:
+        """The masses of a scene that has a law of its own and no geometry."""
+        striker = self.checked("striker", self.table("striker"), STRIKER_KEYS)
+        held = self.checked("target", self.table("target", required=False), TARGET_KEYS)
+        return {**striker, "shape": None, "target_mass": held.get("mass")}
+
+    def law(self) -> LawChoice | None:
+        """The law with its parameters; None without one, or with a fault noted."""
+        table = self.table("law", required=False)
+        if not table:
+            return None
+        (own,) = alternatives(LAWS, table.get("name"))
+        values = self.checked("law", table, {"name": Member(LAWS), **own})
+        return LawChoice(values.pop("name").__name__.rpartition(".")[2], values) if not self.faults else None
+
+    def name(self) -> str:
+        """The scene's name, by default the file's; checks the keys of the top level too."""
+        top = {key: value for key, value in self.raw.items() if key not in TABLES}
+        values, faults = read_table(self.source, "", top, NAME_KEYS)
+        names = [*NAME_KEYS, *TABLES]
+        for fault in faults:
+            unknown = fault.key not in NAME_KEYS
+            self.faults.append(replace(fault, message=unknown_key(fault.key, names)) if unknown else fault)
+        return str(values.get("name", Path(self.source).stem))
+
+    def body(self, part: str, package: str, common: Mapping[str, Key]) -> tuple[Table, Any]:
+        """A body's checked common values, and what the member of `package` makes of its own keys."""
+        table = self.table(part)
+        rest = {key: value for key, value in table.items() if key != "material"}
+        if part not in self.raw:
+            return {}, None
+        (own,) = alternatives(package, table.get("shape"))
+        values = self.checked(part, rest, {"shape": Member(package), **common, **own})
+        kind: ModuleType | None = values.pop("shape", None)
+        shared = {key: values.pop(key) for key in common if key in values}
+        complete = kind is not None and values.keys() >= {key for key in own if own[key].required}
+        return shared, kind.of(**values) if kind is not None and complete else None
+
+    def material(self, part: str) -> Material | None:
+        """The material of a body, None with a fault noted."""
+        body = self.table(part, required=False, quiet=True)
+        if not body:
+            return None
+        path, table = f"{part}.material", self.table("material", inside=part)
+        if not table:
+            return None
+        own = max(alternatives(NETWORKS, table.get("law")), key=lambda keys: len(keys.keys() & table.keys()))
+        known = len(self.faults)
+        values = self.checked(path, table, {"law": Member(NETWORKS), **own, **MATERIAL_KEYS})
+        if len(self.faults) > known:
+            return None
+        common = {key: values.pop(key) for key in MATERIAL_KEYS if key in values}
+        return self.network(path, values.pop("law"), values, common)
+
+    def network(self, path: str, law: ModuleType, values: Table, common: Table) -> Material | None:
+        """The material of a network's checked values."""
+        try:
+            young = law.of(**placed(values, self.folder))
+        except ValueError as error:
+            self.faults.append(Fault(self.source, path, str(error)))
+            return None
+        except BadInput as bad:
+            self.faults += bad.faults
+            return None
+        message = bulk_fault(common.get("constant", "poisson"), common.get("bulk_modulus"), young.relaxed)
+        if message:
+            self.faults.append(Fault(self.source, f"{path}.bulk_modulus", message))
+            return None
+        return Material(young, **common)
+
+    def inertia(self, model: Table, target: Target | None) -> None:
+        """Whether the target can have the inertia asked for, and a density for it."""
+        part = "striker" if target is not None and not target.deformable else "target"
+        material = self.table(part, required=False, quiet=True).get("material")
+        density = material.get("density") if isinstance(material, Mapping) else None
+        self.faults += inertia_faults(self.source, model.get("inertia", False), density, target)
+
+    def table(self, key: str, inside: str = "", required: bool = True, quiet: bool = False) -> Table:
+        """The table `key`, empty when it is missing or no table: a fault if required, unless `quiet`."""
+        place = self.raw[inside] if inside else self.raw
+        value = place.get(key, None if required else {})
+        if isinstance(value, Mapping):
+            return dict(value)
+        if not quiet:
+            message = "not a table" if key in place else "missing; a scene needs this table"
+            self.faults.append(Fault(self.source, f"{inside}.{key}".lstrip("."), message))
+        return {}
+
+    def checked(self, path: str, table: Table, keys: Mapping[str, Key]) -> Table:
+        """The accepted values of a table; what is refused becomes a fault."""
+        values, faults = read_table(self.source, path, table, keys)
+        self.faults += faults
+        return values
