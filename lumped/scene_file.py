@@ -1,4 +1,4 @@
-"""A scene file: TOML -> the Scene and the raw [numerics] table, every fault reported at once."""
+"""A scene from a TOML file, from a packaged one by its name, or from a table; with its raw [numerics]."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from pathlib import Path
 from lumped import data
 from lumped.indenter import Indenter
 from lumped.scene import Scene
-from lumped.scene_reader import Reader, Table
+from lumped.scene_reader import SceneReader
+from lumped.table_reader import Table
 from lumped.toml_file import overridden, parsed
 
 
@@ -43,10 +44,10 @@ def read(
     table: Mapping[str, object], source: str = "scene", overrides: Mapping[str, object] | None = None
 ) -> tuple[Scene, Table]:
     """The scene of a table as in a scene file, and its raw `[numerics]` table. Raises BadInput."""
-    return Reader(source, overridden(table, overrides or {}, source)).scene()
+    return SceneReader(source, overridden(table, overrides or {}, source)).scene()
 
 
-def _reader(source: str | Path, overrides: Mapping[str, object] | None) -> Reader:
+def _reader(source: str | Path, overrides: Mapping[str, object] | None) -> SceneReader:
     """What reads the file of a path or a packaged name. Raises BadInput."""
     path = resolved(source)
-    return Reader(path.name, overridden(parsed(path), overrides or {}, path.name), path.parent)
+    return SceneReader(path.name, overridden(parsed(path), overrides or {}, path.name), path.parent)

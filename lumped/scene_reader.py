@@ -1,21 +1,17 @@
-"""Reading the tables of a scene: what they describe, and every fault on the way."""
+"""The tables of a scene file: the scene that they describe, every fault reported at once."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 from lumped.alternatives import alternatives
 from lumped.errors import BadInput, Fault
 from lumped.indenter import Indenter
-from lumped.key_table import optional, placed, read_table, unknown_key
+from lumped.key_table import optional
 from lumped.keys import Key
 from lumped.materials import Material
-from lumped.materials.material import KEYS as MATERIAL_KEYS
-from lumped.materials.material import bulk_fault
 from lumped.members import Member, get
 from lumped.pair import striker_material_faults
 from lumped.scene import Scene
@@ -23,7 +19,6 @@ from lumped.scene_tables import (
     LAWS,
     MODEL_KEYS,
     MOTION_KEYS,
-    NAME_KEYS,
     SECOND_BODY_KEYS,
     STRIKER_KEYS,
     TARGETS,
@@ -32,23 +27,17 @@ from lumped.scene_tables import (
     Motion,
     inertia_faults,
 )
+from lumped.table_reader import Table, TableReader
 from lumped.targets import Target
 
-TABLES = ("striker", "target", "model", "motion", "law", "numerics")
-NETWORKS, SHAPES = "lumped.materials.networks", "lumped.shapes"
+SHAPES = "lumped.shapes"
 TARGET_KEYS: Mapping[str, Key] = {"mass": SECOND_BODY_KEYS["target_mass"]}
 
-Table = dict[str, Any]
 
+class SceneReader(TableReader):
+    """Makes a scene, or what a slow indentation needs of it, of the tables of a scene file."""
 
-class Reader:
-    """Walks the tables once and keeps every fault on the way; files are named from `folder` on."""
-
-    def __init__(self, source: str, raw: Table, folder: Path = Path()) -> None:
-        self.source = source
-        self.raw = raw
-        self.folder = folder
-        self.faults: list[Fault] = []
+    TABLES = ("striker", "target", "model", "motion", "law", "numerics")
 
     def scene(self, law_known: bool = True) -> tuple[Scene, Table]:
         """The scene and the raw numerics; raises BadInput when anything is wrong.
@@ -117,16 +106,6 @@ class Reader:
         values = self.checked("law", table, {"name": Member(LAWS), **own})
         return LawChoice(values.pop("name").__name__.rpartition(".")[2], values) if not self.faults else None
 
-    def name(self) -> str:
-        """The scene's name, by default the file's; checks the keys of the top level too."""
-        top = {key: value for key, value in self.raw.items() if key not in TABLES}
-        values, faults = read_table(self.source, "", top, NAME_KEYS)
-        names = [*NAME_KEYS, *TABLES]
-        for fault in faults:
-            unknown = fault.key not in NAME_KEYS
-            self.faults.append(replace(fault, message=unknown_key(fault.key, names)) if unknown else fault)
-        return str(values.get("name", Path(self.source).stem))
-
     def body(self, part: str, package: str, common: Mapping[str, Key]) -> tuple[Table, Any]:
         """A body's checked common values, and what the member of `package` makes of its own keys."""
         table = self.table(part)
@@ -146,31 +125,7 @@ class Reader:
         if not body:
             return None
         path, table = f"{part}.material", self.table("material", inside=part)
-        if not table:
-            return None
-        own = max(alternatives(NETWORKS, table.get("law")), key=lambda keys: len(keys.keys() & table.keys()))
-        known = len(self.faults)
-        values = self.checked(path, table, {"law": Member(NETWORKS), **own, **MATERIAL_KEYS})
-        if len(self.faults) > known:
-            return None
-        common = {key: values.pop(key) for key in MATERIAL_KEYS if key in values}
-        return self.network(path, values.pop("law"), values, common)
-
-    def network(self, path: str, law: ModuleType, values: Table, common: Table) -> Material | None:
-        """The material of a network's checked values."""
-        try:
-            young = law.of(**placed(values, self.folder))
-        except ValueError as error:
-            self.faults.append(Fault(self.source, path, str(error)))
-            return None
-        except BadInput as bad:
-            self.faults += bad.faults
-            return None
-        message = bulk_fault(common.get("constant", "poisson"), common.get("bulk_modulus"), young.relaxed)
-        if message:
-            self.faults.append(Fault(self.source, f"{path}.bulk_modulus", message))
-            return None
-        return Material(young, **common)
+        return self.network(path, table) if table else None
 
     def inertia(self, model: Table, target: Target | None) -> None:
         """Whether the target can have the inertia asked for, and a density for it."""
@@ -189,9 +144,3 @@ class Reader:
             message = "not a table" if key in place else "missing; a scene needs this table"
             self.faults.append(Fault(self.source, f"{inside}.{key}".lstrip("."), message))
         return {}
-
-    def checked(self, path: str, table: Table, keys: Mapping[str, Key]) -> Table:
-        """The accepted values of a table; what is refused becomes a fault."""
-        values, faults = read_table(self.source, path, table, keys)
-        self.faults += faults
-        return values

@@ -5,16 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from lumped import data
-from lumped.alternatives import alternatives
 from lumped.errors import BadInput, Fault, nearest
-from lumped.key_table import placed, read_table, unknown_key
-from lumped.keys import Choice, Key, Number, Text
+from lumped.keys import Choice, Key, Number
 from lumped.materials import Material
-from lumped.materials.material import KEYS as MATERIAL_KEYS
-from lumped.members import Member
 from lumped.pounding_tmd.case import Case
 from lumped.pounding_tmd.free_vibration import TIME_KEYS
 from lumped.pounding_tmd.system import (
@@ -29,12 +24,10 @@ from lumped.pounding_tmd.system import (
     Ring,
     Start,
 )
-from lumped.scene_reader import NETWORKS
+from lumped.table_reader import Table, TableReader
 from lumped.toml_file import overridden, parsed
 
 FOLDER, DEFAULT = "ptmd", "paper"
-TABLES = ("structure", "damper", "ring", "motion")
-NAME_KEYS: Mapping[str, Key] = {"name": Text(required=False)}
 SIZE_KEYS: Mapping[str, Key] = {
     "gap": RING_KEYS["gap"],
     "memory": Choice(tuple(memory.value for memory in Memory), required=False),
@@ -50,7 +43,6 @@ RELEASE_KEYS: Mapping[str, Key] = {
     "start": Choice(("both", "structure"), required=False),
     "displacement": replace(DISPLACEMENT, required=True),
 }
-Table = dict[str, Any]
 
 
 def names() -> tuple[str, ...]:
@@ -77,14 +69,10 @@ def read(table: Mapping[str, object], source: str = "ptmd", overrides: Mapping[s
     return _Reader(source, overridden(table, overrides or {}, source)).case()
 
 
-class _Reader:
-    """Walks the tables once and keeps every fault on the way; files are named from `folder` on."""
+class _Reader(TableReader):
+    """Makes a case of the tables of its file."""
 
-    def __init__(self, source: str, raw: Table, folder: Path = Path()) -> None:
-        self.source = source
-        self.raw = raw
-        self.folder = folder
-        self.faults: list[Fault] = []
+    TABLES = ("structure", "damper", "ring", "motion")
 
     def case(self) -> Case:
         """The case; raises BadInput when anything is wrong."""
@@ -97,14 +85,6 @@ class _Reader:
         if self.faults or structure is None or start is None:
             raise BadInput(self.faults)
         return Case(name, self.source, PoundingDamper(structure, damper, ring), start, **times, **sizes)
-
-    def name(self) -> str:
-        """The case's name, by default the file's; checks the keys of the top level too."""
-        top = {key: value for key, value in self.raw.items() if key not in TABLES}
-        strange = [key for key in top if key not in NAME_KEYS]
-        self.faults += [Fault(self.source, key, unknown_key(key, [*NAME_KEYS, *TABLES])) for key in strange]
-        known = {key: value for key, value in top.items() if key in NAME_KEYS}
-        return str(self.checked("", known, NAME_KEYS).get("name", Path(self.source).stem))
 
     def oscillator(self, part: str, required: bool = True) -> Oscillator | None:
         """Structure or damper; None when it is absent or has a fault."""
@@ -134,19 +114,7 @@ class _Reader:
         if not isinstance(table, Mapping):
             self.faults.append(Fault(self.source, path, "missing; a ring needs this table"))
             return None
-        own = max(alternatives(NETWORKS, table.get("law")), key=lambda keys: len(keys.keys() & table.keys()))
-        known = len(self.faults)
-        values = self.checked(path, dict(table), {"law": Member(NETWORKS), **own, **MATERIAL_KEYS})
-        if len(self.faults) > known:
-            return None
-        common = {key: values.pop(key) for key in MATERIAL_KEYS if key in values}
-        try:
-            return Material(values.pop("law").of(**placed(values, self.folder)), **common)
-        except ValueError as error:
-            self.faults.append(Fault(self.source, path, str(error)))
-        except BadInput as bad:
-            self.faults += [replace(fault, source=self.source, key=f"{path}.{fault.key}") for fault in bad.faults]
-        return None
+        return self.network(path, dict(table))
 
     def motion(self) -> tuple[Start | None, Table]:
         """How it starts, None with a fault noted, and the times given."""
@@ -179,9 +147,3 @@ class _Reader:
         elif required:
             self.faults.append(Fault(self.source, key, "missing; a pounding damper's file needs this table"))
         return None
-
-    def checked(self, path: str, table: Table, keys: Mapping[str, Key]) -> Table:
-        """The accepted values of a table; what is refused becomes a fault."""
-        values, faults = read_table(self.source, path, table, keys)
-        self.faults += faults
-        return values

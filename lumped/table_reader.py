@@ -1,0 +1,80 @@
+"""Reading the tables of a file: their accepted values, a material among them, and every fault on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+from typing import Any, ClassVar
+
+from lumped.alternatives import alternatives
+from lumped.errors import BadInput, Fault
+from lumped.key_table import placed, read_table, unknown_key
+from lumped.keys import Key
+from lumped.materials import Material
+from lumped.materials.material import KEYS as MATERIAL_KEYS
+from lumped.materials.material import bulk_fault
+from lumped.members import Member
+from lumped.scene_tables import NAME_KEYS
+
+NETWORKS = "lumped.materials.networks"
+
+Table = dict[str, Any]
+
+
+class TableReader:
+    """Walks the tables of a file once and keeps every fault; `TABLES` are those it may hold.
+
+    `source` is what faults call the file, `folder` where the files start that it names.
+    """
+
+    TABLES: ClassVar[tuple[str, ...]]
+
+    def __init__(self, source: str, raw: Table, folder: Path = Path()) -> None:
+        self.source = source
+        self.raw = raw
+        self.folder = folder
+        self.faults: list[Fault] = []
+
+    def name(self) -> str:
+        """The name given, by default the file's; checks the keys of the top level too."""
+        top = {key: value for key, value in self.raw.items() if key not in self.TABLES}
+        values, faults = read_table(self.source, "", top, NAME_KEYS)
+        names = [*NAME_KEYS, *self.TABLES]
+        for fault in faults:
+            unknown = fault.key not in NAME_KEYS
+            self.faults.append(replace(fault, message=unknown_key(fault.key, names)) if unknown else fault)
+        return str(values.get("name", Path(self.source).stem))
+
+    def checked(self, path: str, table: Table, keys: Mapping[str, Key]) -> Table:
+        """The accepted values of a table; what is refused becomes a fault."""
+        values, faults = read_table(self.source, path, table, keys)
+        self.faults += faults
+        return values
+
+    def network(self, path: str, table: Table) -> Material | None:
+        """The material of a table, None with a fault noted."""
+        own = max(alternatives(NETWORKS, table.get("law")), key=lambda keys: len(keys.keys() & table.keys()))
+        known = len(self.faults)
+        values = self.checked(path, table, {"law": Member(NETWORKS), **own, **MATERIAL_KEYS})
+        if len(self.faults) > known:
+            return None
+        common = {key: values.pop(key) for key in MATERIAL_KEYS if key in values}
+        return self._built(path, values.pop("law"), values, common)
+
+    def _built(self, path: str, law: ModuleType, values: Table, common: Table) -> Material | None:
+        """The material of a network's checked values."""
+        try:
+            young = law.of(**placed(values, self.folder))
+        except ValueError as error:
+            self.faults.append(Fault(self.source, path, str(error)))
+            return None
+        except BadInput as bad:
+            self.faults += bad.faults
+            return None
+        message = bulk_fault(common.get("constant", "poisson"), common.get("bulk_modulus"), young.relaxed)
+        if message:
+            self.faults.append(Fault(self.source, f"{path}.bulk_modulus", message))
+            return None
+        return Material(young, **common)
