@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from lumped.model_ledger import FIRST_YIELD
+from lumped.model_ledger.material import FIRST_YIELD
 from lumped.paper.concrete_impacts import on_bar, proposed
 from lumped.paper.examples import Examples
 from lumped.paper.free_vibration import measure, with_ring

@@ -1,0 +1,41 @@
+"""What a model of impact or slow indentation leaves out, each effect estimated relative to peak force."""
+
+from __future__ import annotations
+
+from lumped.indenter import Indenter
+from lumped.model_ledger import kinematics, material, motion
+from lumped.model_ledger.peak import Peak as Peak
+from lumped.result import LedgerEntry
+from lumped.scene import Scene
+from lumped.scene_tables import Model
+
+
+def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[LedgerEntry, ...]:
+    """The ledger of a scene under `model` (default: the scene's own), with the scales of its impact."""
+    resolved = model or scene.model
+    if not scene.has_geometry:
+        return (motion.gravity(scene, resolved, peak),)
+    entries = [
+        motion.inertia(scene, resolved, peak),
+        kinematics.profile(scene.geometry.shape, resolved, peak),
+        kinematics.finite_strain(scene.geometry.target.pressed_height(scene.geometry.shape), peak),
+        kinematics.deformed_gap(scene.geometry.material.nu, peak),
+        material.sideways(scene, peak),
+        material.series(scene, peak),
+        LedgerEntry("striker compliance", "rigid", None, "the scene gives the striker no material"),
+        motion.gravity(scene, resolved, peak),
+        material.plasticity(scene, peak),
+        material.adhesion(scene, peak),
+    ]
+    if scene.geometry.shape.plane:
+        entries.append(kinematics.ends(scene.geometry.shape, scene.geometry.target, scene.geometry.material.nu))
+    return tuple(entries)
+
+
+def ledger_at_rest(indenter: Indenter, peak: Peak) -> tuple[LedgerEntry, ...]:
+    """The same of a slow indentation at its deepest, which has neither inertia nor time."""
+    shape, target, nu = indenter.shape, indenter.target, indenter.material.nu
+    entries = [kinematics.finite_strain(target.pressed_height(shape), peak)]
+    if target.fixed_radius(shape) is None:
+        entries += [kinematics.profile(shape, indenter.model, peak), kinematics.deformed_gap(nu, peak)]
+    return (*entries, kinematics.ends(shape, target, nu)) if shape.plane else tuple(entries)
