@@ -22,7 +22,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
         kinematics.deformed_gap(scene.geometry.material.nu, peak),
         material.sideways(scene, peak),
         material.series(scene, peak),
-        LedgerEntry("striker compliance", "rigid", None, "the scene gives the striker no material"),
+        material.striker(scene),
         motion.gravity(scene, resolved, peak),
         material.plasticity(scene, peak),
         material.adhesion(scene, peak),

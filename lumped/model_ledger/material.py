@@ -1,4 +1,4 @@
-"""What a model leaves out of the material: how it deforms sideways, its series, its yielding, its adhesion."""
+"""What a model leaves out of the materials: a rigid striker, sideways motion, a fit, yielding, adhesion."""
 
 from __future__ import annotations
 
@@ -11,6 +11,14 @@ from lumped.scene import Scene
 
 # Hertz: the first yield, below the surface, is where the peak pressure is 1.6 Y (Johnson, ISBN 978-0-521-34796-9).
 FIRST_YIELD = 1.6
+
+
+def striker(scene: Scene) -> LedgerEntry:
+    """Unknown without a material of its own; nothing where it yields beside the target, or alone on a rigid one."""
+    effect = "striker compliance"
+    if scene.striker_material is not None or not scene.target.deformable:
+        return LedgerEntry(effect, "included", 0.0)
+    return LedgerEntry(effect, "rigid", None, "the scene gives the striker no material")
 
 
 def sideways(scene: Scene, peak: Peak) -> LedgerEntry:

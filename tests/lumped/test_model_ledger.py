@@ -83,6 +83,15 @@ def test_adhesion_gravity_and_strain_are_simple_ratios() -> None:
     assert {e.effect: e.estimate for e in heavy}["gravity"] == 0.0
 
 
+def test_a_striker_that_yields_is_not_called_rigid() -> None:
+    """Two spheres, both of a material, and a block that is all that yields; the ball on a half-space is rigid."""
+    peak = Peak(force=2.0, depth=6e-5, contact_radius=6e-4, duration=0.02)
+    for name, treated in (("two-spheres", "included"), ("polymer-prism", "included"), ("polymer-sphere", "rigid")):
+        (found,) = [e for e in model_ledger(Scene.load(name), peak) if e.effect == "striker compliance"]
+        assert found.treated == treated
+        assert found.estimate == (0.0 if treated == "included" else None)
+
+
 def test_constant_bulk_modulus_is_charged_as_published() -> None:
     # audit 4c: nu = .45, r = 1.5: -1.7 % in the peak; nu = .30, r = 6: -19.9 %
     for nu, ratio, effect in [(0.45, 0.5, 0.017), (0.30, 5.0, 0.199)]:
