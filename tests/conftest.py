@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import settings
 
+from lumped import Result
+
 TENTH = 10
+DIFFERING = ("peak_force", "peak_time", "peak_depth", "duration", "restitution", "impulse")
 
 settings.register_profile("tenth", derandomize=True, deadline=None, max_examples=100)
 settings.register_profile("full", derandomize=True, deadline=None, max_examples=100 * TENTH)
@@ -37,3 +41,33 @@ def campaign_size(request: pytest.FixtureRequest) -> Callable[[int], int]:
     """
     full: bool = request.config.getoption("--full")
     return lambda n: n if full else -(-n // TENTH)
+
+
+@pytest.fixture
+def empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty working folder."""
+    folder = tmp_path / "work"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def uncovered() -> Callable[..., dict[str, float]]:
+    """Of two results of one impact: what they differ by over the sum of both bars, by quantity, where that is above 1.
+
+    Of these names, or of all that two results can differ by; what only one of them has counts as infinite.
+    """
+
+    def differences(one: Result, other: Result, names: Iterable[str] = DIFFERING) -> dict[str, float]:
+        over = {}
+        for name in names:
+            first, second = one.quantities[name], other.quantities[name]
+            if first.value is not None and second.value is not None:
+                apart, bars = abs(first.value - second.value), (first.error or 0.0) + (second.error or 0.0)
+                over[name] = 0.0 if apart <= bars else apart / bars if bars > 0.0 else np.inf
+            elif first.value is not second.value:
+                over[name] = np.inf
+        return {name: ratio for name, ratio in over.items() if not ratio <= 1.0}
+
+    return differences

@@ -35,15 +35,6 @@ ASKED = "5e-5,1e-5,2e-5"
 
 
 @pytest.fixture
-def empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty working folder."""
-    folder = tmp_path / "work"
-    folder.mkdir()
-    monkeypatch.chdir(folder)
-    return folder
-
-
-@pytest.fixture
 def write(tmp_path: Path) -> Any:
     """A scene file without mass and velocity."""
 

@@ -29,15 +29,6 @@ CASE: dict[str, Any] = {
 }
 
 
-@pytest.fixture
-def empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty working folder."""
-    folder = tmp_path / "work"
-    folder.mkdir()
-    monkeypatch.chdir(folder)
-    return folder
-
-
 def changed(key: str, value: object) -> dict[str, Any]:
     """The case with a dotted key set, or taken out when the value is None."""
     table: dict[str, Any] = json.loads(json.dumps(CASE))

@@ -13,6 +13,7 @@ from fe_contact.march import Strike
 from fe_contact.numerics import Numerics
 from lumped.load_curves.hertz import hertz_impact
 from lumped.materials import Relaxation
+from lumped.result import RULED_RELATIVE
 from lumped.shapes import Parabola
 
 LAWS = ("elastic", "prony of one term", "prony of three terms", "kelvin_voigt")
@@ -106,3 +107,25 @@ def impact(rng: np.random.Generator, number: int) -> lumped.Scene:
 def random_impact() -> Callable[[np.random.Generator, int], lumped.Scene]:
     """A sphere on a half-space drawn from a generator, by the ``LAWS`` in turn."""
     return impact
+
+
+@pytest.fixture(scope="session")
+def agree() -> Callable[..., None]:
+    """Asserts of an impact at 1e-3: converged, and every ruled quantity within the tolerance of the truth and its bars.
+
+    ``curve``: what the truth's own load curve may err by.
+    """
+
+    def check(found: lumped.Result, truth: lumped.Result, curve: float = 0.0) -> None:
+        assert found.converged, found.message
+        for name in (*RULED_RELATIVE, "restitution"):
+            value, true = found.quantities[name], truth.quantities[name]
+            assert value.value is not None
+            assert value.error is not None
+            assert true.value is not None
+            scale = 1.0 if name == "restitution" else abs(true.value)
+            error = abs(value.value - true.value)
+            assert error <= (SETTINGS["tolerance"] + curve) * scale, name
+            assert error <= value.error + (true.error or 0.0) + curve * scale, name
+
+    return check

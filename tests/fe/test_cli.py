@@ -44,15 +44,6 @@ ENERGIES = {"in", "out", "stored", "viscous", "radiated", "contact", "numerical"
 
 
 @pytest.fixture
-def empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty working folder."""
-    folder = tmp_path / "work"
-    folder.mkdir()
-    monkeypatch.chdir(folder)
-    return folder
-
-
-@pytest.fixture
 def scene(tmp_path: Path) -> Path:
     path = tmp_path / "mine.toml"
     path.write_text(SCENE)

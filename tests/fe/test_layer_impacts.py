@@ -40,9 +40,14 @@ def exact(scene: Scene) -> Result:
     return simulate(laws.ting.of(scene), scene, 1e-6)
 
 
-def test_finite_elements_agree_with_ting_within_bar_and_tolerance(campaign_size: Callable[[int], int]) -> None:
+def test_finite_elements_agree_with_ting_within_bar_and_tolerance(
+    campaign_size: Callable[[int], int], agree: Callable[..., None]
+) -> None:
     for seed in range(campaign_size(IMPACTS)):
-        agree(random_scene(seed))
+        scene = random_scene(seed)
+        found, truth = fe_contact.run(scene, TOLERANCE), exact(scene)
+        agree(found, truth)
+        check_histories(found, truth)
 
 
 def random_ring(seed: int) -> Scene:
@@ -55,23 +60,16 @@ def random_ring(seed: int) -> Scene:
     return Scene(Cylinder(0.006, 0.03), 0.05, float(10.0 ** rng.uniform(-2.0, -1.0)), material, target=ring)
 
 
-def test_a_rod_in_a_ring_agrees_with_ting(campaign_size: Callable[[int], int]) -> None:
+def test_a_rod_in_a_ring_agrees_with_ting(campaign_size: Callable[[int], int], agree: Callable[..., None]) -> None:
     for seed in range(campaign_size(IMPACTS) // 2 + 1):
-        agree(random_ring(seed))
+        scene = random_ring(seed)
+        found, truth = fe_contact.run(scene, TOLERANCE), exact(scene)
+        agree(found, truth)
+        check_histories(found, truth)
 
 
-def agree(scene: Scene) -> None:
-    """One impact: converged, within the tolerance and its bars."""
-    found, truth = fe_contact.run(scene, TOLERANCE), exact(scene)
-    assert found.converged
-    for name in RULED:
-        value, true = found.quantities[name], truth.quantities[name]
-        assert value.value is not None
-        assert value.error is not None
-        assert true.value is not None
-        scale = 1.0 if name == "restitution" else abs(true.value)
-        assert abs(value.value - true.value) <= TOLERANCE * scale, name
-        assert abs(value.value - true.value) <= value.error + (true.error or 0.0), name
+def check_histories(found: Result, truth: Result) -> None:
+    """Forces within the norm's bar, the energy closed, contact radii alike."""
     difference = normalized_error(truth.history, found.history)
     assert difference <= (found.quantities["history_l2"].error or 0.0) + 1e-4  # what linear interpolation leaves
     assert abs(found.energy["residual"] or 0.0) <= 5e-3 * (found.energy["in"] or 0.0)
