@@ -27,14 +27,12 @@ def scene_arguments(parser: argparse.ArgumentParser) -> None:
     """SCENE, --tolerance and --set."""
     parser.add_argument("scene", help="scene file (TOML) or the name of a packaged scene")
     parser.add_argument("--tolerance", help="relative error asked of every ruled quantity")
-    parser.add_argument(
-        "--set",
-        dest="overrides",
-        action="append",
-        default=[],
-        metavar="KEY=VALUE",
-        help="override a scene key",
-    )
+    override_argument(parser)
+
+
+def override_argument(parser: argparse.ArgumentParser, says: str = "override a scene key") -> None:
+    """--set, as often as it is given."""
+    parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE", help=says)
 
 
 def json_argument(parser: argparse.ArgumentParser) -> None:
@@ -47,6 +45,11 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, help="folder for the results")
     json_argument(parser)
     parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
+
+
+def overrides_of(args: argparse.Namespace) -> dict[str, object]:
+    """Dotted keys and the values that --set gives them; raises BadInput."""
+    return dict(parse_assignment(text) for text in args.overrides)
 
 
 def read_scene(args: argparse.Namespace) -> tuple[Scene, dict[str, Any]]:
@@ -65,7 +68,7 @@ def read_indenter(args: argparse.Namespace) -> tuple[Indenter, dict[str, Any]]:
 
 
 def _read(args: argparse.Namespace, reader: Callable[..., tuple[Read, dict[str, Any]]]) -> tuple[Read, dict[str, Any]]:
-    overrides = dict(parse_assignment(text) for text in args.overrides)
+    overrides = overrides_of(args)
     try:
         scene, table = reader(args.scene, overrides)
     except BadInput as bad:
@@ -115,9 +118,15 @@ def progress_of(args: argparse.Namespace) -> Progress:
     return lambda message: print(f"fe-contact: {message} ...", file=sys.stderr)
 
 
-def tell(args: argparse.Namespace, content: Mapping[str, Any], lines: Sequence[str], where: Path) -> None:
-    """On stdout what was found: as JSON, or line by line and where it was written."""
-    print(json.dumps(content, allow_nan=False) if args.json else "\n".join([*lines, f"written to {where}"]))
+def tell(
+    args: argparse.Namespace, content: Mapping[str, Any], lines: Sequence[str], where: Path, title: str = ""
+) -> None:
+    """On stdout what was found: as JSON, or line by line, under a title indented, and where it was written."""
+    if args.json:
+        print(json.dumps(content, allow_nan=False))
+    else:
+        told = [*lines, f"written to {where}"]
+        print("\n  ".join([title, *told]) if title else "\n".join(told))
 
 
 def report(args: argparse.Namespace, result: Result, where: Path) -> int:
@@ -153,10 +162,9 @@ def warn(result: Judged) -> None:
     if not result.model_sufficient:
         known = [entry for entry in result.model_ledger if entry.estimate is not None]
         worst = max(known, key=lambda entry: entry.estimate or 0.0)
-        print(
-            f"fe-contact: model too small for the tolerance: {worst.effect}, {worst.treated}, "
-            f"about {worst.estimate:.2g} of the peak force; {worst.note}",
-            file=sys.stderr,
+        complain(
+            f"model too small for the tolerance: {worst.effect}, {worst.treated}, "
+            f"about {worst.estimate:.2g} of the peak force; {worst.note}"
         )
 
 

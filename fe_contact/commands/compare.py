@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 
 from fe_contact.commands import base
@@ -45,10 +44,7 @@ def execute(args: argparse.Namespace) -> int:
     where = base.folder(args, "compare", scene.name)
     content = write_comparison(comparison, where)
     plot_comparison(comparison, where)
-    if args.json:
-        print(json.dumps(content, allow_nan=False))
-    else:
-        print("\n  ".join([f"{scene.name}: against finite elements", *content["verdict"], f"written to {where}"]))
+    base.tell(args, content, content["verdict"], where, f"{scene.name}: against finite elements")
     base.warn(reference)
     return base.DONE if reference.converged else base.NOT_REACHED
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -29,14 +28,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--bounds", default="", metavar="a=low:high,...", help="bounds of free parameters")
     parser.add_argument("--peak", action="store_true", help="least error at equal peak force, (26)")
     parser.add_argument("--opensees", nargs="?", const="tcl", metavar="tcl|python", help="print the law for OpenSees")
-    parser.add_argument(
-        "--set",
-        dest="overrides",
-        action="append",
-        default=[],
-        metavar="KEY=VALUE",
-        help="override a scene key",
-    )
+    base.override_argument(parser)
     base.output_arguments(parser)
 
 
@@ -75,7 +67,7 @@ def _report(args: argparse.Namespace, found: Fit, where: Path) -> None:
         content["opensees"] = lines.splitlines()
     print(json.dumps(content, allow_nan=False) if args.json else text)
     for warning in found.warnings:
-        print(f"fe-contact: {warning}", file=sys.stderr)
+        base.complain(warning)
 
 
 def summary(found: Fit, where: Path) -> str:

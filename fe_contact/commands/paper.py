@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
@@ -19,14 +17,7 @@ SUMMARY = "the source paper's claims: printed, recomputed, deviation, verdict; i
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """[--set a.b=value ...] [--out DIR] [--json] [--quiet]."""
-    parser.add_argument(
-        "--set",
-        dest="overrides",
-        action="append",
-        default=[],
-        metavar="KEY=VALUE",
-        help="change an input of the examples, as steel.density=8000",
-    )
+    base.override_argument(parser, "change an input of the examples, as steel.density=8000")
     base.output_arguments(parser)
 
 
@@ -36,20 +27,19 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.validation.paper_files import write_study
     from lumped.paper import Examples
     from lumped.paper.study import study
-    from lumped.toml_file import parse_assignment
 
-    examples = Examples.load(dict(parse_assignment(text) for text in args.overrides))
+    examples = Examples.load(base.overrides_of(args))
     where = base.folder(args, "paper", examples.name)
     progress = base.progress_of(args)
     found = study(examples, progress)
     content = write_study(found, where)
     progress("charts")
     plot_paper(found, where)
-    print(json.dumps(content, allow_nan=False) if args.json else summary(found, where))
+    base.tell(args, content, _lines(found), where)
     return base.DONE
 
 
-def summary(found: Study, where: Path) -> str:
+def _lines(found: Study) -> list[str]:
     """One line a claim, one an assumption, then the counts."""
     from lumped.paper.claims import counts
     from lumped.paper.rules import AGREES, DIFFERS, UNKNOWN, UNPRINTED, VERDICTS
@@ -63,7 +53,7 @@ def summary(found: Study, where: Path) -> str:
     reasons = ", ".join(f"{count} {name}" for name, count in number.items() if name not in VERDICTS)
     lines.append(f"{number[AGREES]} agree, {number[DIFFERS]} differ, {number[UNKNOWN]} {UNKNOWN} ({reasons})")
     lines.append(f"{number[UNPRINTED]} numbers beside them with {UNPRINTED}")
-    return "\n".join([*lines, f"written to {where}"])
+    return lines
 
 
 def _line(one: Judged) -> str:

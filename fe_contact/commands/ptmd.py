@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
-import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
@@ -20,14 +17,7 @@ SUMMARY = "free vibration of a pounding tuned mass damper: motion, contacts, ene
 def arguments(parser: argparse.ArgumentParser) -> None:
     """[FILE] [--set a.b=value ...] [--out DIR] [--json] [--quiet]."""
     parser.add_argument("file", nargs="?", default="paper", help="file (TOML) or packaged name; default: the paper's")
-    parser.add_argument(
-        "--set",
-        dest="overrides",
-        action="append",
-        default=[],
-        metavar="KEY=VALUE",
-        help="override a key of the file",
-    )
+    base.override_argument(parser, "override a key of the file")
     base.output_arguments(parser)
 
 
@@ -37,9 +27,8 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.validation.ptmd_files import write_failure, write_study
     from lumped.pounding_tmd.case_file import load
     from lumped.pounding_tmd.study import study
-    from lumped.toml_file import parse_assignment
 
-    case = load(args.file, dict(parse_assignment(text) for text in args.overrides))
+    case = load(args.file, base.overrides_of(args))
     where = base.folder(args, "ptmd", case.name)
     try:
         found = study(case, base.progress_of(args))
@@ -48,15 +37,16 @@ def execute(args: argparse.Namespace) -> int:
         raise
     content = write_study(found, where)
     plot_study(found, where)
-    print(json.dumps(content, allow_nan=False) if args.json else summary(found, where))
-    for line in warnings(found):
-        print(f"fe-contact: {line}", file=sys.stderr)
+    title = f"{case.name}: {case.end_time:g} s of free vibration"
+    base.tell(args, content, _lines(found), where, title)
+    for line in _warnings(found):
+        base.complain(line)
     return base.NOT_REACHED if found.convergence.message else base.DONE
 
 
-def summary(found: Study, where: Path) -> str:
+def _lines(found: Study) -> list[str]:
     """The measures of every variant, then the energies, one a line."""
-    lines = [f"{found.case.name}: {found.case.end_time:g} s of free vibration"]
+    lines = []
     for name, result in found.results.items():
         m = result.measures
         halved = "not reached" if m.t50 is None else f"{m.t50:.3g} s"
@@ -70,10 +60,10 @@ def summary(found: Study, where: Path) -> str:
         f"of {energy.initial:.4g} J lost in structure {energy.lost_structure:.4g}, damper {energy.lost_damper:.4g}, "
         f"ring {energy.lost_ring:.4g}; residual {energy.residual:.1e}"
     )
-    return "\n  ".join([*lines, f"written to {where}"])
+    return lines
 
 
-def warnings(found: Study) -> list[str]:
+def _warnings(found: Study) -> list[str]:
     """What did not converge, and an assumption of the contact law that does not hold."""
     lines = [found.convergence.message] if found.convergence.message else []
     if not found.model_sufficient:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 
 from fe_contact.commands import base
 
@@ -29,8 +28,5 @@ def execute(args: argparse.Namespace) -> int:
     where = base.folder(args, "tradeoff", scene.name)
     content = write_tradeoff(scene, points, where)
     plot_tradeoff(scene, points, where)
-    if args.json:
-        print(json.dumps(content, allow_nan=False))
-    else:
-        print("\n  ".join([f"{scene.name}: {len(points)} points", *content["verdict"], f"written to {where}"]))
+    base.tell(args, content, content["verdict"], where, f"{scene.name}: {len(points)} points")
     return base.DONE
