@@ -104,9 +104,17 @@ def stiffness(basis: Any, law: Array) -> sparse.coo_matrix:
 
 def mass(basis: Any) -> Array:
     """Consistent mass of every element of an axisymmetric body of density one, (elements, 2 n, 2 n), m^3."""
-    radius = np.asarray(basis.global_coordinates())[0]
-    value = np.stack([np.broadcast_to(np.asarray(shape[0]), radius.shape) for shape in basis.basis], axis=-1)
-    scalar = np.einsum("eqi,eqj,eq->eij", value, value, 2 * np.pi * radius * np.asarray(basis.dx), optimize=True)
+    return _mass(basis, 2 * np.pi * np.asarray(basis.global_coordinates())[0] * np.asarray(basis.dx))
+
+
+def plane_mass(basis: Any) -> Array:
+    """The same per unit length of both halves of a body in plane strain, m^2."""
+    return _mass(basis, 2.0 * np.asarray(basis.dx))
+
+
+def _mass(basis: Any, weight: Array) -> Array:
+    value = np.stack([np.broadcast_to(np.asarray(shape[0]), weight.shape) for shape in basis.basis], axis=-1)
+    scalar = np.einsum("eqi,eqj,eq->eij", value, value, weight, optimize=True)
     elements, functions, _ = scalar.shape
     local = np.zeros((elements, 2 * functions, 2 * functions))
     local[:, 0::2, 0::2] = local[:, 1::2, 1::2] = scalar

@@ -7,7 +7,7 @@ boundaries and raises :class:`meshes.errors.MeshError`; nothing here knows a mat
 from meshes.cylinder import cylinder
 from meshes.errors import GmshMissing, MeshError
 from meshes.half_space import half_space, half_space_for_waves
-from meshes.layer import layer, layer_under_rim
+from meshes.layer import layer, layer_for_waves, layer_under_rim
 from meshes.o_ring import o_ring
 from meshes.prism import prism
 from meshes.ring import ring
@@ -22,6 +22,7 @@ __all__ = [
     "half_space",
     "half_space_for_waves",
     "layer",
+    "layer_for_waves",
     "layer_under_rim",
     "o_ring",
     "prism",

@@ -16,6 +16,8 @@ GROWTH = 4.0  # growth of the element size per unit distance from the contact, f
 LARGEST_GROWTH = 1.0  # steeper gradings leave gmsh too little room for well-shaped triangles
 LARGEST = 7.0  # element size over thickness, for one element along the radius
 COARSEST = 1.0  # element size over thickness, whatever is asked
+WAVE_GROWTH, LARGEST_WAVE_GROWTH = 2.0, 0.3  # the same growths where waves are resolved on their way
+LARGEST_WAVE = 4.0  # the same size over thickness there
 WITHIN = 2.0  # from this many thicknesses on, the surface is as fine as there: the pressure ends within one of them
 ZONE = 1.1  # the surface is fine up to this radius
 RIM = 1e-3  # element size at a rim over its radius, for one element along the radius
@@ -42,9 +44,19 @@ def layer(elements_per_radius: float, smallest: float, thickness: float, width: 
     MeshError for numbers outside these ranges.
     """
     _check(elements_per_radius, smallest, thickness, width)
-    within = _least(_most("x", smallest), min(ZONE, WITHIN * thickness))
-    away = f"(Fabs(y)+{_most(f'x-{ZONE!r}', 0.0)})"
-    return _rectangle(elements_per_radius, f"{within}/{float(elements_per_radius)!r}", away, ZONE, thickness, width)
+    growth, largest = min(GROWTH / elements_per_radius, LARGEST_GROWTH), min(LARGEST / elements_per_radius, COARSEST)
+    return _rectangle(_sizes(elements_per_radius, smallest, thickness, growth, largest), ZONE, thickness, width)
+
+
+def layer_for_waves(elements_per_radius: float, smallest: float, thickness: float, width: float) -> MeshTri:
+    """The same, its elements growing so slowly that waves from the contact are resolved on their way, too.
+
+    Parameters and errors as of :func:`layer`.
+    """
+    _check(elements_per_radius, smallest, thickness, width)
+    growth = min(WAVE_GROWTH / elements_per_radius, LARGEST_WAVE_GROWTH)
+    largest = min(LARGEST_WAVE / elements_per_radius, COARSEST)
+    return _rectangle(_sizes(elements_per_radius, smallest, thickness, growth, largest), ZONE, thickness, width)
 
 
 def layer_under_rim(elements_per_radius: float, thickness: float, width: float) -> MeshTri:
@@ -53,13 +65,20 @@ def layer_under_rim(elements_per_radius: float, thickness: float, width: float) 
     Elements shrink towards that rim in proportion to their distance.
     """
     _check(elements_per_radius, 1.0, thickness, width)
-    away = "Sqrt((x-1)^2+y^2)"
-    return _rectangle(elements_per_radius, repr(float(RIM / elements_per_radius)), away, 1.0, thickness, width)
+    growth, largest = min(GROWTH / elements_per_radius, LARGEST_GROWTH), min(LARGEST / elements_per_radius, COARSEST)
+    size = f"{float(RIM / elements_per_radius)!r}+{growth!r}*Sqrt((x-1)^2+y^2)"
+    return _rectangle(_least(size, largest * thickness), 1.0, thickness, width)
 
 
-def _rectangle(elements: float, finest: str, away: str, node: float, thickness: float, width: float) -> MeshTri:
-    """Triangles of size ``finest`` that grow ``away``, formulas of gmsh; a node of the surface at ``node``."""
-    growth, largest = min(GROWTH / elements, LARGEST_GROWTH), min(LARGEST / elements, COARSEST) * thickness
+def _sizes(elements: float, smallest: float, thickness: float, growth: float, largest: float) -> str:
+    """In proportion to the radius at the surface, growing beyond the contact to ``largest`` thicknesses."""
+    within = _least(_most("x", smallest), min(ZONE, WITHIN * thickness))
+    away = f"(Fabs(y)+{_most(f'x-{ZONE!r}', 0.0)})"
+    return _least(f"{within}/{float(elements)!r}+{growth!r}*{away}", largest * thickness)
+
+
+def _rectangle(size: str, node: float, thickness: float, width: float) -> MeshTri:
+    """Triangles of a size, a formula of gmsh; a node of the surface at ``node``."""
     side = ZONE + width
     with session("layer") as gmsh:
         geometry = gmsh.model.geo
@@ -68,7 +87,7 @@ def _rectangle(elements: float, finest: str, away: str, node: float, thickness: 
         lines = [geometry.addLine(points[i], points[(i + 1) % len(points)]) for i in range(len(points))]
         geometry.addPlaneSurface([geometry.addCurveLoop(lines)])
         geometry.synchronize()
-        nodes, triangles = triangulated(gmsh, _least(f"({finest}+{growth!r}*{away})", largest))
+        nodes, triangles = triangulated(gmsh, size)
     nodes[abs(nodes) < 1e-12 * side] = 0.0  # onto the axis and the surface exactly
     return MeshTri(nodes, triangles).with_boundaries(
         {

@@ -88,7 +88,7 @@ def _body(sizes: Sizes, order: int, bonded: bool, plane: bool) -> ElasticBody:
     """In units of the reference radius."""
     basis = Basis(_mesh(*sizes), ELEMENTS[order](), intorder=2 * order)
     fixed = held(basis, along=("axis", "side", "base") if bonded else ("axis",), across=("base",))
-    return ElasticBody(basis, partial(_matrix, basis, bonded, plane), fixed, flat(basis, 2 if plane else 3))
+    return ElasticBody(basis, partial(matrix, basis, bonded, plane), fixed, flat(basis, 2 if plane else 3))
 
 
 def _mesh(elements: float, smallest: float | None, thickness: float, width: float) -> MeshTri:
@@ -98,7 +98,7 @@ def _mesh(elements: float, smallest: float | None, thickness: float, width: floa
     return meshes.layer(elements, smallest, thickness, width)
 
 
-def _matrix(basis: Any, bonded: bool, plane: bool, bulk: float, shear: float) -> Any:
+def matrix(basis: Any, bonded: bool, plane: bool, bulk: float, shear: float) -> Any:
     """Stiffness of the layer, and of what lies beyond its sides: a sliding one gives way to the end of the world."""
     law = elastic(bulk, shear)
     if plane:

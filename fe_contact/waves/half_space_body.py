@@ -92,14 +92,14 @@ def unit_body(poisson: float, elements: float, order: int, far_radius: float, ma
         stiffness=with_striker(system_matrix(basis, poisson), free),
         mass=with_striker(inertia, free),
         dashpots=with_striker(absorbing.dashpots(far, poisson), free),
-        push=_push(np.searchsorted(free, normal[: trace.shape[1]]), len(free)),
+        push=pushing(np.searchsorted(free, normal[: trace.shape[1]]), len(free)),
         trace=np.hstack([trace, np.ones((len(points), 1))]),
         points=points,
         weights=lengths * surface.measure(points),
     )
 
 
-def _push(touched: Nodes, striker: int) -> sparse.csc_matrix:
+def pushing(touched: Nodes, striker: int) -> sparse.csc_matrix:
     """Pressure pushes the surface into the body, z < 0, and the striker out of it."""
     rows = np.append(touched, striker)
     return sparse.csc_matrix((-np.ones(rows.size), (rows, np.arange(rows.size))), shape=(striker + 1, rows.size))

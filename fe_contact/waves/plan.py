@@ -14,6 +14,7 @@ from fe_contact.numerics import RANGES
 from fe_contact.plan import EARLY_PEAK, SOONEST_PEAK, Plan
 from fe_contact.waves.numerics import WaveNumerics
 from lumped.laws import mdr
+from lumped.laws.mdr import ImpactScales
 from lumped.model_ledger import Peak, model_ledger
 from lumped.scene import Scene
 
@@ -43,21 +44,40 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
 
     Raises NotReached where even the row of springs does not come to an end.
     """
-    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
     scales = mdr.estimate(scene, SPRINGS)
-    contact_time = scales.duration or scene.end_time
+    return placed(scene, given, scales, _far_radius(scene, scales.contact_radius, contact_time(scene, scales)))
+
+
+def contact_time(scene: Scene, scales: ImpactScales) -> float:
+    """Of the estimated impact, s, or all that there is time for."""
+    return scales.duration or scene.end_time
+
+
+def placed(
+    scene: Scene,
+    given: Mapping[str, Any],
+    scales: ImpactScales,
+    far_radius: float,
+    wide: float = 1.0,
+    stiff: float = 1.0,
+) -> Plan:
+    """What ``given`` leaves open for an impact of these scales, on a mesh that ends at ``far_radius``, contact radii.
+
+    ``wide``: the contact radius to be ready for over the estimated one; ``stiff``: the body over a half-space under it.
+    """
+    tolerance, duration = float(given.get("tolerance", DEFAULT_TOLERANCE)), contact_time(scene, scales)
     finer = max(1.0, DEFAULT_TOLERANCE / tolerance)
-    peak_share = min(max(scales.peak_time / contact_time, SOONEST_PEAK), 1.0)
-    viscous = min(_dashpot_share(scene, peak_share * contact_time) / MUCH, 1.0)
+    peak_share = min(max(scales.peak_time / duration, SOONEST_PEAK), 1.0)
+    viscous = min(_dashpot_share(scene, peak_share * duration) / MUCH, 1.0)
     chosen = {
         **DEFAULTS,
         "tolerance": tolerance,
         "elements_per_contact": ELEMENTS * math.sqrt(finer) * (1.0 + (VISCOUS - 1.0) * viscous),
-        "penalty": PENALTY * (1.0 + (STIFF - 1.0) * viscous),
+        "penalty": PENALTY * stiff * (1.0 + (STIFF - 1.0) * viscous),
         "steps": 4 * math.ceil(STEPS * math.sqrt(finer) * min(max(1.0, EARLY_PEAK / peak_share), MOST_EARLY) / 4),
-        "far_radius": _far_radius(scene, scales.contact_radius, contact_time),
-        "contact_radius": scales.contact_radius,
-        "contact_time": contact_time,
+        "far_radius": far_radius,
+        "contact_radius": wide * scales.contact_radius,
+        "contact_time": duration,
         "peak_share": peak_share,
     }
     peak = Peak(scales.peak_force, scales.peak_depth, scales.contact_radius, 2 * scales.peak_time)
@@ -70,10 +90,10 @@ def _dashpot_share(scene: Scene, peak_time: float) -> float:
     return dashpot / (scene.contact_modulus.glassy + dashpot)
 
 
-def _far_radius(scene: Scene, contact_radius: float, contact_time: float) -> float:
+def _far_radius(scene: Scene, contact_radius: float, duration: float) -> float:
     """In contact radii: so far that pressure waves of the stiffest answer return too late, or viscosity has faded."""
     modulus, material = scene.contact_modulus, scene.geometry.material
     density = material.density or 1.0
     fastest = wave_speeds(material.nu)[0] * math.sqrt(modulus.glassy / density)
-    travel = max(TRAVEL * fastest * contact_time, SPREAD * math.sqrt(modulus.viscosity * contact_time / density))
+    travel = max(TRAVEL * fastest * duration, SPREAD * math.sqrt(modulus.viscosity * duration / density))
     return min(max(travel / contact_radius, NEAREST), RANGES["far_radius"][1])

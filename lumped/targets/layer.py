@@ -32,7 +32,7 @@ class Layer(Target):
     base: str
     name: ClassVar[str] = "layer"
     keys: ClassVar[Mapping[str, Key]] = KEYS
-    has_inertia: ClassVar[bool] = False
+    has_inertia: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         check_fields("layer", self, KEYS)

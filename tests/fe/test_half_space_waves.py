@@ -198,9 +198,9 @@ def test_an_equivalent_modulus_is_no_wave_medium() -> None:
         Scene.load("steel-ball", {"model.inertia": True})
 
 
-@pytest.mark.parametrize("name", ["polymer-layer", "rod-in-ring", "polymer-o-ring"])
+@pytest.mark.parametrize("name", ["polymer-washer", "rod-in-ring", "polymer-o-ring"])
 def test_a_target_without_waves_names_those_that_have_them(name: str) -> None:
-    with pytest.raises(BadInput, match=r"model\.inertia.*false, or target\.shape half_space, plane, rod"):
+    with pytest.raises(BadInput, match=r"model\.inertia.*false, or target\.shape half_space, layer, plane, rod"):
         Scene.load(name, {"model.inertia": True})
 
 

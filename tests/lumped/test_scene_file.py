@@ -167,7 +167,7 @@ def test_an_unknown_network_may_mean_anything_by_a_key_that_is_several_things() 
 
 def test_inertia_names_the_missing_density_too() -> None:
     table = changed("model.inertia", True)
-    table["target"] |= {"shape": "layer", "thickness": 0.01, "base": "bonded"}  # whose waves are not followed
+    table["target"] |= {"shape": "washer", "inner_radius": 0.01, "outer_radius": 0.02, "height": 0.01, "base": "bonded"}
     del table["target"]["material"]["density"]
     keys = [fault.split(": ")[1] for fault in faults(table)]
     assert keys == ["model.inertia", "target.material.density"]

@@ -2,65 +2,33 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
-from fe_contact.certify import Budget
-from fe_contact.numerics import Numerics
-from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
-from fe_contact.reference import refined_for, result_of, strike_of
-from fe_contact.waves.certify import certify
 from fe_contact.waves.fields import write_fields as write_fields
 from fe_contact.waves.half_space_body import moving
-from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.plan import plan as plan
+from fe_contact.waves.refining import refined_to_tolerance
 from lumped.errors import BadInput, Fault
 from lumped.radiation import shear_speed
 from lumped.result import Result
 from lumped.scene import Scene
 
-ROUNDS = 2  # refinements before giving up
 FASTEST = 0.3  # of the speed of shear waves: beyond, strains are not small anywhere
-
-
-@dataclass(frozen=True, eq=False)
-class Solved:
-    """A certified impact with the plan it began from and the settings it ended with; CPU and wall time, s."""
-
-    plan: Plan
-    numerics: Numerics
-    certified: Budget
-    cpu: float
-    wall: float
 
 
 def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
     """Force history with error bars. Raises BadInput for a scene it is not for, NotReached where no march ends."""
     check(scene)
-    cpu, wall = time.process_time(), time.perf_counter()
-    chosen, strike = plan(scene, given), strike_of(scene)
-    assert isinstance(chosen.numerics, WaveNumerics)
-    numerics: WaveNumerics = chosen.numerics
-    for attempt in range(ROUNDS + 1):
-        progress(f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements, waves")
-        certified = certify(scene, strike, numerics, moving)
-        finer = refined_for(certified, numerics, chosen)
-        if not isinstance(finer, WaveNumerics) or attempt == ROUNDS:
-            break
-        numerics = finer
-    scene.check_sunk(certified.curve.quantities["peak_depth"] or 0.0)
-    solved = Solved(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall)
-    return result_of(scene, solved)
+    return refined_to_tolerance(scene, plan(scene, given), moving, progress)
 
 
 def check(scene: Scene) -> None:
     """Raise BadInput for several impacts, a striker with a rim or in plane strain, and a changing Poisson's ratio."""
     scene.check_single("fe")
     shape, material = scene.geometry.shape, scene.geometry.material
-    faults = _too_fast(scene)
+    faults = too_fast(scene)
     if shape.plane or shape.fixed_radius is not None:
         reason = f"{shape.name}: no waves under it in this version; accepted with model.inertia: sphere, cone, power"
         faults.append(Fault(scene.source, "striker.shape", reason))
@@ -71,7 +39,7 @@ def check(scene: Scene) -> None:
         raise BadInput(faults)
 
 
-def _too_fast(scene: Scene) -> list[Fault]:
+def too_fast(scene: Scene) -> list[Fault]:
     """Nearer to the speed of shear waves than small displacements reach."""
     speed = shear_speed(scene.geometry.material)
     if speed is None or scene.velocity < FASTEST * speed:

@@ -1,0 +1,84 @@
+"""The layer with waves: its base sends them back under the striker, its sides let them go."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from fe_contact.numerics import RANGES
+from fe_contact.plan import Plan
+from fe_contact.progress import Progress, silent
+from fe_contact.scales import scales
+from fe_contact.waves.layer_body import moving
+from fe_contact.waves.numerics import WaveNumerics
+from fe_contact.waves.plan import DEFAULTS, SPREAD, TRAVEL, contact_time, placed
+from fe_contact.waves.refining import refined_to_tolerance
+from fe_contact.waves.targets.half_space import too_fast
+from lumped.errors import BadInput, Fault
+from lumped.laws.mdr import ImpactScales
+from lumped.result import Result
+from lumped.scene import Scene
+from lumped.targets.layer import Layer
+
+SPARE = 1.2  # a resonance may press the striker deeper than statics
+# Width beyond the contact in thicknesses: at rest nothing is left of a load so far away, and in a contact of many
+# echoes no wave fast enough to come back is left either.
+NEAREST, FARTHEST = 8.0, 20.0
+LEAST = 4.0  # contact radii, of which half still holds the contact
+ROUGH: Mapping[str, Any] = {
+    "tolerance": 1e-2,
+    "elements_per_contact": 2.0,
+    "penalty": 100.0,
+    "steps": 8,
+    "far_radius": 20.0,
+    "contact_radius": 1.0,
+    "contact_time": 1.0,
+    "peak_share": 0.5,
+}
+
+
+def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
+    """Choose what ``given`` (checked settings) leaves open; the impact without inertia places mesh and steps.
+
+    Raises NotReached where even that does not come to an end, BadInput for a contact beyond its load curve.
+    """
+    check(scene)
+    size = scales(scene, WaveNumerics(**DEFAULTS, **ROUGH))
+    return placed(scene, given, size, _far_radius(scene, size), SPARE, _stiffness(scene, size))
+
+
+def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
+    """Force history with error bars. Raises BadInput for a scene it is not for, NotReached where no march ends."""
+    return refined_to_tolerance(scene, plan(scene, given), moving, progress)
+
+
+def check(scene: Scene) -> None:
+    """Raise BadInput for several impacts, a striker with a rim, and one too fast."""
+    scene.check_single("fe")
+    shape, faults = scene.geometry.shape, too_fast(scene)
+    if shape.fixed_radius is not None:
+        reason = f"{shape.name}: no waves under its rim in this version; accepted with model.inertia: a round profile"
+        faults.append(Fault(scene.source, "striker.shape", reason))
+    if faults:
+        raise BadInput(faults)
+
+
+def _stiffness(scene: Scene, size: ImpactScales) -> float:
+    """Of the layer under the largest contact, over that of a half-space; at least one."""
+    shape, a = scene.profile, size.contact_radius
+    curve = scene.target.load_curve(shape, scene.geometry.material.nu)
+    slope = float(curve.force_and_slope(size.peak_depth)[1])
+    area = 2.0 * a if shape.plane else math.pi * a**2
+    return max(0.5 * math.pi * slope * a / area, 1.0)
+
+
+def _far_radius(scene: Scene, size: ImpactScales) -> float:
+    """In contact radii, as far as pressure waves of the first answer, or a dashpot's spreading, go and come back."""
+    material, duration, target = scene.geometry.material, contact_time(scene, size), scene.target
+    assert isinstance(target, Layer)
+    confined, density = material.confined_modulus(), material.density or 1.0
+    travel = TRAVEL * math.sqrt(confined.glassy / density) * duration
+    spread = SPREAD * math.sqrt(confined.viscosity * duration / density)
+    width = min(max(travel, spread, NEAREST * target.thickness), FARTHEST * target.thickness)
+    return min(max(1.0 + width / (SPARE * size.contact_radius), LEAST), RANGES["far_radius"][1])
