@@ -27,8 +27,8 @@ from skfem import Basis
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.forms import Array, isotropic
 from fe_contact.numerics import ENFORCEMENTS, TARGETS, Numerics
+from fe_contact.pressing import BEYOND
 from fe_contact.reference import Solved
-from fe_contact.stepping import BEYOND
 from fe_contact.surface_pressure import felt, peak_step, scale
 from lumped.errors import BadInput, Fault
 from lumped.members import get

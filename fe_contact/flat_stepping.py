@@ -13,13 +13,14 @@ from fe_contact.errors import ContactLost
 from fe_contact.forms import Array
 from fe_contact.march import Snapshot, Strike, Work
 from fe_contact.numerics import SCHEMES, Numerics
-from fe_contact.steps import State, Step
+from fe_contact.steps import OfSurface, State, Step
+from fe_contact.striker import Inertia
 from lumped.members import get
 
 TOUCHING = ContactSolution(np.ones(1), 0, True, (np.ones(1, dtype=bool),))
 
 
-class FlatStepper:
+class FlatStepper(OfSurface):
     """Takes steps, each in closed form: the contract of :class:`fe_contact.steps.Stepping`.
 
     ``stiffness``: force per depth for unit modulus, m; ``radius`` of the contact, m.
@@ -33,15 +34,9 @@ class FlatStepper:
         self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
         self.first_force = stiffness * (strike.relaxation.viscosity * strike.velocity + self._held(self.touch().memory))
 
-    def touch(self) -> State:
-        """The striker at the body, at rest or with what it remembers."""
-        strike = self.strike
-        memory = strike.memory or SurfaceMemory.at_rest(np.ones(1), strike.relaxation, fields=2)
-        return State(0.0, strike.depth, strike.velocity, 0.0, memory)
-
-    def remembered(self, memory: SurfaceMemory) -> SurfaceMemory:
-        """All that is remembered."""
-        return memory
+    def at_rest(self) -> SurfaceMemory:
+        """Of depth and force, at the one place."""
+        return SurfaceMemory.at_rest(np.ones(1), self.strike.relaxation, fields=2)
 
     def standing(self) -> int:
         """The one place there is."""
@@ -52,28 +47,21 @@ class FlatStepper:
         return np.asarray(surface.strain[0] - depth)
 
     def step(self, state: State, steps: Sequence[Step], length: float) -> Step:
-        """The step of a length, s: force = stiffness (now depth + past), depth = free depth - lever force / mass.
+        """The step of a length, s: force = stiffness (now depth + past), depth = free depth - give force.
 
         Raises ContactLost where the body would have to pull.
         """
         strike = self.strike
         law = step_law(strike.relaxation, self.scheme, length)
         carried = state.memory.carried(law)
-        lever = self.scheme.LEVER * length**2
-        free_depth = state.depth + length * state.velocity + lever * strike.gravity
-        yielding = 1.0 + self.stiffness * law.now * lever / strike.mass
-        response = (law.now * free_depth + float(carried[0, 0])) / yielding
+        inertia = Inertia.of(strike, self.scheme, state, length)
+        yielding = 1.0 + self.stiffness * law.now * inertia.lever / strike.mass
+        response = (law.now * inertia.free_depth + float(carried[0, 0])) / yielding
         if response <= 0.0:
             raise ContactLost(state.time)
         force = self.stiffness * response
-        depth = free_depth - lever * force / strike.mass
-        moved = State(
-            time=strike.end_time if length >= strike.end_time - state.time else state.time + length,
-            depth=depth,
-            velocity=state.velocity + length * (strike.gravity - force / strike.mass),
-            impulse=state.impulse + length * force,
-            memory=state.memory.advanced(law, depth * np.array([[1.0], [self.stiffness]])),
-        )
+        strain = inertia.depth(force) * np.array([[1.0], [self.stiffness]])
+        moved = inertia.moved(force, state.memory.advanced(law, strain))
         found_at = state.time + length * self.scheme.SAMPLE
         return Step(length, moved, force, self.radius, found_at, response, TOUCHING, self.radius, Work(1, 1, 1))
 
@@ -85,14 +73,6 @@ class FlatStepper:
         """What the springs press with, Pa m, which a dashpot alone holds back until touch."""
         relaxation, strain = self.strike.relaxation, memory.strain[0, 0]
         return float(relaxation.equilibrium * strain + np.array(relaxation.moduli) @ memory.branches[:, 0, 0])
-
-    def stored(self, memory: SurfaceMemory) -> float:
-        """Elastic energy, J."""
-        return memory.stored(self.strike.relaxation)
-
-    def dissipated(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
-        """Heat of a step of a length, s; J."""
-        return before.dissipated(after, self.strike.relaxation, length)
 
     def springs(self, step: Step) -> float:
         """None: the penalty's softness is in the stiffness."""

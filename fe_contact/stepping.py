@@ -13,28 +13,29 @@ import numpy as np
 
 from fe_contact import instants
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, area_weights, interpolate, step_law
+from fe_contact.coming_radius import coming_square
 from fe_contact.contact import ContactSolution, Touching, count, moved
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
 from fe_contact.forms import Array
 from fe_contact.march import Snapshot, Strike, Work
 from fe_contact.numerics import ENFORCEMENTS, SCHEMES, Numerics
-from fe_contact.steps import State, Step
+from fe_contact.pressing import BEYOND, EDGE_WINDOW, RESCALINGS
+from fe_contact.steps import OfSurface, State, Step
+from fe_contact.striker import Inertia
 from lumped.members import get
 
 if TYPE_CHECKING:
     from fe_contact.bodies.scaled_surface import ScaledSurface
 
-EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
-RESCALINGS = 60
+LEAST_KEPT = 0.05  # share of its area that a contact is expected to keep over a step
 PATIENCE = 8  # rescalings after which the window widens by half each time: the edge may jitter in the last tail
 MEMORY_POINTS = 1000
 MEMORY_REACH = 1.25  # memory extends to this multiple of the expected contact radius
-BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 COARSE = np.geomspace(1e-6, 1.0, 200)  # where, in units of the memory's reach, the first contact is looked for
 VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
 
 
-class Stepper:
+class Stepper(OfSurface):
     """Takes steps: what stays the same through an impact is held here, what changes is passed and returned.
 
     ``accounted``: the memory also keeps the pressure that each of its branches carries, for the energies.
@@ -62,15 +63,9 @@ class Stepper:
         self.expected = expected
         self.unit = count(surface.operator.points < 1.0)
 
-    def touch(self) -> State:
-        """The striker at the surface, at rest or with what it remembers."""
-        strike, fields = self.strike, 2 if self.accounted else 1
-        memory = strike.memory or SurfaceMemory.at_rest(area_weights(self.radii), strike.relaxation, fields)
-        return State(0.0, strike.depth, strike.velocity, 0.0, memory)
-
-    def remembered(self, memory: SurfaceMemory) -> SurfaceMemory:
-        """All that is remembered."""
-        return memory
+    def at_rest(self) -> SurfaceMemory:
+        """Of the displacement and, where accounted, of the pressure, at the memory's radii."""
+        return SurfaceMemory.at_rest(area_weights(self.radii), self.strike.relaxation, 2 if self.accounted else 1)
 
     def standing(self) -> int:
         """The axis."""
@@ -85,26 +80,14 @@ class Stepper:
 
         Raises ContactLost, ContactNotSettled or MemoryTooSmall.
         """
-        strike, end = self.strike, self.strike.end_time
-        law = step_law(strike.relaxation, self.scheme, length)
+        law = step_law(self.strike.relaxation, self.scheme, length)
+        inertia = Inertia.of(self.strike, self.scheme, state, length)
         carried = state.memory.carried(law)
-        lever = self.scheme.LEVER * length**2
-        free_depth = state.depth + length * state.velocity + lever * strike.gravity
-        scale, edge, solution, work = self._settle(
-            state, steps, law, carried[0], free_depth, lever / strike.mass, length
-        )
-        pressure = solution.pressure
+        scale, edge, solution, work = self._settle(inertia, steps, law, carried[0])
+        pressure, radius = solution.pressure, scale * edge
         force = scale * float(self.surface.operator.weights @ pressure)
-        depth = free_depth - lever * force / strike.mass
-        radius = scale * edge
-        strain = self._strain(law, carried, depth, radius, scale, pressure)
-        moved = State(
-            time=end if length >= end - state.time else state.time + length,
-            depth=depth,
-            velocity=state.velocity + length * (strike.gravity - force / strike.mass),
-            impulse=state.impulse + length * force,
-            memory=state.memory.advanced(law, strain),
-        )
+        strain = self._strain(law, carried, inertia.depth(force), radius, scale, pressure)
+        moved = inertia.moved(force, state.memory.advanced(law, strain))
         axis = float(law.now * strain[0, 0] + carried[0, 0])
         found_at = self._radius_time(moved.velocity, state.time, length)
         return Step(length, moved, force, radius, found_at, axis, solution, scale, work)
@@ -113,32 +96,18 @@ class Stepper:
         """Pressures at instants: at the end of a step while the contact grows, else where it is sampled."""
         return instants.read(self, steps)
 
-    def stored(self, memory: SurfaceMemory) -> float:
-        """Elastic energy, J."""
-        return memory.stored(self.strike.relaxation)
-
-    def dissipated(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
-        """Heat of a step of a length, s; J."""
-        return before.dissipated(after, self.strike.relaxation, length)
-
     def springs(self, step: Step) -> float:
         """What the penalty's springs hold, J."""
         stiffness = self.numerics.penalty * step_law(self.strike.relaxation, self.scheme, step.length).now
         return 0.5 * step.scale * float(self.surface.operator.weights @ step.solution.pressure**2) / stiffness
 
     def _settle(
-        self,
-        state: State,
-        steps: Sequence[Step],
-        law: StepLaw,
-        carried: Array,
-        free_depth: float,
-        yielding: float,
-        length: float,
+        self, inertia: Inertia, steps: Sequence[Step], law: StepLaw, carried: Array
     ) -> tuple[float, float, ContactSolution, Work]:
         """Scale the mesh until the contact edge lies in its finest elements: scale, edge on the unit mesh, solution."""
-        points, limit = self.surface.operator.points, self.radii[-1]
-        scale = self._expected_radius(state, steps, length) or self._overlap_radius(law, carried, free_depth)
+        points, limit, state = self.surface.operator.points, self.radii[-1], inertia.state
+        free_depth, give = inertia.free_depth, inertia.give
+        scale = self._expected_radius(state, steps, inertia.length) or self._overlap_radius(law, carried, free_depth)
         guesses = self._guesses(steps)
         iterations = 0
         for attempt in range(RESCALINGS):
@@ -147,7 +116,7 @@ class Stepper:
                 raise MemoryTooSmall(radii[-1])
             height = np.minimum(self.strike.height(radii), BEYOND * radii[-1])  # a profile may end
             overlap = law.now * (free_depth - height) + interpolate(carried, self.radii[1], radii)
-            problem = self.surface.problem(overlap, self.numerics.penalty, law.now * yielding * scale)
+            problem = self.surface.problem(overlap, self.numerics.penalty, law.now * give * scale)
             solution = self.enforcement.enforce(problem, *guesses)
             iterations += solution.iterations
             if not solution.converged:
@@ -181,11 +150,8 @@ class Stepper:
             return float(self.expected[len(steps)])
         if not steps:
             return 0.0
-        known = [(step.radius_time, step.radius**2) for step in steps[-3:]]
-        if len(known) < 3:
-            known.insert(0, (0.0, 0.0))
-        square = extrapolated(known, self._radius_time(state.velocity, state.time, length))
-        return float(np.sqrt(max(square, 0.05 * known[-1][1])))
+        square = coming_square(steps, self._radius_time(state.velocity, state.time, length))
+        return float(np.sqrt(max(square, LEAST_KEPT * steps[-1].radius ** 2)))
 
     def _overlap_radius(self, law: StepLaw, carried: Array, free_depth: float) -> float:
         """About the radius up to which the striker would overlap a surface that nothing presses."""
@@ -213,14 +179,3 @@ class Stepper:
             spread = np.interp(self.radii / scale, points, pressure / scale, right=0.0)
             strain[1] = (spread - carried[1]) / law.now
         return strain
-
-
-def extrapolated(known: Sequence[tuple[float, float]], at: float) -> float:
-    """The polynomial through two or three points, Newton's form."""
-    (before, previous), (last, value) = known[-2:]
-    slope = (value - previous) / (last - before)
-    if len(known) < 3:
-        return value + slope * (at - last)
-    first, start = known[0]
-    bend = (slope - (previous - start) / (before - first)) / (last - first)
-    return value + (at - last) * (slope + bend * (at - before))

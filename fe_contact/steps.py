@@ -82,3 +82,30 @@ class Stepping(Protocol):
 
     def springs(self, step: Step) -> float:
         """What the penalty's springs hold in a step, J."""
+
+
+class OfSurface:
+    """What, of the contract of :class:`Stepping`, all do on a body whose memory is that of its surface alone."""
+
+    strike: Strike
+
+    def at_rest(self) -> SurfaceMemory:
+        """The memory of a body that nothing has touched yet."""
+        raise NotImplementedError
+
+    def touch(self) -> State:
+        """The striker at the surface, at rest or with what it remembers."""
+        strike = self.strike
+        return State(0.0, strike.depth, strike.velocity, 0.0, strike.memory or self.at_rest())
+
+    def remembered(self, memory: SurfaceMemory) -> SurfaceMemory:
+        """All that is remembered."""
+        return memory
+
+    def stored(self, memory: SurfaceMemory) -> float:
+        """Elastic energy, J."""
+        return memory.stored(self.strike.relaxation)
+
+    def dissipated(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
+        """Heat of a step of a length, s; J."""
+        return before.dissipated(after, self.strike.relaxation, length)

@@ -14,7 +14,7 @@ from fe_contact.contact import ContactSolution
 from fe_contact.enforcement import corrected, penalty
 from fe_contact.far_field.static import boussinesq
 from fe_contact.operators import surface_operator
-from fe_contact.stepping import EDGE_WINDOW
+from fe_contact.pressing import EDGE_WINDOW
 from lumped.shapes import Parabola, Shape, Sphere
 
 RNG = np.random.default_rng(2)
