@@ -7,6 +7,7 @@ from types import ModuleType
 from typing import NamedTuple
 
 from fe_contact.bodies.bulk_memory import BulkBody, Moduli
+from fe_contact.bodies.condensed import ByModes
 from fe_contact.bodies.memory import step_law
 from fe_contact.bodies.modes import Modes, modes
 from fe_contact.bodies.struck import Deformable
@@ -42,7 +43,7 @@ class Pace(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class BulkSurface(Deformable):
+class BulkSurface(ByModes, Deformable):
     """A body before the impact, seen through its surface.
 
     ``length``: unit of its mesh, m; None: the contact radius expected. ``rim``: where a contact ends that no depth
@@ -64,16 +65,6 @@ class BulkSurface(Deformable):
     def recovers(self) -> bool:
         """Its bulk remembers."""
         return False
-
-    @property
-    def factorizations(self) -> int:
-        """One for every ratio of the moduli at which the body was condensed, whatever the steps."""
-        return self.modes.ratios
-
-    @property
-    def solves(self) -> int:
-        """Those of its modes."""
-        return self.modes.solves
 
     def unit(self, contact_radius: float) -> float:
         """The mesh's unit of length, m."""

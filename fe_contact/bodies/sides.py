@@ -13,6 +13,7 @@ from scipy.linalg import block_diag
 
 from fe_contact.bodies.bulk_memory import BulkBody, Moduli
 from fe_contact.bodies.bulk_surface import Pace
+from fe_contact.bodies.condensed import ByModes, Condensed
 from fe_contact.bodies.modes import Modes, modes
 from fe_contact.bodies.offer import Half
 from fe_contact.bodies.surface_body import SurfaceBody
@@ -24,7 +25,7 @@ from lumped.materials import Relaxation
 
 
 @dataclass(frozen=True, eq=False)
-class Side:
+class Side(Condensed):
     """One body: its ``operator``, its own contact modulus ``relaxation``, Pa (times a length in plane strain).
 
     ``trace`` (q, n): displacement at the common points from that of its n nodes in the contact zone; ``share``: its
@@ -52,16 +53,6 @@ class Side:
         """Whether its compliance is the same, but for the modulus, in every step."""
         return True
 
-    @property
-    def factorizations(self) -> int:
-        """One a mesh."""
-        return 1
-
-    @property
-    def solves(self) -> int:
-        """One a node of the contact zone."""
-        return len(self.operator.stiffness)
-
     def half(self, scheme: ModuleType, scale: float) -> Half:
         """The body, whose surface remembers; ``scale``, m, is the common unit."""
         operator = self.operator
@@ -70,7 +61,7 @@ class Side:
 
 
 @dataclass(frozen=True, eq=False)
-class BulkSide(Side):
+class BulkSide(ByModes, Side):
     """The same of a body whose bulk remembers; ``operator`` is one of its ``modes``', which count with the share."""
 
     modes: Modes = field(kw_only=True)
@@ -94,16 +85,6 @@ class BulkSide(Side):
     def steady(self) -> bool:
         """No: its Poisson's ratio relaxes."""
         return False
-
-    @property
-    def factorizations(self) -> int:
-        """One for every ratio of the moduli at which it was condensed."""
-        return self.modes.ratios
-
-    @property
-    def solves(self) -> int:
-        """Those of its modes."""
-        return self.modes.solves
 
     def half(self, scheme: ModuleType, scale: float) -> Half:
         """The body, whose bulk remembers; ``scale``, m, is the common unit."""

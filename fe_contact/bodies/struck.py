@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING, Protocol
 
+from fe_contact.bodies.condensed import Condensed
 from fe_contact.bodies.offer import Body
 from fe_contact.fixed_stepping import FixedStepper
 from fe_contact.forms import Array
 from fe_contact.march import Snapshot, Strike
 from fe_contact.numerics import Numerics
-from fe_contact.operators import SurfaceOperator
 from fe_contact.steps import Stepping
 from lumped.materials import Relaxation
 
@@ -47,16 +47,13 @@ class Struck(Protocol):
         """Places on its surface, m, and the pressure there that it feels in a step, Pa, each (n,)."""
 
 
-class Deformable:
+class Deformable(Condensed):
     """A struck body before the impact: ``operator`` of one elastic body on its mesh, for places, weights and scale.
 
     The contract of :class:`Struck`, of which only what differs has to be said.
     """
 
-    if TYPE_CHECKING:  # members have them as fields or as properties
-
-        @property
-        def operator(self) -> SurfaceOperator: ...
+    if TYPE_CHECKING:  # members have it as a field or as a property
 
         @property
         def breathes(self) -> bool: ...
@@ -74,16 +71,6 @@ class Deformable:
     def recovers(self) -> bool:
         """Here it does."""
         return True
-
-    @property
-    def factorizations(self) -> int:
-        """One for one mesh."""
-        return 1
-
-    @property
-    def solves(self) -> int:
-        """Back-substitutions that made it: one a node of the contact zone."""
-        return len(self.operator.stiffness)
 
     @property
     def degrees_of_freedom(self) -> int:
