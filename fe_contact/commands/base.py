@@ -25,12 +25,16 @@ Read = TypeVar("Read")
 
 def scene_arguments(parser: argparse.ArgumentParser) -> None:
     """SCENE, --tolerance and --set."""
-    parser.add_argument("scene", help="scene file (TOML) or the name of a packaged scene")
-    parser.add_argument("--tolerance", help="relative error asked of every ruled quantity")
+    parser.add_argument("scene", help="scene file (TOML), or the name of a packaged one: fe-contact scenes")
+    parser.add_argument(
+        "--tolerance", metavar="T", help="relative error asked of forces, depths and times; default 1e-3"
+    )
     override_argument(parser)
 
 
-def override_argument(parser: argparse.ArgumentParser, says: str = "override a scene key") -> None:
+def override_argument(
+    parser: argparse.ArgumentParser, says: str = "set a key of the scene file, as striker.velocity=0.1"
+) -> None:
     """--set, as often as it is given."""
     parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE", help=says)
 
@@ -42,7 +46,7 @@ def json_argument(parser: argparse.ArgumentParser) -> None:
 
 def output_arguments(parser: argparse.ArgumentParser) -> None:
     """--out, --json and --quiet."""
-    parser.add_argument("--out", type=Path, help="folder for the results")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the results")
     json_argument(parser)
     parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
 

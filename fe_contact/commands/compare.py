@@ -16,7 +16,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """SCENE [--laws a,b] [--measured CURVE.csv] [--tolerance T] [--set a.b=value ...] [--out DIR]."""
     base.scene_arguments(parser)
     base.output_arguments(parser)
-    parser.add_argument("--laws", help="lumped laws, separated by commas; default: all that the target has")
+    parser.add_argument("--laws", metavar="a,b,...", help="lumped laws; default: all that the target has")
     parser.add_argument("--measured", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N")
 
 

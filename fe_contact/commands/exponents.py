@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from fe_contact.validation.exponents_check import Check
 
 SUMMARY = (
-    "local exponent and D from the half-space to the thin layer: every profile, base and nu; spots by FE; and how far "
-    "finite spheres are from Hertz"
+    "local exponent and D from the half-space to the thin layer, every profile, base and nu, checked by finite "
+    "elements; how far finite spheres are from Hertz"
 )
 
 

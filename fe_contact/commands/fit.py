@@ -21,9 +21,9 @@ WIDTH = 12  # of a parameter's name
 def arguments(parser: argparse.ArgumentParser) -> None:
     """CURVE.csv --law NAME --scene SCENE [--free a,b] [--fix a=v] [--bounds a=low:high] [--peak] [--opensees]."""
     parser.add_argument("curve", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N")
-    parser.add_argument("--law", required=True, help="name of the lumped law")
+    parser.add_argument("--law", required=True, metavar="NAME", help="a lumped law: fe-contact laws")
     parser.add_argument("--scene", required=True, help="scene (file or packaged name) with mass, velocity, geometry")
-    parser.add_argument("--free", help="parameters to find, separated by commas; default: stiffness and damping")
+    parser.add_argument("--free", metavar="a,b,...", help="parameters to find; default: stiffness and damping")
     parser.add_argument("--fix", default="", metavar="a=v,...", help="parameters held at a value")
     parser.add_argument("--bounds", default="", metavar="a=low:high,...", help="bounds of free parameters")
     parser.add_argument("--peak", action="store_true", help="least error at equal peak force, (26)")

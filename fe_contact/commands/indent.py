@@ -19,8 +19,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """SCENE --depths d1,d2,... [--method M] [--tolerance T] [--instant] [--set a.b=value ...] [--out DIR]."""
     base.scene_arguments(parser)
     base.output_arguments(parser)
-    parser.add_argument("--depths", required=True, help="depths in m, separated by commas")
-    parser.add_argument("--method", default="fe", help="fe (default), cheapest, hertz, or an exact law")
+    parser.add_argument("--depths", required=True, metavar="d1,d2,...", help="depths in m")
+    parser.add_argument("--method", default="fe", metavar="M", help="fe (default), cheapest, hertz, or an exact law")
     parser.add_argument("--instant", action="store_true", help="the material against a sudden indentation")
 
 

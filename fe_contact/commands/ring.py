@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from fe_contact.validation.rings import RingCurve
     from fe_contact.validation.rings_impact import RingStruck
 
-SUMMARY = "rod in ring, O-ring and washer by finite elements over depth, against the paper's (27)-(32)"
+SUMMARY = "rod in ring, O-ring and washer pressed, the paper's ring struck, by finite elements against its (27)-(32)"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
