@@ -14,8 +14,7 @@ from lumped.key_table import check_fields
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material, Relaxation
 from lumped.members import get
-from lumped.pair import check_striker_material, contact_modulus
-from lumped.pair import tables as bodies
+from lumped.pair import check_striker_material, contact_modulus, tables
 from lumped.scales import absurd_depth, relaxed_impact
 from lumped.scene_tables import (
     LAWS,
@@ -96,12 +95,6 @@ class Scene:
         """Whether the scene has a shape and a material, not a law's parameters alone."""
         return self.shape is not None
 
-    def check_single(self, method: str) -> None:
-        """Raise BadInput for several impacts, which need a memory that `method` does not have."""
-        if self.motion.impacts > 1:
-            reason = f"{self.motion.impacts}: {method} follows one impact; accepted: 1, or a law between two masses"
-            raise BadInput(Fault(self.source, "motion.impacts", reason))
-
     @property
     def geometry(self) -> Geometry:
         """Shape, target and material; raises BadInput where the scene has a law's parameters alone."""
@@ -143,14 +136,6 @@ class Scene:
         self.check_memory()
         return self.target.load_curve(self.profile, self.geometry.material.nu)
 
-    def check_memory(self) -> None:
-        """Raise BadInput where no surface alone remembers: of a body with lengths, nu(t) changes the load curve."""
-        if not self.geometry.surface_remembers:
-            reason = '"bulk" changes nu in time, which no load curve follows'
-            raise BadInput(
-                Fault(self.source, "target.material.constant", f'{reason}; accepted: "poisson", or --method fe')
-            )
-
     @cached_property
     def elastic_contact_time(self) -> float:
         """Hertz contact time with the relaxed modulus, or the glassy one of a fluid; or of the bare law, s."""
@@ -177,16 +162,30 @@ class Scene:
         striker: dict[str, Any] = {"mass": self.mass, "velocity": self.velocity}
         target: dict[str, Any] = {} if self.target_mass is None else {"mass": self.target_mass}
         if self.shape is not None and self.material is not None:
-            own, held = bodies(self.shape, self.target, self.material, self.striker_material)
+            own, held = tables(self.shape, self.target, self.material, self.striker_material)
             striker, target = own | striker, held | target
-        tables = {
+        given = {
             "striker": striker,
             "target": target,
             "model": vars(self.model).copy(),
             "motion": {"impacts": self.motion.impacts} | self._ending(),
             "law": {} if self.law is None else {"name": self.law.name, **self.law.values},
         }
-        return {"name": self.name} | {key: table for key, table in tables.items() if table}
+        return {"name": self.name} | {key: table for key, table in given.items() if table}
+
+    def check_single(self, method: str) -> None:
+        """Raise BadInput for several impacts, which need a memory that `method` does not have."""
+        if self.motion.impacts > 1:
+            reason = f"{self.motion.impacts}: {method} follows one impact; accepted: 1, or a law between two masses"
+            raise BadInput(Fault(self.source, "motion.impacts", reason))
+
+    def check_memory(self) -> None:
+        """Raise BadInput where no surface alone remembers: of a body with lengths, nu(t) changes the load curve."""
+        if not self.geometry.surface_remembers:
+            reason = '"bulk" changes nu in time, which no load curve follows'
+            raise BadInput(
+                Fault(self.source, "target.material.constant", f'{reason}; accepted: "poisson", or --method fe')
+            )
 
     def check_sunk(self, depth: float, contact_radius: float = 0.0) -> None:
         """Raise BadInput where an impact went deeper, m, than target or striker go, or its contact too wide, m."""

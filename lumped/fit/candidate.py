@@ -17,7 +17,7 @@ from lumped.laws._force_law import ForceLaw
 from lumped.laws._hereditary import Solve, once
 from lumped.laws._impacts import bodies_of
 from lumped.result import Result
-from lumped.scene import END_IN_CONTACT_TIMES, Scene
+from lumped.scene import Scene
 
 Array = NDArray[np.float64]
 # Below what the differences of a Jacobian see.
@@ -61,7 +61,7 @@ def candidate(name: str, scene: Scene) -> Candidate:
 
 
 def _of_force_law(law: ForceLaw, scene: Scene) -> Candidate:
-    until = scene.motion.end_time or END_IN_CONTACT_TIMES * law.elastic_contact_time(scene)
+    until = scene.end_time_of(law.elastic_contact_time(scene))
     track = Track(law, motion(law, bodies_of(scene), law.exit, 1, until, STEP_TOLERANCE))
     (contact,) = track.motion.contacts
 
