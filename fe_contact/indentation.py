@@ -5,7 +5,6 @@ Elastic with one modulus, so that a force is modulus times what the unit materia
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -19,6 +18,7 @@ from fe_contact.numerics import RANGES, TARGETS, Numerics, check_kind
 from fe_contact.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, RIM_PENALTY, SETTING, refined
 from fe_contact.pressing import Still
 from fe_contact.progress import Progress, silent
+from lumped.clock import Clock
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
 from lumped.members import get
@@ -60,7 +60,7 @@ def indent(
     contact does not settle.
     """
     check_kind(given, False, indenter.source)
-    clock = time.process_time(), time.perf_counter()
+    clock = Clock()
     modulus, asked = indenter.modulus(instant), len(indenter.checked(depths))
     depth = _accompanied(np.array(depths))
     elastic, numerics = indenter.elastic(instant), settings(given, indenter.shape)
@@ -89,7 +89,7 @@ def indent(
         force_error=error * force,
         budget={cause: error[:asked] for cause, error in budget.items()},
         numerics={key: value for key, value in numerics.as_dict().items() if key in kept},
-        timing={"cpu_s": time.process_time() - clock[0], "wall_s": time.perf_counter() - clock[1]},
+        timing=clock.read(),
         work=base.work,
     )
 

@@ -18,6 +18,7 @@ from lumped.indenter import Indenter
 from lumped.json_file import plain, write_json
 from lumped.model_ledger import Peak, ledger_at_rest
 from lumped.result import LedgerEntry, Quantity, provenance
+from lumped.sufficiency import sufficient
 
 Array = NDArray[np.float64]
 SCHEMA = "fe-contact/indentation/1"
@@ -67,7 +68,7 @@ class Indentation:
     @property
     def model_sufficient(self) -> bool:
         """Whether no known estimate of the model ledger exceeds the tolerance."""
-        return all(entry.estimate is None or entry.estimate <= self.tolerance for entry in self.model_ledger)
+        return sufficient(self.model_ledger, self.tolerance)
 
     @property
     def quantities(self) -> dict[str, Quantity]:

@@ -18,6 +18,7 @@ from lumped.interpolation import peak
 from lumped.json_file import plain, write_json
 from lumped.scene import Scene
 from lumped.scene_tables import Model
+from lumped.sufficiency import sufficient
 
 SCHEMA = "fe-contact/result/1"
 UNITS = {
@@ -88,7 +89,7 @@ class Result:
     @property
     def model_sufficient(self) -> bool:
         """Whether no known estimate of the model ledger exceeds the tolerance."""
-        return all(entry.estimate is None or entry.estimate <= self.tolerance for entry in self.model_ledger)
+        return sufficient(self.model_ledger, self.tolerance)
 
     def to_json(self) -> dict[str, Any]:
         """The content of result.json; what is not finite is null."""

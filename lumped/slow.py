@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from time import perf_counter, process_time
-
 import numpy as np
 
+from lumped.clock import Clock
 from lumped.errors import BadInput, Fault
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
@@ -23,7 +22,7 @@ def indent(
     if method in HALF_SPACE_ALONE and indenter.target.has_length:
         reason = f"{method} knows the half-space alone; accepted: another method, or half_space without a datum"
         raise BadInput(Fault(indenter.source, "target.shape", reason))
-    cpu, wall = process_time(), perf_counter()
+    clock = Clock()
     depth, modulus = np.array(indenter.checked(depths)), indenter.modulus(instant)
     shape = indenter.shape.resolved("parabola") if method == "hertz" else indenter.profile
     curve = indenter.target.load_curve(shape, indenter.elastic(instant).material.nu)
@@ -37,5 +36,5 @@ def indent(
         force=force,
         contact_radius=np.asarray(curve.contact_radius(depth)),
         force_error=curve.accuracy * force,
-        timing={"cpu_s": process_time() - cpu, "wall_s": perf_counter() - wall},
+        timing=clock.read(),
     )

@@ -17,6 +17,7 @@ from lumped.indenter import Indenter
 from lumped.result import LedgerEntry, Result
 from lumped.scene import Scene
 from lumped.scene_file import load, load_for_fit, load_indenter, resolved
+from lumped.sufficiency import worst
 from lumped.toml_file import overridden, parse_assignment, parsed
 
 DONE, NOT_REACHED = 0, 3
@@ -164,11 +165,10 @@ def warn(result: Judged) -> None:
     if not result.converged:
         complain(result.message)
     if not result.model_sufficient:
-        known = [entry for entry in result.model_ledger if entry.estimate is not None]
-        worst = max(known, key=lambda entry: entry.estimate or 0.0)
+        most = worst(result.model_ledger)
         complain(
-            f"model too small for the tolerance: {worst.effect}, {worst.treated}, "
-            f"about {worst.estimate:.2g} of the peak force; {worst.note}"
+            f"model too small for the tolerance: {most.effect}, {most.treated}, "
+            f"about {most.estimate:.2g} of the peak force; {most.note}"
         )
 
 

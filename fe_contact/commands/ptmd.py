@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from lumped.errors import NotReached
+from lumped.sufficiency import worst
 
 if TYPE_CHECKING:
     from lumped.pounding_tmd.study import Study
@@ -67,7 +68,6 @@ def _warnings(found: Study) -> list[str]:
     """What did not converge, and an assumption of the contact law that does not hold."""
     lines = [found.convergence.message] if found.convergence.message else []
     if not found.model_sufficient:
-        known = [entry for entry in found.ledger if entry.estimate is not None]
-        worst = max(known, key=lambda entry: entry.estimate or 0.0)
-        lines.append(f"the contact law assumes small deformation: {worst.effect} is {worst.estimate:.2g}")
+        most = worst(found.ledger)
+        lines.append(f"the contact law assumes small deformation: {most.effect} is {most.estimate:.2g}")
     return lines

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from time import perf_counter, process_time
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.clock import Clock
 from lumped.ending import AT_REST, End
 from lumped.history import History, densified
 from lumped.model_ledger import Peak, model_ledger
@@ -66,17 +66,6 @@ class Answer:
         if self.end is not End.REST:
             return self.times
         return np.append(self.times, [self.times[-1] * (1.0 + 1e-9), self.until or scene.end_time])
-
-
-class Clock:
-    """Wall and process time since it was made."""
-
-    def __init__(self) -> None:
-        self.wall, self.cpu = perf_counter(), process_time()
-
-    def read(self) -> dict[str, float]:
-        """Seconds."""
-        return {"wall_s": perf_counter() - self.wall, "cpu_s": process_time() - self.cpu}
 
 
 def impulse_of(scene: Scene, end: End, velocity: float, time: float, until: float) -> float | None:

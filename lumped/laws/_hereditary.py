@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.clock import Clock
 from lumped.ending import End
 from lumped.hereditary.approach import Approach
 from lumped.hereditary.closing import Closing
@@ -17,7 +18,7 @@ from lumped.hereditary.march import Settings
 from lumped.hereditary.phase import Phase
 from lumped.hereditary.problem import Hereditary
 from lumped.hereditary.rebound import Rebound
-from lumped.laws._assembly import Answer, Clock, assemble, bars, impulse_of
+from lumped.laws._assembly import Answer, assemble, bars, impulse_of
 from lumped.result import Result, meets
 from lumped.scales import stiffest_impact
 from lumped.scene import Scene

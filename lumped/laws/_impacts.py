@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.clock import Clock
 from lumped.collide.bodies import Bodies, State
 from lumped.collide.half_widths import half_widths
 from lumped.collide.motion import Motion, motion
@@ -15,7 +16,7 @@ from lumped.collide.outcome import Outcome, outcome_of
 from lumped.collide.phase import Phase
 from lumped.collide.track import Track
 from lumped.ending import End
-from lumped.laws._assembly import Answer, Clock, assemble, bars, impulse_of
+from lumped.laws._assembly import Answer, assemble, bars, impulse_of
 from lumped.result import UNITS, Quantity, Result, meets
 from lumped.scene import Scene
 

@@ -9,10 +9,11 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.clock import Clock
 from lumped.ending import End
 from lumped.errors import BadInput, Fault
 from lumped.interpolation import local, peak
-from lumped.laws._assembly import Answer, Clock, assemble, bars, impulse_of
+from lumped.laws._assembly import Answer, assemble, bars, impulse_of
 from lumped.laws._half_space import KEYS as KEYS
 from lumped.laws._half_space import check
 from lumped.result import Result, meets

@@ -10,11 +10,12 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.clock import Clock
 from lumped.ending import End
 from lumped.errors import BadInput, Fault
 from lumped.interpolation import highest
 from lumped.keys import Key
-from lumped.laws._assembly import Answer, Clock, assemble, bars, impulse_of
+from lumped.laws._assembly import Answer, assemble, bars, impulse_of
 from lumped.laws._half_space import check_geometry
 from lumped.result import Result
 from lumped.rod_waves.flat import FlatImpact

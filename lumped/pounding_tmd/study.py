@@ -11,6 +11,7 @@ from lumped.pounding_tmd.phase import ROWS_PER_PERIOD
 from lumped.pounding_tmd.result import PtmdResult
 from lumped.pounding_tmd.system import PoundingDamper
 from lumped.result import LedgerEntry
+from lumped.sufficiency import sufficient
 
 FINER = 3 * ROWS_PER_PERIOD // 2
 MOST_CHANGE, MOST_RESIDUAL = 1e-6, 1e-8
@@ -59,7 +60,7 @@ class Study:
     @property
     def model_sufficient(self) -> bool:
         """Whether no known penetration exceeds what the contact law can bear."""
-        return all(entry.estimate is None or entry.estimate <= SMALL for entry in self.ledger)
+        return sufficient(self.ledger, SMALL)
 
 
 def study(case: Case, progress: Callable[[str], None] = lambda message: None) -> Study:
