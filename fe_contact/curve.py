@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from fe_contact.contact_radius import squared_radius
 from fe_contact.forms import Array
@@ -68,8 +69,11 @@ class Curve:
 
     def thinned(self) -> Curve:
         """The curve through every other step, both ends kept."""
-        keep = np.unique(np.append(np.arange(0, len(self.x), 2), len(self.x) - 1))
-        return replace(self, x=self.x[keep], mean_force=self.mean_force[keep], depth=self.depth[keep])
+        return self.through(np.unique(np.append(np.arange(0, len(self.x), 2), len(self.x) - 1)))
+
+    def through(self, rows: npt.NDArray[np.intp]) -> Curve:
+        """The curve through some of the steps only, between which it tells the mean force exactly."""
+        return replace(self, x=self.x[rows], mean_force=self.mean_force[rows], depth=self.depth[rows])
 
     @cached_property
     def polynomials(self) -> LocalPolynomials:

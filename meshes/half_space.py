@@ -54,7 +54,7 @@ def half_space(elements_per_contact: float, far_radius: float) -> MeshTri:
     return _quarter(smaller(near_edge, elsewhere), 1.0, far_radius)
 
 
-def half_space_for_waves(elements_per_radius: float, smallest: float, far_radius: float) -> MeshTri:
+def half_space_for_waves(elements_per_radius: float, smallest: float, far_radius: float, finer: float = 1.0) -> MeshTri:
     """Triangles of the same outline under contacts that end anywhere up to ``r = 1``, all resolved alike.
 
     Elements at the surface grow in proportion to the radius, and from the contact zone, 1.1, outwards so slowly that
@@ -65,6 +65,7 @@ def half_space_for_waves(elements_per_radius: float, smallest: float, far_radius
     elements_per_radius : radius over element size at the surface, 1 to 200.
     smallest : the smallest contact radius to resolve so, 1e-3 to 1.
     far_radius : radius of the quarter disc, 2 to 1e6.
+    finer : times as many elements at the surface as their growth into the body is for, 1 to 16.
 
     Raises
     ------
@@ -72,9 +73,10 @@ def half_space_for_waves(elements_per_radius: float, smallest: float, far_radius
     """
     elements = checked("elements_per_radius", elements_per_radius, 1.0, 200.0)
     low, far = checked("smallest", smallest, 1e-3, 1.0), checked("far_radius", far_radius, 2.0, 1e6)
+    at_surface = elements * checked("finer", finer, 1.0, 16.0)
     within = smaller(larger("x", repr(low)), repr(ZONE))
     growth = min(WAVE_GROWTH / elements, LARGEST_WAVE_GROWTH)
-    return _quarter(f"{within}/{elements!r}+{growth!r}*(Fabs(y)+{beyond('x', ZONE)})", ZONE, far)
+    return _quarter(f"{within}/{at_surface!r}+{growth!r}*(Fabs(y)+{beyond('x', ZONE)})", ZONE, far)
 
 
 def _quarter(size: str, node: float, far_radius: float) -> MeshTri:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from skfem import MeshTri
 
+from meshes._sizes import checked
 from meshes.errors import MeshError
 from meshes.session import session
 from meshes.triangles import triangulated
@@ -48,15 +49,19 @@ def layer(elements_per_radius: float, smallest: float, thickness: float, width: 
     return _rectangle(_sizes(elements_per_radius, smallest, thickness, growth, largest), ZONE, thickness, width)
 
 
-def layer_for_waves(elements_per_radius: float, smallest: float, thickness: float, width: float) -> MeshTri:
+def layer_for_waves(
+    elements_per_radius: float, smallest: float, thickness: float, width: float, finer: float = 1.0
+) -> MeshTri:
     """The same, its elements growing so slowly that waves from the contact are resolved on their way, too.
 
-    Parameters and errors as of :func:`layer`.
+    ``finer``: times as many elements at the surface as their growth into the body is for, 1 to 16; other parameters
+    and errors as of :func:`layer`.
     """
     _check(elements_per_radius, smallest, thickness, width)
+    at_surface = elements_per_radius * checked("finer", finer, 1.0, 16.0)
     growth = min(WAVE_GROWTH / elements_per_radius, LARGEST_WAVE_GROWTH)
     largest = min(LARGEST_WAVE / elements_per_radius, COARSEST)
-    return _rectangle(_sizes(elements_per_radius, smallest, thickness, growth, largest), ZONE, thickness, width)
+    return _rectangle(_sizes(at_surface, smallest, thickness, growth, largest), ZONE, thickness, width)
 
 
 def layer_under_rim(elements_per_radius: float, thickness: float, width: float) -> MeshTri:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,16 +22,22 @@ from fe_contact.errors import MotionUnbounded, TooManySteps
 from fe_contact.forms import Array
 
 MOST_STEPS = 200_000
+ROUNDING = 1e-9  # of times that are sums of steps
 UNBOUNDED = 1e6  # multiple of the fastest that gravity and the start explain
 
 
 @dataclass(frozen=True, eq=False)
 class Choices:
-    """How a motion is solved: scheme, enforcement, length of the steps, s."""
+    """How a motion is solved: scheme, enforcement, length of the steps, s, and the times, s, at which that doubles."""
 
     scheme: Scheme
     enforced: Enforced
     step: float
+    doubled: tuple[float, ...] = ()
+
+    def length(self, time: float) -> float:
+        """Length of the step that begins at a time, s."""
+        return float(self.step * 2 ** sum(time >= at * (1 - ROUNDING) for at in self.doubled))
 
 
 class Sample(NamedTuple):
@@ -102,16 +107,18 @@ def march(
 
     Raises ContactNotSettled, MotionUnbounded or TooManySteps; BadInput for a scheme that the body does not admit.
     """
-    steps = math.ceil(end_time / choices.step * (1 - 1e-12))
     parts = stages(body, choices.enforced, choices.step) if choices.scheme.staged else 1
-    stepper = _stepper(body, choices, parts)
+    stepper = _stepper(body, choices, choices.step / parts)
     state = stepper.begun(undeformed(body, velocity))
     fastest = UNBOUNDED * (np.abs(velocity).max() + np.abs(body.gravity).max() * end_time)
     energies = ledger.opened(body, state)
     samples = [_sample(body, state, 0.0, watch, energies, 0)]
-    for number in range(steps):
-        if number * parts >= MOST_STEPS:
+    while state.time < end_time * (1 - ROUNDING):
+        if (len(samples) - 1) * parts >= MOST_STEPS:
             raise TooManySteps(MOST_STEPS, state.time)
+        length = choices.length(state.time) / parts
+        if length != stepper.step:
+            stepper = _stepper(body, choices, length)
         impulse, iterations = 0.0, 0
         for _ in range(parts):
             before = state
@@ -127,9 +134,9 @@ def march(
     return Motion(tuple(samples), state, parts)
 
 
-def _stepper(body: Body, choices: Choices, parts: int) -> ExplicitStepper | ImplicitStepper:
+def _stepper(body: Body, choices: Choices, step: float) -> ExplicitStepper | ImplicitStepper:
     kind: type[ExplicitStepper | ImplicitStepper] = ExplicitStepper if choices.scheme.explicit else ImplicitStepper
-    return kind(body, choices.scheme, choices.enforced, choices.step / parts)
+    return kind(body, choices.scheme, choices.enforced, step)
 
 
 def _impulse(body: Body, before: State, after: State) -> float:

@@ -13,16 +13,17 @@ from functools import cached_property
 
 import numpy as np
 
-from fe_contact.certify import CAUSES, SAFETY, Budget
+from fe_contact.certify import SAFETY, Budget
 from fe_contact.change import Change
 from fe_contact.curve import Curve
 from fe_contact.forms import Array
 from fe_contact.march import March, Strike
-from fe_contact.numerics import Numerics
 from fe_contact.runs import TotalWork
 from fe_contact.waves.impact import motion, record
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
+from fe_contact.waves.reading import curve_of, reading
+from fe_contact.waves.steps import graded
 from lumped.errors import NotReached
 from lumped.scene import Scene
 
@@ -31,55 +32,82 @@ ORDER = {"mesh": 1, "penalty": 1, "time_step": 1, "far_field": 2}
 LEAST = {"elements_per_contact": 1.0, "penalty": 1.0, "far_radius": 2.0}
 
 
-def certify(
-    scene: Scene, strike: Strike, numerics: WaveNumerics, moving: Callable[[Scene, WaveNumerics], Moving]
-) -> Budget:
-    """March with ``numerics`` and with each setting halved; raises where the march itself fails."""
-    runs = _Runs(scene, strike, moving)
-    march, value = runs.march(numerics)
-    cheap = numerics.varied(steps=numerics.steps // 2)
-    base = runs.curve(cheap)
-    changes = {"time_step": (_change(value, base, ORDER["time_step"]),)}
-    for cause, key in VARIED.items():
-        half = max(getattr(cheap, key) / 2, LEAST[key])
-        changes[cause] = (_change(base, runs.curve(cheap.varied(**{key: half})), ORDER[cause]),)
-    return Budget(value, march, {cause: changes[cause] for cause in CAUSES}, runs.work())
+class Runs:
+    """Marches of one scene with different settings, each run once, and a count of what they cost.
 
+    ``cheap``: steps of those in which another setting is varied, whose effect does not depend on the step.
+    """
 
-class _Runs:
-    """Marches of one scene with different settings, and a count of what they cost."""
+    def __init__(
+        self, scene: Scene, strike: Strike, moving: Callable[[Scene, WaveNumerics], Moving], cheap: int
+    ) -> None:
+        self._scene, self.strike, self._moving, self.cheap = scene, strike, moving, cheap
+        self._curves: dict[WaveNumerics, Curve | None] = {}
+        self._marches: dict[WaveNumerics, tuple[March, int]] = {}
 
-    def __init__(self, scene: Scene, strike: Strike, moving: Callable[[Scene, WaveNumerics], Moving]) -> None:
-        self._scene, self._strike, self._moving = scene, strike, moving
-        self._marches: list[tuple[March, int]] = []
-
-    def march(self, settings: Numerics) -> tuple[March, Curve]:
+    def march(self, settings: WaveNumerics) -> tuple[March, Curve]:
         """One run; raises where it fails."""
-        assert isinstance(settings, WaveNumerics)
-        body = self._moving(self._scene, settings)
-        march = record(body, motion(body, self._scene, settings), self._scene)
-        self._marches.append((march, body.body.size))
-        return march, Curve.of(march, self._strike)
+        if settings not in self._marches:
+            body = self._moving(self._scene, settings)
+            march = record(body, motion(body, self._scene, settings), self._scene)
+            self._marches[settings] = march, body.body.size
+            self._curves[settings] = curve_of(march, self.strike, settings)
+        march, curve = self._marches[settings][0], self._curves[settings]
+        assert curve is not None
+        return march, curve
 
-    def curve(self, settings: Numerics) -> Curve | None:
+    def curve(self, settings: WaveNumerics) -> Curve | None:
         """One run as a curve, None where it fails: its cause of error is then unknown."""
-        try:
-            return self.march(settings)[1]
-        except NotReached:
-            return None
+        if settings not in self._curves:
+            try:
+                return self.march(settings)[1]
+            except NotReached:
+                self._curves[settings] = None
+        return self._curves[settings]
 
     def work(self) -> TotalWork:
-        """What all runs cost together: one factorisation a march, one back-substitution a step."""
-        works = [march.work for march, _ in self._marches]
+        """What all runs cost together: a factorisation for every length of step, one back-substitution a step."""
+        works = [march.work for march, _ in self._marches.values()]
         return TotalWork(
-            degrees_of_freedom=max(size for _, size in self._marches),
-            factorizations=len(works),
+            degrees_of_freedom=max(size for _, size in self._marches.values()),
+            factorizations=sum(_lengths(march, settings) for settings, (march, _) in self._marches.items()),
             solves=sum(w.steps for w in works),
             marches=len(works),
             steps=sum(w.steps for w in works),
             contact_problems=sum(w.contact_problems for w in works),
             iterations=sum(w.iterations for w in works),
         )
+
+
+def _lengths(march: March, settings: WaveNumerics) -> int:
+    """How many lengths of step a march took."""
+    end = float(march.time[-1])
+    return 1 + sum(at < end for at in graded(settings)[1])
+
+
+def certify(runs: Runs, numerics: WaveNumerics) -> Budget:
+    """March with ``numerics`` and with each setting halved; raises where the march itself fails."""
+    march, value = runs.march(numerics)
+    cheap = numerics.varied(steps=runs.cheap)
+    base, mesh = cheap, _halved(cheap, "mesh")
+    changes = {
+        "mesh": (_changed(runs, base, mesh, "mesh"), reading(march, runs.strike, numerics)),
+        "penalty": (_changed(runs, base, _halved(cheap, "penalty"), "penalty"),),
+        "time_step": (_changed(runs, numerics, numerics.varied(steps=numerics.steps // 2), "time_step"),),
+        "far_field": (_changed(runs, mesh, _halved(mesh, "far_field"), "far_field"),),  # of what is far, coarse is fine
+    }
+    return Budget(value, march, changes, runs.work())
+
+
+def _halved(settings: WaveNumerics, cause: str) -> WaveNumerics:
+    key = VARIED[cause]
+    return settings.varied(**{key: max(getattr(settings, key) / 2, LEAST[key])})
+
+
+def _changed(runs: Runs, first: WaveNumerics, second: WaveNumerics, cause: str) -> Change | None:
+    """Change between settings in the ratio 1 : 2, as an error of the first; None where either failed."""
+    one, other = runs.curve(first), runs.curve(second)
+    return None if one is None or other is None else Moved(one, other, SAFETY / (2 ** ORDER[cause] - 1))
 
 
 class Moved(Change):
@@ -103,7 +131,3 @@ class Moved(Change):
         time = np.minimum(self.first.dense_time[self.first.late :], curve.duration)
         impulse = curve.read(time).impulse
         return impulse, curve.velocity(time, impulse)
-
-
-def _change(first: Curve | None, second: Curve | None, order: int) -> Change | None:
-    return None if first is None or second is None else Moved(first, second, SAFETY / (2**order - 1))

@@ -71,13 +71,16 @@ def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
 def unit_of(scene: Scene, numerics: WaveNumerics) -> UnitBody:
     """The body of unit size that a scene's is scaled from."""
     nu = scene.geometry.material.nu
-    return unit_body(nu, numerics.elements_per_contact, numerics.order, numerics.far_radius, numerics.mass)
+    size = (numerics.elements_per_contact, numerics.finer, numerics.far_radius)
+    return unit_body(nu, size, numerics.order, numerics.mass)
 
 
 @lru_cache(maxsize=8)
-def unit_body(poisson: float, elements: float, order: int, far_radius: float, masses: str) -> UnitBody:
-    """Mesh and assemble; made once for all steps and penalties."""
-    basis = Basis(meshes.half_space_for_waves(elements, SMALLEST, far_radius), ELEMENTS[order](), intorder=2 * order)
+def unit_body(poisson: float, size: tuple[float, float, float], order: int, masses: str) -> UnitBody:
+    """Mesh and assemble; made once for all steps and penalties. ``size``: elements, how much finer, far radius."""
+    elements, finer, far_radius = size
+    mesh = meshes.half_space_for_waves(elements, SMALLEST, far_radius, finer)
+    basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
     surface = flat(basis)
     far = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["far"], intorder=2 * order + 4)
     free = np.setdiff1d(np.arange(2 * basis.N), 2 * basis.get_dofs("axis").flatten())

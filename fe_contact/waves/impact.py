@@ -13,6 +13,7 @@ from fe_contact.pressing import half_width
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.parting import parting
+from fe_contact.waves.steps import graded
 from lumped.members import get
 from lumped.scene import Scene
 
@@ -28,10 +29,12 @@ def motion(moving: Moving, scene: Scene, numerics: WaveNumerics) -> Motion:
 def choices_of(scene: Scene, numerics: WaveNumerics) -> Choices:
     """How the march is solved."""
     penalty = numerics.penalty * _stiffness(scene, numerics) / numerics.contact_radius
+    step, doubled = graded(numerics)
     return Choices(
         scheme=get(WAVE_SCHEMES, numerics.scheme).of(numerics.rho),
         enforced=Enforced(get(ENFORCEMENTS, numerics.enforcement), penalty),
-        step=numerics.contact_time / numerics.steps,
+        step=step,
+        doubled=doubled,
     )
 
 

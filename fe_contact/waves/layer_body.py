@@ -77,16 +77,20 @@ def unit_of(scene: Scene, numerics: WaveNumerics) -> UnitLayer:
     target = scene.target
     assert isinstance(target, Layer)
     thickness = thickness_over(numerics.contact_radius, target.thickness)
-    sizes = (numerics.elements_per_contact, thickness, numerics.far_radius)
-    return unit_layer(*sizes, numerics.order, target.base == "bonded", scene.geometry.shape.plane, numerics.mass)
+    sizes = (numerics.elements_per_contact, numerics.finer, thickness, numerics.far_radius)
+    return unit_layer(sizes, numerics.order, target.base == "bonded", scene.geometry.shape.plane, numerics.mass)
 
 
 @lru_cache(maxsize=8)
 def unit_layer(
-    elements: float, thickness: float, far_radius: float, order: int, bonded: bool, plane: bool, masses: str
+    sizes: tuple[float, float, float, float], order: int, bonded: bool, plane: bool, masses: str
 ) -> UnitLayer:
-    """Mesh and assemble; made once for all steps and penalties."""
-    mesh = meshes.layer_for_waves(elements, SMALLEST, thickness, far_radius - 1.0)
+    """Mesh and assemble; made once for all steps and penalties.
+
+    ``sizes``: elements, how much finer they are at the surface, thickness, far radius.
+    """
+    elements, finer, thickness, far_radius = sizes
+    mesh = meshes.layer_for_waves(elements, SMALLEST, thickness, far_radius - 1.0, finer)
     basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
     surface = flat(basis, 2 if plane else 3)
     fixed = held(basis, along=("axis", "base") if bonded else ("axis",), across=("base",))

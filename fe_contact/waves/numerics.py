@@ -11,11 +11,13 @@ from fe_contact.numerics import Numerics
 @dataclass(frozen=True)
 class WaveNumerics(Numerics):
     """``scheme`` is one of :mod:`fe_contact.dynamics.schemes`, of spectral radius ``rho`` for what no step follows;
-    ``mass`` one of :mod:`fe_contact.dynamics.mass`; the rest as in Numerics.
+    ``mass`` one of :mod:`fe_contact.dynamics.mass`; ``finer``: times as many elements at the surface as the body has;
+    the rest as in Numerics.
     """
 
     rho: float
     mass: str
+    finer: float = 1.0
 
     def varied(self, **changes: Any) -> WaveNumerics:
         """A copy with some settings changed."""

@@ -9,24 +9,26 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from fe_contact.far_field.absorbing import wave_speeds
 from fe_contact.numerics import RANGES
-from fe_contact.plan import EARLY_PEAK, SOONEST_PEAK, Plan
+from fe_contact.plan import SOONEST_PEAK, Plan
 from fe_contact.waves.numerics import WaveNumerics
 from lumped.laws import mdr
 from lumped.laws.mdr import ImpactScales
+from lumped.materials import Relaxation
 from lumped.model_ledger import Peak, model_ledger
 from lumped.scene import Scene
 
 DEFAULT_TOLERANCE = 3e-3  # of a peak force; what chatter at the contact's edge leaves is about a third
 SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
 ELEMENTS = 9.0  # along every contact radius
-VISCOUS = 2.0  # times as many where a dashpot in parallel carries much: it differentiates the mesh's error
+FINER = 2.0  # times as many at the surface where dashpots carry much: pressure is infinite at an edge that advances
 PENALTY = 120.0
-STIFF = 4.0  # times as much there, of an edge that advances fast
-MUCH = 0.2  # of the first answer's stiffness: less than this of a dashpot's asks for less than all of both
-STEPS = 320  # along a contact
-MOST_EARLY = 4.0  # times as many at most for a force that peaks early
+STIFF = 16.0  # times as much there
+MUCH = 0.5  # of the stiffness until the force peaks: less than this of dashpots asks for less than all of both
+STEPS = 320  # along a contact, shorter ones about an early peak
 TRAVEL = 0.5  # of the contact time: an echo from the far radius returns after the contact
 NEAREST = 20.0  # contact radii: the far springs' own need
 SPREAD = 3.0  # lengths over which a dashpot in parallel, which has no wave speed, spreads a motion in a contact
@@ -68,13 +70,14 @@ def placed(
     tolerance, duration = float(given.get("tolerance", DEFAULT_TOLERANCE)), contact_time(scene, scales)
     finer = max(1.0, DEFAULT_TOLERANCE / tolerance)
     peak_share = min(max(scales.peak_time / duration, SOONEST_PEAK), 1.0)
-    viscous = min(_dashpot_share(scene, peak_share * duration) / MUCH, 1.0)
+    viscous = min(viscous_share(scene.contact_modulus, peak_share * duration) / MUCH, 1.0)
     chosen = {
         **DEFAULTS,
         "tolerance": tolerance,
-        "elements_per_contact": ELEMENTS * math.sqrt(finer) * (1.0 + (VISCOUS - 1.0) * viscous),
+        "elements_per_contact": ELEMENTS * math.sqrt(finer),
+        "finer": 1.0 + (FINER - 1.0) * viscous,
         "penalty": PENALTY * stiff * (1.0 + (STIFF - 1.0) * viscous),
-        "steps": 4 * math.ceil(STEPS * math.sqrt(finer) * min(max(1.0, EARLY_PEAK / peak_share), MOST_EARLY) / 4),
+        "steps": 4 * math.ceil(STEPS * math.sqrt(finer) / 4),
         "far_radius": far_radius,
         "contact_radius": wide * scales.contact_radius,
         "contact_time": duration,
@@ -84,10 +87,15 @@ def placed(
     return Plan(WaveNumerics(**{**chosen, **given}), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
 
 
-def _dashpot_share(scene: Scene, peak_time: float) -> float:
-    """How much of the stiffness until the force peaks, s, is a dashpot's in parallel."""
-    dashpot = scene.contact_modulus.viscosity / peak_time
-    return dashpot / (scene.contact_modulus.glassy + dashpot)
+def viscous_share(modulus: Relaxation, time: float) -> float:
+    """How much of the stiffness against a steady advance for some time, s, is that of dashpots.
+
+    A branch that has long relaxed is one of them, of viscosity modulus x time; at once it is a spring.
+    """
+    ratios = time / np.asarray(modulus.times)
+    held = -np.expm1(-ratios) / ratios  # of a branch's modulus, at the end
+    flowing = modulus.viscosity / time + float(np.dot(modulus.moduli, held * (1.0 - held)))
+    return flowing / (modulus.equilibrium + modulus.viscosity / time + float(np.dot(modulus.moduli, held)))
 
 
 def _far_radius(scene: Scene, contact_radius: float, duration: float) -> float:
