@@ -61,6 +61,25 @@ def test_the_order_of_a_scheme(name: str) -> None:
     np.testing.assert_allclose(rates, ORDER[name], atol=0.2, err_msg=str(errors))
 
 
+@pytest.mark.parametrize("name", IMPLICIT)
+def test_the_order_is_kept_where_steps_are_doubled(name: str) -> None:
+    body, end = oscillator(Relaxation(2.0), dashpot=0.3), 4.0
+    errors = []
+    for steps in (40, 80, 160, 320):
+        enforced, doubled = Enforced(penalty, 1.0), (0.3 * end, 0.6 * end)
+        choices = Choices(get(SCHEMES, name).of(0.8), enforced, end / steps / 2.0, doubled)
+        found = march(body, np.ones(1), choices, end, np.eye(1))
+        lengths = np.diff(found.time)
+        assert lengths.max() == pytest.approx(4.0 * lengths.min())
+        last = found.samples[-1]
+        at = last.time * np.array([[0.0, 1.0], [-2.0, -0.3]])
+        wanted = expm(at) @ [0.0, 1.0]
+        errors.append(np.abs([last.displacement[0] - wanted[0], last.velocity[0] - wanted[1]]).max())
+        assert abs(last.energies.residual) < 1e-12
+    rates = np.log2(np.divide(errors[:-1], errors[1:]))
+    assert rates[-1] == pytest.approx(ORDER[name], abs=0.15)
+
+
 @pytest.mark.parametrize("name", available(SCHEMES))
 def test_a_bulk_with_memory_keeps_the_order(name: str) -> None:
     """A mass on a standard linear solid: u'' = -(u + 0.7 z), z' = u' - z/0.4, solved by its exponential."""

@@ -1,0 +1,156 @@
+"""Impacts with waves: steps about an early peak, a force read through chatter, and no more refined than is missing."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import meshes
+from fe_contact.forms import Array
+from fe_contact.march import March, Strike, Work
+from fe_contact.plan import EARLY_PEAK
+from fe_contact.reference import strike_of
+from fe_contact.waves import refining
+from fe_contact.waves.certify import ORDER, Runs, certify
+from fe_contact.waves.half_space_body import moving
+from fe_contact.waves.plan import viscous_share
+from fe_contact.waves.reading import curve_of, reading
+from fe_contact.waves.refining import AIM, MOST, factors
+from fe_contact.waves.steps import graded
+from fe_contact.waves.targets import half_space
+from lumped import Scene
+from lumped.materials import Relaxation
+
+ROOMY = dict.fromkeys(ORDER, math.inf)
+
+
+def test_steps_are_short_about_an_early_peak_and_grow_with_the_time_since_touch() -> None:
+    rng = np.random.default_rng(7)
+    for share, steps in zip(10 ** rng.uniform(-6, 0, 200), rng.integers(8, 2000, 200), strict=True):
+        first, doubled = graded(settings(contact_time=3.0, steps=int(steps), peak_share=float(share)))
+        last = first * 2 ** len(doubled)
+        assert last == pytest.approx(3.0 / steps)
+        assert first <= 3.0 * min(share / EARLY_PEAK, 1.0) / steps * (1 + 1e-12)
+        for number, at in enumerate(doubled, start=1):  # as many steps from touch to each time
+            assert at / (first * 2**number) == pytest.approx(EARLY_PEAK * steps)
+
+
+def settings(**given: Any) -> Any:
+    return SimpleNamespace(**{"tolerance": 3e-3, "peak_share": 0.5, "steps": 320} | given)
+
+
+def impact(steps: int, chatter: float, ended: float = 1.0) -> tuple[March, Strike]:
+    """Force [t (T - t)]^(3/2), largest one, and chatter of some steps' period."""
+    time = ended * np.linspace(0.0, 1.0, steps + 1)
+    fine = ended * np.linspace(0.0, 1.0, 40 * steps + 1)
+    swings = chatter * np.sin(2 * np.pi * 97.0 * fine / ended) * (fine > 0.1 * ended) * (fine < 0.9 * ended)
+    force = wanted(fine / ended) + swings
+    impulse = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(fine))])[::40]
+    march = March(
+        time=time,
+        depth=time * (1.2137 * ended - time),
+        impulse=impulse,
+        radius_time=time[1:-1],
+        radius=np.sqrt(time[1:-1] * (1.2137 * ended - time[1:-1])),
+        separated=True,
+        photograph=tuple,
+        energy={},
+        first_force=0.0,
+        end_spread=0.0,
+        work=Work(),
+    )
+    return march, Strike(lambda r: r**2, 1.0, 0.5, 0.0, Relaxation(1.0), 10.0)
+
+
+def wanted(share: Array) -> Array:
+    return np.asarray((4.0 * share * (1.0 - share)) ** 1.5)
+
+
+@pytest.mark.parametrize("steps", [320, 640, 1111])
+def test_a_force_is_read_through_chatter(steps: int) -> None:
+    """Half a per cent of it, of a period that the steps just see; without it within the bar of the reading."""
+    calm, strike = impact(steps, 0.0)
+    curve = curve_of(calm, strike, settings(steps=steps))
+    off = np.abs(curve.dense_force - wanted(curve.shares))
+    assert off.max() < 2e-4
+    assert (off <= reading(calm, strike, settings(steps=steps)).force(curve.dense_time) + 1e-5).all()
+    noisy = curve_of(impact(steps, 5e-3)[0], strike, settings(steps=steps))
+    within = (noisy.shares > 0.2) & (noisy.shares < 0.8)
+    left = np.abs(noisy.dense_force - wanted(noisy.shares))[within]
+    assert np.sqrt(np.mean(left**2)) < 1e-3
+    assert noisy.quantities["peak_force"] == pytest.approx(1.0, abs=1e-3)
+
+
+def test_a_smaller_tolerance_keeps_more_rows() -> None:
+    march, strike = impact(640, 0.0)
+    rows = [len(curve_of(march, strike, settings(steps=640, tolerance=t)).x) for t in (3e-3, 1e-4)]
+    assert 55 <= rows[0] < rows[1] < 640
+
+
+def test_only_what_is_missing_is_refined_and_the_cheapest_first() -> None:
+    """Shares of the tolerance, by two quantities."""
+    small = {"mesh": [0.3, 0.1], "penalty": [0.35, 0.0], "time_step": [0.36, 0.1], "far_field": [0.0, 0.0]}
+    chosen = factors({cause: np.array(share) for cause, share in small.items()}, ROOMY)
+    assert chosen == {"mesh": 1.0, "penalty": 2.0, "time_step": 1.0, "far_field": 1.0}
+    alone = {"mesh": [1.01], "penalty": [0.0], "time_step": [0.0], "far_field": [0.0]}
+    chosen = factors({cause: np.array(share) for cause, share in alone.items()}, ROOMY)
+    assert 1.0 < chosen.pop("mesh") < 1.2
+    assert set(chosen.values()) == {1.0}
+
+
+def test_bars_are_predicted_to_hold_or_there_is_no_room_left() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(200):
+        shares = {cause: 10 ** rng.uniform(-4, 1, 6) for cause in ORDER}
+        room = {cause: float(rng.choice([1.0, MOST[cause]])) for cause in ORDER}
+        chosen = factors(shares, room)
+        assert all(1.0 <= chosen[cause] <= room[cause] for cause in ORDER)
+        bars = np.sum([shares[cause] / chosen[cause] ** ORDER[cause] for cause in ORDER], axis=0)
+        full = all(chosen[cause] * refining.STEP[cause] > room[cause] for cause in ORDER)
+        assert bars.max() <= AIM or full
+        least = np.sum([shares[cause] for cause in ORDER], axis=0).max()
+        assert least > AIM or set(chosen.values()) == {1.0}
+
+
+def test_what_could_not_be_varied_is_refined_as_far_as_there_is_room() -> None:
+    shares = {cause: np.array([np.inf if cause == "mesh" else 0.1]) for cause in ORDER}
+    chosen = factors(shares, MOST)
+    assert chosen["mesh"] == pytest.approx(MOST["mesh"])
+
+
+def test_twice_the_steps_take_one_march_more() -> None:
+    scene = Scene.load("steel-ball-waves")
+    numerics = half_space.plan(scene, {"elements_per_contact": 3.0, "steps": 48, "tolerance": 0.05}).numerics
+    runs = Runs(scene, strike_of(scene), moving, 24)
+    first = certify(runs, numerics)
+    assert first.work.marches == 5
+    second = certify(runs, numerics.varied(steps=96))
+    assert second.work.marches == 6
+    assert second.work.steps > first.work.steps
+    assert second.error("peak_force", "mesh") <= 1.5 * first.error("peak_force", "mesh")
+    assert second.error("duration", "time_step") < first.error("duration", "time_step")
+
+
+def test_dashpots_are_told_from_springs_by_the_time_there_is() -> None:
+    assert viscous_share(Relaxation(2.0), 1.0) == 0.0
+    assert viscous_share(Relaxation(2.0, viscosity=3.0), 0.5) == pytest.approx(6.0 / 8.0)
+    shares = [viscous_share(Relaxation(0.0, (5.0,), (tau,)), 1.0) for tau in (1e6, 1.0, 1e-6)]
+    assert shares[0] < 1e-5
+    assert 0.1 < shares[1] < 0.9
+    assert shares[2] > 1 - 1e-5
+
+
+@pytest.mark.parametrize("kind", ["half_space", "layer"])
+def test_a_finer_surface_leaves_the_body_as_coarse(kind: str) -> None:
+    made = {
+        "half_space": lambda finer: meshes.half_space_for_waves(6.0, 0.1, 100.0, finer),
+        "layer": lambda finer: meshes.layer_for_waves(6.0, 0.1, 1.0, 8.0, finer),
+    }[kind]
+    one, two = made(1.0), made(2.0)
+    touched = [np.count_nonzero((mesh.p[1] == 0.0) & (mesh.p[0] <= 1.0)) for mesh in (one, two)]
+    assert touched[1] / touched[0] == pytest.approx(2.0, abs=0.25)
+    assert two.p.shape[1] < 2.5 * one.p.shape[1]
