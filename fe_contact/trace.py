@@ -25,6 +25,15 @@ def contact_quadrature(corners: Array, order: int) -> tuple[Array, Array, Array]
     return points, weights, trace
 
 
+def trace_between(corners: Array, points: Array, order: int) -> Array:
+    """Displacement at points (q,) anywhere on the facets between ``corners`` from that of their nodes, (q, n)."""
+    facet = np.clip(np.searchsorted(corners, points) - 1, 0, len(corners) - 2)
+    local = lagrange((points - corners[facet]) / (corners[facet + 1] - corners[facet]), order)
+    trace = np.zeros((len(points), (len(corners) - 1) * order + 1))
+    trace[np.arange(len(points))[:, None], order * facet[:, None] + np.arange(order + 1)] = local
+    return trace
+
+
 def lagrange(x: Array, order: int) -> Array:
     """Equispaced Lagrange polynomials on [0, 1] at ``x``, shape (len(x), order + 1)."""
     return np.vander(x, order + 1, increasing=True) @ monomials(order)

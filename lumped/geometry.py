@@ -23,6 +23,11 @@ class Geometry:
     striker_material: Material | None = None
 
     @property
+    def striking(self) -> Material | None:
+        """The striker's material, None where it is rigid."""
+        return self.striker_material if self.target.deformable else self.material
+
+    @property
     def surface_remembers(self) -> bool:
         """Whether elastic bodies and E*(t) tell all: of a body with lengths, where nu stays or strain is uniform."""
         materials = [self.material] if self.striker_material is None else [self.material, self.striker_material]

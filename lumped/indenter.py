@@ -40,7 +40,7 @@ class Indenter:
 
     def __post_init__(self) -> None:
         self.target.check_striker(self.source, self.shape)
-        check_striker_material(self.source, self.target, self.striker_material)
+        check_striker_material(self.source, self.target, self.shape, self.striker_material, inertia=False)
         if self.target.only_with_inertia:
             reason = f"{self.target.name}: made of waves, it has no slow indentation; accepted: another target"
             raise BadInput(Fault(self.source, "target.shape", reason))

@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 from lumped.errors import BadInput, Fault
+from lumped.geometry import Geometry
 from lumped.materials import Creep, Material, Relaxation
 from lumped.shapes import Shape
 from lumped.targets import Target
+
+SPARE_MASS = 0.01  # of a whole body with inertia, which its density gives way to
 
 
 def contact_modulus(shape: Shape, material: Material, striker: Material | None) -> Relaxation:
@@ -29,16 +32,26 @@ def _together(first: Creep, second: Creep) -> Creep:
     )
 
 
-def check_striker_material(source: str, target: Target, striker: Material | None) -> None:
+def check_striker_material(source: str, target: Target, shape: Shape, striker: Material | None, inertia: bool) -> None:
     """Raise BadInput for a second material on a target whose striker is rigid, or on a rigid target."""
-    if striker is not None and not (target.deformable and target.yielding_strikers):
-        raise BadInput(striker_material_faults(source, target))
+    faults = [] if striker is None else target.yielding_faults(source, shape, inertia)
+    if faults:
+        raise BadInput(faults)
 
 
-def striker_material_faults(source: str, target: Target) -> list[Fault]:
-    """What is wrong with a second material here."""
-    reason = f"a {target.name} is struck by a rigid body in this version; leave it out"
-    return [Fault(source, "striker.material", reason)]
+def flying_faults(source: str, geometry: Geometry, mass: float) -> list[Fault]:
+    """What is wrong with the mass, kg, of a striker with inertia that is a whole body: its density says the same."""
+    material, shape = geometry.striking, geometry.shape
+    if material is None or shape.whole_mass(1.0) is None:
+        return []
+    if material.density is None:
+        reason = "missing; model.inertia = true needs it, in kg/m3"
+        return [Fault(source, "striker.material.density", reason)] if geometry.target.deformable else []
+    whole = shape.whole_mass(material.density)
+    if whole is None or abs(mass - whole) <= SPARE_MASS * whole:
+        return []
+    reason = f"{mass:g} kg: with model.inertia a {shape.name} has the mass of its density; accepted: {whole:.6g} kg"
+    return [Fault(source, "striker.mass", f"{reason} within {SPARE_MASS:.0%}, or another density")]
 
 
 def tables(

@@ -14,7 +14,7 @@ from lumped.key_table import check_fields
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material, Relaxation
 from lumped.members import get
-from lumped.pair import check_striker_material, contact_modulus, tables
+from lumped.pair import check_striker_material, contact_modulus, flying_faults, tables
 from lumped.scales import absurd_depth, relaxed_impact
 from lumped.scene_tables import (
     LAWS,
@@ -64,11 +64,13 @@ class Scene:
             raise BadInput(Fault(self.source, missing, "missing; shape and material come together"))
         if self.shape is not None:
             self.target.check_striker(self.source, self.shape)
-            check_striker_material(self.source, self.target, self.striker_material)
+            check_striker_material(self.source, self.target, self.shape, self.striker_material, self.model.inertia)
         density = None if self.material is None else self.material.density
         target = self.target if self.has_geometry else None
         faults = inertia_faults(self.source, self.model.inertia, density, target)
         faults += mass_faults(self.source, self.mass, self.swinging_mass)
+        if self.model.inertia and self.has_geometry:
+            faults += flying_faults(self.source, self.geometry, self.mass)
         if faults:
             raise BadInput(faults)
         if self.shape is not None:

@@ -13,7 +13,6 @@ from lumped.key_table import optional
 from lumped.keys import Key
 from lumped.materials import Material
 from lumped.members import Member, get
-from lumped.pair import striker_material_faults
 from lumped.scene import Scene
 from lumped.scene_tables import (
     LAWS,
@@ -27,6 +26,7 @@ from lumped.scene_tables import (
     Motion,
     inertia_faults,
 )
+from lumped.shapes import Shape
 from lumped.table_reader import Table, TableReader
 from lumped.targets import Target
 
@@ -76,20 +76,27 @@ class SceneReader(TableReader):
         striker, shape = self.body("striker", SHAPES, striker_keys)
         held, target = self.body("target", TARGETS, TARGET_KEYS)
         own = {"shape": shape, "target": target, "target_mass": held.get("mass")}
-        return {**striker, **own, **self.materials(target)}
+        return {**striker, **own, **self.materials(target, shape)}
 
-    def materials(self, target: Target | None) -> dict[str, Material | None]:
+    def materials(self, target: Target | None, shape: Shape | None) -> dict[str, Material | None]:
         """The target's material, or the striker's where the target is rigid, and that of a striker that yields too."""
-        given = "material" in self.table("striker", required=False, quiet=True)
         if target is None or target.deformable:
-            allowed = target is not None and target.yielding_strikers
-            if given and not allowed and target is not None:
-                self.faults += striker_material_faults(self.source, target)
-            striker = self.material("striker") if given and allowed else None
-            return {"material": self.material("target"), "striker_material": striker}
+            yields = self.striker_yields(target, shape)
+            own = self.material("target")
+            return {"material": own, "striker_material": self.material("striker") if yields else None}
         if "material" in self.table("target", required=False, quiet=True):
             self.faults.append(Fault(self.source, "target.material", f"a {target.name} is rigid; leave it out"))
         return {"material": self.material("striker"), "striker_material": None}
+
+    def striker_yields(self, target: Target | None, shape: Shape | None) -> bool:
+        """Whether a striker on a target that yields has a material too, and may."""
+        given = "material" in self.table("striker", required=False, quiet=True)
+        if not given or target is None or shape is None:
+            return False
+        inertia = bool(self.table("model", required=False, quiet=True).get("inertia"))
+        refused = target.yielding_faults(self.source, shape, inertia)
+        self.faults += refused
+        return not refused
 
     def masses_alone(self) -> Table:
         """The masses of a scene that has a law of its own and no geometry."""

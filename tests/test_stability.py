@@ -20,7 +20,7 @@ from fe_contact.validation import stability_files
 from fe_contact.validation.stability import explicit_limit, table
 from fe_contact.validation.stability._bar import BAR, DEFAULT, bounced, measured
 from fe_contact.validation.stability.base import STUDIES, row
-from fe_contact.waves.targets import plane
+from fe_contact.waves import falling_block
 from lumped import Scene
 from lumped.members import available, get
 
@@ -52,8 +52,8 @@ def test_the_default_bounces_for_ten_periods(cfl: float) -> None:
 
 def test_a_user_of_the_bar_gets_the_default() -> None:
     scene = Scene.load("bar")
-    numerics = plane.plan(scene, {}).numerics.as_dict()
-    assert {**numerics, "tip": plane.usual_tip(scene)}.items() >= DEFAULT.items()
+    numerics = falling_block.plan(scene, {}).numerics.as_dict()
+    assert {**numerics, "tip": falling_block.usual_tip(scene)}.items() >= DEFAULT.items()
 
 
 def test_the_default_converges_with_order_one(campaign_size: Callable[[int], int]) -> None:

@@ -69,8 +69,8 @@ def _check(args: argparse.Namespace, scene: Scene) -> None:
         raise BadInput(Fault("--fields", "", "only with --method fe"))
     from fe_contact.fields import check_fields
 
-    if scene.model.inertia and not hasattr(_moving_target(scene), "write_fields"):
-        reason = f"{scene.target.name}: accepted with --fields and model.inertia: half_space"
+    if scene.model.inertia and not (hasattr(_moving_target(scene), "write_fields") and scene.striker_material is None):
+        reason = f"{scene.target.name}: accepted with --fields and model.inertia: half_space, its striker rigid"
         raise BadInput(Fault(scene.source, "target.shape", reason))
     if not scene.model.inertia:
         check_fields(scene)

@@ -14,7 +14,7 @@ from fe_contact.numerics import ENFORCEMENTS, Numerics
 from fe_contact.operators import SurfaceOperator
 from fe_contact.pressed_surface import PressedSurface
 from fe_contact.pressing import BEYOND, EDGE_ORDER, Pressed, half_width
-from fe_contact.trace import lagrange
+from fe_contact.trace import trace_between
 from lumped.indenter import Indenter
 from lumped.members import get
 
@@ -68,10 +68,5 @@ class BodyStill:
 
 def trace_at(operator: SurfaceOperator, points: Array) -> Array:
     """Displacement at other points of the contact zone from that of the operator's nodes, (q, n)."""
-    order, loaded = operator.order, operator.trace.shape[1]
-    corners = operator.nodes[:loaded:order]
-    facet = np.clip(np.searchsorted(corners, points) - 1, 0, len(corners) - 2)
-    local = lagrange((points - corners[facet]) / (corners[facet + 1] - corners[facet]), order)
-    trace = np.zeros((len(points), loaded))
-    trace[np.arange(len(points))[:, None], order * facet[:, None] + np.arange(order + 1)] = local
-    return trace
+    loaded = operator.trace.shape[1]
+    return trace_between(operator.nodes[: loaded : operator.order], points, operator.order)

@@ -1,4 +1,4 @@
-"""Round bodies struck by their like: both finite, each free or held from its middle plane on."""
+"""Round bodies struck by their like, or striking a plane: finite, each free or held from its middle plane on."""
 
 from __future__ import annotations
 
@@ -125,11 +125,11 @@ def _side(body: _Body, meshed: ElasticBody, shape: Shape, pace: Pace | None) -> 
 
 def _bodies(geometry: Geometry) -> list[_Body]:
     """The bodies that yield, the smaller one first: its surface ends first."""
-    target = geometry.target
-    assert isinstance(target, Round)
-    bodies = [_Body(target.radius, geometry.material, target.support == "held")]
-    if geometry.striker_material is not None:
-        bodies.append(_Body(geometry.shape.tip_radius or target.radius, geometry.striker_material, False))
+    target, own, bodies = geometry.target, geometry.shape.tip_radius, list[_Body]()
+    if isinstance(target, Round):
+        bodies.append(_Body(target.radius, geometry.material, target.support == "held"))
+    if geometry.striking is not None and own is not None:
+        bodies.append(_Body(own, geometry.striking, False))
     return sorted(bodies, key=lambda body: body.radius)
 
 

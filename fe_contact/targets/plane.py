@@ -1,4 +1,4 @@
-"""The rigid plane and the block that strikes it: half of the block, pressed from its middle plane."""
+"""The rigid plane and what strikes it: half of a block, pressed from its middle plane, or a whole ball."""
 
 from __future__ import annotations
 
@@ -10,11 +10,14 @@ import scipy.sparse.linalg as linalg
 from skfem import Basis
 
 import meshes
+from fe_contact.bodies.struck import Deformable
 from fe_contact.forms import Array, isotropic, stiffness
 from fe_contact.numerics import Numerics
 from fe_contact.operators import ELEMENTS
 from fe_contact.pressing import Pressed, Still
+from fe_contact.targets import _round
 from fe_contact.targets._zone import held
+from lumped.geometry import Geometry
 from lumped.indenter import Indenter
 from lumped.shapes._block import Block
 
@@ -48,9 +51,10 @@ class BlockStill:
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
-    """The block at rest; its area touches at once."""
+    """A block at rest, whose area touches at once, or a ball; ``radii``, m, where its surface overlaps the plane."""
     block = indenter.shape
-    assert isinstance(block, Block)
+    if not isinstance(block, Block):
+        return _round.still(indenter, radii, numerics)
     radius = block.fixed_radius
     answer, unknowns = _answer(
         indenter.material.nu,
@@ -61,6 +65,16 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
         block.faces,
     )
     return BlockStill(radius * answer, radius, unknowns)
+
+
+def struck(geometry: Geometry, numerics: Numerics) -> Deformable:
+    """The ball in an impact."""
+    return _round.struck(geometry, numerics)
+
+
+def relaxing(geometry: Geometry, numerics: Numerics) -> Deformable:
+    """The same of constant bulk modulus."""
+    return _round.relaxing(geometry, numerics)
 
 
 @lru_cache(maxsize=32)

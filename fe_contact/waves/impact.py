@@ -91,18 +91,20 @@ def _radius(moving: Moving, sample: Sample) -> float:
 def energies(moving: Moving, found: Motion, scene: Scene) -> dict[str, float]:
     """Terms in J at the end. What waves in an endless elastic body hold without a load never comes back: radiated.
 
-    Of a viscoelastic one its motion alone is counted so: its strain has still to relax.
+    Of a viscoelastic one its motion alone is counted so: its strain has still to relax. What a striker that yields
+    holds beside the motion of its centre of mass is stored.
     """
     last = found.samples[-1].energies
-    waves, held = last.deformable, last.strain
-    if scene.geometry.material.young.is_elastic and left(found.samples[-1]):
-        waves, held = waves + held, 0.0
-    if not moving.endless:
-        waves, held = 0.0, held + waves
+    out = 0.5 * scene.reduced_mass * float(found.samples[-1].velocity[0]) ** 2
+    waves = 0.0
+    if moving.endless:
+        swift, strained = moving.in_striker(found.final)
+        gone = scene.geometry.material.young.is_elastic and left(found.samples[-1])
+        waves = last.rigid + last.deformable - swift + (last.strain - strained if gone else 0.0)
     terms = {
         "in": last.work,
-        "out": last.rigid,
-        "stored": held,
+        "out": out,
+        "stored": last.rigid + last.deformable + last.strain - out - waves,
         "viscous": last.viscous,
         "radiated": last.radiated + waves,
         "contact": last.contact,

@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sparse
 
+from fe_contact.dynamics import memory
 from fe_contact.dynamics.body import Body
 from fe_contact.dynamics.mass.consistent import Nodes
+from fe_contact.dynamics.state import State
 from fe_contact.forms import Array
 
 
@@ -36,6 +38,39 @@ class Moving:
     def watch(self) -> Any:
         """Picks the depth, sparse (1, N)."""
         return sparse.csr_matrix(([1.0], ([0], [self.body.size - 1])), shape=(1, self.body.size))
+
+    def in_striker(self, state: State) -> tuple[float, float]:
+        """Energy in the motion and in the strain of the striker, J."""
+        return 0.5 * float(self.body.rigid @ state.velocity**2), 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Flying(Moving):
+    """The same with a striker that yields: the degrees of freedom which ``axial`` and ``across`` (N,) are one for.
+
+    ``mean`` (N,): weights of all displacements in that of its centre of mass, the depth. The first part of the body
+    is its material.
+    """
+
+    axial: Array
+    across: Array
+    mean: Array
+
+    @property
+    def velocity(self) -> Array:
+        """All of the striker moves alike."""
+        return self.speed * self.axial
+
+    @property
+    def watch(self) -> Any:
+        """The centre of mass, sparse (1, N)."""
+        return sparse.csr_matrix(self.mean[None])
+
+    def in_striker(self, state: State) -> tuple[float, float]:
+        """All its motion, and its springs."""
+        own = (self.axial + self.across) * state.velocity
+        strain = memory.stored(self.body.parts[0], state.displacement, state.branches[0])
+        return 0.5 * float(own @ (self.body.mass @ own)), strain
 
 
 def with_striker(matrix: Any, free: Nodes) -> Any:

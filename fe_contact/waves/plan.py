@@ -100,7 +100,8 @@ def viscous_share(modulus: Relaxation, time: float) -> float:
 
 def _far_radius(scene: Scene, contact_radius: float, duration: float) -> float:
     """In contact radii: so far that pressure waves of the stiffest answer return too late, or viscosity has faded."""
-    modulus, material = scene.contact_modulus, scene.geometry.material
+    material = scene.geometry.material
+    modulus = material.contact_modulus()  # the target's own, whatever strikes it
     density = material.density or 1.0
     fastest = wave_speeds(material.nu)[0] * math.sqrt(modulus.glassy / density)
     travel = max(TRAVEL * fastest * duration, SPREAD * math.sqrt(modulus.viscosity * duration / density))

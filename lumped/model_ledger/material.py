@@ -16,7 +16,7 @@ FIRST_YIELD = 1.6
 def striker(scene: Scene) -> LedgerEntry:
     """Unknown without a material of its own; nothing where it yields beside the target, or alone on a rigid one."""
     effect = "striker compliance"
-    if scene.striker_material is not None or not scene.target.deformable:
+    if scene.geometry.striking is not None:
         return LedgerEntry(effect, "included", 0.0)
     return LedgerEntry(effect, "rigid", None, "the scene gives the striker no material")
 

@@ -17,8 +17,8 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     if model.inertia:
         return LedgerEntry(effect, "included", 0.0)
     energy = 0.5 * scene.reduced_mass * scene.velocity**2
-    pulse = Pulse(peak.force, peak.duration, energy)
-    return LedgerEntry(effect, "neglected", *scene.target.inertia_left_out(scene.geometry.material, pulse))
+    pulse, geometry = Pulse(peak.force, peak.duration, energy), scene.geometry
+    return LedgerEntry(effect, "neglected", *scene.target.inertia_left_out(geometry.shape, geometry.material, pulse))
 
 
 def gravity(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:

@@ -69,6 +69,10 @@ class Shape(ABC):
         """Mass of a body of this shape, kg, that its scene does not give; 0 where the shape is a profile alone."""
         return 0.0
 
+    def whole_mass(self, density: float) -> float | None:
+        """Mass, kg, that its scene has to give of a body of this shape; None where the shape is a profile alone."""
+        return None
+
     @property
     @abstractmethod
     def load_curve(self) -> LoadCurve:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -36,6 +37,10 @@ class Sphere(_round.Round):
         ratio = np.asarray(x, dtype=float) / self.radius
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(ratio <= 1.0, self.radius * ratio * np.arctanh(ratio), np.inf)
+
+    def whole_mass(self, density: float) -> float:
+        """density 4/3 pi R^3, kg."""
+        return density * 4.0 / 3.0 * math.pi * self.radius**3
 
     @property
     def load_curve(self) -> SneddonSphere:

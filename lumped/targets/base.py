@@ -80,7 +80,7 @@ class Target(ABC):
         """Elastic contact time of a mass, kg, s, where a half-space would answer in `local`; here the same."""
         return local
 
-    def inertia_left_out(self, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """What a contact without the body's inertia errs by in its peak force, relatively, and a note.
 
         Here as on the half-space: waves take the share w of the energy, half of it before the peak, and
@@ -91,6 +91,13 @@ class Target(ABC):
             return LOST_FORCE * share, f"radiates {share:.2g} of the kinetic energy; model.inertia"
         missing = "needs target.material.density" if material.density is None else "a dashpot alone has no wave speed"
         return None, missing
+
+    def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
+        """What is wrong with a striker of this shape that has a material as the target has, with inertia or without."""
+        if self.deformable and self.yielding_strikers:
+            return []
+        reason = f"a {self.name} is struck by a rigid body in this version; leave it out"
+        return [Fault(source, "striker.material", reason)]
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput, naming the key, for a striker which this target is not for; here any rigid one will do."""

@@ -29,6 +29,7 @@ class HalfSpace(Target):
     name: ClassVar[str] = "half_space"
     keys: ClassVar[Mapping[str, Key]] = KEYS
     has_inertia: ClassVar[bool] = True
+    yielding_strikers: ClassVar[bool] = True
 
     @property
     def has_length(self) -> bool:
@@ -46,6 +47,13 @@ class HalfSpace(Target):
         from lumped.load_curves.half_plane import HalfPlane
 
         return HalfPlane(shape.line_profile, self.datum_depth or 0.0, nu)
+
+    def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
+        """Only a whole body with inertia: else one E* of both tells all, and a target of shape sphere knows it."""
+        if inertia and shape.whole_mass(1.0) is not None:
+            return []
+        reason = "a half_space is struck by a rigid body in this version, or by a sphere with model.inertia = true"
+        return [Fault(source, "striker.material", f"{reason}; else leave it out")]
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """A half-plane has no finite compliance of its own: plane strain needs a datum, and only that."""

@@ -59,13 +59,13 @@ class Layer(Target):
             return LayerPunch(shape.fixed_radius, elastic)
         return LayerCurve(shape.load_curve, elastic)
 
-    def inertia_left_out(self, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """A thin layer radiates nothing, but answers the slower the nearer its first resonance, four transits, is.
 
         As a spring with mass it yields more by (2 h/(c T))^2, c of waves across it, and F ~ stiffness^(2/5). A thick
         one is a half-space: the smaller of the two.
         """
-        radiated, note = super().inertia_left_out(material, pulse)
+        radiated, note = super().inertia_left_out(shape, material, pulse)
         if radiated is None or material.density is None:
             return radiated, note
         modulus = material.confined_modulus()

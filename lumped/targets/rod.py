@@ -72,12 +72,12 @@ class Rod(Target):
         echo = 2.0 * self.length * math.sqrt(density / stiffness)
         return local + echo + math.pi * math.sqrt(mass * self.length / (stiffness * self.area))
 
-    def inertia_left_out(self, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """What goes down the rod before an echo, int F^2 dt/Z, as a share of the energy; half of it before the peak."""
         modulus = material.uniaxial_modulus()
         stiffness, density = modulus.relaxed or modulus.glassy, material.density
         if not stiffness or density is None:
-            return super().inertia_left_out(material, pulse)
+            return super().inertia_left_out(shape, material, pulse)
         sent = HERTZ_SQUARE * pulse.force**2 * pulse.duration / self.impedance(stiffness, density)
         share = sent / pulse.energy
         return min(LOST_FORCE * share, 1.0), f"sends {share:.2g} of the kinetic energy down the rod; --method rod_waves"

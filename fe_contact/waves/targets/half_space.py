@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
 from fe_contact.progress import Progress, silent
 from fe_contact.waves.fields import write_fields as write_fields
+from fe_contact.waves.flying_ball import on_half_space
 from fe_contact.waves.half_space_body import moving
 from fe_contact.waves.plan import plan as plan
 from fe_contact.waves.refining import refined_to_tolerance
 from lumped.errors import BadInput, Fault
+from lumped.materials import Material
 from lumped.radiation import shear_speed
 from lumped.result import Result
 from lumped.scene import Scene
@@ -21,28 +24,43 @@ FASTEST = 0.3  # of the speed of shear waves: beyond, strains are not small anyw
 def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
     """Force history with error bars. Raises BadInput for a scene it is not for, NotReached where no march ends."""
     check(scene)
-    return refined_to_tolerance(scene, plan(scene, given), moving, progress)
+    body = moving if scene.striker_material is None else on_half_space
+    return refined_to_tolerance(scene, plan(scene, given), body, progress)
 
 
 def check(scene: Scene) -> None:
     """Raise BadInput for several impacts, a striker with a rim or in plane strain, and a changing Poisson's ratio."""
     scene.check_single("fe")
-    shape, material = scene.geometry.shape, scene.geometry.material
-    faults = too_fast(scene)
+    shape, faults = scene.geometry.shape, [*too_fast(scene), *changing(scene)]
     if shape.plane or shape.fixed_radius is not None:
         reason = f"{shape.name}: no waves under it in this version; accepted with model.inertia: sphere, cone, power"
         faults.append(Fault(scene.source, "striker.shape", reason))
-    if material.constant == "bulk" and not material.young.is_elastic:
-        reason = '"bulk" changes nu in time, which no far field follows in this version; accepted: "poisson"'
-        faults.append(Fault(scene.source, "target.material.constant", reason))
     if faults:
         raise BadInput(faults)
 
 
 def too_fast(scene: Scene) -> list[Fault]:
     """Nearer to the speed of shear waves than small displacements reach."""
-    speed = shear_speed(scene.geometry.material)
-    if speed is None or scene.velocity < FASTEST * speed:
+    speeds = [speed for _, material in yielding(scene) if (speed := shear_speed(material)) is not None]
+    speed = min(speeds, default=math.inf)
+    if scene.velocity < FASTEST * speed:
         return []
     reason = f"{scene.velocity:g} m/s: accepted below {FASTEST:g} of the speed of shear waves, {speed:.3g} m/s"
     return [Fault(scene.source, "striker.velocity", reason)]
+
+
+def changing(scene: Scene) -> list[Fault]:
+    """A Poisson's ratio that changes in time."""
+    reason = '"bulk" changes nu in time, which no far field follows in this version; accepted: "poisson"'
+    return [
+        Fault(scene.source, f"{part}.material.constant", reason)
+        for part, material in yielding(scene)
+        if material.constant == "bulk" and not material.young.is_elastic
+    ]
+
+
+def yielding(scene: Scene) -> list[tuple[str, Material]]:
+    """The bodies that have a material, by the table that gives it."""
+    geometry = scene.geometry
+    found = [("striker", geometry.striking), ("target", geometry.material if geometry.target.deformable else None)]
+    return [(part, material) for part, material in found if material is not None]

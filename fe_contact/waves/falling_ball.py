@@ -1,0 +1,37 @@
+"""A deformable ball that strikes a rigid plane: in free flight before and after, its own waves stay in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from fe_contact.numerics import RANGES
+from fe_contact.plan import Plan
+from fe_contact.progress import Progress, silent
+from fe_contact.waves.flying_ball import on_plane
+from fe_contact.waves.plan import SPRINGS, placed
+from fe_contact.waves.refining import refined_to_tolerance
+from fe_contact.waves.targets.half_space import changing, too_fast
+from lumped.errors import BadInput
+from lumped.laws import mdr
+from lumped.result import Result
+from lumped.scene import Scene
+
+
+def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
+    """Choose what ``given`` (checked settings) leaves open; the far end is that of the ball.
+
+    Raises NotReached where even the row of springs does not come to an end.
+    """
+    scales = mdr.estimate(scene, SPRINGS)
+    end = 2.0 * (scene.geometry.shape.tip_radius or 0.0) / scales.contact_radius
+    return placed(scene, given, scales, min(max(end, RANGES["far_radius"][0]), RANGES["far_radius"][1]))
+
+
+def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
+    """Force history with error bars. Raises BadInput for a scene it is not for, NotReached where no march ends."""
+    scene.check_single("fe")
+    faults = [*too_fast(scene), *changing(scene)]
+    if faults:
+        raise BadInput(faults)
+    return refined_to_tolerance(scene, plan(scene, given), on_plane, progress)

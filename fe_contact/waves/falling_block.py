@@ -1,0 +1,169 @@
+"""A block with inertia on a rigid plane: a bar of line elements, each of which a wave crosses in one step.
+
+Depth and velocity are those of the centre of mass of block and rigid mass, which the force moves.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from fe_contact.bodies.bar import TIP, Bar, falling, pitch
+from fe_contact.dynamics.march import Choices, march
+from fe_contact.dynamics.pressed import Enforced
+from fe_contact.enforcement import is_soft
+from fe_contact.numerics import ENFORCEMENTS, MASSES, WAVE_SCHEMES
+from fe_contact.plan import Plan
+from fe_contact.progress import Progress, silent
+from fe_contact.waves.bar_reading import Ending, read
+from fe_contact.waves.doubling import certified
+from fe_contact.waves.numerics import WaveNumerics
+from fe_contact.waves.rod_record import Run
+from lumped.errors import BadInput, Fault
+from lumped.members import get
+from lumped.result import LedgerEntry, Result
+from lumped.scene import Scene
+from lumped.shapes._block import Block
+
+DEFAULT_TOLERANCE = 3e-3
+GRAVITY = 9.81
+STEPS, MANY, MOST = 200, 1600, 12_800  # while a wave goes to the far end and back: at first, and at all
+LIGHT = 32.0  # of them in the part of the bar that is as heavy as the mass behind it
+PAUSE = 0.25  # of that time within which several contacts count as one
+
+
+def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
+    """Choose what ``given`` (checked settings) leaves open; a sudden force or the energy of many contacts is kept."""
+    bar, echo = checked(scene), echo_time(scene)
+    numerics = WaveNumerics(
+        tolerance=DEFAULT_TOLERANCE,
+        elements_per_contact=1.0,
+        order=1,
+        penalty=1.0,
+        enforcement="exact",
+        scheme="staged",
+        steps=_steps(bar),
+        far_radius=bar.length / _block(scene).fixed_radius,
+        contact_radius=_block(scene).fixed_radius,
+        contact_time=echo,
+        peak_share=0.5,
+        rho=1.0,
+        mass=usual_mass(scene),
+    ).varied(**given)
+    return Plan(numerics, frozenset(given) - {"tolerance"}, _ledger(scene, bar))
+
+
+def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
+    """History of one or several contacts with error bars. Raises BadInput, or NotReached where no march ends."""
+    chosen = plan(scene, given)
+    return certified(scene, chosen, partial(run, scene), partial(_varied, scene), MOST, progress)
+
+
+def _steps(bar: Bar) -> int:
+    """So many at first that the echo of a light mass, which is no longer than its share of the bar's, is resolved."""
+    own = bar.density * bar.area * bar.length
+    echo = LIGHT * own / bar.end_mass if bar.end_mass else 0.0
+    return 4 * math.ceil(min(max(STEPS, echo), MANY) / 4)
+
+
+def usual_mass(scene: Scene) -> str:
+    """One contact ends with the march: mass at its nodes carries its jumps exactly. More of them need a surface
+    without mass, or each would cost the energy of the mass that it stops.
+    """
+    return "lumped" if scene.motion.impacts == 1 else "redistributed"
+
+
+def usual_tip(scene: Scene) -> float:
+    """Length of the element at the contact over the others', as the usual mass asks for."""
+    return 1.0 if scene.motion.impacts == 1 else TIP
+
+
+def _varied(scene: Scene, numerics: WaveNumerics) -> dict[str, WaveNumerics]:
+    """Settings with one cause of error changed: steps and elements together; what a penalty lets in; another mass."""
+    found = {"time_step": numerics.varied(steps=max(numerics.steps // 2, 8))}
+    if is_soft(numerics.enforcement):
+        found["penalty"] = numerics.varied(penalty=numerics.penalty / 2)
+    if numerics.mass != usual_mass(scene):
+        found["mesh"] = numerics.varied(mass=usual_mass(scene))
+    return found
+
+
+def checked(scene: Scene) -> Bar:
+    """The bar that the block is; raises BadInput where waves in it are not one-dimensional, or have no speed."""
+    block, material, faults = _block(scene), scene.geometry.material, []
+    if not block.uniform:
+        reason = "bonded: waves between free sides and held faces are not one-dimensional; accepted: sliding"
+        faults.append(Fault(scene.source, "striker.faces", reason))
+    modulus = block.modulus(material)
+    if modulus.viscosity > 0.0:
+        reason = "a dashpot in parallel has no wave speed for steps to follow; accepted: a material without one"
+        faults.append(Fault(scene.source, "striker.material.law", reason))
+    if faults:
+        raise BadInput(faults)
+    return Bar(block.thickness, block.area, material.density or 0.0, modulus, scene.reduced_mass)
+
+
+def echo_time(scene: Scene) -> float:
+    """2 L/c of the fastest waves, s."""
+    bar = checked(scene)
+    return 2.0 * bar.length * math.sqrt(bar.density / bar.relaxation.glassy)
+
+
+def run(scene: Scene, numerics: WaveNumerics) -> Run:
+    """One march, its steps those in which a wave crosses an element. Raises NotReached."""
+    bar, echo = checked(scene), echo_time(scene)
+    elements = max(numerics.steps // 2, 2)
+    tip = usual_tip(scene)
+    body = falling(bar, elements, get(MASSES, numerics.mass), scene.gravity, tip=tip)
+    size = pitch(bar.length, elements, tip)
+    choices = Choices(
+        scheme=get(WAVE_SCHEMES, numerics.scheme).of(numerics.rho),
+        enforced=Enforced(get(ENFORCEMENTS, numerics.enforcement), numerics.penalty * bar.relaxation.glassy / size),
+        step=0.5 * echo * size / bar.length,
+    )
+    carried = np.asarray(body.inertia.sum(axis=0)).ravel()
+    watch = -carried[None, :] / carried.sum()
+    pause = 0.0 if scene.motion.impacts == 1 else PAUSE * echo
+    ending = Ending(scene.motion.impacts, pause)
+    found = march(body, np.full(body.size, -scene.velocity), choices, scene.end_time, watch, ending)
+    fronts = 2 * elements if choices.scheme.explicit and not body.massless.size else None
+    reading, contacts = read(found, carried.sum(), scene, pause, fronts)
+    last = found.samples[-1].energies
+    out = 0.5 * carried.sum() * float(found.samples[-1].velocity[0]) ** 2
+    energy = {
+        "in": last.work,
+        "out": out,
+        "stored": last.strain + last.deformable + last.rigid - out,  # strain, and motion about the centre of mass
+        "viscous": last.viscous,
+        "radiated": last.radiated,
+        "contact": last.contact,
+        "numerical": last.numerical,
+    }
+    energy["residual"] = 2 * energy["in"] - sum(energy.values())
+    return Run(reading, energy, len(found.samples) - 1, body.size, contacts)
+
+
+def _block(scene: Scene) -> Block:
+    block = scene.geometry.shape
+    assert isinstance(block, Block)
+    return block
+
+
+def _ledger(scene: Scene, bar: Bar) -> tuple[LedgerEntry, ...]:
+    """What one-dimensional small waves leave out, relative to the peak force."""
+    speed = math.sqrt(bar.relaxation.glassy / bar.density)
+    slim = scene.geometry.material.nu * _block(scene).fixed_radius / bar.length
+    sideways = 0.0 if _block(scene).sides == "confined" else slim**2
+    slow = scene.profile.hertz_impact(bar.relaxation.glassy, scene.swinging_mass, scene.velocity).force
+    force = max(speed * bar.density * bar.area * scene.velocity, slow)
+    pull = 0.0 if scene.gravity else GRAVITY * (bar.density * bar.area * bar.length + bar.end_mass) / force
+    return (
+        LedgerEntry("inertia of the striker", "included", 0.0),
+        LedgerEntry("lateral inertia", "neglected", sideways, "(nu radius/length)^2, Rayleigh; but at wave fronts"),
+        LedgerEntry("finite strain", "small displacements", scene.velocity / speed, "v/c"),
+        LedgerEntry("gravity", "included" if scene.gravity else "neglected", pull, "model.gravity"),
+    )

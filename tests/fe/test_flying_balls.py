@@ -1,0 +1,238 @@
+"""Deformable balls with inertia: in free flight, on a rigid plane, on a half-space with waves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.sparse.linalg as linalg
+
+from fe_contact.cli import main
+from fe_contact.curve import Curve
+from fe_contact.dynamics.march import Motion, march
+from fe_contact.methods import simulate
+from fe_contact.reference import strike_of
+from fe_contact.waves import half_space_body
+from fe_contact.waves.flying_ball import on_half_space, on_plane
+from fe_contact.waves.impact import choices_of, motion, record
+from fe_contact.waves.moving import Moving
+from fe_contact.waves.targets import half_space, plane
+from lumped import BadInput, Result, Scene
+from lumped.radiation import radiation_coefficient
+
+RADIUS, YOUNG, DENSITY = 2e-3, 2.06e11, 7850.0
+MASS = DENSITY * 4.0 / 3.0 * math.pi * RADIUS**3
+STEEL = {"law": "elastic", "E": YOUNG, "nu": 0.3, "density": DENSITY}
+PLANE: dict[str, Any] = {"shape": "plane"}
+HALF_SPACE: dict[str, Any] = {"shape": "half_space", "material": STEEL}
+WHOLE = ("peak_force", "peak_depth", "duration", "impulse", "restitution")
+MODES = 40  # of the ball, from its lowest on
+
+
+def ball(velocity: float, target: dict[str, Any] = PLANE, inertia: bool = True, **material: Any) -> Scene:
+    striker = {"shape": "sphere", "radius": RADIUS, "velocity": velocity, "material": STEEL | material}
+    mass = MASS * (STEEL | material)["density"] / DENSITY
+    return Scene.from_dict({"striker": striker | {"mass": mass}, "target": target, "model": {"inertia": inertia}})
+
+
+def moved(scene: Scene, **given: Any) -> tuple[Moving, Motion]:
+    """From first touch until some time after the contact."""
+    rigid = scene.target.name == "plane"
+    numerics = (plane if rigid else half_space).plan(scene, given).numerics
+    moving = (on_plane if rigid else on_half_space)(scene, numerics)
+    until = 1.2 * numerics.contact_time
+    return moving, march(moving.body, moving.velocity, choices_of(scene, numerics), until, moving.watch)
+
+
+def curve_of(scene: Scene, **given: Any) -> Curve:
+    rigid = scene.target.name == "plane"
+    numerics = (plane if rigid else half_space).plan(scene, given).numerics
+    moving = (on_plane if rigid else on_half_space)(scene, numerics)
+    return Curve.of(record(moving, motion(moving, scene, numerics), scene), strike_of(scene))
+
+
+def test_a_ball_that_touches_nothing_flies_without_strain() -> None:
+    """Away from the plane, and pulled by gravity."""
+    scene = Scene.from_dict(ball(1.0).to_dict() | {"model": {"inertia": True, "gravity": -9.81e4}})
+    numerics = plane.plan(scene, {}).numerics
+    moving = on_plane(scene, numerics)
+    time = numerics.contact_time
+    found = march(moving.body, -moving.velocity, choices_of(scene, numerics), time, moving.watch)
+    last = found.samples[-1]
+    assert last.force == 0.0
+    assert last.displacement[0] == pytest.approx(-last.time - 0.5 * 9.81e4 * last.time**2, rel=1e-9)
+    assert last.energies.strain < 1e-12 * last.energies.work
+    assert last.energies.deformable == pytest.approx(0.5 * MASS * (1.0 + 9.81e4 * last.time) ** 2, rel=1e-9)
+
+
+@pytest.mark.parametrize("target", [PLANE, HALF_SPACE])
+def test_the_force_takes_the_momentum_and_no_energy_is_lost_sight_of(target: dict[str, Any]) -> None:
+    scene = ball(5.0, target)
+    found = moved(scene)[1]
+    last = found.samples[-1]
+    impulse = sum(sample.impulse for sample in found.samples)
+    assert last.force == 0.0
+    assert impulse == pytest.approx(MASS * (scene.velocity - last.velocity[0]), rel=1e-9)
+    assert abs(last.energies.residual) < 1e-9 * last.energies.work
+    assert abs(last.energies.numerical) < 1e-4 * last.energies.work
+
+
+def test_a_slow_ball_is_the_one_without_inertia(campaign_size: Callable[[int], int]) -> None:
+    rng = np.random.default_rng(7)
+    for _ in range(campaign_size(10)):
+        nu, velocity = rng.uniform(-0.2, 0.48), 10 ** rng.uniform(-2.5, -1.0)
+        still, waves = (simulate(ball(velocity, inertia=inertia, nu=nu), "fe", {}) for inertia in (False, True))
+        assert waves.converged, waves.message
+        for name in WHOLE:
+            first, second = still.quantities[name], waves.quantities[name]
+            assert abs(first.value - second.value) <= first.error + second.error, (name, nu, velocity)
+
+
+def test_on_a_half_space_without_waves_two_compliances_add() -> None:
+    """A finite ball is stiffer than Hertz's by a compliance that no contact changes: the same on either target.
+
+    With depth = (F/k)^(2/3) - c F the peak force follows from the energy, 2/5 F (F/k)^(2/3) - c F^2/2.
+    """
+    still = simulate(ball(0.1, inertia=False), "fe", {"tolerance": 1e-4})
+    force = still.quantities["peak_force"].value or 0.0
+    energy, common = 0.5 * MASS * 0.1**2, 4.0 / 3.0 * math.sqrt(RADIUS)
+    stiffness = common * still.scene.contact_modulus.relaxed
+    stiffer = (0.4 * force * (force / stiffness) ** (2 / 3) - energy) / (0.5 * force**2)
+    light = {"shape": "half_space", "material": STEEL | {"density": 1e-3}}
+    scene = ball(0.1, light)
+    softer = common * scene.contact_modulus.relaxed
+    hertz = (energy / 0.4 * softer ** (2 / 3)) ** 0.6
+    known = hertz
+    for _ in range(20):
+        known = ((energy + 0.5 * stiffer * known**2) / 0.4 * softer ** (2 / 3)) ** 0.6
+    found = curve_of(scene, elements_per_contact=12.0, penalty=500.0, far_radius=100.0).quantities["peak_force"]
+    assert known > 1.003 * hertz
+    assert found == pytest.approx(known, rel=2e-4)
+
+
+def test_what_is_left_in_the_ball_is_what_its_force_rings_in_its_modes() -> None:
+    """Every mode for itself, by Duhamel's integral of the force at the pole: no march, no contact.
+
+    Share of the energy about 2.5e-4 at 5 m/s.
+    """
+    scene = ball(5.0)
+    moving, found = moved(scene, steps=960)
+    body = moving.body
+    stiffness = body.parts[0].relaxation.relaxed * body.parts[0].stiffness
+    shift = (math.sqrt(YOUNG / DENSITY) / RADIUS) ** 2
+    squares, shapes = linalg.eigsh(stiffness, MODES, body.mass, sigma=-0.1 * shift)
+    pole = -np.asarray(body.pressing.push[:, [0]].todense()).ravel() @ shapes
+    omega = np.sqrt(np.maximum(squares, 0.0))
+    time, force = found.time, found.force
+    spectrum = np.trapezoid(force * np.exp(1j * omega[:, None] * time), time, axis=1)
+    rigid = omega < 1e-3 * omega.max()
+    assert rigid.sum() == 1
+    energies = 0.5 * (pole * np.abs(spectrum)) ** 2
+    assert energies[rigid].sum() == pytest.approx(0.5 * MASS * (2.0 * 5.0) ** 2, rel=1e-3)
+    rung = float(energies[~rigid].sum())
+    last = found.samples[-1]
+    held = last.energies.deformable + last.energies.strain - 0.5 * MASS * float(last.velocity[0]) ** 2
+    assert held == pytest.approx(rung, rel=0.03)
+    assert 1e-4 < held / last.energies.work < 5e-4
+
+
+@pytest.fixture(scope="module")
+def steel() -> Result:
+    return simulate(Scene.load("steel-on-steel-waves"), "fe", {})
+
+
+def test_steel_on_steel_loses_what_its_force_radiates(steel: Result) -> None:
+    """Lamb's point force against momentum and mesh; the ball keeps next to nothing."""
+    assert steel.converged, steel.message
+    scene, history = steel.scene, steel.history
+    material = scene.geometry.material
+    speed = math.sqrt(material.shear.relaxed / DENSITY)
+    time = np.linspace(0.0, history.time[-1], 201)
+    rate = np.gradient(np.interp(time, history.time, history.force), time)
+    radiated = radiation_coefficient(0.3) / (DENSITY * speed**3) * np.trapezoid(rate**2, time)
+    share = radiated / (0.5 * scene.mass * scene.velocity**2)
+    e = steel.quantities["restitution"].value or 0.0
+    assert 1.0 - e**2 == pytest.approx(share, rel=0.03)
+    assert steel.energy["radiated"] / steel.energy["in"] == pytest.approx(share, rel=0.03)
+    assert 0.0 < steel.energy["stored"] < 0.01 * steel.energy["radiated"]
+    (entry,) = [entry for entry in steel.model_ledger if entry.effect == "striker compliance"]
+    assert entry.treated == "included"
+
+
+def test_a_much_stiffer_ball_is_a_rigid_one() -> None:
+    stiff = {"E": 1e4 * YOUNG, "density": DENSITY}
+    soft = ball(1.0, HALF_SPACE, **stiff)
+    rigid = replace(soft, striker_material=None)
+    yielding = curve_of(soft)
+    numerics = half_space.plan(rigid, {}).numerics
+    moving = half_space_body.moving(rigid, numerics)
+    known = Curve.of(record(moving, motion(moving, rigid, numerics), rigid), strike_of(rigid))
+    for name in WHOLE:
+        assert yielding.quantities[name] == pytest.approx(known.quantities[name], rel=5e-4), name
+
+
+def random_scene(rng: np.random.Generator, target: dict[str, Any]) -> Scene:
+    """Steel to rubber, elastic or with memory, slow beside its waves."""
+    young, nu, speed, density = 10 ** rng.uniform(6, 11), rng.uniform(0.0, 0.48), 10 ** rng.uniform(-2.5, -1.0), 2000.0
+    velocity = speed * 0.06 * math.sqrt(young / density)
+    memory = {"law": "prony", "E_inf": young, "E": [young * rng.uniform(0.1, 1.0)], "tau": [RADIUS / velocity]}
+    law = ({"law": "elastic", "E": young}, memory)[rng.integers(2)] | {"nu": nu, "density": density}
+    striker = {"shape": "sphere", "radius": RADIUS, "mass": MASS * density / DENSITY, "velocity": velocity}
+    other = {"material": law | {"nu": rng.uniform(0.0, 0.48)}} if target is HALF_SPACE else {}
+    tables = {"striker": striker | {"material": law}, "target": target | other, "model": {"inertia": True}}
+    return Scene.from_dict(tables)
+
+
+@pytest.mark.parametrize(("target", "many"), [(PLANE, 20), (HALF_SPACE, 10)])
+def test_bars_hold_the_answer_of_settings_for_a_quarter_of_the_tolerance(
+    target: dict[str, Any], many: int, campaign_size: Callable[[int], int]
+) -> None:
+    rng = np.random.default_rng(17)
+    for _ in range(campaign_size(many)):
+        scene = random_scene(rng, target)
+        result = simulate(scene, "fe", {})
+        assert result.converged, result.message
+        finer = curve_of(scene, tolerance=result.tolerance / 4).quantities
+        for name in WHOLE:
+            known = result.quantities[name]
+            assert abs(known.value - finer[name]) <= known.error, (name, scene)
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "key"),
+    [
+        ("steel-ball-flight-waves", {"striker.mass": 2.7e-4}, r"striker\.mass.*0\.0002569"),
+        ("steel-on-steel-waves", {"striker.mass": 2.4e-4}, r"striker\.mass"),
+        ("steel-on-steel-waves", {"model.inertia": False}, r"striker\.material.*model\.inertia"),
+        ("steel-on-steel-waves", {"striker.velocity": 1.2e3}, r"striker\.velocity"),
+        ("steel-ball-flight-waves", {"motion.impacts": 2}, r"motion\.impacts"),
+        ("steel-ball-flight-waves", {"target.material": STEEL}, r"target\.material"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_its_key(name: str, changes: dict[str, Any], key: str) -> None:
+    with pytest.raises(BadInput, match=key):
+        simulate(Scene.load(name, changes), "fe", {})
+
+
+@pytest.mark.parametrize("target", [PLANE, HALF_SPACE])
+def test_a_ball_with_inertia_needs_its_density(target: dict[str, Any]) -> None:
+    table = ball(1.0, target).to_dict()
+    del table["striker"]["material"]["density"]
+    with pytest.raises(BadInput, match=r"striker\.material\.density"):
+        Scene.from_dict(table)
+
+
+def test_a_cone_with_a_material_strikes_no_half_space() -> None:
+    table = ball(1.0, HALF_SPACE).to_dict()
+    cone = {"shape": "cone", "angle": 10.0, "mass": MASS, "velocity": 1.0, "material": STEEL}
+    with pytest.raises(BadInput, match=r"striker\.material.*sphere"):
+        Scene.from_dict(table | {"striker": cone})
+
+
+def test_fields_of_two_bodies_are_refused_before_anything_is_computed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "steel-on-steel-waves", "--fields"]) == 2
+    assert "rigid" in capsys.readouterr().err
