@@ -81,15 +81,15 @@ def test_the_force_takes_the_momentum_and_no_energy_is_lost_sight_of(target: dic
     assert abs(last.energies.numerical) < 1e-4 * last.energies.work
 
 
-def test_a_slow_ball_is_the_one_without_inertia(campaign_size: Callable[[int], int]) -> None:
+def test_a_slow_ball_is_the_one_without_inertia(
+    campaign_size: Callable[[int], int], uncovered: Callable[..., dict[str, float]]
+) -> None:
     rng = np.random.default_rng(7)
     for _ in range(campaign_size(10)):
         nu, velocity = rng.uniform(-0.2, 0.48), 10 ** rng.uniform(-2.5, -1.0)
         still, waves = (simulate(ball(velocity, inertia=inertia, nu=nu), "fe", {}) for inertia in (False, True))
         assert waves.converged, waves.message
-        for name in WHOLE:
-            first, second = still.quantities[name], waves.quantities[name]
-            assert abs(first.value - second.value) <= first.error + second.error, (name, nu, velocity)
+        assert not uncovered(still, waves), (nu, velocity)
 
 
 def test_on_a_half_space_without_waves_two_compliances_add() -> None:
@@ -97,7 +97,7 @@ def test_on_a_half_space_without_waves_two_compliances_add() -> None:
 
     With depth = (F/k)^(2/3) - c F the peak force follows from the energy, 2/5 F (F/k)^(2/3) - c F^2/2.
     """
-    still = simulate(ball(0.1, inertia=False), "fe", {"tolerance": 1e-4})
+    still = simulate(ball(0.1, inertia=False), "fe", {"tolerance": 3e-4})
     force = still.quantities["peak_force"].value or 0.0
     energy, common = 0.5 * MASS * 0.1**2, 4.0 / 3.0 * math.sqrt(RADIUS)
     stiffness = common * still.scene.contact_modulus.relaxed
@@ -109,7 +109,7 @@ def test_on_a_half_space_without_waves_two_compliances_add() -> None:
     known = hertz
     for _ in range(20):
         known = ((energy + 0.5 * stiffer * known**2) / 0.4 * softer ** (2 / 3)) ** 0.6
-    found = curve_of(scene, elements_per_contact=12.0, penalty=500.0, far_radius=100.0).quantities["peak_force"]
+    found = curve_of(scene, penalty=500.0, far_radius=50.0).quantities["peak_force"]
     assert known > 1.003 * hertz
     assert found == pytest.approx(known, rel=2e-4)
 
@@ -187,7 +187,7 @@ def random_scene(rng: np.random.Generator, target: dict[str, Any]) -> Scene:
     return Scene.from_dict(tables)
 
 
-@pytest.mark.parametrize(("target", "many"), [(PLANE, 20), (HALF_SPACE, 10)])
+@pytest.mark.parametrize(("target", "many"), [(PLANE, 10), (HALF_SPACE, 10)])
 def test_bars_hold_the_answer_of_settings_for_a_quarter_of_the_tolerance(
     target: dict[str, Any], many: int, campaign_size: Callable[[int], int]
 ) -> None:
