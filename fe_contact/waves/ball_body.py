@@ -90,7 +90,8 @@ class Ball:
 
     def _unit(self, numerics: WaveNumerics) -> UnitBall:
         contact = min(float(np.arcsin(min(numerics.contact_radius / self.radius, 1.0))), WIDEST)
-        return unit_ball(self.material.nu, numerics.elements_per_contact, numerics.order, contact, numerics.mass)
+        elements = numerics.elements_per_contact * numerics.finer
+        return unit_ball(self.material.nu, elements, numerics.order, contact, numerics.mass)
 
 
 @kept
