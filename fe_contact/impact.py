@@ -22,8 +22,8 @@ AT_REST = 1e-4  # share of the velocity at touch below which a fluid has stopped
 REST_ROWS = 12
 FAINT = 1e-3  # share of the peak force below which contact may end
 LONGEST = 2.0  # under gravity, of the mean step: about the largest one within an expected contact
-SETTLED = 1e-2  # share of gravity below which neither force nor velocity swing any more
-STEPS_ALLOWED = 20  # multiple of the settings' steps after which the march gives up
+SETTLED = 0.3  # of the tolerance: share of gravity below which force and velocity swing no more than may be missed
+STEPS_ALLOWED = 30  # multiple of the settings' steps after which the march gives up: 50 contact times take 25
 
 
 def march(
@@ -114,7 +114,7 @@ class _Marcher:
         """What does not separate swings about its weight, which no long step would see, until it has settled."""
         strike, time = self.strike, self.numerics.contact_time
         swing = abs(last.force / strike.mass - strike.gravity) + abs(last.state.velocity) / time
-        settled = GROWTH_AFTER * last.length if swing < SETTLED * strike.gravity else 0.0
+        settled = GROWTH_AFTER * last.length if swing < SETTLED * self.numerics.tolerance * strike.gravity else 0.0
         return max(settled, LONGEST * time / self.numerics.steps)
 
     def _flight(self, state: State, left: float) -> list[State]:

@@ -59,8 +59,9 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
     chosen = _settings(scene, tolerance)
     size = scales(scene, chosen)
-    # gravity holds what does not separate, and swings it
-    contact_time = size.duration or (2.0 * size.peak_time if scene.gravity > 0.0 else scene.end_time)
+    # gravity holds what does not separate, and swings it; a dashpot may answer most at the touch
+    held = max(2.0 * size.peak_time, scene.elastic_contact_time)
+    contact_time = size.duration or (min(held, scene.end_time) if scene.gravity > 0.0 else scene.end_time)
     peak_share = min(max(size.peak_time / contact_time, SOONEST_PEAK), 1.0)
     placed = chosen.varied(
         steps=_steps(tolerance, peak_share),

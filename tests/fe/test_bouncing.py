@@ -214,6 +214,18 @@ def test_a_striker_that_gravity_holds_comes_to_rest_under_its_weight(scene_of: S
     assert result.history.depth[-1] == pytest.approx(depth, rel=1e-2)
 
 
+@pytest.mark.parametrize("branch", [1e3, 1e4])
+def test_what_swings_on_its_weight_is_followed_within_the_tolerance(branch: float, scene_of: Scenes) -> None:
+    """A swing that fades over many turns: no step grows past what the tolerance still asks for, and none is wasted."""
+    material = {"law": "sls", "E1": 1e6, "E2": branch * 1e6, "C1": 1.2e3}
+    striker = {"radius": 3e-3, "mass": 4e-4, "velocity": 1e-4}
+    result = fe_contact.run(thrown(scene_of, material, 1, gravity=0.05, end_time=0.1, striker=striker), 1e-3)
+    assert result.converged, result.message
+    assert not result.separated
+    assert result.numerics["steps"] == 40
+    assert result.history.force[-1] == pytest.approx(4e-4 * 0.05, rel=1e-3)
+
+
 def test_a_bulk_that_remembers_is_refused_by_name(scene_of: Scenes) -> None:
     layer = {"shape": "layer", "thickness": 4e-3, "base": "bonded", "material": SLS | {"nu": 0.3, "constant": "bulk"}}
     with pytest.raises(lumped.BadInput, match=r"motion\.impacts"):

@@ -12,6 +12,7 @@ import pytest
 import fe_contact
 from fe_contact.reference import solve
 from lumped import BadInput, Material, Model, Relaxation, Result, Scene, laws, simulate
+from lumped.scene import Motion
 from lumped.shapes import plate, prism
 from lumped.shapes.punch import Punch
 from lumped.targets import HalfSpace
@@ -133,3 +134,24 @@ def test_the_last_row_of_what_does_not_part_is_at_the_end_time(end_time: float) 
     motion = {"end_time": end_time}
     table = {"name": "sinking", "striker": striker, "target": target, "model": {"gravity": 9.81}, "motion": motion}
     assert fe_contact.run(Scene.from_dict(table), 1e-3).history.time[-1] == pytest.approx(end_time, rel=1e-12)
+
+
+@pytest.mark.parametrize("periods", [0.5, 6.0])
+def test_a_punch_whose_dashpot_answers_most_at_the_touch_settles_on_its_weight(periods: float) -> None:
+    """Mass, spring and dashpot in closed form: damped beyond oscillation, the force falls from the touch on."""
+    mass, velocity, gravity, damping, pace = 4e-4, 1e-4, 0.08, 1.2, 1.3e3
+    radius, eta = 0.5 * mass * pace**2 / YOUNG, 2.0 * damping * YOUNG / pace
+    scene = Scene(Punch(radius), mass, velocity, Material(Relaxation(YOUNG, viscosity=eta), 0.0), target=HalfSpace())
+    end = periods * 2.0 * math.pi / pace
+    found = fe_contact.run(replace(scene, model=Model(gravity=gravity), motion=Motion(end_time=end)), TOLERANCE)
+    rates = -pace * (damping + np.array([-1.0, 1.0]) * math.sqrt(damping**2 - 1.0))
+    rest = gravity / pace**2
+    fading = np.linalg.solve([[1.0, 1.0], rates], [-rest, velocity]) * np.exp(rates * end)
+    exact = {
+        "peak_force": 2.0 * radius * eta * velocity,
+        "peak_depth": rest + fading.sum(),
+        "impulse": mass * (velocity + gravity * end - rates @ fading),
+    }
+    assert found.converged
+    for name, value in exact.items():
+        assert abs(found.quantities[name].value - value) <= found.quantities[name].error
