@@ -75,6 +75,19 @@ def test_every_number_of_a_rod_lies_within_its_bar(campaign_size: Callable[[int]
         assert np.abs(found.history.force - known_force)[away].max() < 1e-3 * force.max()
 
 
+def test_a_heavy_ball_meets_the_first_front_long_before_it_turns() -> None:
+    """Its dent presses as hard as a front after a hundredth of the transit: elements at first are as short as that."""
+    striker = {"shape": "sphere", "radius": 6.7e-3, "mass": 0.05, "velocity": 0.22}
+    material = {"law": "elastic", "E": 4e6, "nu": 0.42, "density": 2950.0}
+    target = {"shape": "rod", "area": 5e-6, "length": 0.17, "end": "free", "material": material}
+    scene = Scene.from_dict({"striker": striker, "target": target, "model": {"inertia": True, "profile": "parabola"}})
+    found, truth = simulate(scene, "fe", {}), exact(scene)
+    assert found.converged, found.message
+    for name in ("peak_force", "peak_depth", "duration", "restitution", "impulse"):
+        value, known = found.quantities[name], truth.quantities[name]
+        assert abs(value.value - known.value) <= value.error + known.error
+
+
 def test_the_energy_account_closes_and_says_what_the_waves_took() -> None:
     for name in ("rod", "concrete-pole"):
         scene = Scene.load(name)

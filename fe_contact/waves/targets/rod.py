@@ -22,6 +22,7 @@ from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.rod_reading import read
 from fe_contact.waves.rod_record import Run
 from lumped.errors import BadInput, Fault
+from lumped.load_curves.hertz import HertzImpact
 from lumped.members import get
 from lumped.model_ledger import Peak, model_ledger
 from lumped.result import Result
@@ -33,6 +34,7 @@ STEPS = 400  # along the contact time of the scene, at the default tolerance
 FEWEST, MANY, MOST = 48, 2_500, 20_000  # elements: at first, and at all
 LIGHT = 16.0  # of them in the part of the rod that is as heavy as the striker
 DENTED = 64.0  # of them which a wave crosses while the striker dents the rod
+FRONT = 40.0  # of them which it crosses while the dent's force grows to that of a front
 RELAXED = 6.0  # of them which it crosses in the shortest relaxation time
 
 
@@ -60,19 +62,26 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
         mass="lumped" if flat else "redistributed",
     ).varied(**given)
     shape = scene.profile.hertz_impact(scene.contact_modulus.glassy, scene.reduced_mass, scene.velocity)
-    more = max(_fewest(scene, None if flat else shape.duration) / elements(scene, coarse), 1.0)
+    more = max(_fewest(scene, None if flat else shape) / elements(scene, coarse), 1.0)
     settings = coarse if "steps" in given else coarse.varied(steps=math.ceil(coarse.steps * more))
     scales = Peak(shape.force, shape.depth, shape.contact_radius, contact_time)
     return Plan(settings, frozenset(given) - {"tolerance"}, model_ledger(scene, scales))
 
 
-def _fewest(scene: Scene, dent: float | None) -> float:
-    """Elements at first: what the striker's mass, a dent that lasts so long, s, and a relaxation need."""
+def _fewest(scene: Scene, dent: HertzImpact | None) -> float:
+    """Elements at first: what the striker's mass, a dent and a relaxation need.
+
+    A heavy striker dents the rod until the dent presses as hard as a front, impedance x velocity, soon after touch.
+    """
     rod, times = scene.target, scene.geometry.material.uniaxial_modulus().times
     assert isinstance(rod, Rod)
     transit = rod.length / speed(scene)
     needs = [FEWEST, LIGHT * rod_mass(scene) / scene.reduced_mass]
-    needs += [] if dent is None else [DENTED * transit / dent]
+    if dent is not None:
+        impedance = rod_mass(scene) / transit
+        share = impedance * scene.velocity / dent.force
+        grown = share ** (1.0 / scene.profile.exponent_of_force) * dent.depth / scene.velocity
+        needs += [DENTED * transit / dent.duration, FRONT * transit / grown]
     needs += [RELAXED * transit / min(times)] if times else []
     return min(max(needs), MANY)
 
