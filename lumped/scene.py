@@ -30,8 +30,6 @@ from lumped.scene_tables import (
 from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
 
-END_IN_CONTACT_TIMES = 50.0
-
 
 @dataclass(frozen=True)
 class Scene:
@@ -154,10 +152,9 @@ class Scene:
         return self.end_time_of(self.elastic_contact_time)
 
     def end_time_of(self, contact_time: float) -> float:
-        """That of a law with this elastic contact time, s: time for every impact, and for every flight between two."""
-        impacts = self.motion.impacts
-        flights = 2.0 * self.velocity / self.gravity * (impacts - 1) if self.gravity > 0.0 else 0.0
-        return self.motion.end_time or END_IN_CONTACT_TIMES * contact_time * impacts + flights
+        """That of a law with this elastic contact time, s."""
+        flight = 2.0 * self.velocity / self.gravity if self.gravity > 0.0 else 0.0
+        return self.motion.until(contact_time, flight)
 
     def to_dict(self) -> dict[str, Any]:
         """The tables of a scene file that gives this scene back."""

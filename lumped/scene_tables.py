@@ -13,6 +13,7 @@ from lumped.members import available, get
 from lumped.targets import Target
 
 LEAST_MASS = 1e-21
+END_IN_CONTACT_TIMES = 50.0
 STRIKER_KEYS: Mapping[str, Key] = {
     "mass": Number(0.0, 1e12, "kg"),
     "velocity": Number(1e-9, 1e5, "m/s"),
@@ -52,6 +53,10 @@ class Motion:
 
     def __post_init__(self) -> None:
         check_fields("motion", self, MOTION_KEYS)
+
+    def until(self, contact_time: float, flight: float) -> float:
+        """When to stop, s: the end time, else time for every impact and for the flight, s, between two."""
+        return self.end_time or END_IN_CONTACT_TIMES * contact_time * self.impacts + flight * (self.impacts - 1)
 
 
 @dataclass(frozen=True)
