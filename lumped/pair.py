@@ -39,19 +39,23 @@ def check_striker_material(source: str, target: Target, shape: Shape, striker: M
         raise BadInput(faults)
 
 
-def flying_faults(source: str, geometry: Geometry, mass: float) -> list[Fault]:
-    """What is wrong with the mass, kg, of a striker with inertia that is a whole body: its density says the same."""
-    material, shape = geometry.striking, geometry.shape
-    if material is None or shape.whole_mass(1.0) is None:
-        return []
-    if material.density is None:
+def flying_faults(source: str, geometry: Geometry, mass: float, target_mass: float | None) -> list[Fault]:
+    """What is wrong with the masses, kg, of bodies with inertia that fly whole: their densities say the same."""
+    shape, target = geometry.shape, geometry.target
+    faults = target.inertia_faults(source, geometry.striking)
+    if geometry.striking is not None and target.deformable and geometry.striking.density is None:
         reason = "missing; model.inertia = true needs it, in kg/m3"
-        return [Fault(source, "striker.material.density", reason)] if geometry.target.deformable else []
-    whole = shape.whole_mass(material.density)
-    if whole is None or abs(mass - whole) <= SPARE_MASS * whole:
-        return []
-    reason = f"{mass:g} kg: with model.inertia a {shape.name} has the mass of its density; accepted: {whole:.6g} kg"
-    return [Fault(source, "striker.mass", f"{reason} within {SPARE_MASS:.0%}, or another density")]
+        faults.append(Fault(source, "striker.material.density", reason))
+    for part, body, material, given in (
+        ("striker", shape, geometry.striking, mass),
+        ("target", target, geometry.material, target_mass),
+    ):
+        whole = body.whole_mass(material.density) if material is not None and material.density is not None else None
+        if whole is not None and (given is None or abs(given - whole) > SPARE_MASS * whole):
+            said = "missing" if given is None else f"{given:g} kg"
+            reason = f"{said}; with model.inertia a {body.name} has the mass of its density; accepted: {whole:.6g} kg"
+            faults.append(Fault(source, f"{part}.mass", f"{reason} within {SPARE_MASS:.0%}, or another density"))
+    return faults
 
 
 def tables(

@@ -68,7 +68,7 @@ class Scene:
         faults = inertia_faults(self.source, self.model.inertia, density, target)
         faults += mass_faults(self.source, self.mass, self.swinging_mass)
         if self.model.inertia and self.has_geometry:
-            faults += flying_faults(self.source, self.geometry, self.mass)
+            faults += flying_faults(self.source, self.geometry, self.mass, self.target_mass)
         if faults:
             raise BadInput(faults)
         if self.shape is not None:

@@ -167,6 +167,7 @@ WITHOUT_CURVE = (
     "steel-ball-flight-waves",
     "two-cylinders",
     "two-finite-spheres",
+    "two-finite-spheres-waves",
 )
 
 

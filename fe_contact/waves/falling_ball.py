@@ -14,6 +14,7 @@ from fe_contact.waves.refining import refined_to_tolerance
 from fe_contact.waves.targets.half_space import changing, too_fast
 from lumped.errors import BadInput
 from lumped.laws import mdr
+from lumped.laws.mdr import ImpactScales
 from lumped.result import Result
 from lumped.scene import Scene
 
@@ -23,15 +24,24 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
 
     Raises NotReached where even the row of springs does not come to an end.
     """
-    scales = mdr.estimate(scene, SPRINGS)
-    end = 2.0 * (scene.geometry.shape.tip_radius or 0.0) / scales.contact_radius
-    return placed(scene, given, scales, min(max(end, RANGES["far_radius"][0]), RANGES["far_radius"][1]))
+    return flying(scene, given, mdr.estimate(scene, SPRINGS), scene.geometry.shape.tip_radius or 0.0)
+
+
+def flying(scene: Scene, given: Mapping[str, Any], scales: ImpactScales, radius: float) -> Plan:
+    """What ``given`` leaves open for an impact of these scales on bodies that end with a ball of this radius, m."""
+    low, high = RANGES["far_radius"]
+    return placed(scene, given, scales, min(max(2.0 * radius / scales.contact_radius, low), high))
 
 
 def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
     """Force history with error bars. Raises BadInput for a scene it is not for, NotReached where no march ends."""
+    check(scene)
+    return refined_to_tolerance(scene, plan(scene, given), on_plane, progress)
+
+
+def check(scene: Scene) -> None:
+    """Raise BadInput for several impacts, one too fast, and a changing Poisson's ratio."""
     scene.check_single("fe")
     faults = [*too_fast(scene), *changing(scene)]
     if faults:
         raise BadInput(faults)
-    return refined_to_tolerance(scene, plan(scene, given), on_plane, progress)

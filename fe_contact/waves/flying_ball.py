@@ -1,4 +1,4 @@
-"""A deformable ball in flight at first touch: towards a rigid plane, or towards a target with waves of its own."""
+"""Deformable balls in flight at first touch: towards a rigid plane, a half-space with waves, or one another."""
 
 from __future__ import annotations
 
@@ -11,25 +11,38 @@ from fe_contact.forms import Array
 from fe_contact.waves import half_space_body
 from fe_contact.waves.ball_body import Ball
 from fe_contact.waves.half_space_body import BEYOND
-from fe_contact.waves.moving import Flying, Moving
+from fe_contact.waves.moving import Flying
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.sides import Side, together
 from lumped.scene import Scene
 from lumped.shapes import Sphere
+from lumped.targets.sphere import Sphere as Struck
 
 
-def on_plane(scene: Scene, numerics: WaveNumerics) -> Moving:
+def on_plane(scene: Scene, numerics: WaveNumerics) -> Flying:
     """The ball of a scene whose target is rigid; it has the points."""
     ball = ball_of(scene)
     places, weights = ball.points(numerics)
-    return _moving(scene, numerics, [ball.side(numerics, places)], places, weights, endless=False)
+    return _moving(scene, numerics, [ball.side(numerics, places)], places, weights)
 
 
-def on_half_space(scene: Scene, numerics: WaveNumerics) -> Moving:
+def on_half_space(scene: Scene, numerics: WaveNumerics) -> Flying:
     """The ball of a scene and the half-space, which has the points."""
     struck = half_space_body.moving(replace(scene, striker_material=None), numerics)
-    places, sides = struck.places, [ball_of(scene).side(numerics, struck.places), Side.struck(struck.body)]
-    return _moving(scene, numerics, sides, places, struck.body.pressing.weights, struck.endless)
+    sides = [ball_of(scene).side(numerics, struck.places), Side.struck(struck.body)]
+    return _moving(scene, numerics, sides, struck.places, struck.body.pressing.weights, endless=struck.endless)
+
+
+def on_ball(scene: Scene, numerics: WaveNumerics) -> Flying:
+    """Two balls about their common centre of mass; the smaller one, whose surface ends first, has the points."""
+    target, mass = scene.target, scene.target_mass
+    assert isinstance(target, Struck)
+    assert mass is not None
+    balls = [ball_of(scene), Ball(target.radius, scene.geometry.material, mass)]
+    places, weights = min(balls, key=lambda ball: ball.radius).points(numerics)
+    sides = [ball.side(numerics, places) for ball in balls]
+    shares = [scene.reduced_mass / ball.mass for ball in balls]
+    return _moving(scene, numerics, sides, places, weights, shares)
 
 
 def ball_of(scene: Scene) -> Ball:
@@ -41,20 +54,23 @@ def ball_of(scene: Scene) -> Ball:
 
 
 def _moving(
-    scene: Scene, numerics: WaveNumerics, sides: Sequence[Side], places: Array, weights: Array, endless: bool
+    scene: Scene,
+    numerics: WaveNumerics,
+    sides: Sequence[Side],
+    places: Array,
+    weights: Array,
+    shares: Sequence[float] = (1.0, 0.0),
+    endless: bool = False,
 ) -> Flying:
-    """The first side flies towards the others, which rest."""
-    heights = np.minimum(scene.profile.height(places), BEYOND * numerics.contact_radius)
-    body = together(sides, scene.gravity, weights, -heights)
-    flying = sides[0]
-    rest = np.zeros(body.size - flying.size)
-    axial = np.append(flying.axial, rest)
+    """The sides, the striker first, each with its share of the speed towards the others."""
+    heights = np.minimum(-scene.target.overlap(scene.profile, places, 0.0), BEYOND * numerics.contact_radius)
+    start = [share * side.axial for share, side in zip(shares, sides, strict=False)]
     return Flying(
-        body,
+        together(sides, scene.gravity, weights, -heights),
         scene.velocity,
         places,
         endless,
-        axial=axial,
-        across=np.append(1.0 - flying.axial, rest),
-        mean=np.append(flying.mean, rest),
+        yielding=sides[0].size,
+        start=np.concatenate(start),
+        approach=np.concatenate([side.mean for side in sides]),
     )

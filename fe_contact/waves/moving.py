@@ -46,29 +46,28 @@ class Moving:
 
 @dataclass(frozen=True, eq=False)
 class Flying(Moving):
-    """The same with a striker that yields: the degrees of freedom which ``axial`` and ``across`` (N,) are one for.
+    """The same with a striker that yields: the first ``yielding`` degrees of freedom, the body's first part.
 
-    ``mean`` (N,): weights of all displacements in that of its centre of mass, the depth. The first part of the body
-    is its material.
+    ``start`` (N,): every whole body's share of the speed; ``approach`` (N,): weights of all displacements in the depth.
     """
 
-    axial: Array
-    across: Array
-    mean: Array
+    yielding: int
+    start: Array
+    approach: Array
 
     @property
     def velocity(self) -> Array:
-        """All of the striker moves alike."""
-        return self.speed * self.axial
+        """A whole body moves alike everywhere."""
+        return self.speed * self.start
 
     @property
     def watch(self) -> Any:
-        """The centre of mass, sparse (1, N)."""
-        return sparse.csr_matrix(self.mean[None])
+        """The approach of the centres of mass, sparse (1, N)."""
+        return sparse.csr_matrix(self.approach[None])
 
     def in_striker(self, state: State) -> tuple[float, float]:
         """All its motion, and its springs."""
-        own = (self.axial + self.across) * state.velocity
+        own = np.where(np.arange(self.body.size) < self.yielding, state.velocity, 0.0)
         strain = memory.stored(self.body.parts[0], state.displacement, state.branches[0])
         return 0.5 * float(own @ (self.body.mass @ own)), strain
 

@@ -19,7 +19,8 @@ class Side:
     """One of the bodies, n degrees of freedom of its own, SI units; its axis points out of it at the first touch.
 
     ``mass``, ``dashpots`` (or None) and the stiffness of its ``parts`` sparse (n, n); ``push`` (n, m) nodal forces of
-    unit surface forces, ``trace`` (q, m) from its surface nodes to the points; ``axial`` (n,) one along its axis.
+    unit surface forces, ``trace`` (q, m) from its surface nodes to the points; ``axial`` (n,) one along its axis, zero
+    throughout for a body that does not fly.
     """
 
     mass: Any
@@ -49,9 +50,9 @@ class Side:
 
     @cached_property
     def mean(self) -> Array:
-        """(n,): weights of all displacements in that of its centre of mass along the axis."""
-        carried = self.mass @ self.axial
-        return np.asarray(carried * self.axial / (self.axial @ carried))
+        """(n,): weights of all displacements in that of its centre of mass along the axis; none where it rests."""
+        carried = (self.mass @ self.axial) * self.axial
+        return np.asarray(carried / (carried.sum() or 1.0))
 
     def among(self, before: int, after: int) -> Side:
         """The same among so many degrees of freedom of others, which it does not feel."""

@@ -99,6 +99,14 @@ class Target(ABC):
         reason = f"a {self.name} is struck by a rigid body in this version; leave it out"
         return [Fault(source, "striker.material", reason)]
 
+    def whole_mass(self, density: float) -> float | None:
+        """Mass, kg, of the whole body, which flies when struck; None where it is held."""
+        return None
+
+    def inertia_faults(self, source: str, striker: Material | None) -> list[Fault]:
+        """What is wrong with this target where it has inertia, under a striker of a material or, None, a rigid one."""
+        return []
+
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput, naming the key, for a striker which this target is not for; here any rigid one will do."""
         if isinstance(shape, Block):

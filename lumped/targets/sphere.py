@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
+from lumped.errors import Fault
 from lumped.keys import Choice, Key, Number
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.two_profiles import TwoProfiles
+from lumped.materials import Material
 from lumped.shapes import Sphere as Profile
 from lumped.shapes.base import Shape
 from lumped.targets._round import SUPPORTS, Round
@@ -20,6 +22,7 @@ class Sphere(Round):
 
     name: ClassVar[str] = "sphere"
     keys: ClassVar[Mapping[str, Key]] = KEYS
+    has_inertia: ClassVar[bool] = True
     strikers: ClassVar[tuple[str, str]] = ("sphere", "parabola")
 
     @property
@@ -31,6 +34,22 @@ class Sphere(Round):
     def has_length(self) -> bool:
         """Only where it is finite."""
         return self.support is not None
+
+    def whole_mass(self, density: float) -> float:
+        """density 4/3 pi R^3, kg."""
+        return self.outline.whole_mass(density)
+
+    def inertia_faults(self, source: str, striker: Material | None) -> list[Fault]:
+        """It has to be free, and its striker to be its like."""
+        faults = []
+        if self.support != "free":
+            said = "none" if self.support is None else self.support
+            reason = f'{said}: with model.inertia a struck sphere flies; accepted: "free"'
+            faults.append(Fault(source, "target.support", reason))
+        if striker is None:
+            reason = "missing; with model.inertia a sphere is struck by one that has a material and a density too"
+            faults.append(Fault(source, "striker.material", reason))
+        return faults
 
     def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
         """Of two half-spaces under the gap of both profiles; raises BadInput for finite bodies."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -17,10 +18,11 @@ from fe_contact.dynamics.march import Motion, march
 from fe_contact.methods import simulate
 from fe_contact.reference import strike_of
 from fe_contact.waves import half_space_body
-from fe_contact.waves.flying_ball import on_half_space, on_plane
+from fe_contact.waves.flying_ball import on_ball, on_half_space, on_plane
 from fe_contact.waves.impact import choices_of, motion, record
 from fe_contact.waves.moving import Moving
-from fe_contact.waves.targets import half_space, plane
+from fe_contact.waves.numerics import WaveNumerics
+from fe_contact.waves.targets import half_space, plane, sphere
 from lumped import BadInput, Result, Scene
 from lumped.radiation import radiation_coefficient
 
@@ -30,6 +32,11 @@ STEEL = {"law": "elastic", "E": YOUNG, "nu": 0.3, "density": DENSITY}
 PLANE: dict[str, Any] = {"shape": "plane"}
 HALF_SPACE: dict[str, Any] = {"shape": "half_space", "material": STEEL}
 WHOLE = ("peak_force", "peak_depth", "duration", "impulse", "restitution")
+MOVING: dict[str, tuple[ModuleType, Callable[..., Moving]]] = {
+    "plane": (plane, on_plane),
+    "half_space": (half_space, on_half_space),
+    "sphere": (sphere, on_ball),
+}
 MODES = 40  # of the ball, from its lowest on
 
 
@@ -39,27 +46,39 @@ def ball(velocity: float, target: dict[str, Any] = PLANE, inertia: bool = True, 
     return Scene.from_dict({"striker": striker | {"mass": mass}, "target": target, "model": {"inertia": inertia}})
 
 
+def pair(velocity: float, inertia: bool = True, **other: Any) -> Scene:
+    """Two balls, of a relative velocity; of the struck one another radius and material."""
+    struck = {"radius": RADIUS} | other
+    material = STEEL | struck.pop("material", {})
+    mass = material["density"] * 4.0 / 3.0 * math.pi * struck["radius"] ** 3
+    target = {"shape": "sphere", "support": "free", "mass": mass, "material": material}
+    return ball(velocity, target | struck, inertia)
+
+
+def begun(scene: Scene, **given: Any) -> tuple[Moving, WaveNumerics]:
+    """At first touch, by the settings of its plan."""
+    target, moving = MOVING[scene.target.name]
+    numerics = target.plan(scene, given).numerics
+    assert isinstance(numerics, WaveNumerics)
+    return moving(scene, numerics), numerics
+
+
 def moved(scene: Scene, **given: Any) -> tuple[Moving, Motion]:
     """From first touch until some time after the contact."""
-    rigid = scene.target.name == "plane"
-    numerics = (plane if rigid else half_space).plan(scene, given).numerics
-    moving = (on_plane if rigid else on_half_space)(scene, numerics)
+    moving, numerics = begun(scene, **given)
     until = 1.2 * numerics.contact_time
     return moving, march(moving.body, moving.velocity, choices_of(scene, numerics), until, moving.watch)
 
 
 def curve_of(scene: Scene, **given: Any) -> Curve:
-    rigid = scene.target.name == "plane"
-    numerics = (plane if rigid else half_space).plan(scene, given).numerics
-    moving = (on_plane if rigid else on_half_space)(scene, numerics)
+    moving, numerics = begun(scene, **given)
     return Curve.of(record(moving, motion(moving, scene, numerics), scene), strike_of(scene))
 
 
 def test_a_ball_that_touches_nothing_flies_without_strain() -> None:
     """Away from the plane, and pulled by gravity."""
     scene = Scene.from_dict(ball(1.0).to_dict() | {"model": {"inertia": True, "gravity": -9.81e4}})
-    numerics = plane.plan(scene, {}).numerics
-    moving = on_plane(scene, numerics)
+    moving, numerics = begun(scene)
     time = numerics.contact_time
     found = march(moving.body, -moving.velocity, choices_of(scene, numerics), time, moving.watch)
     last = found.samples[-1]
@@ -90,6 +109,28 @@ def test_a_slow_ball_is_the_one_without_inertia(
         still, waves = (simulate(ball(velocity, inertia=inertia, nu=nu), "fe", {}) for inertia in (False, True))
         assert waves.converged, waves.message
         assert not uncovered(still, waves), (nu, velocity)
+
+
+def test_two_slow_balls_are_those_without_inertia(uncovered: Callable[..., dict[str, float]]) -> None:
+    """Unlike in size and material, either of them as the striker: action is reaction."""
+    other = {"radius": 3.1e-3, "material": {"E": 7e10, "nu": 0.2, "density": 2500.0}}
+    still, waves = (simulate(pair(0.02, inertia, **other), "fe", {}) for inertia in (False, True))
+    table = waves.scene.to_dict()
+    bodies = [{key: table[part][key] for key in ("radius", "mass", "material")} for part in ("target", "striker")]
+    tables = {part: table[part] | body for part, body in zip(("striker", "target"), bodies, strict=True)}
+    swapped = simulate(Scene.from_dict(table | tables), "fe", {})
+    assert waves.converged, waves.message
+    assert not uncovered(still, waves)
+    assert not uncovered(swapped, waves)
+
+
+def test_two_equal_balls_are_one_on_a_rigid_plane_with_half_the_approach() -> None:
+    both, alone = curve_of(pair(10.0)), curve_of(ball(5.0))
+    twice = {"peak_depth": 2.0, "peak_force": 1.0, "duration": 1.0, "impulse": 1.0, "restitution": 1.0}
+    for name, factor in twice.items():
+        known = alone.quantities[name]
+        assert known is not None
+        assert both.quantities[name] == pytest.approx(factor * known, rel=3e-4), name
 
 
 def test_on_a_half_space_without_waves_two_compliances_add() -> None:
@@ -211,6 +252,9 @@ def test_bars_hold_the_answer_of_settings_for_a_quarter_of_the_tolerance(
         ("steel-on-steel-waves", {"striker.velocity": 1.2e3}, r"striker\.velocity"),
         ("steel-ball-flight-waves", {"motion.impacts": 2}, r"motion\.impacts"),
         ("steel-ball-flight-waves", {"target.material": STEEL}, r"target\.material"),
+        ("two-finite-spheres-waves", {"target.mass": 4.0e-3}, r"target\.mass.*0\.00469"),
+        ("two-finite-spheres-waves", {"target.support": "held"}, r"target\.support.*free"),
+        ("two-finite-spheres", {"model.inertia": True}, r"target\.material\.density"),
     ],
 )
 def test_what_cannot_be_is_refused_with_its_key(name: str, changes: dict[str, Any], key: str) -> None:
