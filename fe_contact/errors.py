@@ -13,7 +13,7 @@ class ContactNotSettled(NotReached):
 
 
 class ContactLost(NotReached):
-    """The step would end after separation: the march retries with a shorter one."""
+    """The step would end after separation: a quasi-static march retries with a shorter one."""
 
     def __init__(self, time: float) -> None:
         super().__init__(f"no contact after t = {time:.6g} s; cure: raise numerics.steps")
@@ -61,8 +61,18 @@ class BodyTooThin(NotReached):
         super().__init__(f"{reason}: accepted up to {most:g} times as wide; cure: smaller depths, or a thicker body")
 
 
+class RodTooLong(NotReached):
+    """The contact is so short beside the rod that no mesh of it can be afforded."""
+
+    def __init__(self, transit: float, elements: int, most: int) -> None:
+        reason = f"a rod that waves cross in {transit:.3g} s needs {elements} elements for so short a contact"
+        cure = "cure: a shorter one with an absorbing end, if no echo returns within the contact"
+        super().__init__(f"{reason}: accepted up to {most}; {cure}")
+
+
 class MotionUnbounded(NotReached):
     """A time integrator lost its stability."""
 
     def __init__(self, time: float) -> None:
-        super().__init__(f"the motion grows without bound at t = {time:.6g} s; cure: raise numerics.steps")
+        cure = "cure: raise numerics.steps, or another numerics.scheme: staged, generalised_alpha"
+        super().__init__(f"the motion grows without bound at t = {time:.6g} s; {cure}")

@@ -18,7 +18,7 @@ from fe_contact.dynamics.pressed import Enforced
 from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.dynamics.stages import stages
 from fe_contact.dynamics.state import State, undeformed
-from fe_contact.errors import MotionUnbounded, TooManySteps
+from fe_contact.errors import ContactLost, MotionUnbounded, TooManySteps
 from fe_contact.forms import Array
 
 MOST_STEPS = 200_000
@@ -91,6 +91,13 @@ class Motion:
                 found.append((start, end))
                 start = None
         return tuple(found if start is None else [*found, (start, self.samples[-1].time)])
+
+    @property
+    def seen(self) -> tuple[tuple[float, float], ...]:
+        """The contacts, one at least; raises ContactLost where the only ones began and ended within a step."""
+        if not self.contacts:
+            raise ContactLost(self.samples[-1].time)
+        return self.contacts
 
 
 def march(

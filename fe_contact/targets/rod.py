@@ -18,9 +18,7 @@ from lumped.targets.rod import Rod
 
 def elements(scene: Scene, numerics: WaveNumerics) -> int:
     """How many a wave crosses one a step."""
-    rod = scene.target
-    assert isinstance(rod, Rod)
-    return max(round(rod.length / speed(scene) * numerics.steps / numerics.contact_time), 1)
+    return max(round(transit(scene) * numerics.steps / numerics.contact_time), 1)
 
 
 def rod_mass(scene: Scene) -> float:
@@ -34,6 +32,13 @@ def speed(scene: Scene) -> float:
     """Of the fastest waves along the rod, m/s."""
     material = scene.geometry.material
     return float(np.sqrt(material.uniaxial_modulus().glassy / (material.density or 1.0)))
+
+
+def transit(scene: Scene) -> float:
+    """How long they take from one end to the other, s."""
+    rod = scene.target
+    assert isinstance(rod, Rod)
+    return rod.length / speed(scene)
 
 
 def moving(scene: Scene, numerics: WaveNumerics) -> Moving:

@@ -13,6 +13,7 @@ from fe_contact.waves.rod_reading import Contacts, Reading, stopped
 from lumped.scene import Scene
 
 SPOILED, TELLING = 8, 8  # steps at the ends of a contact in which its element rings, and those beside them
+UNENDED = {"duration": None, "restitution": None}
 DROPPED = 0.6  # of what was to be expected, below which a force drops
 
 
@@ -42,7 +43,7 @@ def read(found: Motion, total: float, scene: Scene, pause: float, echo: int | No
     Impulse and history are those of all contacts, the other quantities those of the first.
     """
     rows = np.array([_row(sample) for sample in found.samples]).T
-    spans = clustered(found.contacts, pause)
+    spans = clustered(found.seen, pause)
     if scene.motion.impacts > 1:
         rows = _cleaned(rows, spans)
     elif echo:
@@ -55,13 +56,15 @@ def read(found: Motion, total: float, scene: Scene, pause: float, echo: int | No
         rows = stopped(rows, scene.end_time)
     impulses = np.cumsum([sample.impulse for sample in found.samples])
     contacts = tuple(_contact(rows, found.time, impulses, span, total, scene.gravity) for span in spans)
+    if found.force[-1] > 0.0:  # it goes on
+        contacts = (*contacts[:-1], {**contacts[-1], **UNENDED})
     first = contacts[0]  # of the later ones a front that comes a little early or late makes another peak
     quantities = {
         "peak_force": first["peak_force"],
         "peak_time": first["peak_time"],
         "peak_depth": first["peak_depth"],
-        "duration": first["duration"] if separated or len(contacts) > 1 else None,
-        "restitution": first["restitution"] if separated or len(contacts) > 1 else None,
+        "duration": first["duration"],
+        "restitution": first["restitution"],
         "impulse": float(np.interp(rows[TIME, -1], found.time, impulses)),
         "history_l2": 0.0,
     }

@@ -44,16 +44,18 @@ def _stiffness(scene: Scene, numerics: WaveNumerics) -> float:
     return modulus.glassy + modulus.viscosity / (numerics.peak_share * numerics.contact_time)
 
 
-def left(sample: Sample) -> bool:
-    """Whether nothing presses on a striker that moves back, or from which the surface moves on."""
-    return sample.force <= 0.0 and (float(sample.velocity[0]) < 0.0 or float(sample.closing.max()) < 0.0)
+def left(sample: Sample, slow: float = 0.0) -> bool:
+    """Whether nothing presses on a striker that moves back, or from which the surface moves on; faster than ``slow``,
+    m/s.
+    """
+    return sample.force <= 0.0 and min(float(sample.velocity[0]), float(sample.closing.max())) < -slow
 
 
 def record(moving: Moving, found: Motion, scene: Scene) -> March:
     """The history from touch to separation as of any march; forces are what the striker's momentum says."""
-    separated = left(found.samples[-1])
+    (_, last), separated = found.seen[-1], left(found.samples[-1])
     pressed = found.samples[:-1] if separated else found.samples
-    end, spread = _parting(found, scene.profile.exponent_of_force) if separated else (pressed[-1].time, 0.0)
+    end, spread = _parting(found, scene.profile.exponent_of_force, last) if separated else (pressed[-1].time, 0.0)
     time = np.append([s.time for s in pressed], end) if separated else np.array([s.time for s in pressed])
     depth, speed = np.array([(float(s.displacement[0]), float(s.velocity[0])) for s in found.samples]).T
     momentum = scene.reduced_mass * (scene.velocity - speed + scene.gravity * found.time)
@@ -76,9 +78,9 @@ def record(moving: Moving, found: Motion, scene: Scene) -> March:
     )
 
 
-def _parting(found: Motion, exponent: float) -> tuple[float, float]:
-    """When contact ends, s, and how well that is read: to a step where too few of them tell."""
-    return parting(found.time, found.force, exponent) or (found.contacts[-1][1], found.time[-1] - found.time[-2])
+def _parting(found: Motion, exponent: float, last: float) -> tuple[float, float]:
+    """When contact ends, s, and how well that is read: the ``last`` to a step where too few of them tell."""
+    return parting(found.time, found.force, exponent) or (last, found.time[-1] - found.time[-2])
 
 
 def _radius(moving: Moving, sample: Sample) -> float:

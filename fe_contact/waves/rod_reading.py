@@ -14,7 +14,6 @@ import numpy as np
 from fe_contact.dynamics.march import Motion, Sample
 from fe_contact.forms import Array
 from fe_contact.waves.fronts import DENT, DEPTH, FORCE, TELLING, TIME, VELOCITY, with_fronts
-from fe_contact.waves.impact import left
 from lumped.interpolation import peak
 from lumped.scene import Scene
 
@@ -38,12 +37,11 @@ class Reading:
         return np.asarray(np.interp(time, self.rows[TIME], self.rows[FORCE]))
 
 
-def read(found: Motion, scene: Scene, elements: int) -> Reading:
-    """From the samples of a march; ``elements`` of the rod."""
-    separated = left(found.samples[-1])
+def read(found: Motion, scene: Scene, elements: int, separated: bool) -> Reading:
+    """From the samples of a march; ``elements`` of the rod; whether it has ``separated``. Raises ContactLost."""
     jumping = scene.profile.fixed_radius is not None
     rows = np.array([_row(sample) for sample in found.samples]).T
-    end = found.contacts[-1][1]
+    end = max(found.seen[-1][1], found.samples[-2].time)  # where rounding opens and closes it, the last of all
     if jumping:
         fronts = np.arange(0, rows.shape[1], 2 * elements, dtype=np.intp)
         if separated and _ended_by(rows[FORCE], fronts[-1]):

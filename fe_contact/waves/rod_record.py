@@ -17,12 +17,13 @@ from fe_contact.reference import CURE
 from fe_contact.waves.fronts import DENT, DEPTH, FORCE, TIME, VELOCITY
 from fe_contact.waves.rod_reading import Contacts, Reading
 from lumped.history import LEAST_ROWS, History
-from lumped.result import UNITS, Quantity, Result, meets, provenance, unmet
+from lumped.result import RULED_ABSOLUTE, UNITS, Quantity, Result, meets, provenance, unmet
 from lumped.scene import Scene
 
 ROUNDING = 1e-9  # relative, of what adds up over the steps
 COMPARED = 2001  # places along the contact at which two histories are compared
 LATE = 0.75  # of the contact, from where on motion counts for that at the end
+BEHIND = 0.002  # of the contact, that a front has to arrive before its end
 AWAY = 0.02  # share of the contact within which a change counts as the error of its neighbours
 
 
@@ -85,7 +86,7 @@ def bars(fine: Reading, coarse: Reading, alone: bool) -> dict[str, Quantity]:
             error = SAFETY * _distance(fine, coarse)
         elif value is not None:
             error = np.inf if other is None else SAFETY * max(abs(value - other), nearby.get(name, 0.0))
-            error += ROUNDING * abs(value)
+            error += ROUNDING * (1.0 if name in RULED_ABSOLUTE else abs(value))
         found[name] = Quantity(value, error, unit)
     return found
 
@@ -96,7 +97,7 @@ def _nearby(fine: Reading, coarse: Reading) -> dict[str, float]:
     end, start = fine.rows[TIME, -1], abs(fine.rows[VELOCITY, 0])
     both = coarse.rows[:, coarse.rows[TIME] < end]
     depth, speed = (np.interp(both[TIME], fine.rows[TIME], fine.rows[row]) for row in (DEPTH, VELOCITY))
-    late, deep = both[TIME] > LATE * end, depth > PEAK_SHARE * depth.max()
+    late, deep = both[TIME] > _lately(fine), depth > PEAK_SHARE * depth.max()
     slower = float(np.abs(speed - both[VELOCITY])[late].max(initial=0.0))
     turned = abs(float(fine.rows[VELOCITY, 0] - fine.rows[VELOCITY, -1])) or np.inf
     return {
@@ -105,6 +106,17 @@ def _nearby(fine: Reading, coarse: Reading) -> dict[str, float]:
         "restitution": slower / start,
         "impulse": slower / turned * abs(fine.quantities["impulse"] or 0.0),
     }
+
+
+def _lately(fine: Reading) -> float:
+    """From when on motion counts for that at the end, s: the last of it; but not a front's arrival, if enough follows.
+
+    There velocities turn so fast that those of two marches differ by half a step's.
+    """
+    time, end = fine.rows[TIME], float(fine.rows[TIME, -1])
+    fronts = time[1:][np.diff(time) == 0.0]
+    behind = fronts[fronts < (1.0 - BEHIND) * end].max(initial=0.0)
+    return max(LATE * end, float(behind))
 
 
 def _between_rows(fine: Reading) -> float:

@@ -11,16 +11,18 @@ import numpy as np
 
 from fe_contact.dynamics.march import Choices, march
 from fe_contact.dynamics.pressed import Enforced
+from fe_contact.errors import RodTooLong
 from fe_contact.numerics import ENFORCEMENTS, RANGES, WAVE_SCHEMES
 from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
-from fe_contact.targets.rod import elements, moving, rod_mass, speed
+from fe_contact.targets.rod import elements, moving, rod_mass, transit
 from fe_contact.waves.dent import Dent
 from fe_contact.waves.doubling import certified
 from fe_contact.waves.impact import energies, left
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.rod_reading import read
 from fe_contact.waves.rod_record import Run
+from fe_contact.waves.usual import witness
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.hertz import HertzImpact
 from lumped.members import get
@@ -31,11 +33,14 @@ from lumped.targets.rod import Rod
 
 DEFAULT_TOLERANCE = 1e-3
 STEPS = 400  # along the contact time of the scene, at the default tolerance
-FEWEST, MANY, MOST = 48, 2_500, 20_000  # elements: at first, and at all
+FEWEST, MANY, MOST = 48, 2_500, 20_000  # elements: at first, and as far as they are doubled
+MOST_MESHED = 100_000  # at all
 LIGHT = 16.0  # of them in the part of the rod that is as heavy as the striker
 DENTED = 64.0  # of them which a wave crosses while the striker dents the rod
 FRONT = 40.0  # of them which it crosses while the dent's force grows to that of a front
 RELAXED = 6.0  # of them which it crosses in the shortest relaxation time
+COARSEST = 8  # of them that a user's own steps may leave
+ROUNDING = 1e-9  # of the striker's velocity, below which it does not leave the rod
 
 
 def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
@@ -51,19 +56,18 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
         elements_per_contact=1.0,
         order=1,
         penalty=1.0,
-        enforcement="exact",
-        scheme="central_difference",
+        **_usual(scene),
         steps=int(min(STEPS * max(1.0, (DEFAULT_TOLERANCE / tolerance) ** 0.5), RANGES["steps"][1])),
         far_radius=rod.length / radius,
         contact_radius=radius,
         contact_time=contact_time,
         peak_share=0.5,
         rho=1.0,
-        mass="lumped" if flat else "redistributed",
     ).varied(**given)
     shape = scene.profile.hertz_impact(scene.contact_modulus.glassy, scene.reduced_mass, scene.velocity)
     more = max(_fewest(scene, None if flat else shape) / elements(scene, coarse), 1.0)
     settings = coarse if "steps" in given else coarse.varied(steps=math.ceil(coarse.steps * more))
+    _check_steps(scene, settings)
     scales = Peak(shape.force, shape.depth, shape.contact_radius, contact_time)
     return Plan(settings, frozenset(given) - {"tolerance"}, model_ledger(scene, scales))
 
@@ -73,16 +77,14 @@ def _fewest(scene: Scene, dent: HertzImpact | None) -> float:
 
     A heavy striker dents the rod until the dent presses as hard as a front, impedance x velocity, soon after touch.
     """
-    rod, times = scene.target, scene.geometry.material.uniaxial_modulus().times
-    assert isinstance(rod, Rod)
-    transit = rod.length / speed(scene)
+    times, crossing = scene.geometry.material.uniaxial_modulus().times, transit(scene)
     needs = [FEWEST, LIGHT * rod_mass(scene) / scene.reduced_mass]
     if dent is not None:
-        impedance = rod_mass(scene) / transit
+        impedance = rod_mass(scene) / crossing
         share = impedance * scene.velocity / dent.force
         grown = share ** (1.0 / scene.profile.exponent_of_force) * dent.depth / scene.velocity
-        needs += [DENTED * transit / dent.duration, FRONT * transit / grown]
-    needs += [RELAXED * transit / min(times)] if times else []
+        needs += [DENTED * crossing / dent.duration, FRONT * crossing / grown]
+    needs += [RELAXED * crossing / min(times)] if times else []
     return min(max(needs), MANY)
 
 
@@ -92,12 +94,29 @@ def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> R
     steps = chosen.numerics.steps
     assert isinstance(chosen.numerics, WaveNumerics)
     most = MOST * steps / elements(scene, chosen.numerics)
-    return certified(scene, chosen, partial(run, scene), _varied, most, progress)
+    return certified(scene, chosen, partial(run, scene), partial(_varied, scene), most, progress)
 
 
-def _varied(numerics: WaveNumerics) -> dict[str, WaveNumerics]:
-    """Steps and elements are one, and nothing else errs."""
-    return {"time_step": numerics.varied(steps=max(numerics.steps // 2, 4))}
+def _usual(scene: Scene) -> dict[str, Any]:
+    """Our method: steps that follow a wave; a flat end's mass takes its jumps, a dent needs a surface without."""
+    mass = "redistributed" if scene.profile.fixed_radius is None else "lumped"
+    return {"enforcement": "exact", "scheme": "central_difference", "mass": mass}
+
+
+def _check_steps(scene: Scene, numerics: WaveNumerics) -> None:
+    """Raise BadInput for steps so long that half of them say nothing, RodTooLong for a rod of too many elements."""
+    count = elements(scene, numerics)
+    if count < COARSEST:
+        reason = f"{numerics.steps} in {numerics.contact_time:.3g} s: a wave crosses the rod in {count} of them"
+        fewest = math.ceil(COARSEST * numerics.contact_time / transit(scene))
+        raise BadInput(Fault(scene.source, "numerics.steps", f"{reason}; accepted: from {fewest}, or none given"))
+    if count > MOST_MESHED:
+        raise RodTooLong(transit(scene), count, MOST_MESHED)
+
+
+def _varied(scene: Scene, numerics: WaveNumerics) -> dict[str, WaveNumerics]:
+    """Steps and elements are one; where another method than ours is chosen, what it errs by."""
+    return {"time_step": numerics.varied(steps=numerics.steps // 2), **witness(numerics, _usual(scene))}
 
 
 def check(scene: Scene) -> None:
@@ -118,12 +137,11 @@ def run(scene: Scene, numerics: WaveNumerics) -> Run:
     """One march, its steps those in which a wave crosses an element. Raises NotReached."""
     body = moving(scene, numerics)
     count = elements(scene, numerics)
-    rod = scene.target
-    assert isinstance(rod, Rod)
-    step = rod.length / count / speed(scene)
+    step = transit(scene) / count
     choices = Choices(get(WAVE_SCHEMES, numerics.scheme).of(numerics.rho), _enforced(scene, numerics), step)
-    found = march(body.body, body.velocity, choices, scene.end_time, body.watch, left)
-    reading = read(found, scene, count)
+    gone = partial(left, slow=ROUNDING * scene.velocity)  # of a light striker's force an echo finds but rounding
+    found = march(body.body, body.velocity, choices, scene.end_time, body.watch, gone)
+    reading = read(found, scene, count, gone(found.samples[-1]))
     return Run(reading, energies(body, found, scene), len(found.samples) - 1, body.body.size)
 
 
