@@ -11,6 +11,8 @@ displacement ``x`` and the striker's own retreat ``y`` minimise the strictly con
 Newton's step solves with the points now in contact. On a mesh that breathes with the contact these are the same
 few sets again and again, so that the answer to every set is kept and a step is one matrix-vector product. A
 line search on ``J`` makes it converge from anywhere; an exhausted budget is reported, never returned as a number.
+Where the set stands still the answer must still balance: a penalty beyond all digits, or a line search that ends in
+rounding, is reported too.
 """
 
 from __future__ import annotations
@@ -27,6 +29,7 @@ from fe_contact.pressed_surface import PressedSurface, solved
 
 MAX_ITERATIONS = 60
 UNGUARDED = 8  # iterations that nearly always suffice, and need no line search
+RESIDUAL = 1e-6  # of the largest overlap that presses: the answer is exact for one which differs by less
 ROOM = 32e6  # bytes of answers to sets of touching points that are kept: some 300 of them
 
 Touching = npt.NDArray[np.bool_]
@@ -80,21 +83,24 @@ class ContactSolution:
 def solve(problem: ContactProblem, touching: Touching) -> ContactSolution:
     """Solve from a first guess of the points in contact, shape (q,)."""
     before: Point | None = None
-    held = touching.tobytes()
+    held, guarded = touching.tobytes(), UNGUARDED
     for iteration in range(1, MAX_ITERATIONS + 1):
         answer = _answer(problem.surface, problem.penalty, held) if problem.surface.recurring else _once(problem, held)
         gap, retreat = answer.gap(problem)
         found = (gap > 0.0).tobytes()
         if found == held:
             return _solution(problem, gap, iteration, True)
-        if iteration >= UNGUARDED and isinstance(problem.yielding, float):
+        if iteration >= guarded and isinstance(problem.yielding, float):
             point = Point(answer.springs * gap, retreat, gap)
             if before is not None:
                 point, still = descended(problem, before, point)
                 gap, found = point.gap, (point.gap > 0.0).tobytes()
                 if still:
-                    return _solution(problem, gap, iteration, True)
-            before = point
+                    solution = _solution(problem, gap, iteration, True)
+                    if solution.converged:
+                        return solution
+                    guarded = iteration + UNGUARDED  # rounding of the energy hides the way: on without it
+            before = None if iteration < guarded else point
         held = found
     return _solution(problem, gap, MAX_ITERATIONS, False)
 
@@ -109,8 +115,20 @@ def moved(touching: Touching, by: int) -> Touching:
     return np.arange(touching.size) < count(touching) + by if by else touching
 
 
-def _solution(problem: ContactProblem, gap: Array, iterations: int, converged: bool) -> ContactSolution:
+def _solution(problem: ContactProblem, gap: Array, iterations: int, settled: bool) -> ContactSolution:
+    converged = settled and _residual(problem, gap) <= RESIDUAL
     return ContactSolution(problem.penalty * gap, iterations, converged, (gap > 0.0,))
+
+
+def _residual(problem: ContactProblem, gap: Array) -> float:
+    """How far the gap is from what its own pressure leaves of the overlap, over the largest overlap that presses."""
+    touching = gap > 0.0
+    if not touching.any():
+        return 0.0
+    forces = problem.penalty * problem.surface.weights * np.maximum(gap, 0.0)
+    retreat = float(np.sum(problem.yielding * forces))
+    left = problem.overlap - problem.surface.displaced(forces) - retreat
+    return float(np.abs(left - gap).max() / np.abs(problem.overlap[touching]).max())
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,7 +27,7 @@ from fe_contact.floating import Floating
 from fe_contact.forms import Array, isotropic, stiffness
 from fe_contact.interior import Interior, Solve
 from fe_contact.surface import Surface, flat
-from fe_contact.trace import contact_quadrature
+from fe_contact.trace import contact_quadrature, trace_between
 
 ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 SOLVED_AT_ONCE = 32  # right-hand sides: more of them leave the processor's cache
@@ -89,10 +89,22 @@ class SurfaceOperator:
         own = self.response[: len(self.stiffness)]
         return own if self.watched is None else own + self.watched
 
+    @property
+    def corners(self) -> Array:
+        """Ends of the facets in the contact zone, ascending."""
+        return self.nodes[: self.trace.shape[1] : self.order]
+
     def projected(self, pressure: Array) -> Array:
         """Nodal values (n,) whose moments against the shape functions are those of a pressure (q,)."""
-        mass = self.trace.T @ (self.weights[:, None] * self.trace)
-        return np.asarray(np.linalg.solve(mass, self.trace.T @ (self.weights * pressure)))
+        return self._projected(self.trace, pressure)
+
+    def hats(self, pressure: Array) -> Array:
+        """Values at the corners of the facets, whose moments against the hats there are those of a pressure (q,)."""
+        return self._projected(trace_between(self.corners, self.points, 1), pressure)
+
+    def _projected(self, trace: Array, pressure: Array) -> Array:
+        mass = trace.T @ (self.weights[:, None] * trace)
+        return np.asarray(np.linalg.solve(mass, trace.T @ (self.weights * pressure)))
 
     @property
     def yielding(self) -> float | Array:

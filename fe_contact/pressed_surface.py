@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sparse
+from scipy.linalg import lu_factor, lu_solve
 from scipy.linalg.lapack import dposv
 
 from fe_contact.forms import Array
@@ -46,11 +47,22 @@ class PressedSurface:
         load = self.trace.T @ forces
         return float(load @ np.linalg.solve(self.stiffness, load))
 
+    def displaced(self, forces: Array) -> Array:
+        """The points (q,) under forces (q,) at them."""
+        if self.compliance is not None:
+            return np.asarray(self.compliance @ forces)
+        return np.asarray(self.trace @ lu_solve(self._factors, self.trace.T @ forces, check_finite=False))
+
     def stiffened(self, stiffness: Array) -> PressedSurface:
         """The same points on another stiffness; what is known of the points alone is shared."""
         other = replace(self, stiffness=stiffness)
         vars(other)["_squares"] = self._squares
         return other
+
+    @cached_property
+    def _factors(self) -> Any:
+        """Of the stiffness alone."""
+        return lu_factor(self.stiffness, check_finite=False)
 
     @cached_property
     def _squares(self) -> Any:

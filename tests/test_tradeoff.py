@@ -19,7 +19,8 @@ from fe_contact.targets import half_space
 from fe_contact.validation import tradeoff as study
 from fe_contact.validation.design import MARKED, defaults, variations
 from fe_contact.validation.front import NEAR, excess, finite_elements, front, verdict
-from fe_contact.validation.tradeoff import LAW_TOLERANCES, ROW_ELEMENTS, Point, tradeoff
+from fe_contact.validation.point import Point
+from fe_contact.validation.tradeoff import LAW_TOLERANCES, ROW_ELEMENTS, tradeoff
 from lumped.scene import Scene
 
 

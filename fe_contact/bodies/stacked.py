@@ -71,7 +71,13 @@ class Stacked(Deformable):
         return StackedBody(self.operator, self.sides, halves)
 
     def felt(self, snapshot: Snapshot) -> tuple[Array, Array]:
-        """At the nodes, without the roughness that the shape functions do not see."""
+        """At the nodes, without the roughness that the shape functions do not see.
+
+        Two meshes that do not match pin a facet more often than either can follow, as mortar methods with too many
+        multipliers do (Wohlmuth 2011, doi:10.1017/S0962492911000079): its mean and its tilt alone are known then.
+        """
+        if len(self.sides) > 1:
+            return self.radius * np.sin(self.operator.corners), self.operator.hats(snapshot.pressure)
         nodes = self.operator.nodes[: self.operator.trace.shape[1]]
         return self.radius * np.sin(nodes), self.operator.projected(snapshot.pressure)
 

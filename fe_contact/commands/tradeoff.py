@@ -20,11 +20,12 @@ def execute(args: argparse.Namespace) -> int:
     """Measure, write, say where the defaults lie; 0."""
     from fe_contact.methods import settings
     from fe_contact.report.tradeoff import plot_tradeoff
-    from fe_contact.validation.tradeoff import tradeoff
+    from fe_contact.validation import tradeoff, tradeoff_waves
     from fe_contact.validation.tradeoff_files import write_tradeoff
 
     scene, table = base.read_scene(args)
-    points = tradeoff(scene, settings(table, None, scene.source), args.quick, base.progress_of(args))
+    study = tradeoff_waves if scene.model.inertia else tradeoff
+    points = study.tradeoff(scene, settings(table, None, scene.source), args.quick, base.progress_of(args))
     where = base.folder(args, "tradeoff", scene.name)
     content = write_tradeoff(scene, points, where)
     plot_tradeoff(scene, points, where)

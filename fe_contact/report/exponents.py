@@ -55,7 +55,7 @@ def plot_exponents(curves: Sequence[Curve], checks: Sequence[Check], where: Path
         left, right = figure.add_subplot(grid[rows - 1, 0]), figure.add_subplot(grid[rows - 1, 1])
         _families(left, [c for c in curves if c.base == "bonded" and c.nu == POWER_NU], checks)
         _factors(right, *(_of_punch(found) for found in (curves, checks)))
-        style.label(left, next(letters), f"profiles r^n, bonded, ν = {POWER_NU:g}: local exponent")
+        style.label(left, next(letters), f"profiles $r^n$, bonded, ν = {POWER_NU:g}: local exponent")
         style.label(right, next(letters), "punch: D over the row's")
         for axes in (left, right):
             axes.set(xlabel="contact radius over thickness")

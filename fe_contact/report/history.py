@@ -20,7 +20,9 @@ from lumped.scene import Scene
 
 HEIGHT = 4.35  # in
 BAND_VISIBLE = 0.01  # share of the peak below which the band is a hair line and is drawn magnified
-READABLE = {"facecolor": "white", "alpha": 0.85, "linewidth": 0.0, "pad": 0.8}  # where a flight runs behind a text
+FLIGHT = -0.1  # share of the largest depth below which a body flies
+HIGHEST = 1.08  # of the axis of shares of the largest
+BELOW = 0.36  # share of that axis left to the names below a flight
 CAPTION_WIDTH = 78  # characters
 
 
@@ -130,11 +132,12 @@ def _motion(axes: Axes, history: History) -> None:
     for row, (name, values, colour, line) in enumerate(known):
         axes.plot(second * history.time, values / values.max(), color=colour, linestyle=line)
         text = f"{name} / {readable(values.max(), 'm', 3)}"
-        below = axes.text(0.5, 0.21 - 0.13 * row, text, color=colour, fontsize=6.2, ha="center")
-        below.set(transform=axes.transAxes, bbox=READABLE)
+        axes.text(0.5, 0.21 - 0.13 * row, text, transform=axes.transAxes, color=colour, fontsize=6.2, ha="center")
     axes.set(xlabel=f"time, {time_unit}", ylabel="share of the largest", xlim=(0, second * history.time[-1]))
-    axes.set_ylim(min(0.0, float(history.depth.min() / history.depth.max())), 1.08)
-    axes.set_yticks((0.0, 0.5, 1.0))
+    lowest = min(0.0, float(history.depth.min() / history.depth.max()))
+    below = BELOW / (1.0 - BELOW) * (HIGHEST - lowest) if lowest < FLIGHT else 0.0  # which crosses no text
+    axes.set_ylim(lowest - below, HIGHEST)
+    axes.set_yticks((0.0, 0.5, 1.0) if lowest > -1.0 else (0.0, 1.0))
     style.label(axes, "b", " and ".join(name for name, *_ in known))
 
 

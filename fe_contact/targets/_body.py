@@ -68,5 +68,4 @@ class BodyStill:
 
 def trace_at(operator: SurfaceOperator, points: Array) -> Array:
     """Displacement at other points of the contact zone from that of the operator's nodes, (q, n)."""
-    loaded = operator.trace.shape[1]
-    return trace_between(operator.nodes[: loaded : operator.order], points, operator.order)
+    return trace_between(operator.corners, points, operator.order)

@@ -29,24 +29,24 @@ def variations(base: Numerics, given: Mapping[str, Any], quick: bool) -> tuple[N
 
 
 def _quick(base: Numerics) -> Iterator[Settings]:
-    yield from _grid(order=(2, 3), elements_per_contact=(base.elements_per_contact,))
-    yield from _grid(elements_per_contact=(1, 2, 8))
-    yield from _grid(steps=(16, 64, 128))
-    yield from _grid(enforcement=("penalty",), penalty=(1e2, base.penalty, 1e4))
-    yield from _grid(enforcement=("corrected",), penalty=(1e2, 1e4))
+    yield from grid(order=(2, 3), elements_per_contact=(base.elements_per_contact,))
+    yield from grid(elements_per_contact=(1, 2, 8))
+    yield from grid(steps=(16, 64, 128))
+    yield from grid(enforcement=("penalty",), penalty=(1e2, base.penalty, 1e4))
+    yield from grid(enforcement=("corrected",), penalty=(1e2, 1e4))
 
 
 def _full(base: Numerics) -> Iterator[Settings]:
-    yield from _grid(order=(2, 3, 4), elements_per_contact=(1, 2, 4, 8))
-    yield from _grid(order=(3, 4), steps=(16, 24, 32, 48, 64, 96, 128))
-    yield from _grid(order=(4,), elements_per_contact=(1, 2, 8), steps=(16, 32, 96))
-    yield from _grid(order=(2,), elements_per_contact=(8,), steps=(16, 64, 128))
-    yield from _grid(enforcement=("penalty", "corrected"), penalty=(1e1, 1e2, 1e3, 1e4, 1e5))
-    yield from _grid(enforcement=("penalty", "corrected"), penalty=(1e4,), steps=(64, 128))
-    yield from _grid(elements_per_contact=(4, 8), far_radius=(10.0, 40.0), steps=(base.steps, 96))
+    yield from grid(order=(2, 3, 4), elements_per_contact=(1, 2, 4, 8))
+    yield from grid(order=(3, 4), steps=(16, 24, 32, 48, 64, 96, 128))
+    yield from grid(order=(4,), elements_per_contact=(1, 2, 8), steps=(16, 32, 96))
+    yield from grid(order=(2,), elements_per_contact=(8,), steps=(16, 64, 128))
+    yield from grid(enforcement=("penalty", "corrected"), penalty=(1e1, 1e2, 1e3, 1e4, 1e5))
+    yield from grid(enforcement=("penalty", "corrected"), penalty=(1e4,), steps=(64, 128))
+    yield from grid(elements_per_contact=(4, 8), far_radius=(10.0, 40.0), steps=(base.steps, 96))
 
 
-def _grid(**choices: tuple[Any, ...]) -> Iterator[Settings]:
+def grid(**choices: tuple[Any, ...]) -> Iterator[Settings]:
     """Every combination of the values of some settings."""
     for values in product(*choices.values()):
         yield dict(zip(choices, values, strict=True))

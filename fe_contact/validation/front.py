@@ -6,9 +6,11 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from fe_contact.validation.tradeoff import Point
+from fe_contact.numerics import RANGES
+from fe_contact.validation.point import REFERENCE, Point
 
 NEAR = 2.0  # a default that costs at most this multiple of the cheapest setting that does as well is near the front
+WIDEST = RANGES["tolerance"][1]
 
 Measure = Callable[[Point], float]
 
@@ -35,11 +37,24 @@ def excess(point: Point, points: Iterable[Point], merit: Measure, wanted: float)
 
 
 def verdict(points: Iterable[Point]) -> tuple[str, ...]:
-    """A sentence a default: what it costs beside the cheapest setting that does as well; then whether bars cover."""
-    tried = finite_elements(points)
-    covered = sum(point.error <= (point.bar or 0.0) for point in tried)
+    """A sentence a default: what it costs beside the cheapest setting that does as well; whether bars cover."""
+    tried, known = finite_elements(points), known_to(points)
     sentences = [_sentence(point, tried) for point in tried if point.default_for is not None]
-    return (*sentences, f"the claimed bar covers the error in {covered} of {len(tried)} settings")
+    return (*sentences, *([f"the reference is known to {known:.1g}"] if known else []), _covered(tried, known))
+
+
+def known_to(points: Iterable[Point]) -> float:
+    """The bar of the reference that errors are measured from; 0 where that is exact."""
+    return max((point.bar or 0.0 for point in points if point.method == REFERENCE), default=0.0)
+
+
+def _covered(tried: tuple[Point, ...], known: float) -> str:
+    """Of the settings that claim anything: a bar beyond every accepted tolerance says that nothing is known."""
+    claiming = [point for point in tried if (point.bar or 0.0) <= WIDEST]
+    covered = sum(point.error <= (point.bar or 0.0) + known for point in claiming)
+    said = f"the claimed bar covers the error in {covered} of {len(claiming)} settings"
+    silent = len(tried) - len(claiming)
+    return f"{said}; {silent} claim nothing below {WIDEST:g}" if silent else said
 
 
 def _sentence(point: Point, tried: tuple[Point, ...]) -> str:

@@ -7,11 +7,10 @@ tolerance, and Ting's solution for the row of springs itself.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, replace
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from fe_contact.reference import check_target, strike_of
 from fe_contact.runs import TotalWork
 from fe_contact.targets import half_space
 from fe_contact.validation.design import defaults, variations
+from fe_contact.validation.point import Point, errors_of, largest_bar, timed, values_of
 from lumped import laws, simulate
 from lumped.errors import FeContactError, NotReached
 from lumped.result import Result
@@ -31,37 +31,11 @@ from lumped.scene import Scene
 EXACT_TOLERANCE = 1e-8
 ROUNDS = 3  # through all settings: the least of so many times counts, and a slow spell of the machine hits all alike
 REPEATS = 2  # of what takes milliseconds
-MEASURED = ("peak_force", "duration", "restitution")
 ROW_ELEMENTS = (25, 50, 100, 200, 400)
 LAW_TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 MODELS = ("hertz", "correspondence")
 
 Progress = Callable[[str], None]
-T = TypeVar("T")
-
-
-@dataclass(frozen=True)
-class Point:
-    """One method with one choice of settings.
-
-    ``errors`` of peak force and duration (relative), restitution (absolute) and history (norm over norm), where
-    defined; ``bar`` the largest of the error bars claimed for them; ``cpu``, s; ``work`` counted;
-    ``default_for`` the tolerance for which the settings are planned; ``failure`` why there is no answer.
-    """
-
-    method: str
-    settings: Mapping[str, Any]
-    cpu: float = np.nan
-    errors: Mapping[str, float] = field(default_factory=dict)
-    bar: float | None = None
-    work: Mapping[str, float] = field(default_factory=dict)
-    default_for: float | None = None
-    failure: str = ""
-
-    @property
-    def error(self) -> float:
-        """The largest error; infinite without an answer."""
-        return max(self.errors.values(), default=np.inf)
 
 
 def tradeoff(scene: Scene, given: Mapping[str, Any], quick: bool, progress: Progress) -> tuple[Point, ...]:
@@ -99,7 +73,7 @@ def operations(work: TotalWork, surface: Deformable) -> float:
 def _fe(scene: Scene, numerics: Numerics, exact: Result, default_for: float | None) -> Point:
     settings = numerics.as_dict() | {"tolerance": default_for}
     try:
-        certified, cpu = _timed(partial(_certify, scene, numerics), 1)
+        certified, cpu = timed(partial(_certify, scene, numerics), 1)
     except NotReached as failure:
         return Point("fe", settings, default_for=default_for, failure=str(failure))
     curve = certified.curve
@@ -115,7 +89,7 @@ def _again(scene: Scene, numerics: Numerics, point: Point) -> Point:
     """The same point with the lesser of two times."""
     if point.failure:
         return point
-    _, cpu = _timed(partial(_certify, scene, numerics), 1)
+    _, cpu = timed(partial(_certify, scene, numerics), 1)
     return replace(point, cpu=min(cpu, point.cpu))
 
 
@@ -129,7 +103,7 @@ def _rows(scene: Scene, exact: Result) -> Iterator[Point]:
     """The row of springs at fixed numbers of elements: one march, no bar, no history."""
     row = laws.get("mdr")
     for elements in ROW_ELEMENTS:
-        scales, cpu = _timed(partial(row.estimate, scene, elements=elements))
+        scales, cpu = timed(partial(row.estimate, scene, elements=elements), REPEATS)
         errors = _errors(exact, vars(scales))
         yield Point("mdr row", {"elements": elements}, cpu, errors, work={"elements": elements})
 
@@ -142,13 +116,13 @@ def _laws(scene: Scene, exact: Result, quick: bool) -> Iterator[Point]:
     for name, tolerance in [*chosen, *((name, LAW_TOLERANCES[-2]) for name in MODELS)]:
         settings = {"tolerance": tolerance}
         try:
-            result, cpu = _timed(partial(_simulate, scene, name, tolerance))
+            result, cpu = timed(partial(_simulate, scene, name, tolerance), REPEATS)
         except FeContactError as failure:
             yield Point(name, settings, failure=str(failure))
             continue
-        values = {key: quantity.value for key, quantity in result.quantities.items()}
-        errors = _errors(other if name == "mdr" else exact, values, result.history.time, result.history.force)
-        yield Point(name, settings, cpu, errors, _bar(result), dict(result.work))
+        truth = other if name == "mdr" else exact
+        errors = _errors(truth, values_of(result), result.history.time, result.history.force)
+        yield Point(name, settings, cpu, errors, largest_bar(result), dict(result.work))
 
 
 def _simulate(scene: Scene, name: str, tolerance: float) -> Result:
@@ -156,25 +130,11 @@ def _simulate(scene: Scene, name: str, tolerance: float) -> Result:
     return simulate(laws.get(name).of(scene), scene, tolerance)
 
 
-def _bar(result: Result) -> float:
-    """The largest bar of the measured quantities and of the history."""
-    bars = [result.quantities["history_l2"].error or 0.0]
-    for name in MEASURED:
-        quantity = result.quantities[name]
-        if quantity.value is not None and quantity.error is not None:
-            bars.append(quantity.error / (1.0 if name == "restitution" else abs(quantity.value)))
-    return max(bars)
-
-
 def _errors(
     exact: Result, values: Mapping[str, Any], time: Array | None = None, force: Array | None = None
 ) -> dict[str, float]:
     """Errors of the measured quantities that both define, and of the history where there is one."""
-    found = {}
-    for name in MEASURED:
-        truth, value = exact.quantities[name].value, values[name]
-        if truth is not None and value is not None:
-            found[name] = abs(value - truth) / (1.0 if name == "restitution" else truth)
+    found = errors_of(values_of(exact), values)
     if time is not None and force is not None:
         found["history"] = _distance(exact, time, force)
     return found
@@ -187,13 +147,3 @@ def _distance(exact: Result, time: Array, force: Array) -> float:
     forces = np.concatenate([force, np.zeros_like(late)])
     truth = exact.history.force_at(times)
     return float(np.sqrt(np.trapezoid((forces - truth) ** 2, times) / np.trapezoid(truth**2, times)))
-
-
-def _timed(run: Callable[[], T], repeats: int = REPEATS) -> tuple[T, float]:
-    """What a call gives, and the least processor time it took, s."""
-    spent = []
-    for _ in range(repeats):
-        start = time.process_time()
-        found = run()
-        spent.append(time.process_time() - start)
-    return found, min(spent)

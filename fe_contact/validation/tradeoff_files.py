@@ -7,14 +7,15 @@ from pathlib import Path
 from typing import Any
 
 from fe_contact.validation.front import verdict
-from fe_contact.validation.tradeoff import Point
+from fe_contact.validation.point import Point
 from lumped.csv_file import write_csv
 from lumped.json_file import plain, write_json
 from lumped.scene import Scene
 
 SCHEMA = "fe-contact/tradeoff/1"
 SETTING_COLUMNS = (
-    "tolerance", "elements", "order", "elements_per_contact", "steps", "enforcement", "penalty", "far_radius"
+    "tolerance", "elements", "order", "elements_per_contact", "steps", "enforcement", "penalty", "far_radius",
+    "scheme", "rho", "mass",
 )  # fmt: skip
 ERROR_COLUMNS = {
     "peak_force": "peak_force_error",

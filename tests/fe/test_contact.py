@@ -75,6 +75,30 @@ def test_the_solution_meets_the_conditions_of_contact(seed: int) -> None:
         np.testing.assert_allclose(p / problem.penalty, np.maximum(left, 0), atol=1e-8 * scale)
 
 
+@given(SEEDS, st.floats(4.0, 12.0))
+def test_what_claims_to_have_converged_balances_whatever_the_penalty(seed: int, decades: float) -> None:
+    """Beyond the digits there are, an answer is refused: never one that its own pressure does not leave."""
+    problem = replace(random_problem(seed), penalty=10.0**decades)
+    for start in starts(seed, problem):
+        solution = solve(problem, start)
+        if not solution.converged or not solution.pressure.any():
+            continue
+        left = problem.overlap - problem.surface.trace @ displacement(problem.surface, solution.pressure)
+        pressing = np.abs(problem.overlap[solution.pressure > 0.0]).max()
+        assert np.abs(left - solution.signed_pressure / problem.penalty).max() <= 1e-5 * pressing
+
+
+def test_a_penalty_beyond_all_digits_is_refused() -> None:
+    """All random surfaces answer where digits are left, few without."""
+    problems = [random_problem(seed) for seed in range(60)]
+    share = {}
+    for stiffness in (1e4, 1e12):
+        stiff = [replace(problem, penalty=stiffness) for problem in problems]
+        share[stiffness] = np.mean([solve(one, np.ones(len(one.overlap), bool)).converged for one in stiff])
+    assert share[1e4] == 1.0
+    assert share[1e12] < 0.3
+
+
 @given(SEEDS)
 def test_every_cold_start_reaches_the_same_answer(seed: int) -> None:
     problem = random_problem(seed)

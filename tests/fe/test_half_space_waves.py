@@ -204,11 +204,6 @@ def test_a_target_without_waves_names_those_that_have_them(name: str) -> None:
         Scene.load(name, {"model.inertia": True})
 
 
-def test_a_study_without_an_exact_impact_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["tradeoff", "steel-ball-waves", "--out", str(tmp_path / "out")]) == 2
-    assert "model.inertia" in capsys.readouterr().err
-
-
 def test_compared_with_laws_that_know_no_waves_the_ball_comes_back_slower(tmp_path: Path) -> None:
     """By the energy that is radiated, 1.5 per cent, half of which is the restitution's share."""
     coarse = ["--tolerance", "0.05", "--set", "numerics.steps=100", "--set", "numerics.elements_per_contact=4"]

@@ -1,0 +1,162 @@
+"""The trade-off with inertia: errors from exact waves or a finer reference, settings tried once, files and a chart."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_contact.cli import main
+from fe_contact.methods import simulate
+from fe_contact.numerics import RANGES, WAVES
+from fe_contact.report.tradeoff import plot_tradeoff
+from fe_contact.report.tradeoff_signs import Signs
+from fe_contact.validation import tradeoff_waves as study
+from fe_contact.validation.front import finite_elements, known_to, verdict
+from fe_contact.validation.point import REFERENCE, Point
+from fe_contact.validation.truth import Truth
+from fe_contact.validation.waves import _block as block
+from fe_contact.validation.waves import _meshed as meshed
+from fe_contact.validation.waves import _rod as rod
+from fe_contact.waves.numerics import WaveNumerics
+from lumped.members import available, get
+from lumped.scene import Scene
+
+SCENES = (
+    "steel-ball-waves",
+    "polymer-layer-waves",
+    "bar-impact",
+    "steel-ball-flight-waves",
+    "two-finite-spheres-waves",
+    "rod",
+)
+
+
+def planned(name: str, **given: Any) -> WaveNumerics:
+    scene = Scene.load(name)
+    found = get(WAVES, scene.target.name).plan(scene, given).numerics
+    assert isinstance(found, WaveNumerics)
+    return found
+
+
+@pytest.fixture(scope="module")
+def points() -> tuple[Point, ...]:
+    return study.tradeoff(Scene.load("rod"), {}, True, lambda message: None)
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("quick", [True, False])
+def test_every_target_tries_settings_that_a_run_accepts(name: str, quick: bool) -> None:
+    base, scene = planned(name), Scene.load(name)
+    chosen = study._chosen(base, {}, get(study.TARGETS, scene.target.name).of(scene).variations(base, quick))
+    assert 5 <= len(chosen) == len(set(chosen))
+    assert base not in chosen
+    for numerics in chosen:
+        assert numerics.contact_time == base.contact_time
+        for key, value in numerics.as_dict().items():
+            if key in RANGES:
+                assert RANGES[key][0] <= value <= RANGES[key][1], key
+
+
+def test_what_is_given_stays() -> None:
+    given = {"scheme": "staged", "mass": "spread"}
+    base = planned("bar-impact", **given)
+    chosen = study._chosen(base, given, block.variations(base, quick=False))
+    assert {(n.scheme, n.mass) for n in chosen} == {("staged", "spread")}
+
+
+def test_the_exact_bar_is_the_rectangle_of_one_echo() -> None:
+    """density c v for 2 L/c, all of which it gives back; none is known of a bar with a mass behind it."""
+    truth = block.exact(Scene.load("bar-impact"))
+    assert truth is not None
+    assert truth.values["peak_force"] == pytest.approx(300.0)
+    assert truth.values["duration"] == pytest.approx(2 / 3)
+    assert truth.values["restitution"] == pytest.approx(1.0)
+    places = np.linspace(0.0, 0.66, 100)
+    np.testing.assert_allclose(truth.force_at(places), 300.0)
+    assert block.exact(Scene.load("bar-impact", {"striker.mass": 5.0})) is None
+
+
+def test_the_distance_is_exact_for_rows_that_jump() -> None:
+    """A rectangle against one that ends a share later: the root of that share, to rounding."""
+    result = simulate(Scene.load("bar-impact"), "fe", {"tolerance": 0.1, "steps": 200})
+    end, share = 2 / 3, 0.01
+    late = Truth({}, np.array([0.0, end * (1 + share)]), lambda t: np.where(t < end * (1 + share), 300.0, 0.0))
+    assert late._distance(result.history) == pytest.approx(np.sqrt(share / (1 + share)), rel=1e-6)
+
+
+def test_exact_waves_are_known_of_elastic_rods_alone() -> None:
+    assert rod.exact(Scene.load("concrete-pole")) is not None
+    lossy = {"law": "sls", "E0": 2e11, "R1": 0.5, "R2": 1e-4, "nu": 0.3, "density": 7850.0}
+    assert rod.exact(Scene.load("rod", {"target.material": lossy})) is None
+
+
+def test_the_default_keeps_its_promise_and_is_near_the_front(points: tuple[Point, ...]) -> None:
+    (default,) = [point for point in points if point.default_for is not None]
+    assert default.error <= (default.bar or 0.0) <= default.default_for == 1e-3
+    assert "front" in verdict(points)[0]
+    assert known_to(points) == 0.0
+
+
+def test_finer_steps_err_less_and_cost_more(points: tuple[Point, ...]) -> None:
+    """Order two, which the exact waves show; work grows as the square of the steps."""
+    tried = [p for p in finite_elements(points) if p.settings["scheme"] == "central_difference"]
+    own = sorted((p for p in tried if not p.default_for), key=lambda p: p.settings["steps"])
+    steps, errors = np.array([(p.settings["steps"], p.error) for p in own]).T
+    work = np.array([p.work["operations"] for p in own])
+    assert np.all(np.diff(np.log(errors)) < -1.5 * np.diff(np.log(steps)))
+    np.testing.assert_allclose(np.diff(np.log(work)), 2.0 * np.diff(np.log(steps)), rtol=0.05)
+
+
+def test_bars_that_claim_anything_cover(points: tuple[Point, ...]) -> None:
+    claiming = [p for p in finite_elements(points) if (p.bar or np.inf) <= RANGES["tolerance"][1]]
+    assert len(claiming) >= 5
+    assert all(p.error <= (p.bar or 0.0) for p in claiming)
+    assert f"in {len(claiming)} of {len(claiming)} settings" in verdict(points)[-1]
+
+
+def test_a_default_marches_each_choice_of_settings_once() -> None:
+    """Of 400 and 800 steps: 200, 400 and 800."""
+    result = simulate(Scene.load("rod"), "fe", {})
+    assert result.numerics["steps"] == 800
+    assert result.work["marches"] == 3
+
+
+def test_without_exact_waves_the_reference_is_finer_and_its_bar_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The half-space, coarse: no error within the reference's own bar can be held against a setting."""
+    monkeypatch.setattr(meshed, "variations", lambda base, quick: iter([{"steps": 40}]))
+    pinned = {"steps": 80, "elements_per_contact": 4.0, "tolerance": 0.05}
+    found = study.tradeoff(Scene.load("steel-ball-waves"), pinned, True, lambda message: None)
+    reference = found[0]
+    assert reference.method == REFERENCE
+    assert known_to(found) == reference.bar
+    for point in finite_elements(found):
+        assert point.error <= (point.bar or 0.0) + (reference.bar or 0.0)
+    without = {point.method: point.error for point in found if point.method in ("mdr", "hertz")}
+    assert all(0.003 < error < 0.03 for error in without.values())  # half of what is radiated
+
+
+def test_the_command_writes_table_and_chart(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(rod, "variations", lambda base, quick: iter([{"steps": 100}]))
+    assert main(["tradeoff", "concrete-pole", "--json", "--quiet", "--out", str(tmp_path)]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed == json.loads((tmp_path / "tradeoff.json").read_text(encoding="utf-8"))
+    assert {"tradeoff.svg", "tradeoff.png", "tradeoff.csv"} <= {path.name for path in tmp_path.iterdir()}
+
+
+def test_the_chart_tells_schemes_and_masses_apart(tmp_path: Path, points: tuple[Point, ...]) -> None:
+    signs = Signs.of(points)
+    assert signs.key == "scheme"
+    assert len(set(signs.colours.values())) == len(signs.colours) > 2
+    assert len(set(signs.markers.values())) == len(signs.markers) > 1
+    first, again = (plot_tradeoff(Scene.load("rod"), points, tmp_path / name) for name in ("first", "again"))
+    assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
+
+
+def test_trade_offs_are_of_targets_with_waves() -> None:
+    assert set(available(study.TARGETS)) <= set(available(WAVES))
