@@ -85,16 +85,22 @@ class Budget:
 
 
 @dataclass(frozen=True)
-class Certified(Budget):
-    """The same with the ``surface`` of the finest run, all contacts ``followed`` in it, budgets of the ``later``."""
+class Several(Budget):
+    """The same with all contacts ``followed`` in the finest run and budgets of the ``later`` ones."""
 
-    surface: Struck
     followed: Followed
     later: tuple[Budget, ...]
 
     @property
     def row(self) -> tuple[Budget, ...]:
         return (self, *self.later)
+
+
+@dataclass(frozen=True)
+class Certified(Several):
+    """The same with the ``surface`` of the finest run."""
+
+    surface: Struck
 
 
 def certify(strike: Strike, geometry: Geometry, numerics: Numerics, impacts: int = 1) -> Certified:
@@ -111,7 +117,7 @@ def certify(strike: Strike, geometry: Geometry, numerics: Numerics, impacts: int
         Budget(curve, contact.march, changes, work)
         for (curve, changes), contact in zip(judged, followed.contacts, strict=True)
     ]
-    return Certified(row[0].curve, row[0].march, row[0].changes, work, surface, followed, tuple(row[1:]))
+    return Certified(row[0].curve, row[0].march, row[0].changes, work, followed, tuple(row[1:]), surface)
 
 
 def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[Curve, Mapping[str, Causes]]:

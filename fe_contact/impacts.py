@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from fe_contact.bodies.struck import Struck
@@ -29,6 +29,17 @@ class Followed:
 
     contacts: tuple[Contact, ...]
     grounded: Grounded | None
+
+    @property
+    def energy(self) -> Mapping[str, float]:
+        """Terms at the end of the last contact, J; what the surface loses in the flights is heat too."""
+        first, last = self.contacts[0], self.contacts[-1]
+        strike, march = first.strike, last.march
+        fallen = strike.mass * strike.gravity * float(march.depth[-1])
+        heat = sum(contact.march.energy["viscous"] + contact.flight_heat for contact in self.contacts)
+        terms = march.energy | {"in": 0.5 * strike.mass * strike.velocity**2 + fallen, "viscous": heat}
+        del terms["residual"]
+        return terms | {"residual": 2 * terms["in"] - sum(terms.values())}
 
 
 def follow(

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from fe_contact.bodies.chosen import struck
-from fe_contact.certify import CAUSES, Budget, Certified, certify
+from fe_contact.certify import CAUSES, Budget, Certified, Several, certify
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.march import Strike
 from fe_contact.numerics import RANGES, TARGETS, Numerics
@@ -164,7 +164,7 @@ def _excess(certified: Budget, tolerance: float, cause: str) -> float:
 def result_of(scene: Scene, solved: Answer) -> Result:
     """The record of a certified impact, or of several."""
     first, certified = _first(scene, solved), solved.certified
-    return whole(first, certified) if isinstance(certified, Certified) and scene.motion.impacts > 1 else first
+    return whole(first, certified) if isinstance(certified, Several) and scene.motion.impacts > 1 else first
 
 
 def _first(scene: Scene, solved: Answer) -> Result:

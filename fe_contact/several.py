@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from fe_contact.certify import Certified
+from fe_contact.certify import Several
 from fe_contact.contact_row import Row
 from fe_contact.curve import Curve
 from fe_contact.flight import UNFOLLOWED
 from fe_contact.forms import Array
-from fe_contact.impacts import Contact
 from fe_contact.told import history, quantities_of
 from lumped.history import COLUMNS, History
 from lumped.result import UNITS, Result, unmet
@@ -20,7 +18,7 @@ from lumped.result import UNITS, Result, unmet
 IN_FLIGHT = 65  # rows of a flight
 
 
-def whole(first: Result, certified: Certified) -> Result:
+def whole(first: Result, certified: Several) -> Result:
     """The result of all contacts, from that of the first."""
     row, followed = Row(certified.row), certified.followed
     shares = {name: row.shares(name) for name in UNITS}
@@ -39,7 +37,7 @@ def whole(first: Result, certified: Certified) -> Result:
         contacts=tuple(row.told(number) for number in range(len(missed))),
         error_budget={cause: value / peak for cause, value in shares["peak_force"].items()},
         error_budget_by_quantity=shares,
-        energy=_energy(followed.contacts),
+        energy=followed.energy,
         message="; ".join(messages),
     )
 
@@ -74,14 +72,3 @@ def _late(curve: Curve, time: Array, late: float) -> Array:
     since, shift = time - curve.strike.touched_at, min(late, curve.duration)
     force = curve.force(since)
     return np.maximum(np.abs(curve.force(since + shift) - force), np.abs(curve.force(since - shift) - force))
-
-
-def _energy(contacts: Sequence[Contact]) -> dict[str, float]:
-    """Terms at the end of the last contact, J; what the surface loses in the flights is heat too."""
-    first, last = contacts[0], contacts[-1]
-    strike, march = first.strike, last.march
-    fallen = strike.mass * strike.gravity * float(march.depth[-1])
-    heat = sum(contact.march.energy["viscous"] + contact.flight_heat for contact in contacts)
-    terms = march.energy | {"in": 0.5 * strike.mass * strike.velocity**2 + fallen, "viscous": heat}
-    del terms["residual"]
-    return terms | {"residual": 2 * terms["in"] - sum(terms.values())}

@@ -10,6 +10,7 @@ A = (1 - alpha_m)/(beta dt^2) M + (1 - alpha_f) [gamma/(beta dt) C + sum of modu
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -31,22 +32,40 @@ class ImplicitStepper:
         self.body, self.scheme, self.enforced, self.step = body, scheme, enforced, step
         self.laws = [memory.part_law(part, step) for part in body.parts]
         self.solve = factorized(self._effective())
-        pressing = body.pressing
-        self.moved = (1 - scheme.alpha_f) * self.solve(pressing.push.toarray())  # (N, m) per surface force
-        self.surface: PressedSurface = surface_of(pressing.push.T @ self.moved, pressing.trace, pressing.weights)
 
     def begun(self, state: State) -> State:
         """The first state: the pressure of a first step belongs to its end."""
         return state
 
+    @cached_property
+    def moved(self) -> Array:
+        """Increments (N, m) of unit surface forces."""
+        return np.asarray((1 - self.scheme.alpha_f) * self.solve(self.body.pressing.push.toarray()))
+
+    @cached_property
+    def surface(self) -> PressedSurface:
+        """What contact knows of the body in a step."""
+        pressing = self.body.pressing
+        return surface_of(pressing.push.T @ self.moved, pressing.trace, pressing.weights)
+
     def advance(self, state: State) -> tuple[State, Found]:
         """The state a step later; raises ContactNotSettled."""
         pressing = self.body.pressing
-        change = self.solve(self._known(state) + self.scheme.alpha_f * pressing.load(state.pressure))
+        change = self._free(state)
         overlap = pressing.overlap(state.displacement + change)
         found = self.enforced.found(self.surface, overlap, state.signed_pressure > 0.0, state.time)
         change += self.moved @ pressing.forces(found.pressure)
         return self._moved(state, change, found), found
+
+    def flown(self, state: State) -> State:
+        """The state a step later if nothing presses in it, its signed pressure that of the overlap."""
+        change = self._free(state)
+        overlap = self.body.pressing.overlap(state.displacement + change)
+        return self._moved(state, change, Found(self.enforced.penalty * overlap, 0))
+
+    def _free(self, state: State) -> Array:
+        """The increment (N,) without new pressure."""
+        return self.solve(self._known(state) + self.scheme.alpha_f * self.body.pressing.load(state.pressure))
 
     def _effective(self) -> Any:
         body, (alpha_m, alpha_f, beta, gamma), dt = self.body, self.scheme, self.step

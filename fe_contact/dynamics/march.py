@@ -40,6 +40,13 @@ class Choices:
         return float(self.step * 2 ** sum(time >= at * (1 - ROUNDING) for at in self.doubled))
 
 
+class Moment(NamedTuple):
+    """A body in motion at an instant, and its ledger so far."""
+
+    state: State
+    energies: Energies
+
+
 class Sample(NamedTuple):
     """What one step leaves behind, at its end: s, N, the step's share of the impulse, N s; overlaps, their rates and
     signed pressures (q,); displacement and velocity of the watched places (k,), energies, Newton iterations.
@@ -114,16 +121,23 @@ def march(
 
     Raises ContactNotSettled, MotionUnbounded or TooManySteps; BadInput for a scheme that the body does not admit.
     """
+    state = undeformed(body, velocity)
+    return onwards(body, Moment(state, ledger.opened(body, state)), choices, end_time, watch, finished)
+
+
+def onwards(
+    body: Body, begun: Moment, choices: Choices, end_time: float, watch: Array, finished: Callable[[Sample], bool]
+) -> Motion:
+    """The same from a moment on, with which another ``end_time``, s, and the lengths of the steps begin anew."""
     parts = stages(body, choices.enforced, choices.step) if choices.scheme.staged else 1
     stepper = _stepper(body, choices, choices.step / parts)
-    state = stepper.begun(undeformed(body, velocity))
-    fastest = UNBOUNDED * (np.abs(velocity).max() + np.abs(body.gravity).max() * end_time)
-    energies = ledger.opened(body, state)
+    state, energies, start = stepper.begun(begun.state), begun.energies, begun.state.time
+    fastest = UNBOUNDED * (np.abs(state.velocity).max() + np.abs(body.gravity).max() * end_time)
     samples = [_sample(body, state, 0.0, watch, energies, 0)]
-    while state.time < end_time * (1 - ROUNDING):
+    while state.time - start < end_time * (1 - ROUNDING):
         if (len(samples) - 1) * parts >= MOST_STEPS:
             raise TooManySteps(MOST_STEPS, state.time)
-        length = choices.length(state.time) / parts
+        length = choices.length(state.time - start) / parts
         if length != stepper.step:
             stepper = _stepper(body, choices, length)
         impulse, iterations = 0.0, 0

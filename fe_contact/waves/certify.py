@@ -8,18 +8,18 @@ back within the contact.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cached_property
+from collections.abc import Callable, Mapping
+from functools import cached_property, partial
 
 import numpy as np
 
-from fe_contact.certify import SAFETY, Budget
+from fe_contact.certify import SAFETY, Budget, Causes, Several
 from fe_contact.change import Change
 from fe_contact.curve import Curve
 from fe_contact.forms import Array
 from fe_contact.march import March, Strike
 from fe_contact.runs import TotalWork
-from fe_contact.waves.impact import motion, record
+from fe_contact.waves.bounces import Bounces, follow
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.reading import curve_of, reading
@@ -41,39 +41,40 @@ class Runs:
     def __init__(
         self, scene: Scene, strike: Strike, moving: Callable[[Scene, WaveNumerics], Moving], cheap: int
     ) -> None:
-        self._scene, self.strike, self._moving, self.cheap = scene, strike, moving, cheap
-        self._curves: dict[WaveNumerics, Curve | None] = {}
-        self._marches: dict[WaveNumerics, tuple[March, int]] = {}
+        self._scene, self._strike, self._moving, self.cheap = scene, strike, moving, cheap
+        self._curves: dict[WaveNumerics, tuple[Curve, ...]] = {}
+        self._runs: dict[WaveNumerics, tuple[Bounces, int]] = {}
 
-    def march(self, settings: WaveNumerics) -> tuple[March, Curve]:
+    def follow(self, settings: WaveNumerics) -> Bounces:
         """One run; raises where it fails."""
-        if settings not in self._marches:
+        if settings not in self._runs:
             body = self._moving(self._scene, settings)
-            march = record(body, motion(body, self._scene, settings), self._scene)
-            self._marches[settings] = march, body.body.size
-            self._curves[settings] = curve_of(march, self.strike, settings)
-        march, curve = self._marches[settings][0], self._curves[settings]
-        assert curve is not None
-        return march, curve
+            followed = follow(body, self._scene, self._strike, settings)
+            self._runs[settings] = followed, body.body.size
+            self._curves[settings] = tuple(curve_of(one.march, one.strike, settings) for one in followed.contacts)
+        return self._runs[settings][0]
 
-    def curve(self, settings: WaveNumerics) -> Curve | None:
-        """One run as a curve, None where it fails: its cause of error is then unknown."""
+    def curve(self, number: int, settings: WaveNumerics) -> Curve | None:
+        """A contact of one run, None where that fails or has fewer: its cause of error is then unknown."""
         if settings not in self._curves:
             try:
-                return self.march(settings)[1]
+                self.follow(settings)
             except NotReached:
-                self._curves[settings] = None
-        return self._curves[settings]
+                self._curves[settings] = ()
+        curves = self._curves[settings]
+        return curves[number] if number < len(curves) else None
 
     def work(self) -> TotalWork:
         """What all runs cost together: a factorisation for every length of step, one back-substitution a step."""
-        works = [march.work for march, _ in self._marches.values()]
+        marches = [(one.march, settings) for settings, (run, _) in self._runs.items() for one in run.contacts]
+        works, flights = [march.work for march, _ in marches], [run for run, _ in self._runs.values()]
+        steps = sum(w.steps for w in works) + sum(run.steps for run in flights)
         return TotalWork(
-            degrees_of_freedom=max(size for _, size in self._marches.values()),
-            factorizations=sum(_lengths(march, settings) for settings, (march, _) in self._marches.items()),
-            solves=sum(w.steps for w in works),
+            degrees_of_freedom=max(size for _, size in self._runs.values()),
+            factorizations=sum(_lengths(*one) for one in marches) + sum(run.factorizations for run in flights),
+            solves=steps,
             marches=len(works),
-            steps=sum(w.steps for w in works),
+            steps=steps,
             contact_problems=sum(w.contact_problems for w in works),
             iterations=sum(w.iterations for w in works),
         )
@@ -85,18 +86,31 @@ def _lengths(march: March, settings: WaveNumerics) -> int:
     return 1 + sum(at < end for at in graded(settings)[1])
 
 
-def certify(runs: Runs, numerics: WaveNumerics) -> Budget:
-    """March with ``numerics`` and with each setting halved; raises where the march itself fails."""
-    march, value = runs.march(numerics)
-    cheap = numerics.varied(steps=runs.cheap)
-    base, mesh = cheap, _halved(cheap, "mesh")
-    changes = {
-        "mesh": (_changed(runs, base, mesh, "mesh"), reading(march, runs.strike, numerics)),
-        "penalty": (_changed(runs, base, _halved(cheap, "penalty"), "penalty"),),
-        "time_step": (_changed(runs, numerics, numerics.varied(steps=numerics.steps // 2), "time_step"),),
-        "far_field": (_changed(runs, mesh, _halved(mesh, "far_field"), "far_field"),),  # of what is far, coarse is fine
+def certify(runs: Runs, numerics: WaveNumerics) -> Several:
+    """March with ``numerics`` and with each setting halved; raises where the march itself fails.
+
+    The budget is that of the first contact, those of the ``later`` ones, judged from the same runs, stand in it.
+    """
+    followed = runs.follow(numerics)
+    changes = [_judged(runs, number, numerics) for number in range(len(followed.contacts))]
+    row = [
+        Budget(curve_of(one.march, one.strike, numerics), one.march, change, runs.work())
+        for one, change in zip(followed.contacts, changes, strict=True)
+    ]
+    return Several(row[0].curve, row[0].march, row[0].changes, row[0].work, followed, tuple(row[1:]))
+
+
+def _judged(runs: Runs, number: int, numerics: WaveNumerics) -> Mapping[str, Causes]:
+    """What the settings change of one contact."""
+    contact = runs.follow(numerics).contacts[number]
+    cheap, changed = numerics.varied(steps=runs.cheap), partial(_changed, partial(runs.curve, number))
+    mesh = _halved(cheap, "mesh")
+    return {
+        "mesh": (changed(cheap, mesh, "mesh"), reading(contact.march, contact.strike, numerics)),
+        "penalty": (changed(cheap, _halved(cheap, "penalty"), "penalty"),),
+        "time_step": (changed(numerics, numerics.varied(steps=numerics.steps // 2), "time_step"),),
+        "far_field": (changed(mesh, _halved(mesh, "far_field"), "far_field"),),  # of what is far, coarse is fine
     }
-    return Budget(value, march, changes, runs.work())
 
 
 def _halved(settings: WaveNumerics, cause: str) -> WaveNumerics:
@@ -104,9 +118,11 @@ def _halved(settings: WaveNumerics, cause: str) -> WaveNumerics:
     return settings.varied(**{key: max(getattr(settings, key) / 2, LEAST[key])})
 
 
-def _changed(runs: Runs, first: WaveNumerics, second: WaveNumerics, cause: str) -> Change | None:
+def _changed(
+    curve: Callable[[WaveNumerics], Curve | None], first: WaveNumerics, second: WaveNumerics, cause: str
+) -> Change | None:
     """Change between settings in the ratio 1 : 2, as an error of the first; None where either failed."""
-    one, other = runs.curve(first), runs.curve(second)
+    one, other = curve(first), curve(second)
     return None if one is None or other is None else Moved(one, other, SAFETY / (2 ** ORDER[cause] - 1))
 
 

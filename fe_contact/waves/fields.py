@@ -20,8 +20,12 @@ from lumped.scene import Scene
 
 
 def write_fields(scene: Scene, result: Result, where: Path) -> Path:
-    """Write ``fields.vtu``, see :mod:`fe_contact.fields`, of an impact that was solved; its path. Raises NotReached."""
-    fields, velocity = fields_at(scene, WaveNumerics(**result.numerics), result.quantities["peak_time"].value or 0.0)
+    """Write ``fields.vtu``, see :mod:`fe_contact.fields`, of an impact that was solved; its path. Raises NotReached.
+
+    Of several contacts the first is shown.
+    """
+    peak_time = result.contacts[0]["peak_time"] if result.contacts else result.quantities["peak_time"].value
+    fields, velocity = fields_at(scene, WaveNumerics(**result.numerics), peak_time or 0.0)
     return written(fields, where, velocity)
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,7 @@ STIFF = 16.0  # times as much there
 MUCH = 0.5  # of the stiffness until the force peaks: less than this of dashpots asks for less than all of both
 STEPS = 320  # along a contact, shorter ones about an early peak
 TRAVEL = 0.5  # of the contact time: an echo from the far radius returns after the contact
+LEAST_RESTITUTION = 0.1  # a striker that comes back slower hardly comes back again
 NEAREST = 20.0  # contact radii: the far springs' own need
 SPREAD = 3.0  # lengths over which a dashpot in parallel, which has no wave speed, spreads a motion in a contact
 DEFAULTS: Mapping[str, Any] = {
@@ -47,7 +49,8 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     Raises NotReached where even the row of springs does not come to an end.
     """
     scales = mdr.estimate(scene, SPRINGS)
-    return placed(scene, given, scales, _far_radius(scene, scales.contact_radius, contact_time(scene, scales)))
+    longest = _slowest(scene, scales.restitution) * contact_time(scene, scales)
+    return placed(scene, given, scales, _far_radius(scene, scales.contact_radius, longest))
 
 
 def contact_time(scene: Scene, scales: ImpactScales) -> float:
@@ -96,6 +99,13 @@ def viscous_share(modulus: Relaxation, time: float) -> float:
     held = -np.expm1(-ratios) / ratios  # of a branch's modulus, at the end
     flowing = modulus.viscosity / time + float(np.dot(modulus.moduli, held * (1.0 - held)))
     return flowing / (modulus.equilibrium + modulus.viscosity / time + float(np.dot(modulus.moduli, held)))
+
+
+def _slowest(scene: Scene, restitution: float | None) -> float:
+    """How much longer the last contact lasts than the first: as an elastic one does, with its speed to the -1/5."""
+    elastic = partial(scene.profile.hertz_impact, 1.0, 1.0)
+    slower = max(restitution or 1.0, LEAST_RESTITUTION) ** (scene.motion.impacts - 1)
+    return elastic(slower).duration / elastic(1.0).duration
 
 
 def _far_radius(scene: Scene, contact_radius: float, duration: float) -> float:

@@ -71,16 +71,18 @@ def refined_to_tolerance(
         numerics = finer
     if certified is None:
         raise outgrown or MemoryTooSmall(numerics.contact_radius)
-    scene.check_sunk(certified.curve.quantities["peak_depth"] or 0.0)
+    scene.check_sunk(max(budget.curve.quantities["peak_depth"] or 0.0 for budget in certified.row))
     solved = Solved(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall)
     return result_of(scene, solved)
 
 
 def refined(certified: Budget, numerics: WaveNumerics, pinned: frozenset[str]) -> WaveNumerics:
     """Settings whose bars are predicted to meet the tolerance; the same where they do, or where all is ``pinned``."""
-    if meets(quantities_of(certified), numerics.tolerance):
+    if all(meets(quantities_of(one), numerics.tolerance) for one in certified.row):
         return numerics
-    shares = {cause: _shares(certified, cause, numerics.tolerance) for cause in ORDER}
+    shares = {
+        cause: np.concatenate([_shares(one, cause, numerics.tolerance) for one in certified.row]) for cause in ORDER
+    }
     return _raised(numerics, factors(shares, {cause: _room(numerics, cause, pinned) for cause in ORDER}))
 
 

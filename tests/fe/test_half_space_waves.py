@@ -177,7 +177,6 @@ def test_bars_hold_the_answer_of_finer_settings(steel: Result, campaign_size: Ca
     ("changes", "key"),
     [
         ({"striker": {"shape": "punch", "radius": 1e-3, "mass": 1e-3, "velocity": 1.0}}, "striker.shape"),
-        ({"motion.impacts": 2}, "motion.impacts"),
         ({"target.material.constant": "bulk"}, "target.material.constant"),
     ],
 )

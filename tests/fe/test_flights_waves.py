@@ -1,0 +1,121 @@
+"""Flights between contacts on what still moves: every touch found, when it comes, in few steps."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import scipy.sparse as sparse
+from scipy.optimize import brentq
+
+from fe_contact.dynamics import ledger
+from fe_contact.dynamics.body import Body, Part, Pressing
+from fe_contact.dynamics.march import Choices, Moment
+from fe_contact.dynamics.pressed import Enforced
+from fe_contact.dynamics.schemes import generalised_alpha
+from fe_contact.dynamics.state import State, internal, undeformed
+from fe_contact.enforcement import penalty
+from fe_contact.waves.flight import Flights
+from lumped.materials import Relaxation
+
+STEP, PATIENCE = 0.02, 32
+RELAXATION = Relaxation(1.0, (0.7,), (5.0,))
+DRAWS = 30
+
+
+class Case:
+    """A ball rises from a plate of mass one on a standard linear solid and a dashpot, which still swings."""
+
+    def __init__(self, rng: np.random.Generator) -> None:
+        self.speed, self.dashpot = rng.uniform(0.2, 1.0), rng.uniform(0.2, 2.0)
+        self.gravity = 2.0 * self.speed / 10 ** rng.uniform(0.3, 3.5)  # flights of 2 to 3000 radians
+        self.place = rng.uniform(-0.3, 0.3) * self.speed
+        self.branch = rng.uniform(-0.3, 0.3) * self.speed
+        self.rising = rng.uniform(-1.0, 0.95) * self.speed  # of the plate, slower than the ball
+
+    @property
+    def flight(self) -> float:
+        """Over a plate at rest, s."""
+        return 2.0 * self.speed / self.gravity
+
+    @property
+    def body(self) -> Body:
+        plate = sparse.csc_matrix(np.diag([1.0, 0.0]))
+        pressing = Pressing(-sparse.eye(2, format="csc"), np.ones((1, 2)), np.ones(1), np.zeros(1))
+        rigid, gravity = np.array([0.0, 1.0]), np.array([0.0, self.gravity])
+        return Body(plate, rigid, (Part(plate, RELAXATION),), self.dashpot * plate, gravity, pressing)
+
+    @property
+    def parted(self) -> Moment:
+        body, at_rest = self.body, undeformed(self.body, np.zeros(2))
+        displacement, branches = np.array([self.place, -self.place]), (np.array([[self.branch, 0.0]]),)
+        forces = internal(body, displacement, branches)
+        velocity = np.array([self.rising, -self.speed])
+        acceleration = np.array([-forces[0] - self.dashpot * self.rising, self.gravity])
+        state = State(0.0, displacement, velocity, acceleration, branches, forces, at_rest.signed_pressure)
+        return Moment(state, ledger.opened(body, state))
+
+    def touch(self) -> float:
+        """The first zero of the gap after the separation, s, by the eigenvalues of the plate's motion."""
+        (modulus,), (tau,) = RELAXATION.moduli, RELAXATION.times
+        rates = np.array([[0.0, 1.0, 0.0], [-1.0, -self.dashpot, -modulus], [0.0, 1.0, -1.0 / tau]])
+        values, vectors = np.linalg.eig(rates)
+        swings = vectors[0] * np.linalg.solve(vectors, [self.place, self.rising, self.branch])
+
+        def gap(time: float | np.ndarray) -> np.ndarray:
+            risen = self.place + self.speed * time - 0.5 * self.gravity * np.square(time)
+            return risen - (np.exp(np.multiply.outer(time, values)) @ swings).real
+
+        times = np.concatenate([np.linspace(1e-3, 60.0, 6000), np.linspace(60.0, 2.0 * self.flight + 60.0, 200)])
+        first = int(np.argmax(gap(times) <= 0.0))
+        return float(brentq(gap, times[first - 1], times[first], xtol=1e-13))
+
+
+def landed(case: Case, step: float, patience: int) -> tuple[Moment, Flights]:
+    flights = Flights(case.body, Choices(generalised_alpha.of(0.5), Enforced(penalty, 1.0), step), patience)
+    found = flights.landing(case.parted, math.inf)
+    assert found is not None
+    return found, flights
+
+
+def late(case: Case, steps: int) -> float:
+    """How much later than it comes a touch is found with so many steps before they double, s."""
+    return landed(case, STEP * PATIENCE / steps, steps)[0].state.time - case.touch()
+
+
+@pytest.fixture(scope="module")
+def cases() -> list[Case]:
+    rng = np.random.default_rng(8)
+    return [Case(rng) for _ in range(DRAWS)]
+
+
+def test_no_touch_is_missed_and_finer_steps_find_it_when_it_comes(cases: list[Case]) -> None:
+    """Though the plate swings: within a twelfth of its period by the coarsest steps; of order two."""
+    coarsest, coarse, fine = (np.abs([late(case, steps) for case in cases]) for steps in (2, 16, PATIENCE))
+    assert coarsest.max() < 2.0 * math.pi / 12.0
+    assert fine.max() < 0.01
+    assert np.sum(coarse) / np.sum(fine) > 3.0
+
+
+def test_a_flight_takes_as_many_steps_as_the_logarithm_of_its_length(cases: list[Case]) -> None:
+    for case in cases:
+        _, flights = landed(case, STEP, PATIENCE)
+        doublings = math.log2(1.0 + case.flight / STEP / PATIENCE)
+        assert flights.steps < (PATIENCE + 2.0) * (doublings + 2.0)
+
+
+def test_the_ball_falls_freely_and_the_ledger_closes(cases: list[Case]) -> None:
+    for case in cases:
+        touch = landed(case, STEP, PATIENCE)[0]
+        state, energies = touch.state, touch.energies
+        fallen = state.time * (0.5 * case.gravity * state.time - case.speed)
+        assert state.displacement[1] == pytest.approx(fallen - case.place, abs=1e-9 * case.speed * case.flight)
+        assert state.velocity[1] == pytest.approx(case.gravity * state.time - case.speed, abs=1e-9 * case.speed)
+        assert abs(energies.residual) < 1e-9 * energies.work
+        assert not (state.signed_pressure > 0.0).any()
+
+
+def test_a_touch_after_the_end_is_none(cases: list[Case]) -> None:
+    flights = Flights(cases[0].body, Choices(generalised_alpha.of(0.5), Enforced(penalty, 1.0), STEP), PATIENCE)
+    assert flights.landing(cases[0].parted, 0.5 * cases[0].touch()) is None
