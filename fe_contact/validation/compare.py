@@ -109,11 +109,13 @@ def _curve(told: Told, reference: Result, measured: Measured) -> Judgement:
 
 
 def _error(reference: Result, law: Result, name: str) -> float | None:
-    """Relative error of a quantity, restitution absolute; None where either is undefined."""
+    """Relative error of a quantity, restitution absolute; None where either is undefined, or nothing to relate to."""
     truth, value = reference.quantities[name].value, law.quantities[name].value
     if truth is None or value is None:
         return None
-    return value - truth if name == "restitution" else value / truth - 1.0
+    if name == "restitution" or value == truth:
+        return value - truth
+    return value / truth - 1.0 if truth else None
 
 
 def _bar(result: Result, name: str) -> float:
