@@ -17,11 +17,16 @@ GAUSS_POINTS = 64
 
 @dataclass(frozen=True)
 class Pulse:
-    """A contact in short: peak force, N; duration, s; the kinetic energy that it turns round, J."""
+    """A contact in short: peak force, N; duration, s; mass, kg, and kinetic energy, J, that it turns round.
+
+    `radius`: that of contact at the peak, or the half-width in plane strain, m.
+    """
 
     force: float
     duration: float
+    mass: float
     energy: float
+    radius: float
 
 
 def radiation_coefficient(nu: float) -> float:

@@ -13,6 +13,7 @@ from typing import ClassVar
 
 from lumped.collide import memory
 from lumped.ending import End
+from lumped.errors import FeContactError
 from lumped.hereditary.approach import DEPTH, approach
 from lumped.hereditary.closing import Closing, close
 from lumped.hereditary.march import Settings
@@ -27,7 +28,7 @@ from lumped.laws.mdr import ImpactScales
 from lumped.result import Result
 from lumped.scene import Scene
 
-ROUGH = 1e-3  # tolerance of scales
+ROUGH, FINE = 1e-3, 1e-6  # tolerances of scales
 KEYS: Mapping[str, Key] = {
     "exit": Choice(("force", "depth"), required=False),
     "memory": Choice(memory.available(), required=False),
@@ -63,7 +64,10 @@ def of(scene: Scene) -> Correspondence:
 
 def estimate(scene: Scene) -> ImpactScales:
     """Scales of the impact on any target with a load curve: one integration, no bars. Raises NotReached, BadInput."""
-    answer = once(scene, ROUGH, solve)
+    try:
+        answer = once(scene, ROUGH, solve)
+    except FeContactError:  # a long step may try depths beyond the load curve which the motion never sees
+        answer = once(scene, FINE, solve)
     value = {name: quantity or 0.0 for name, quantity in answer.values.items()}
     return ImpactScales(
         contact_radius=float(answer.columns(answer.times)[3].max()),

@@ -16,8 +16,8 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     effect = "target inertia"
     if model.inertia:
         return LedgerEntry(effect, "included", 0.0)
-    energy = 0.5 * scene.reduced_mass * scene.velocity**2
-    pulse, geometry = Pulse(peak.force, peak.duration, energy), scene.geometry
+    mass, geometry = scene.reduced_mass, scene.geometry
+    pulse = Pulse(peak.force, peak.duration, mass, 0.5 * mass * scene.velocity**2, peak.contact_radius)
     return LedgerEntry(effect, "neglected", *scene.target.inertia_left_out(geometry.shape, geometry.material, pulse))
 
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.key_table import check_fields
 from lumped.keys import Choice, Key, Number
+from lumped.layer_mass import moving_share
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material
 from lumped.radiation import Pulse
@@ -60,20 +61,22 @@ class Layer(Target):
         return LayerCurve(shape.load_curve, elastic)
 
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
-        """A thin layer radiates nothing, but answers the slower the nearer its first resonance, four transits, is.
+        """What of the layer moves with the striker adds m_a to its mass m: the peak force falls by m_a/m.
 
-        As a spring with mass it yields more by (2 h/(c T))^2, c of waves across it, and F ~ stiffness^(2/5). A thick
-        one is a half-space: the smaller of the two.
+        A thick one is a half-space: the smaller of the two.
         """
         radiated, note = super().inertia_left_out(shape, material, pulse)
-        if radiated is None or material.density is None:
+        if material.density is None:
             return radiated, note
-        modulus = material.confined_modulus()
-        speed = math.sqrt((modulus.relaxed or modulus.glassy) / material.density)
-        resonance = 0.4 * (2.0 * self.thickness / (speed * pulse.duration)) ** 2
-        if resonance >= radiated:
+        modulus, a = material.contact_modulus(), pulse.radius
+        plate = math.sqrt((modulus.relaxed or modulus.glassy) / material.density)
+        way = 0.25 * plate * pulse.duration / self.thickness  # half as far as its waves go until the peak
+        share = moving_share(material.nu, self.base, a / self.thickness, way, shape.plane)
+        area = 2.0 * a * shape.total if shape.plane else math.pi * a**2
+        added = share * material.density * area * self.thickness / pulse.mass
+        if radiated is not None and radiated <= added:
             return radiated, note
-        return resonance, "(2 h/(c T))^2 of its compliance: the layer's first resonance; model.inertia"
+        return added, f"{added:.2g} of the striker's mass moves with it; model.inertia"
 
     def check_depth(self, shape: Shape, depth: float) -> str:
         """Neither through the layer nor past the equator."""
