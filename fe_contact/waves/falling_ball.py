@@ -41,7 +41,7 @@ def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> R
 
 def check(scene: Scene) -> None:
     """Raise BadInput for several impacts, one too fast, and a changing Poisson's ratio."""
-    scene.check_single("fe")
+    scene.check_single("fe, where the ball rings on between contacts,")
     faults = [*too_fast(scene), *changing(scene)]
     if faults:
         raise BadInput(faults)

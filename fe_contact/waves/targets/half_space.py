@@ -31,7 +31,7 @@ def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> R
 def check(scene: Scene) -> None:
     """Raise BadInput for a striker with a rim, in plane strain, or that rings on between impacts, and a changing nu."""
     if scene.striker_material is not None:
-        scene.check_single("fe, where the striker rings on between contacts,")
+        scene.check_single("fe, where the ball rings on between contacts,")
     shape, faults = scene.geometry.shape, [*too_fast(scene), *changing(scene)]
     if shape.plane or shape.fixed_radius is not None:
         reason = f"{shape.name}: no waves under it in this version; accepted with model.inertia: sphere, cone, power"

@@ -55,7 +55,7 @@ def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> R
 
 def check(scene: Scene) -> None:
     """Raise BadInput for several impacts, a striker with a rim, and one too fast."""
-    scene.check_single("fe")
+    scene.check_single("fe, where the layer rings on between contacts,")
     shape, faults = scene.geometry.shape, too_fast(scene)
     if shape.fixed_radius is not None:
         reason = f"{shape.name}: no waves under its rim in this version; accepted with model.inertia: a round profile"

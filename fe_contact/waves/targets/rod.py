@@ -121,7 +121,7 @@ def _varied(scene: Scene, numerics: WaveNumerics) -> dict[str, WaveNumerics]:
 
 def check(scene: Scene) -> None:
     """Raise BadInput for several impacts, and for materials whose waves these elements or their end do not carry."""
-    scene.check_single("fe")
+    scene.check_single("fe, where the rod rings on between contacts,")
     rod, material = scene.target, scene.geometry.material
     assert isinstance(rod, Rod)
     reason = ""
