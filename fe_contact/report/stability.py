@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +19,8 @@ from fe_contact.validation.stability.base import STUDIES, Chart, Measure, Row
 from lumped.members import get
 
 CELL, LETTER = 0.16, 0.062  # height of a row, width of a letter of its name, in
+TALLEST = 9.0  # panels that are taller together stand beside each other, in
+BESIDE, LINE = 0.12, 0.13  # between them; height of a line of their titles, in
 DECADES = 2.0  # either side of the limit that the colours span
 TITLE_WIDTH = 132
 FEW = 4  # columns, in whose cells there is room for numbers
@@ -39,24 +43,66 @@ def plot_stability(rows: Sequence[Row], where: Path) -> list[Path]:
     return found
 
 
+@dataclass(frozen=True)
+class _Layout:
+    """Where panels stand, in inches: ``across`` of them in a row, each ``wide`` and ``tall``, ``left`` of the first.
+
+    ``above``: room for heading and title; ``title``: height of a panel's title; ``below``: of the names of columns.
+    """
+
+    count: int
+    across: int
+    left: float
+    wide: float
+    tall: float
+    above: float
+    title: float
+    below: float
+
+    @classmethod
+    def of(cls, chart: Chart, names: Sequence[str], columns: Sequence[str]) -> _Layout:
+        """For rows and columns of these names."""
+        count, tall = len(chart.measures), CELL * len(names)
+        across = min(math.ceil(count * tall / TALLEST), count)
+        left = 0.3 + LETTER * max(map(len, names))
+        wide = (0.985 * style.PAGE - left - (across - 1) * BESIDE) / across
+        below = 0.3 if len(columns) <= FEW else 0.2 + LETTER * max(map(len, columns))
+        lines = max(len(_wrapped(measure, wide)) for measure in chart.measures.values())
+        above = style.heading_height(LINES, TITLE_WIDTH) - 0.05
+        return cls(count, across, left, wide, tall, above, 0.22 + LINE * lines, below)
+
+    @property
+    def height(self) -> float:
+        """Of the figure."""
+        return self.above + -(-self.count // self.across) * (self.tall + self.title) + self.below
+
+    def box(self, place: int) -> tuple[float, float, float, float]:
+        """Of a panel, in shares of the figure."""
+        down, along = divmod(place, self.across)
+        left = self.left + along * (self.wide + BESIDE)
+        bottom = self.height - self.above - (down + 1) * (self.tall + self.title)
+        return left / style.PAGE, bottom / self.height, self.wide / style.PAGE, self.tall / self.height
+
+
 def _map(rows: Sequence[Row], title: str, chart: Chart) -> Figure:
     names, columns = _labels(rows, chart.rows), _labels(rows, chart.columns)
-    above = style.heading_height(LINES, TITLE_WIDTH) + 0.3
-    left, below = 0.3 + LETTER * max(map(len, names)), 0.2 + LETTER * max(map(len, columns))
-    panel = CELL * len(names)
-    height = above + len(chart.measures) * (panel + 0.35) + below
-    figure = Figure(figsize=(style.PAGE, height))
+    layout = _Layout.of(chart, names, columns)
+    figure = Figure(figsize=(style.PAGE, layout.height))
     for place, (name, measure) in enumerate(chart.measures.items()):
-        bottom = height - above - (place + 1) * (panel + 0.35) + 0.35
-        box = (left / style.PAGE, bottom / height, 0.985 - left / style.PAGE, panel / height)
-        axes = figure.add_axes(box)
+        axes = figure.add_axes(layout.box(place))
         _panel(axes, _table(rows, chart, names, columns, name), measure)
-        style.label(axes, "abcdefgh"[place], f"{measure.label}, limit {measure.limit:g}")
-        axes.set_yticks(range(len(names)), names, fontsize=5.6)
-        last = place == len(chart.measures) - 1
-        axes.set_xticks(range(len(columns)), columns if last else [""] * len(columns), rotation=90, fontsize=5.6)
+        style.label(axes, "abcdefgh"[place], "\n".join(_wrapped(measure, layout.wide)))
+        axes.set_yticks(range(len(names)), [""] * len(names) if place % layout.across else names, fontsize=5.6)
+        last = place + layout.across >= layout.count
+        rotation = 0 if len(columns) <= FEW else 90
+        axes.set_xticks(range(len(columns)), columns if last else [""] * len(columns), rotation=rotation, fontsize=5.6)
     style.heading(figure, title, LINES, TITLE_WIDTH)
     return figure
+
+
+def _wrapped(measure: Measure, width: float) -> list[str]:
+    """A panel's title in lines of this width, in."""
+    return textwrap.wrap(f"{measure.label}, limit {measure.limit:g}", int(width / LETTER))
 
 
 def _panel(axes: Axes, table: Mapping[tuple[int, int], float | None], measure: Measure) -> None:
