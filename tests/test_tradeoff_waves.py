@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from fe_contact.cli import main
+from fe_contact.distance import distance
 from fe_contact.methods import simulate
 from fe_contact.numerics import RANGES, WAVES
 from fe_contact.report.tradeoff import plot_tradeoff
@@ -17,7 +19,6 @@ from fe_contact.report.tradeoff_signs import Signs
 from fe_contact.validation import tradeoff_waves as study
 from fe_contact.validation.front import finite_elements, known_to, verdict
 from fe_contact.validation.point import REFERENCE, Point
-from fe_contact.validation.truth import Truth
 from fe_contact.validation.waves import _block as block
 from fe_contact.validation.waves import _meshed as meshed
 from fe_contact.validation.waves import _rod as rod
@@ -82,10 +83,24 @@ def test_the_exact_bar_is_the_rectangle_of_one_echo() -> None:
 
 def test_the_distance_is_exact_for_rows_that_jump() -> None:
     """A rectangle against one that ends a share later: the root of that share, to rounding."""
-    result = simulate(Scene.load("bar-impact"), "fe", {"tolerance": 0.1, "steps": 200})
     end, share = 2 / 3, 0.01
-    late = Truth({}, np.array([0.0, end * (1 + share)]), lambda t: np.where(t < end * (1 + share), 300.0, 0.0))
-    assert late._distance(result.history) == pytest.approx(np.sqrt(share / (1 + share)), rel=1e-6)
+    late = end * (1 + share)
+
+    def rectangle(until: float) -> Callable[[np.ndarray], np.ndarray]:
+        return lambda times: np.where(times < until, 300.0, 0.0)
+
+    knots = np.array([0.0, end, end, late])
+    assert distance(rectangle(end), rectangle(late), knots) == pytest.approx(np.sqrt(share), rel=1e-12)
+
+
+def test_a_bouncing_bar_claims_its_history_whole() -> None:
+    """Between its contacts the steps err by a time, so that the force errs by the root of it: also where it ends."""
+    scene = Scene.load("bar")
+    truth = block.exact(scene)
+    assert truth is not None
+    for steps in (100, 200, 800):
+        found = simulate(scene, "fe", {"tolerance": 0.1, "steps": steps})
+        assert truth.errors(found)["history"] <= (found.quantities["history_l2"].error or 0.0)
 
 
 def test_exact_waves_are_known_of_elastic_rods_alone() -> None:

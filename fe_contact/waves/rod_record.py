@@ -10,6 +10,7 @@ import numpy as np
 
 from fe_contact.certify import CAUSES, SAFETY
 from fe_contact.curve import PEAK_SHARE
+from fe_contact.distance import distance
 from fe_contact.forms import Array
 from fe_contact.numerics import Numerics
 from fe_contact.plan import Plan
@@ -129,9 +130,8 @@ def _between_rows(fine: Reading) -> float:
 
 
 def _distance(fine: Reading, coarse: Reading) -> float:
-    """Norm of the change of the force over that of the force."""
-    force, change = _compared(fine, coarse)
-    return float(np.sqrt(np.sum(change**2) / np.sum(force**2)))
+    """Norm of the change of the force over that of the force, until both have ended."""
+    return distance(fine.force_at, coarse.force_at, np.union1d(fine.rows[TIME], coarse.rows[TIME]))
 
 
 def _compared(fine: Reading, coarse: Reading) -> tuple[Array, Array]:
