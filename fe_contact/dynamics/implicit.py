@@ -5,7 +5,9 @@ With the increment d = u' - u of a :class:`~fe_contact.dynamics.schemes.base.Sch
     M a_(1 - alpha_m) + C v_(1 - alpha_f) + f_(1 - alpha_f) = weight + push p_(1 - alpha_f)
 
 is A d = known + (1 - alpha_f) push p' ,
-A = (1 - alpha_m)/(beta dt^2) M + (1 - alpha_f) [gamma/(beta dt) C + sum of modulus x stiffness].
+A = (1 - alpha_m)/(beta dt^2) M + (1 - alpha_f) [gamma/(beta dt) C + sum of modulus x stiffness] ,
+
+where branches count a little later, see :mod:`fe_contact.dynamics.memory`.
 """
 
 from __future__ import annotations
@@ -71,7 +73,7 @@ class ImplicitStepper:
         body, (alpha_m, alpha_f, beta, gamma), dt = self.body, self.scheme, self.step
         matrix = (1 - alpha_m) / (beta * dt**2) * body.inertia
         for part, law in zip(body.parts, self.laws, strict=True):
-            matrix = matrix + (1 - alpha_f) * law.now * part.stiffness
+            matrix = matrix + ((1 - alpha_f) * law.now + float(law.late @ law.gain)) * part.stiffness
         if body.damping is not None:
             matrix = matrix + (1 - alpha_f) * gamma / (beta * dt) * body.damping
         return matrix
@@ -84,7 +86,8 @@ class ImplicitStepper:
         forces -= alpha_f * state.internal
         for part, law, branches in zip(body.parts, self.laws, state.branches, strict=True):
             held = memory.past(part, law, state.displacement, branches)
-            forces -= (1 - alpha_f) * (part.stiffness @ held)
+            faded = law.late @ ((law.decay - 1.0)[:, None] * branches)
+            forces -= part.stiffness @ ((1 - alpha_f) * held + faded)
         if body.damping is not None:
             forces -= body.damping @ ((1 - alpha_f) * v + alpha_f * state.velocity)
         return np.asarray(forces)

@@ -96,6 +96,9 @@ def _of_stress(body: Body, scheme: Scheme, before: State, after: State, step: fl
     """Loss by stress and damping that are not averages over the step."""
     late, early = 1 - scheme.alpha_f, scheme.alpha_f
     forces = late * after.internal + early * before.internal - _average(body, before, after, step, change)
+    if not (body.is_elastic or scheme.explicit):
+        parts = zip(body.parts, before.branches, after.branches, strict=True)
+        forces = forces + sum(memory.later(p, memory.part_law(p, step), z, own) for p, z, own in parts)
     if body.damping is not None:
         forces = forces + body.damping @ (late * after.velocity + early * before.velocity - change / step)
     return float(change @ forces)

@@ -62,6 +62,22 @@ def test_the_order_of_a_scheme(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", IMPLICIT)
+@pytest.mark.parametrize("tau", [1e-4, 0.03, 0.5])
+def test_the_order_does_not_depend_on_how_long_a_branch_remembers(name: str, tau: float) -> None:
+    """A spring, a branch far shorter than a step, about as long or longer, against the matrix exponential."""
+    body, end, modulus = oscillator(Relaxation(2.0, (0.3 / tau,), (tau,))), 4.0, 0.3 / tau
+    rates = [[0.0, 1.0, 0.0], [-2.0, 0.0, -modulus], [0.0, 1.0, -1.0 / tau]]
+    wanted = (expm(end * np.array(rates)) @ [0.0, 1.0, 0.0])[:2]
+    errors = []
+    for steps in (40, 80, 160, 320):
+        last = moved(body, name, end / steps, end).samples[-1]
+        errors.append(np.abs([last.displacement[0] - wanted[0], last.velocity[0] - wanted[1]]).max())
+        assert abs(last.energies.residual) < 1e-12
+    found = np.log2(np.divide(errors[:-1], errors[1:]))
+    assert found[-1] > ORDER[name] - 0.2
+
+
+@pytest.mark.parametrize("name", IMPLICIT)
 def test_the_order_is_kept_where_steps_are_doubled(name: str) -> None:
     body, end = oscillator(Relaxation(2.0), dashpot=0.3), 4.0
     errors = []
