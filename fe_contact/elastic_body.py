@@ -46,5 +46,4 @@ def plane(basis: Any, bulk: float, shear: float) -> Any:
 
 def moduli(poisson: float) -> tuple[float, float]:
     """Bulk and shear modulus for E* = 1, that is E = 1 - nu^2."""
-    young = 1.0 - poisson**2
-    return young / (3.0 * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson))
+    return (1.0 - poisson**2) / (3.0 * (1.0 - 2.0 * poisson)), 0.5 * (1.0 - poisson)

@@ -19,7 +19,7 @@ from fe_contact.progress import Progress, silent
 from fe_contact.recovery import indentation_left, recovers
 from fe_contact.several import whole
 from fe_contact.told import history, quantities_of
-from lumped.errors import BadInput, Fault
+from lumped.errors import BadInput, Fault, NotReached
 from lumped.members import get
 from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Result, meets, provenance, unmet
 from lumped.scene import Scene
@@ -82,19 +82,24 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     if scene.motion.impacts > 1 and not struck(scene.geometry, chosen.numerics).recovers:
         scene.check_single("fe, on what remembers by its bulk or by two surfaces,")
     strike = strike_of(scene)
-    numerics, certified, outgrown = chosen.numerics, None, None
-    for attempt in range(ROUNDS + 1):
-        progress(f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements along the contact radius")
+    numerics = finer = chosen.numerics
+    certified, outgrown = None, None
+    for _ in range(ROUNDS + 1):
+        progress(f"{finer.steps} steps, {finer.elements_per_contact:g} elements along the contact radius")
         try:
-            certified = certify(strike, scene.geometry, numerics, scene.motion.impacts)
+            certified, numerics = certify(strike, scene.geometry, finer, scene.motion.impacts), finer
         except MemoryTooSmall as failure:
             outgrown = failure
-            numerics = numerics.varied(contact_radius=1.5 * numerics.contact_radius)
+            finer = finer.varied(contact_radius=1.5 * finer.contact_radius)
             continue
-        finer = refined_for(certified, numerics, chosen)
-        if finer is None or attempt == ROUNDS:
+        except NotReached:
+            if certified is None:
+                raise
+            break  # finer settings lose their way: what is known stands, with its bars
+        better = refined_for(certified, numerics, chosen)
+        if better is None:
             break
-        numerics = finer
+        finer = better
     if certified is None:
         raise outgrown or MemoryTooSmall(numerics.contact_radius)
     for curve in (budget.curve for budget in certified.row):

@@ -284,3 +284,11 @@ def test_what_bulk_memory_is_not_for_says_so() -> None:
     half_plane = replace(Scene.load("polymer-half-plane"), material=Material(SOLID, 0.45, constant="bulk"))
     with pytest.raises(BadInput, match=r"no impact on half_space with it in this version; accepted: \"poisson\""):
         fe_contact.run(half_plane)
+
+
+def test_moduli_have_the_contact_modulus_one_where_a_dashpot_leaves_shear_alone_too() -> None:
+    """E* = 4 G (3K + G)/(3K + 4G), down to a step so short that shape is infinitely stiffer than volume."""
+    ratios = 10.0 ** np.random.default_rng(3).uniform(-3.0, 18.0, 50)
+    for nu in (-1.0, 0.0, 0.4999, *(poisson(float(ratio)) for ratio in ratios)):
+        bulk, shear = moduli(nu)
+        assert 4 * shear * (3 * bulk + shear) / (3 * bulk + 4 * shear) == pytest.approx(1.0, rel=1e-9)

@@ -99,3 +99,15 @@ def test_what_cannot_be_struck_says_so() -> None:
         Scene(Cylinder(0.01, 0.02), 0.1, 0.01, material, model=Model())
     with pytest.raises(BadInput, match="mdr is for the half-space"):
         laws.mdr.of(random_scene(0))
+
+
+def test_what_finer_settings_fail_to_better_stands_with_its_bars() -> None:
+    """A cone whose first shorter steps touch no point of the mesh: the coarse answer is told, and not converged."""
+    soft = Material(Relaxation(6.7e5, viscosity=9.8), 0.036)
+    cone, layer = Cone(1.53), Layer(2.0e-4, "bonded")
+    scene = Scene(cone, 1.22e-10, 0.303, soft, target=layer, model=Model(gravity=3.2e4))
+    found, truth = fe_contact.run(scene, TOLERANCE), exact(scene)
+    assert not found.converged
+    for name in ("peak_force", "peak_depth"):
+        value, true = found.quantities[name], truth.quantities[name]
+        assert abs(value.value - true.value) <= value.error + true.error
