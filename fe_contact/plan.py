@@ -27,6 +27,7 @@ RIM_PENALTY = 16.0  # penalty under a rim over the usual: the pressure is infini
 VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
 STEPS_AT_DEFAULT = 40
 STEPS_ORDER = 0.176  # steps grow with tolerance to this power: 60 at 1e-4
+AT_TOUCH = 1e-12  # share of the contact before which a peak is the touch itself, but for rounding
 SOONEST_PEAK = 1e-6  # share of the contact below which the time grid would lose its digits
 EARLY_PEAK = 0.28  # a force that peaks before this share of the contact needs more steps in proportion
 DEFAULTS: Mapping[str, Any] = {
@@ -62,7 +63,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     # gravity holds what does not separate, and swings it; a dashpot may answer most at the touch
     held = max(2.0 * size.peak_time, scene.elastic_contact_time)
     contact_time = size.duration or (min(held, scene.end_time) if scene.gravity > 0.0 else scene.end_time)
-    peak_share = min(max(size.peak_time / contact_time, SOONEST_PEAK), 1.0)
+    peak_share = share_of_peak(size.peak_time, contact_time)
     placed = chosen.varied(
         steps=_steps(tolerance, peak_share),
         contact_radius=size.contact_radius * (SPARE if _stays(scene) else 1.0),
@@ -71,6 +72,12 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     )
     peak = Peak(size.peak_force, size.peak_depth, size.contact_radius, 2 * size.peak_time)
     return Plan(placed.varied(**given), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
+
+
+def share_of_peak(peak_time: float, contact_time: float) -> float:
+    """Time of the force's peak over that of the contact; one that falls from the touch on has no rise to resolve."""
+    share = peak_time / contact_time
+    return min(max(share, SOONEST_PEAK), 1.0) if share > AT_TOUCH else 0.5
 
 
 def _settings(scene: Scene, tolerance: float) -> Numerics:

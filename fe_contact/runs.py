@@ -13,7 +13,7 @@ from fe_contact.impact import march
 from fe_contact.impacts import Followed, follow
 from fe_contact.march import March, Strike
 from fe_contact.numerics import Numerics
-from fe_contact.plan import SOONEST_PEAK
+from fe_contact.plan import share_of_peak
 from lumped.errors import NotReached
 from lumped.geometry import Geometry
 
@@ -107,5 +107,5 @@ class Runs:
         except NotReached:
             return guess
         peak_time = Curve.of(pilot, begun).quantities["peak_time"] or 0.0
-        contact_time = float(pilot.time[-1]) if pilot.separated else 2.0 * peak_time
-        return {"contact_time": contact_time, "peak_share": min(max(peak_time / contact_time, SOONEST_PEAK), 1.0)}
+        contact_time = float(pilot.time[-1]) if pilot.separated else max(2.0 * peak_time, guess["contact_time"])
+        return {"contact_time": contact_time, "peak_share": share_of_peak(peak_time, contact_time)}
