@@ -9,7 +9,8 @@ class ContactNotSettled(NotReached):
     """A contact problem did not converge, or its edge left the mesh at every scale."""
 
     def __init__(self, time: float) -> None:
-        super().__init__(f"contact not found at t = {time:.6g} s; cure: raise numerics.steps or lower numerics.penalty")
+        cure = "cure: raise numerics.steps, lower numerics.penalty, or another numerics.enforcement: corrected, exact"
+        super().__init__(f"contact not found at t = {time:.6g} s; {cure}")
 
 
 class ContactLost(NotReached):
