@@ -116,19 +116,18 @@ def moved(touching: Touching, by: int) -> Touching:
 
 
 def _solution(problem: ContactProblem, gap: Array, iterations: int, settled: bool) -> ContactSolution:
-    converged = settled and _residual(problem, gap) <= RESIDUAL
-    return ContactSolution(problem.penalty * gap, iterations, converged, (gap > 0.0,))
-
-
-def _residual(problem: ContactProblem, gap: Array) -> float:
-    """How far the gap is from what its own pressure leaves of the overlap, over the largest overlap that presses."""
     touching = gap > 0.0
-    if not touching.any():
-        return 0.0
-    forces = problem.penalty * problem.surface.weights * np.maximum(gap, 0.0)
-    retreat = float(np.sum(problem.yielding * forces))
-    left = problem.overlap - problem.surface.displaced(forces) - retreat
-    return float(np.abs(left - gap).max() / np.abs(problem.overlap[touching]).max())
+    converged = settled and _balances(problem, gap, touching)
+    return ContactSolution(problem.penalty * gap, iterations, converged, (touching,))
+
+
+def _balances(problem: ContactProblem, gap: Array, touching: Touching) -> bool:
+    """Whether the gap is what its own pressure leaves of the overlap, to a share of the largest that presses."""
+    forces = problem.penalty * problem.surface.weights * (gap * touching)
+    yielding = problem.yielding
+    retreat = yielding * forces.sum() if isinstance(yielding, float) else yielding @ forces
+    off = problem.overlap - problem.surface.displaced(forces) - retreat - gap
+    return bool(np.abs(off).max() <= RESIDUAL * np.abs(problem.overlap * touching).max())
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sparse
-from scipy.linalg import lu_factor, lu_solve
-from scipy.linalg.lapack import dposv
+from scipy.linalg.lapack import dgetrf, dgetrs, dposv
 
 from fe_contact.forms import Array
 
@@ -51,7 +50,10 @@ class PressedSurface:
         """The points (q,) under forces (q,) at them."""
         if self.compliance is not None:
             return np.asarray(self.compliance @ forces)
-        return np.asarray(self.trace @ lu_solve(self._factors, self.trace.T @ forces, check_finite=False))
+        if self.recurring:
+            return np.asarray(self._yields @ forces)
+        factors, pivots = self._factors
+        return np.asarray(self.trace @ dgetrs(factors, pivots, self.trace.T @ forces)[0])
 
     def stiffened(self, stiffness: Array) -> PressedSurface:
         """The same points on another stiffness; what is known of the points alone is shared."""
@@ -60,9 +62,14 @@ class PressedSurface:
         return other
 
     @cached_property
-    def _factors(self) -> Any:
+    def _factors(self) -> tuple[Array, Array]:
         """Of the stiffness alone."""
-        return lu_factor(self.stiffness, check_finite=False)
+        return dgetrf(self.stiffness)[:2]
+
+    @cached_property
+    def _yields(self) -> Array:
+        """Displacement at the points per force at the points, (q, q)."""
+        return np.asarray(self.trace @ np.linalg.solve(self.stiffness, self.trace.T))
 
     @cached_property
     def _squares(self) -> Any:
