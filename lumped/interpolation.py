@@ -47,7 +47,8 @@ def highest(curve: Callable[[Array], Array], places: Array) -> tuple[float, floa
     i = int(np.argmax(values))
     low, high = places[max(i - 1, 0)], places[min(i + 1, places.size - 1)]
     around = np.linspace(-1.0, 1.0, FITTED)
-    fit = np.polynomial.Polynomial.fit(around, curve(0.5 * (low + high) + 0.5 * (high - low) * around), DEGREE)
+    between = np.clip(0.5 * (low + high) + 0.5 * (high - low) * around, low, high)  # the curve may jump where it begins
+    fit = np.polynomial.Polynomial.fit(around, curve(between), DEGREE)
     flat = fit.deriv().roots()
     inside = np.real(flat[(np.abs(np.imag(flat)) < 1e-12) & (np.abs(np.real(flat)) < 1.0)])
     candidates = np.concatenate([inside, [-1.0, 1.0]])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -179,3 +180,16 @@ def test_the_law_refuses_what_it_does_not_follow(name: str, changes: dict[str, A
 def test_laws_without_waves_say_what_the_rod_would_take() -> None:
     with pytest.raises(BadInput, match=r"target.shape"):
         laws.get("mdr").of(Scene.load("concrete-pole"))
+
+
+def test_the_greatest_force_is_that_behind_the_echo_wherever_it_rounds_to() -> None:
+    """On a fixed rod no lighter than the striker: Z v (2 + exp(-2 Z T/m)), T the transit; it jumps from far below."""
+    rng = np.random.default_rng(99)
+    for _ in range(40):
+        scene = Scene.load(
+            "rod", {"target.length": rng.uniform(0.2, 3.0), "target.material.E": 10 ** rng.uniform(9.0, 11.3)}
+        )
+        waves, ratio = Waves.of(scene), rng.uniform(1.0, 3.0)
+        scene = replace(scene, mass=waves.impedance * 0.5 * waves.delay / ratio)
+        known = waves.impedance * scene.velocity * (2.0 + math.exp(-2.0 * ratio))
+        assert value(run(scene), "peak_force") == pytest.approx(known, rel=1e-9)
