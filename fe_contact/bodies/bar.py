@@ -8,6 +8,10 @@ wave crosses an element in a step, dt = h/c, what it leaves behind at a closed c
 
 not at all, |z| = 1, for tip = 1/2, which alone keeps the first moment of the mass as well (Khenous, Laborde and Renard
 2008, doi:10.1016/j.euromechsol.2008.01.001); |z| = 0.58 for equal elements; 0.41 for TIP, whose middle term vanishes.
+
+A touch or a separation between two steps errs in energy by about what one element holds, of either sign: with 100
+elements by some thousandths of the whole, at worst by 0.03. The bouncing bar of Doyen, Ern and Piperno 2011, whose
+contacts keep to steps, keeps its energy; under a gravity that makes hundreds of contacts it drifts by their sum.
 """
 
 from __future__ import annotations
