@@ -23,14 +23,15 @@ def on_plane(scene: Scene, numerics: WaveNumerics) -> Flying:
     """The ball of a scene whose target is rigid; it has the points."""
     ball = ball_of(scene)
     places, weights = ball.points(numerics)
-    return _moving(scene, numerics, [ball.side(numerics, places)], places, weights)
+    return _moving(scene, numerics, [ball.side(numerics, places)], places, weights, (1.0,))
 
 
 def on_half_space(scene: Scene, numerics: WaveNumerics) -> Flying:
     """The ball of a scene and the half-space, which has the points."""
     struck = half_space_body.moving(replace(scene, striker_material=None), numerics)
     sides = [ball_of(scene).side(numerics, struck.places), Side.struck(struck.body)]
-    return _moving(scene, numerics, sides, struck.places, struck.body.pressing.weights, endless=struck.endless)
+    weights = struck.body.pressing.weights
+    return _moving(scene, numerics, sides, struck.places, weights, (1.0, 0.0), endless=struck.endless)
 
 
 def on_ball(scene: Scene, numerics: WaveNumerics) -> Flying:
@@ -59,12 +60,12 @@ def _moving(
     sides: Sequence[Side],
     places: Array,
     weights: Array,
-    shares: Sequence[float] = (1.0, 0.0),
+    shares: Sequence[float],
     endless: bool = False,
 ) -> Flying:
     """The sides, the striker first, each with its share of the speed towards the others."""
     heights = np.minimum(-scene.target.overlap(scene.profile, places, 0.0), BEYOND * numerics.contact_radius)
-    start = [share * side.axial for share, side in zip(shares, sides, strict=False)]
+    start = [share * side.axial for share, side in zip(shares, sides, strict=True)]
     return Flying(
         together(sides, scene.gravity, weights, -heights),
         scene.velocity,

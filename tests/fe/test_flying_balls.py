@@ -111,6 +111,16 @@ def test_a_slow_ball_is_the_one_without_inertia(
         assert not uncovered(still, waves), (nu, velocity)
 
 
+def test_the_ledger_knows_how_much_a_ball_without_inertia_leaves_out() -> None:
+    """In order of magnitude: where the vibrations stand when the force peaks, it does not know."""
+    still, waves = simulate(ball(50.0, inertia=False), "fe", {}), curve_of(ball(50.0)).quantities["peak_force"]
+    (entry,) = [entry for entry in still.model_ledger if entry.effect == "target inertia"]
+    assert entry.estimate is not None
+    assert waves is not None
+    assert 0.3 < (1.0 - waves / (still.quantities["peak_force"].value or 0.0)) / entry.estimate < 3.0
+    assert not still.model_sufficient
+
+
 def test_two_slow_balls_are_those_without_inertia(uncovered: Callable[..., dict[str, float]]) -> None:
     """Unlike in size and material, either of them as the striker: action is reaction."""
     other = {"radius": 3.1e-3, "material": {"E": 7e10, "nu": 0.2, "density": 2500.0}}
