@@ -7,6 +7,7 @@ Assembled and factorised once; a unit force on every surface degree of freedom g
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -100,7 +101,12 @@ class SurfaceOperator:
 
     def hats(self, pressure: Array) -> Array:
         """Values at the corners of the facets, whose moments against the hats there are those of a pressure (q,)."""
-        return self._projected(trace_between(self.corners, self.points, 1), pressure)
+        return self._projected(self.hat_shapes, pressure)
+
+    @cached_property
+    def hat_shapes(self) -> Array:
+        """The hats at the points, (q, corners)."""
+        return trace_between(self.corners, self.points, 1)
 
     def _projected(self, trace: Array, pressure: Array) -> Array:
         mass = trace.T @ (self.weights[:, None] * trace)

@@ -13,6 +13,8 @@ from scipy.linalg.lapack import dgetrf, dgetrs, dposv
 
 from fe_contact.forms import Array
 
+INDEPENDENT = 1e-10  # of the largest: less than this is a sum of the others, as a rigid striker's unit displacement is
+
 
 @dataclass(frozen=True, eq=False)
 class PressedSurface:
@@ -20,6 +22,7 @@ class PressedSurface:
 
     ``recurring``: whether the same sets of points touch again and again, so that their answers are worth keeping.
     ``compliance`` (q, q), displacement at the points under unit forces there, of surfaces with more nodes than points.
+    ``carriers`` (q, m): shape functions of a pressure that both of two bodies can follow; of one body, those it has.
     """
 
     stiffness: Array
@@ -27,6 +30,7 @@ class PressedSurface:
     weights: Array
     recurring: bool = True
     compliance: Array | None = None
+    carriers: Array | None = None
 
     def held(self, springs: Array) -> Array:
         """Stiffness with springs (q,) at the points, (n, n), in the order of columns that LAPACK needs."""
@@ -55,10 +59,16 @@ class PressedSurface:
         factors, pivots = self._factors
         return np.asarray(self.trace @ dgetrs(factors, pivots, self.trace.T @ forces)[0])
 
+    def in_shapes(self, pressure: Array) -> Array:
+        """The nearest to a pressure (q,) that is a combination of the surface's shape functions."""
+        directions = self._directions
+        root = np.sqrt(self.weights)
+        return np.asarray(directions @ (directions.T @ (root * pressure))) / root
+
     def stiffened(self, stiffness: Array) -> PressedSurface:
         """The same points on another stiffness; what is known of the points alone is shared."""
         other = replace(self, stiffness=stiffness)
-        vars(other)["_squares"] = self._squares
+        vars(other).update(_squares=self._squares, _directions=self._directions)
         return other
 
     @cached_property
@@ -70,6 +80,13 @@ class PressedSurface:
     def _yields(self) -> Array:
         """Displacement at the points per force at the points, (q, q)."""
         return np.asarray(self.trace @ np.linalg.solve(self.stiffness, self.trace.T))
+
+    @cached_property
+    def _directions(self) -> Array:
+        """The shape functions times the root of the weights, made orthonormal, (q, rank)."""
+        shapes = self.trace if self.carriers is None else self.carriers
+        found, sizes, _ = np.linalg.svd(np.sqrt(self.weights)[:, None] * shapes, full_matrices=False)
+        return np.asarray(found[:, sizes > INDEPENDENT * sizes[0]])
 
     @cached_property
     def _squares(self) -> Any:

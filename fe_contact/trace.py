@@ -25,6 +25,13 @@ def contact_quadrature(corners: Array, order: int) -> tuple[Array, Array, Array]
     return points, weights, trace
 
 
+def hats(count: int, order: int) -> Array:
+    """Linear shape functions of the facets at so many points of a quadrature as above, (q, corners)."""
+    gauss, _ = np.polynomial.legendre.leggauss(order + FACET_POINTS)
+    corners = np.arange(count // gauss.size + 1.0)
+    return trace_between(corners, (corners[:-1, None] + (gauss + 1) / 2).ravel(), 1)
+
+
 def trace_between(corners: Array, points: Array, order: int) -> Array:
     """Displacement at points (q,) anywhere on the facets between ``corners`` from that of their nodes, (q, n)."""
     facet = np.clip(np.searchsorted(corners, points) - 1, 0, len(corners) - 2)

@@ -101,4 +101,16 @@ def stacked(operator: SurfaceOperator, sides: tuple[Side, ...], weights: tuple[f
     trace = np.hstack([side.trace for side in sides])
     shares = [side.at_points / weight for side, weight in zip(sides, weights, strict=True)] if len(sides) > 1 else []
     compliance = np.sum(shares, axis=0) if shares else None
-    return PressedSurface(block_diag(*blocks), trace, operator.weights, recurring=False, compliance=compliance)
+    return PressedSurface(
+        block_diag(*blocks),
+        trace,
+        operator.weights,
+        recurring=False,
+        compliance=compliance,
+        carriers=carriers(operator, sides),
+    )
+
+
+def carriers(operator: SurfaceOperator, sides: tuple[Side, ...]) -> Array | None:
+    """What two meshes that do not match can both follow: of a facet of the first its mean and its tilt."""
+    return operator.hat_shapes if len(sides) > 1 else None

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from fe_contact.bodies.offer import Half, Offer, Recalled
-from fe_contact.bodies.sides import Side, stacked
+from fe_contact.bodies.sides import Side, carriers, stacked
 from fe_contact.bodies.struck import Deformable
 from fe_contact.forms import Array
 from fe_contact.march import Snapshot
@@ -144,7 +144,8 @@ class StackedBody:
         """What is known of the points alone."""
         trace = np.hstack([side.trace for side in self.sides])
         blocks = block_diag(*(side.stiffness for side in self.sides))
-        return PressedSurface(blocks, trace, self.operator.weights, recurring=False)
+        shared = carriers(self.operator, self.sides)
+        return PressedSurface(blocks, trace, self.operator.weights, recurring=False, carriers=shared)
 
 
 def _together(moduli: Iterable[float]) -> float:

@@ -30,7 +30,8 @@ class Pressing:
     """Places of contact: overlap = ``clearance`` - trace push^T u at the points, where u = 0 is the undeformed body.
 
     ``push`` (N, m) nodal forces of unit surface forces, sparse; ``trace`` (q, m) surface displacement at the points;
-    ``weights`` (q,) area of the points; ``clearance`` (q,) overlap there without displacement, m, negative if open.
+    ``weights`` (q,) area of the points; ``clearance`` (q,) overlap there without displacement, m, negative if open;
+    ``carriers`` (q, k) shape functions of a pressure that two bodies can follow, None of one.
     A rigid striker is one more degree of freedom, its depth: ``push`` -1, ``trace`` 1 for all points.
     """
 
@@ -38,6 +39,7 @@ class Pressing:
     trace: Array
     weights: Array
     clearance: Array
+    carriers: Array | None = None
 
     def overlap(self, displacement: Array) -> Array:
         """Interpenetration at the points, (q,), m, positive inside."""

@@ -94,7 +94,7 @@ class ExplicitStepper:
         if lever not in self._surfaces:
             pressing = self.body.pressing
             moved = self._accelerated(pressing.push.toarray())
-            self._surfaces[lever] = surface_of(lever * (pressing.push.T @ moved), pressing.trace, pressing.weights)
+            self._surfaces[lever] = surface_of(lever * (pressing.push.T @ moved), pressing)
         return self._surfaces[lever]
 
     def _settled(self, state: State, change: Array) -> tuple[Array, Found]:
@@ -119,7 +119,7 @@ class ExplicitStepper:
         push = pressing.push[light].toarray()
         yielding = np.flatnonzero(push.any(axis=0))  # a rigid striker does not yield at once
         moved = solve(push[:, yielding])
-        surface = surface_of(push[:, yielding].T @ moved, pressing.trace[:, yielding], pressing.weights)
+        surface = surface_of(push[:, yielding].T @ moved, pressing, yielding)
         return _Light(solve, moved, yielding, surface)
 
 

@@ -48,7 +48,7 @@ class ImplicitStepper:
     def surface(self) -> PressedSurface:
         """What contact knows of the body in a step."""
         pressing = self.body.pressing
-        return surface_of(pressing.push.T @ self.moved, pressing.trace, pressing.weights)
+        return surface_of(pressing.push.T @ self.moved, pressing)
 
     def advance(self, state: State) -> tuple[State, Found]:
         """The state a step later; raises ContactNotSettled."""

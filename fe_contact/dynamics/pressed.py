@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from fe_contact.contact import ContactProblem, ContactSolution, Touching
+from fe_contact.dynamics.body import Pressing
+from fe_contact.dynamics.mass.consistent import Nodes
 from fe_contact.errors import ContactNotSettled
 from fe_contact.forms import Array
 from fe_contact.pressed_surface import PressedSurface
@@ -52,8 +54,9 @@ class Found(NamedTuple):
         return np.maximum(self.signed_pressure, 0.0)
 
 
-def surface_of(compliance: Array, trace: Array, weights: Array) -> PressedSurface:
-    """What contact knows of a body whose surface moves by ``compliance`` (m, m) per force."""
+def surface_of(compliance: Array, pressing: Pressing, nodes: Nodes | slice = slice(None)) -> PressedSurface:
+    """What contact knows of a body whose surface ``nodes`` (m,) move by ``compliance`` (m, m) per force."""
     symmetric = (compliance + compliance.T) / 2
     stiffness = np.linalg.inv(symmetric)
-    return PressedSurface((stiffness + stiffness.T) / 2, trace, weights)
+    trace = pressing.trace[:, nodes]
+    return PressedSurface((stiffness + stiffness.T) / 2, trace, pressing.weights, carriers=pressing.carriers)

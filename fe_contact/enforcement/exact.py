@@ -45,7 +45,7 @@ def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:
 @lru_cache(maxsize=SURFACES_KEPT)
 def _system(surface: PressedSurface) -> tuple[Array, Array, Array]:
     """Shape functions of the pressure (q, n), the same as weighted tests (n, q), and how they yield, (n, n)."""
-    shapes = independent(surface.trace)
+    shapes = independent(surface.trace) if surface.carriers is None else surface.carriers
     test = shapes.T * surface.weights
     loads = surface.trace.T @ test.T
     return shapes, test, loads.T @ np.linalg.solve(surface.stiffness, loads)

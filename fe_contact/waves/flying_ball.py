@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from fe_contact.forms import Array
+from fe_contact.trace import hats
 from fe_contact.waves import half_space_body
 from fe_contact.waves.ball_body import Ball
 from fe_contact.waves.half_space_body import BEYOND
@@ -65,9 +66,10 @@ def _moving(
 ) -> Flying:
     """The sides, the striker first, each with its share of the speed towards the others."""
     heights = np.minimum(-scene.target.overlap(scene.profile, places, 0.0), BEYOND * numerics.contact_radius)
+    carriers = hats(places.size, numerics.order) if len(sides) > 1 else None
     start = [share * side.axial for share, side in zip(shares, sides, strict=True)]
     return Flying(
-        together(sides, scene.gravity, weights, -heights),
+        together(sides, scene.gravity, weights, -heights, carriers),
         scene.velocity,
         places,
         endless,

@@ -66,8 +66,11 @@ class Side:
         )
 
 
-def together(sides: Sequence[Side], gravity: float, weights: Array, clearance: Array) -> Body:
-    """One body of all sides, one after the other; ``gravity``, m/s2, pulls the first; areas and overlaps (q,)."""
+def together(sides: Sequence[Side], gravity: float, weights: Array, clearance: Array, carriers: Array | None) -> Body:
+    """One body of all sides, one after the other; ``gravity``, m/s2, pulls the first; areas and overlaps (q,).
+
+    ``carriers``: what the pressure between two of them is made of, as in Pressing.
+    """
     ends = np.cumsum([side.size for side in sides])
     placed = [side.among(end - side.size, ends[-1] - end) for side, end in zip(sides, ends, strict=True)]
     dashpots = [side.dashpots for side in placed if side.dashpots is not None]
@@ -82,6 +85,7 @@ def together(sides: Sequence[Side], gravity: float, weights: Array, clearance: A
             trace=np.hstack([side.trace for side in sides]),
             weights=weights,
             clearance=clearance,
+            carriers=carriers,
         ),
     )
 

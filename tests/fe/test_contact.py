@@ -278,15 +278,25 @@ def test_exact_contact_is_the_limit_of_the_augmented_lagrangian(seed: int) -> No
 
 
 @given(SEEDS)
-def test_more_points_than_nodes_end_without_overlap_or_with_a_flag(seed: int) -> None:
-    """Many pressures then do the same: the multipliers may creep, but never crash nor claim what is not so."""
+def test_more_points_than_nodes_end_without_overlap_in_the_mean_or_with_a_flag(seed: int) -> None:
+    """Rigid contact at every point is over-determined: the overlap left is what no shape feels."""
     problem = random_problem(seed)
     surface, found = problem.surface, augmented.enforce(problem, np.zeros(len(problem.overlap), bool))
-    x = displacement(surface, found.pressure)
-    per_pressure = np.abs(surface.trace @ np.linalg.solve(surface.stiffness, surface.trace.T * surface.weights))
-    settled = augmented.SETTLED * found.pressure.max() * (per_pressure.sum(axis=1).max() + 1 / problem.penalty)
-    scale = np.abs(problem.overlap).max() + (np.abs(surface.trace) @ np.abs(x)).max()
-    assert not found.converged or (problem.overlap - surface.trace @ x).max() <= settled + 1e-8 * scale
+    left = problem.overlap - surface.trace @ displacement(surface, found.pressure)
+    beyond = found.signed_pressure - surface.in_shapes(found.pressure)
+    penalty = float(beyond @ left) / float(left @ left)
+    scale = np.abs(found.signed_pressure).max() + penalty * np.abs(problem.overlap).max()
+    assert not found.converged or np.abs(beyond - penalty * left).max() <= 1e-6 * scale
+
+
+@given(SEEDS)
+def test_the_shapes_of_a_pressure_lose_no_force_on_the_surface(seed: int) -> None:
+    surface, rng = random_problem(seed).surface, np.random.default_rng(seed)
+    pressure = rng.normal(size=surface.weights.size)
+    shaped = surface.in_shapes(pressure)
+    forces, wanted = (surface.trace.T @ (surface.weights * p) for p in (shaped, pressure))
+    np.testing.assert_allclose(forces, wanted, atol=1e-10 * np.abs(wanted).max())
+    np.testing.assert_allclose(surface.in_shapes(shaped), shaped, atol=1e-10 * np.abs(shaped).max())
 
 
 def test_exact_contact_knows_that_a_rigid_striker_is_no_shape_of_the_pressure() -> None:

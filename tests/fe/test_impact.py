@@ -21,6 +21,7 @@ from fe_contact.enforcement import corrected
 from fe_contact.errors import ContactNotSettled, MemoryTooSmall, TooManySteps
 from fe_contact.impact import march
 from fe_contact.march import March, Strike
+from fe_contact.methods import simulate
 from fe_contact.numerics import SCHEMES, Numerics
 from fe_contact.operators import system_matrix
 from fe_contact.plan import plan
@@ -29,6 +30,7 @@ from fe_contact.targets import half_space
 from lumped.laws import mdr
 from lumped.materials import Relaxation
 from lumped.members import available, get
+from lumped.scene import Scene
 from lumped.shapes import Parabola
 
 Strikes = Callable[..., Strike]
@@ -453,3 +455,13 @@ def test_condensing_to_the_surface_changes_nothing(
 def test_the_paraboloid_of_these_tests_is_the_one_of_the_suite(hertz_strike: Strikes) -> None:
     radii = np.linspace(0, 1, 5)
     np.testing.assert_array_equal(hertz_strike().height(radii), Parabola(1.0).height(radii))
+
+
+@pytest.mark.parametrize("name", ["steel-ball", "polymer-sphere", "polymer-layer", "two-finite-spheres"])
+def test_every_enforcement_that_is_exact_in_the_limit_tells_the_same_impact(name: str) -> None:
+    """The penalty with its bias removed and the augmented Lagrangian: one history within both bars."""
+    one, other = (simulate(Scene.load(name), "fe", {"enforcement": e}) for e in ("corrected", "augmented"))
+    assert other.converged
+    for key in ("peak_force", "peak_depth", "duration", "restitution"):
+        first, second = one.quantities[key], other.quantities[key]
+        assert abs((first.value or 0.0) - (second.value or 0.0)) < (first.error or 0.0) + (second.error or 0.0), key
