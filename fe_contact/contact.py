@@ -29,6 +29,7 @@ from fe_contact.pressed_surface import PressedSurface, solved
 
 MAX_ITERATIONS = 60
 UNGUARDED = 8  # iterations that nearly always suffice, and need no line search
+TRUSTED = 1e-3  # of the following: where a striker moved by one leaves no more, other overlaps do not either
 RESIDUAL = 1e-6  # of the largest overlap that presses: the answer is exact for one which differs by less
 ROOM = 32e6  # bytes of answers to sets of touching points that are kept: some 300 of them
 
@@ -89,16 +90,16 @@ def solve(problem: ContactProblem, touching: Touching) -> ContactSolution:
         gap, retreat = answer.gap(problem)
         found = (gap > 0.0).tobytes()
         if found == held:
-            return _solution(problem, gap, iteration, True)
+            settled = answer.trusted or _balances(problem, gap)
+            return _solution(problem, gap, iteration, settled)
         if iteration >= guarded and isinstance(problem.yielding, float):
             point = Point(answer.springs * gap, retreat, gap)
             if before is not None:
                 point, still = descended(problem, before, point)
                 gap, found = point.gap, (point.gap > 0.0).tobytes()
                 if still:
-                    solution = _solution(problem, gap, iteration, True)
-                    if solution.converged:
-                        return solution
+                    if _balances(problem, gap):
+                        return _solution(problem, gap, iteration, True)
                     guarded = iteration + UNGUARDED  # rounding of the energy hides the way: on without it
             before = None if iteration < guarded else point
         held = found
@@ -116,13 +117,12 @@ def moved(touching: Touching, by: int) -> Touching:
 
 
 def _solution(problem: ContactProblem, gap: Array, iterations: int, settled: bool) -> ContactSolution:
-    touching = gap > 0.0
-    converged = settled and _balances(problem, gap, touching)
-    return ContactSolution(problem.penalty * gap, iterations, converged, (touching,))
+    return ContactSolution(problem.penalty * gap, iterations, settled, (gap > 0.0,))
 
 
-def _balances(problem: ContactProblem, gap: Array, touching: Touching) -> bool:
+def _balances(problem: ContactProblem, gap: Array) -> bool:
     """Whether the gap is what its own pressure leaves of the overlap, to a share of the largest that presses."""
+    touching = gap > 0.0
     forces = problem.penalty * problem.surface.weights * (gap * touching)
     yielding = problem.yielding
     retreat = yielding * forces.sum() if isinstance(yielding, float) else yielding @ forces
@@ -136,13 +136,14 @@ class _Answer:
 
     ``left`` (q, q): gap per free overlap, positive where points press, under a fixed striker; ``lifted`` (q,) its
     row sums, the gap of a striker moved by one; ``springs`` (q,) force per gap; ``stiffness`` force per striker's
-    motion.
+    motion; ``trusted``: that gap balances so well that rounding is no question for any other.
     """
 
     left: Array
     lifted: Array
     springs: Array
     stiffness: float
+    trusted: bool
 
     def gap(self, problem: ContactProblem) -> tuple[Array, float]:
         """Gap (q,) and the striker's retreat."""
@@ -163,6 +164,7 @@ class _Once:
     left: Array
     retreat: float
     springs: Array
+    trusted: bool = False
 
     def gap(self, problem: ContactProblem) -> tuple[Array, float]:
         """Gap (q,) and the striker's retreat."""
@@ -189,4 +191,5 @@ def _answered(surface: PressedSurface, penalty: float, touching: bytes) -> _Answ
     springs = penalty * surface.weights * np.frombuffer(touching, bool)
     left = np.eye(len(springs)) - surface.trace @ solved(surface.held(springs), surface.trace.T * springs)
     lifted = left.sum(axis=1)
-    return _Answer(left, lifted, springs, float(springs @ lifted))
+    off = np.abs(1.0 - surface.displaced(springs * lifted) - lifted).max()
+    return _Answer(left, lifted, springs, float(springs @ lifted), bool(off <= TRUSTED * RESIDUAL))
