@@ -40,7 +40,7 @@ class Change:
             "peak_force": float(self._force_change[first.near_peak].max()),
             "peak_time": self._peak_time,
             "peak_depth": float(depth[first.dense.depth > PEAK_SHARE * first.dense.depth.max()].max()),
-            "duration": float(depth[first.late :].max()) / speed,
+            "duration": float(depth[first.late :].max()) / speed if speed > 0.0 else np.inf,
             "impulse": self.impulse,
             "restitution": self.velocity / first.strike.velocity,
         }
