@@ -18,10 +18,10 @@ from fe_contact.plan import SETTING, Plan, plan, refined
 from fe_contact.progress import Progress, silent
 from fe_contact.recovery import indentation_left, recovers
 from fe_contact.several import whole
-from fe_contact.told import history, quantities_of
+from fe_contact.told import history, quantities_of, shares_of
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.members import get
-from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Result, meets, provenance, unmet
+from lumped.result import UNITS, Result, meets, provenance, unmet
 from lumped.scene import Scene
 
 CURE = "cure: a larger tolerance, or fewer numerics of your own"
@@ -143,7 +143,7 @@ def refined_for(certified: Budget, numerics: Numerics, chosen: Plan) -> Numerics
     """Settings with less of the causes that stand in the way, or None where nothing helps or is needed."""
     if all(meets(quantities_of(one), numerics.tolerance) for one in certified.row):
         return None
-    excess = {cause: max(_excess(one, numerics.tolerance, cause) for one in certified.row) for cause in CAUSES}
+    excess = {cause: max(shares_of(one, cause, numerics.tolerance).max() for one in certified.row) for cause in CAUSES}
     free = {cause: value for cause, value in excess.items() if SETTING[cause] not in chosen.pinned}
     worst = max(excess.values())
     finer = numerics
@@ -152,18 +152,6 @@ def refined_for(certified: Budget, numerics: Numerics, chosen: Plan) -> Numerics
         if value >= DOMINANT * min(worst, 1.0) and getattr(candidate, SETTING[cause]) <= RANGES[SETTING[cause]][1]:
             finer = candidate
     return None if finer == numerics else finer
-
-
-def _excess(certified: Budget, tolerance: float, cause: str) -> float:
-    """Largest error of a cause over what the tolerance allows."""
-    values = certified.curve.quantities
-    relative = [
-        certified.error(name, cause) / abs(values[name] or np.inf)
-        for name in RULED_RELATIVE
-        if values[name] is not None
-    ]
-    absolute = [certified.error(name, cause) for name in RULED_ABSOLUTE if values.get(name, 0.0) is not None]
-    return max(relative + absolute) / tolerance
 
 
 def result_of(scene: Scene, solved: Answer) -> Result:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.certify import Budget
+from fe_contact.forms import Array
 from lumped.history import History, densified
-from lumped.result import UNITS, Quantity
+from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity
 
 ROWS_SHARE = 0.1  # of the tolerance that a line between two rows may err
 
@@ -18,6 +19,18 @@ def quantities_of(certified: Budget) -> dict[str, Quantity]:
         name: Quantity(values[name], None if values[name] is None else certified.total(name), unit)
         for name, unit in UNITS.items()
     }
+
+
+def shares_of(certified: Budget, cause: str, tolerance: float) -> Array:
+    """Error by one cause of every quantity that is ruled and known, over what the tolerance allows."""
+    values = certified.curve.quantities
+    relative = [
+        certified.error(name, cause) / abs(values[name] or np.inf)
+        for name in RULED_RELATIVE
+        if values[name] is not None
+    ]
+    absolute = [certified.error(name, cause) for name in RULED_ABSOLUTE if values.get(name, 0.0) is not None]
+    return np.array(relative + absolute) / tolerance
 
 
 def history(certified: Budget, tolerance: float) -> History:

@@ -20,11 +20,11 @@ from fe_contact.numerics import RANGES, Numerics
 from fe_contact.plan import SETTING, Plan
 from fe_contact.progress import Progress
 from fe_contact.reference import result_of, strike_of
-from fe_contact.told import quantities_of
+from fe_contact.told import quantities_of, shares_of
 from fe_contact.waves.certify import ORDER, Runs, certify
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
-from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, Result, meets
+from lumped.result import Result, meets
 from lumped.scene import Scene
 
 ROUNDS = 3  # refinements before giving up
@@ -81,7 +81,7 @@ def refined(certified: Budget, numerics: WaveNumerics, pinned: frozenset[str]) -
     if all(meets(quantities_of(one), numerics.tolerance) for one in certified.row):
         return numerics
     shares = {
-        cause: np.concatenate([_shares(one, cause, numerics.tolerance) for one in certified.row]) for cause in ORDER
+        cause: np.concatenate([shares_of(one, cause, numerics.tolerance) for one in certified.row]) for cause in ORDER
     }
     return _raised(numerics, factors(shares, {cause: _room(numerics, cause, pinned) for cause in ORDER}))
 
@@ -106,18 +106,6 @@ def factors(shares: Mapping[str, Array], room: Mapping[str, float]) -> dict[str,
 def _worth(share: float, cause: str) -> float:
     """What one step more takes from a bar, per work."""
     return share * (1.0 - STEP[cause] ** -ORDER[cause]) / (WORK[cause] * math.log(STEP[cause]))
-
-
-def _shares(certified: Budget, cause: str, tolerance: float) -> Array:
-    """Error of every quantity that is ruled by one cause, over what the tolerance allows."""
-    values = certified.curve.quantities
-    relative = [
-        certified.error(name, cause) / abs(values[name] or np.inf)
-        for name in RULED_RELATIVE
-        if values[name] is not None
-    ]
-    absolute = [certified.error(name, cause) for name in RULED_ABSOLUTE if values.get(name, 0.0) is not None]
-    return np.array(relative + absolute) / tolerance
 
 
 def _room(numerics: WaveNumerics, cause: str, pinned: frozenset[str]) -> float:
