@@ -8,7 +8,7 @@ from skfem import MeshTri
 
 from meshes._sizes import distance, smaller
 from meshes.session import session
-from meshes.triangles import triangulated
+from meshes.triangles import Outline, triangulated
 
 GRADING = 1.6  # growth of the element size per distance from a singular point, times elements
 FINEST = 1.6e-4  # element size at a singular point over the narrowest part, times elements squared
@@ -34,7 +34,7 @@ def rectangle(
         lines = [geometry.addLine(points[i], points[(i + 1) % len(points)]) for i in range(len(points))]
         geometry.addPlaneSurface([geometry.addCurveLoop(lines)])
         geometry.synchronize()
-        nodes, triangles = triangulated(gmsh, size)
+        nodes, triangles = triangulated(gmsh, size, Outline((left, -height), (right, 0)))
     nodes[abs(nodes) < 1e-12 * max(right, height)] = 0.0  # onto the axis and the surface exactly
     width = right - left
     return MeshTri(nodes, triangles).with_boundaries(

@@ -5,18 +5,21 @@ from __future__ import annotations
 import numpy as np
 from skfem import MeshTri, MeshTri2
 
-from meshes._sizes import beyond, distance, larger, smaller
+from meshes._sizes import beyond, checked, distance, larger, smaller
 
 GROWTH = 0.4  # growth of the element size per unit distance from the surface, and from the contact outwards
 LARGEST = 0.3  # element size over radius
 ZONE = 1.1  # the surface is fine up to this multiple of the largest contact
+SMALLEST = 1e-12  # element size over radius, below which rounding takes its digits
 
 
 def sizes(elements: float, smallest: float, contact: float) -> str:
     """Element size around the point (0, 0) of a circle of radius 1 about (0, -1), contacts up to ``contact``, rad.
 
-    ``elements`` along a half-width, down to the share ``smallest`` of the largest.
+    ``elements`` along a half-width, down to the share ``smallest`` of the largest. Raises MeshError for elements so
+    small that they drown in rounding.
     """
+    checked("smallest element over radius", smallest * contact / elements, SMALLEST, LARGEST)
     zone = ZONE * contact
     within = smaller(larger("Fabs(x)", repr(smallest * contact)), repr(zone))
     depth = f"Fabs(1-{distance(0.0, -1.0)})"

@@ -12,6 +12,16 @@ class MeshError(Exception):
     exit_code = 2
 
 
+class MeshTooLarge(MeshError):
+    """A mesh of so many nodes would keep gmsh busy for minutes: a question of work, not of accepted numbers."""
+
+    exit_code = 3
+
+    def __init__(self, most: int) -> None:
+        reason = f"a mesh of more than {most} nodes is not made"
+        super().__init__(f"{reason}; cure: fewer elements along a contact, a thicker or narrower body, a nearer far end")
+
+
 class GmshMissing(MeshError):
     """gmsh is installed but a system library it needs is not (bare Debian lacks libGLU and friends)."""
 

@@ -12,7 +12,7 @@ from skfem import MeshTri
 from meshes._sizes import beyond, checked, distance, larger, smaller
 from meshes.errors import MeshError
 from meshes.session import session
-from meshes.triangles import triangulated
+from meshes.triangles import Outline, triangulated
 
 EDGE_REFINEMENT = 24.0  # element size inside the contact over element size at its edge
 GROWTH = 2.0  # growth of the element size per unit distance, for one element per contact radius
@@ -107,4 +107,4 @@ def _triangulate(size: str, node: float, far_radius: float) -> tuple[np.ndarray,
         ]
         geometry.addPlaneSurface([geometry.addCurveLoop(outline)])
         geometry.synchronize()
-        return triangulated(gmsh, size)
+        return triangulated(gmsh, size, Outline((0, -far_radius), (far_radius, 0), (0, 0, far_radius)))

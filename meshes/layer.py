@@ -11,7 +11,7 @@ from skfem import MeshTri
 from meshes._sizes import checked
 from meshes.errors import MeshError
 from meshes.session import session
-from meshes.triangles import triangulated
+from meshes.triangles import Outline, triangulated
 
 GROWTH = 4.0  # growth of the element size per unit distance from the contact, for one element along the radius
 LARGEST_GROWTH = 1.0  # steeper gradings leave gmsh too little room for well-shaped triangles
@@ -92,7 +92,7 @@ def _rectangle(size: str, node: float, thickness: float, width: float) -> MeshTr
         lines = [geometry.addLine(points[i], points[(i + 1) % len(points)]) for i in range(len(points))]
         geometry.addPlaneSurface([geometry.addCurveLoop(lines)])
         geometry.synchronize()
-        nodes, triangles = triangulated(gmsh, size)
+        nodes, triangles = triangulated(gmsh, size, Outline((0, -thickness), (side, 0)))
     nodes[abs(nodes) < 1e-12 * side] = 0.0  # onto the axis and the surface exactly
     return MeshTri(nodes, triangles).with_boundaries(
         {

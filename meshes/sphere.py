@@ -7,7 +7,7 @@ from skfem import MeshTri, MeshTri2
 from meshes._round import rounded, sizes
 from meshes._sizes import checked
 from meshes.session import session
-from meshes.triangles import triangulated
+from meshes.triangles import Outline, triangulated
 
 
 def sphere(elements: float, smallest: float, contact: float) -> MeshTri2:
@@ -39,7 +39,7 @@ def sphere(elements: float, smallest: float, contact: float) -> MeshTri2:
         for outline in (upper, lower):
             geometry.addPlaneSurface([geometry.addCurveLoop(outline)])
         geometry.synchronize()
-        nodes, triangles = triangulated(gmsh, size)
+        nodes, triangles = triangulated(gmsh, size, Outline((0, -2), (1, 0), (0, -1, 1)))
     nodes[0, abs(nodes[0]) < 1e-14] = 0.0  # onto the axis exactly
     nodes[1, abs(nodes[1] + 1.0) < 1e-14] = -1.0  # onto the middle plane
     return rounded(

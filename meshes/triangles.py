@@ -1,17 +1,56 @@
-"""From gmsh's open model to plain arrays of triangles."""
+"""From gmsh's open model to plain arrays of triangles, so many as were estimated before and no more than is bearable."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
+
+from meshes.errors import MeshTooLarge
+
+Array = npt.NDArray[np.float64]
+
+MOST_NODES = 40_000  # some five seconds of gmsh, in which it answers to nothing
+PER_AREA = 2 / 3**0.5  # nodes of equal triangles of size h a square h
+COARSE = 2.0  # sides of a cell over the size of the elements in it, at most: a finer look hardly changes the sum
 
 
-def triangulated(gmsh: Any, size: str) -> tuple[np.ndarray, np.ndarray]:
+@dataclass(frozen=True)
+class Outline:
+    """What is meshed: a box from its ``low`` (x, y) to its ``high`` corner, or its part in a disc (x, y, radius)."""
+
+    low: tuple[float, float]
+    high: tuple[float, float]
+    disc: tuple[float, float, float] | None = None
+
+    @property
+    def sides(self) -> Array:
+        """Lengths of the box, (2, 1)."""
+        return np.subtract(self.high, self.low)[:, None]
+
+    def holds(self, places: Array) -> npt.NDArray[np.bool_]:
+        """Which places (2, n) of the box lie within, (n,)."""
+        if self.disc is None:
+            return np.ones(places.shape[1], dtype=bool)
+        x, y, radius = self.disc
+        return np.asarray(np.hypot(places[0] - x, places[1] - y) <= radius)
+
+    def rims(self, places: Array, lengths: Array) -> Array:
+        """What cells about places have of the box's boundary, (n,); both (2, n)."""
+        ends = np.array([self.low, self.high])[:, :, None]
+        touching = (abs(ends - places) <= 0.51 * lengths).sum(axis=0)
+        return np.asarray((touching * lengths[::-1]).sum(axis=0))
+
+
+def triangulated(gmsh: Any, size: str, outline: Outline) -> tuple[np.ndarray, np.ndarray]:
     """Mesh the open model with an element size over (x, y); node coordinates (2, n) and triangles (3, m).
 
-    Nodes of no triangle are dropped.
+    Nodes of no triangle are dropped. Raises MeshTooLarge, before gmsh is asked, where too many are to be expected.
     """
+    if expected_nodes(size, outline, MOST_NODES) > MOST_NODES:
+        raise MeshTooLarge(MOST_NODES)
     meshing = gmsh.model.mesh
     field = meshing.field.add("MathEval")
     meshing.field.setString(field, "F", size)
@@ -25,3 +64,42 @@ def triangulated(gmsh: Any, size: str) -> tuple[np.ndarray, np.ndarray]:
     row_of_tag[tags.astype(int)] = np.arange(len(tags))
     points = coordinates.reshape(-1, 3)[row_of_tag[used], :2].T
     return np.ascontiguousarray(points), np.ascontiguousarray(triangles.reshape(-1, 3).T)
+
+
+def expected_nodes(size: str, outline: Outline, most: float) -> float:
+    """About how many nodes a mesh of this size over (x, y), in the words of gmsh, has; infinite if clearly over most.
+
+    Cells are quartered until none is much larger than the elements in it; no element is larger than the box.
+    """
+    formula = compile(size.replace("^", "**"), "size", "eval")
+    sides, found = outline.sides, 0.0
+    parts = np.ceil(sides / sides.min())
+    if parts.prod() > most:
+        return np.inf
+    lengths, places = sides / parts, _grid(outline, parts)
+    while places.shape[1]:
+        sizes = _sizes(formula, places)
+        coarse = lengths.max() > COARSE * sizes
+        if coarse.sum() > most:
+            return np.inf
+        cells, here = places[:, ~coarse], sizes[~coarse]
+        area = lengths.prod() / (np.minimum(here, sides[0]) * np.minimum(here, sides[1]))
+        rim = outline.rims(cells, lengths) / here
+        found += float(((PER_AREA * area + 0.5 * rim) * outline.holds(cells)).sum())
+        lengths = lengths / 2
+        shifts = 0.5 * lengths * np.array([[-1, 1, -1, 1], [-1, -1, 1, 1]])
+        places = (places[:, coarse, None] + shifts[:, None, :]).reshape(2, -1)
+    return found
+
+
+def _grid(outline: Outline, parts: Array) -> Array:
+    """Middles of equal cells, so many along each side, (2, n)."""
+    (x, y), (low, high) = parts[:, 0].astype(int), (outline.low, outline.high)
+    axes = [start + (end - start) * (np.arange(n) + 0.5) / n for start, end, n in zip(low, high, (x, y), strict=True)]
+    return np.array([axis.ravel() for axis in np.meshgrid(*axes)])
+
+
+def _sizes(formula: Any, places: Array) -> Array:
+    """The very formula that gmsh reads, made of our own numbers alone, at places (2, n)."""
+    names = {"__builtins__": {}, "Sqrt": np.sqrt, "Fabs": np.abs, "x": places[0], "y": places[1]}
+    return np.broadcast_to(eval(formula, names), places.shape[1:])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import sys
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
@@ -11,7 +12,8 @@ import pytest
 from skfem import MeshTri
 
 import meshes
-from meshes import GmshMissing, MeshError
+from meshes import GmshMissing, MeshError, triangles
+from meshes.errors import MeshTooLarge
 from meshes.session import session
 
 RNG = np.random.default_rng(7)
@@ -178,3 +180,60 @@ def test_a_missing_gmsh_names_the_cure(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(GmshMissing, match=r"apt-get install .*libglu1-mesa") as failure:
         meshes.half_space(2.0, 20.0)
     assert failure.value.exit_code == 2
+
+
+def powers(random: np.random.Generator, *ranges: tuple[float, float]) -> tuple[float, ...]:
+    """A number a range, evenly in its logarithm."""
+    return tuple(float(np.exp(random.uniform(*np.log(ends)))) for ends in ranges)
+
+
+def washer_of(random: np.random.Generator) -> tuple[object, ...]:
+    inner, rim, outer = sorted(powers(random, *[(1e-3, 1e3)] * 3))
+    return (*powers(random, (0.5, 200)), inner, outer, rim, bool(random.random() < 0.5))
+
+
+ELEMENTS, SHARE, FINER = (1, 200), (1e-6, 1), (1, 16)
+RANDOM: dict[str, Callable[[np.random.Generator], tuple[object, ...]]] = {
+    "half_space": lambda random: powers(random, (0.25, 64), (2, 1e6)),
+    "half_space_for_waves": lambda random: powers(random, ELEMENTS, (1e-3, 1), (2, 1e6), FINER),
+    "layer": lambda random: powers(random, ELEMENTS, SHARE, (1e-3, 1e6), (1e-3, 1e8)),
+    "layer_for_waves": lambda random: powers(random, ELEMENTS, SHARE, (1e-3, 1e6), (1e-3, 1e8), FINER),
+    "layer_under_rim": lambda random: powers(random, ELEMENTS, (1e-3, 1e6), (1e-3, 1e8)),
+    "ring": lambda random: powers(random, ELEMENTS, SHARE, (1e-3, 1e6), (1.2, 1e6)),
+    "sphere": lambda random: powers(random, ELEMENTS, SHARE, (1e-6, 1.4)),
+    "o_ring": lambda random: powers(random, ELEMENTS, SHARE, (1e-6, 1.4), (1, 1e9)),
+    "prism": lambda random: (*powers(random, (0.5, 200), (1e-4, 1e4)), bool(random.random() < 0.5)),
+    "washer": washer_of,
+}
+HARMLESS = 200  # nodes: of so coarse a mesh gmsh's own well-shaped triangles make more than are asked for
+QUICK = 8_000  # nodes that a test lets gmsh make
+
+
+@pytest.mark.parametrize("kind", RANDOM)
+def test_the_nodes_of_a_mesh_are_estimated_before_it_is_made(
+    kind: str, monkeypatch: pytest.MonkeyPatch, campaign_size: Callable[[int], int]
+) -> None:
+    """Within a factor of three, over all that the numbers may be; a mesh estimated to be too large is refused."""
+    monkeypatch.setattr(triangles, "MOST_NODES", QUICK)
+    random, estimates, most = np.random.default_rng(12), [0.0], 0
+    estimate = triangles.expected_nodes
+    monkeypatch.setattr(triangles, "expected_nodes", lambda *asked: estimates.append(estimate(*asked)) or estimates[-1])
+    for _ in range(campaign_size(100)):
+        numbers = RANDOM[kind](random)
+        try:
+            nodes = getattr(meshes, kind)(*numbers).nvertices
+        except MeshTooLarge:
+            assert estimates[-1] > QUICK
+        except MeshError as refused:
+            assert "smallest element" in str(refused)
+        else:
+            most = max(nodes, most)
+            assert max(nodes, HARMLESS) / 3 <= max(estimates[-1], HARMLESS) <= 3 * max(nodes, HARMLESS), numbers
+    assert most > HARMLESS, "the estimate was tried"
+
+
+def test_a_mesh_too_large_is_refused_before_gmsh_is_asked() -> None:
+    with session("nothing is meshed") as gmsh:
+        with pytest.raises(MeshTooLarge, match="40000 nodes is not made; cure: "):
+            triangles.triangulated(gmsh, "0.001", triangles.Outline((0, 0), (1, 1)))
+        assert not gmsh.model.mesh.getNodes()[0].size
