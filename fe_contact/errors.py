@@ -62,6 +62,14 @@ class BodyTooThin(NotReached):
         super().__init__(f"{reason}: accepted up to {most:g} times as wide; cure: smaller depths, or a thicker body")
 
 
+class BodyTooFine(NotReached):
+    """The elements asked for are so many that no answer can be afforded, in memory or in time."""
+
+    def __init__(self, reason: str, accepted: str) -> None:
+        keys = "lower numerics.elements_per_contact, numerics.order or numerics.far_radius, a larger tolerance"
+        super().__init__(f"{reason}: {accepted}; cure: {keys}, or a body thicker beside its contact")
+
+
 class RodTooLong(NotReached):
     """The contact is so short beside the rod that no mesh of it can be afforded."""
 

@@ -6,6 +6,7 @@ Assembled and factorised once; a unit force on every surface degree of freedom g
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -23,14 +24,17 @@ from skfem import (
     MeshTri,
 )
 
+from fe_contact.errors import BodyTooFine
 from fe_contact.far_field import static
 from fe_contact.floating import Floating
 from fe_contact.forms import Array, isotropic, stiffness
 from fe_contact.interior import Interior, Solve
 from fe_contact.surface import Surface, flat
 from fe_contact.trace import contact_quadrature, trace_between
+from meshes.errors import MeshTooLarge
 
 ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
+MOST_UNKNOWNS = 200_000  # of one body: its factors take a gigabyte and half a minute
 SOLVED_AT_ONCE = 32  # right-hand sides: more of them leave the processor's cache
 
 
@@ -118,6 +122,22 @@ class SurfaceOperator:
         return 0.0 if self.watched is None else np.asarray(self.trace @ self.watched)
 
 
+def made(make: Callable[..., Any], *numbers: Any) -> Any:
+    """The mesh that numbers make; raises BodyTooFine where it would be too large."""
+    try:
+        return make(*numbers)
+    except MeshTooLarge as failure:
+        raise BodyTooFine(f"a mesh of more than {failure.most} nodes", "its size is estimated first") from failure
+
+
+def basis_on(mesh: Any, order: int) -> Any:
+    """Scalar scikit-fem basis of an element order, 1 to 4; raises BodyTooFine for more unknowns than is bearable."""
+    unknowns = 2 * order**2 * int(mesh.nvertices)
+    if unknowns > MOST_UNKNOWNS:
+        raise BodyTooFine(f"a body of {unknowns} unknowns", f"accepted up to {MOST_UNKNOWNS}")
+    return Basis(mesh, ELEMENTS[order](), intorder=2 * order)
+
+
 def surface_operator(mesh: MeshTri, order: int, poisson: float) -> SurfaceOperator:
     """Assemble, factorise once and condense the half-space on ``mesh`` to its contact zone.
 
@@ -126,8 +146,10 @@ def surface_operator(mesh: MeshTri, order: int, poisson: float) -> SurfaceOperat
     mesh : boundaries ``surface``, ``axis``, ``far``; contact radius 1.
     order : element order, 1 to 4.
     poisson : Poisson's ratio.
+
+    Raises BodyTooFine for more unknowns than is bearable.
     """
-    basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
+    basis = basis_on(mesh, order)
     fixed = 2 * basis.get_dofs("axis").flatten()
     return condensed(basis, system_matrix(basis, poisson), fixed, poisson, flat(basis))
 

@@ -18,8 +18,9 @@ class MeshTooLarge(MeshError):
     exit_code = 3
 
     def __init__(self, most: int) -> None:
+        self.most = most
         reason = f"a mesh of more than {most} nodes is not made"
-        super().__init__(f"{reason}; cure: fewer elements along a contact, a thicker or narrower body, a nearer far end")
+        super().__init__(f"{reason}; cure: fewer elements along a contact, a thicker body, a nearer far end")
 
 
 class GmshMissing(MeshError):

@@ -1,4 +1,4 @@
-"""From gmsh's open model to plain arrays of triangles, so many as were estimated before and no more than is bearable."""
+"""From gmsh's open model to plain arrays of triangles, their number estimated before gmsh is asked."""
 
 from __future__ import annotations
 

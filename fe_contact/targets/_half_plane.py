@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sparse
-from skfem import Basis, FacetBasis
+from skfem import FacetBasis
 
 import meshes
 from fe_contact.bodies.scaled_surface import ScaledSurface
@@ -14,7 +14,7 @@ from fe_contact.far_field import half_plane
 from fe_contact.forms import Array, isotropic, plane_stiffness
 from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
-from fe_contact.operators import ELEMENTS, condensed
+from fe_contact.operators import basis_on, condensed, made
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
 from fe_contact.targets._zone import LINE_REFINEMENT, STRUCK_REFINEMENT, Zone, held, smallest_struck
@@ -47,7 +47,7 @@ def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
 @kept
 def _surface(poisson: float, elements: float, order: int, smallest: float, datum: float, size: float) -> ScaledSurface:
     """Condensed for unit reference radius; the datum's motion upwards is watched."""
-    basis = Basis(meshes.layer(elements, smallest, size, size), ELEMENTS[order](), intorder=2 * order)
+    basis = basis_on(made(meshes.layer, elements, smallest, size, size), order)
     ends = [basis.mesh.boundaries[name] for name in ("base", "side")]
     outside = FacetBasis(basis.mesh, basis.elem, facets=np.concatenate(ends), intorder=2 * order + 4)
     law = isotropic(1.0 - poisson**2, poisson)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from skfem import Basis, FacetBasis
+from skfem import FacetBasis
 
 import meshes
 from fe_contact.bodies.scaled_surface import ScaledSurface
@@ -11,7 +11,7 @@ from fe_contact.far_field import static
 from fe_contact.forms import isotropic, stiffness
 from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
-from fe_contact.operators import ELEMENTS, condensed
+from fe_contact.operators import basis_on, condensed, made
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
 from fe_contact.targets._zone import REFINEMENT, held
@@ -28,7 +28,7 @@ def still(indenter: Indenter, radius: float, numerics: Numerics) -> Still:
 @kept
 def _surface(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
     """Condensed for unit radius."""
-    basis = Basis(meshes.layer_under_rim(elements, far_radius, far_radius), ELEMENTS[order](), intorder=2 * order)
+    basis = basis_on(made(meshes.layer_under_rim, elements, far_radius, far_radius), order)
     ends = [basis.mesh.boundaries[name] for name in ("base", "side")]
     outside = FacetBasis(basis.mesh, basis.elem, facets=np.concatenate(ends), intorder=2 * order + 4)
     matrix = stiffness(basis, isotropic(1.0 - poisson**2, poisson)) + static.robin(outside, poisson)

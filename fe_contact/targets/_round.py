@@ -20,7 +20,7 @@ from fe_contact.floating import Floating
 from fe_contact.forms import Array
 from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
-from fe_contact.operators import ELEMENTS, SurfaceOperator
+from fe_contact.operators import SurfaceOperator, basis_on, made
 from fe_contact.pressing import Still
 from fe_contact.surface import crown
 from fe_contact.targets._body import BodyStill, trace_at
@@ -142,8 +142,8 @@ def _operator(body: ElasticBody, poisson: float) -> SurfaceOperator:
 def _meshed(elements: float, order: int, smallest: float, contact: float, support: bool, in_plane: bool) -> ElasticBody:
     """Of unit radius, points and ``contact`` in rad from the pole; ``support``: whether it is held."""
     module: ModuleType = meshes
-    mesh = (module.cylinder if in_plane else module.sphere)(elements, smallest, contact)
-    basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
+    mesh = made(module.cylinder if in_plane else module.sphere, elements, smallest, contact)
+    basis = basis_on(mesh, order)
     around = 1.0 if in_plane else 2.0 * np.pi * np.asarray(basis.global_coordinates())[0]
     return ElasticBody(
         basis,

@@ -7,7 +7,7 @@ from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.forms import Array
 from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
-from fe_contact.operators import surface_operator
+from fe_contact.operators import made, surface_operator
 from fe_contact.pressing import ScaledStill, Still
 from fe_contact.targets import _half_plane as half_plane
 from fe_contact.targets import _rim as rim
@@ -38,4 +38,4 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 
 @kept
 def _surface(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
-    return ScaledSurface(surface_operator(meshes.half_space(elements, far_radius), order, poisson))
+    return ScaledSurface(surface_operator(made(meshes.half_space, elements, far_radius), order, poisson))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from skfem import Basis, FacetBasis, MeshTri
+from skfem import FacetBasis, MeshTri
 
 import meshes
 from fe_contact.bodies import bulk_surface
@@ -17,7 +17,7 @@ from fe_contact.far_field import plate
 from fe_contact.forms import Array, elastic, plane_stiffness, stiffness
 from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
-from fe_contact.operators import ELEMENTS
+from fe_contact.operators import basis_on, made
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
 from fe_contact.targets._zone import (
@@ -86,7 +86,7 @@ def _surface(poisson: float, sizes: Sizes, order: int, bonded: bool, plane: bool
 @kept
 def _body(sizes: Sizes, order: int, bonded: bool, plane: bool) -> ElasticBody:
     """In units of the reference radius."""
-    basis = Basis(_mesh(*sizes), ELEMENTS[order](), intorder=2 * order)
+    basis = basis_on(_mesh(*sizes), order)
     fixed = held(basis, along=("axis", "side", "base") if bonded else ("axis",), across=("base",))
     return ElasticBody(basis, partial(matrix, basis, bonded, plane), fixed, flat(basis, 2 if plane else 3))
 
@@ -94,8 +94,8 @@ def _body(sizes: Sizes, order: int, bonded: bool, plane: bool) -> ElasticBody:
 def _mesh(elements: float, smallest: float | None, thickness: float, width: float) -> MeshTri:
     """Fine for every contact from the smallest, or, without one, at the rim."""
     if smallest is None:
-        return meshes.layer_under_rim(elements, thickness, width)
-    return meshes.layer(elements, smallest, thickness, width)
+        return made(meshes.layer_under_rim, elements, thickness, width)
+    return made(meshes.layer, elements, smallest, thickness, width)
 
 
 def matrix(basis: Any, bonded: bool, plane: bool, bulk: float, shear: float) -> Any:

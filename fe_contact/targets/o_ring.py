@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
-from skfem import Basis
 
 import meshes
 from fe_contact.bodies.bulk_memory import Moduli
@@ -16,7 +15,7 @@ from fe_contact.elastic_body import ElasticBody, axisymmetric
 from fe_contact.forms import Array
 from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
-from fe_contact.operators import ELEMENTS, SurfaceOperator
+from fe_contact.operators import SurfaceOperator, basis_on, made
 from fe_contact.pressed_surface import PressedSurface
 from fe_contact.pressing import Still
 from fe_contact.surface import crown
@@ -114,6 +113,6 @@ def _surface(
 @kept
 def _body(elements: float, order: int, smallest: float, contact: float, mean_radius: float) -> ElasticBody:
     """In units of the section's radius, points and ``contact`` in rad from its top."""
-    basis = Basis(meshes.o_ring(elements, smallest, contact, mean_radius), ELEMENTS[order](), intorder=2 * order)
+    basis = basis_on(made(meshes.o_ring, elements, smallest, contact, mean_radius), order)
     fixed = held(basis, along=(), across=("base",))
     return ElasticBody(basis, partial(axisymmetric, basis), fixed, crown(basis, contact, mean_radius))

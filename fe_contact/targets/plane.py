@@ -7,13 +7,12 @@ from functools import lru_cache
 
 import numpy as np
 import scipy.sparse.linalg as linalg
-from skfem import Basis
 
 import meshes
 from fe_contact.bodies.struck import Deformable
 from fe_contact.forms import Array, isotropic, stiffness
 from fe_contact.numerics import Numerics
-from fe_contact.operators import ELEMENTS
+from fe_contact.operators import basis_on, made
 from fe_contact.pressing import Pressed, Still
 from fe_contact.targets import _round
 from fe_contact.targets._zone import held
@@ -83,8 +82,7 @@ def _answer(
 ) -> tuple[float, int]:
     """Force per depth of a block of unit radius and unit modulus, that of its sides; unknowns of the half."""
     free = sides == "free"
-    mesh = meshes.prism(elements, half_height, sharp=free and faces == "bonded")
-    basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
+    basis = basis_on(made(meshes.prism, elements, half_height, free and faces == "bonded"), order)
     young = 1.0 if free else (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson)
     matrix = stiffness(basis, isotropic(young, poisson)).tocsc()
     still_radially = ["inside", *(["surface"] if faces == "bonded" else []), *([] if free else ["outside"])]

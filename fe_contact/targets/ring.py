@@ -6,7 +6,6 @@ import math
 from typing import Any
 
 import numpy as np
-from skfem import Basis
 
 import meshes
 from fe_contact.bodies import bulk_surface
@@ -17,7 +16,7 @@ from fe_contact.elastic_body import ElasticBody
 from fe_contact.forms import Array, elastic, polar_stiffness
 from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
-from fe_contact.operators import ELEMENTS
+from fe_contact.operators import basis_on, made
 from fe_contact.pressing import FixedStill, Still
 from fe_contact.surface import flat
 from fe_contact.targets._zone import (
@@ -87,7 +86,7 @@ def _surface(
 @kept
 def _body(elements: float, order: int, smallest: float, thickness: float, angle: float) -> ElasticBody:
     """In units of the zone's arc length."""
-    basis = Basis(meshes.ring(elements, smallest, thickness, math.pi / angle), ELEMENTS[order](), intorder=2 * order)
+    basis = basis_on(made(meshes.ring, elements, smallest, thickness, math.pi / angle), order)
     fixed = held(basis, along=("axis", "side", "base"), across=("base",))
     surface = flat(basis, 2, lambda place: np.cos(angle * place))
 

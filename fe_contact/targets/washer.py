@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import partial
 
 import numpy as np
-from skfem import Basis
 
 import meshes
 from fe_contact.bodies import bulk_surface
@@ -15,7 +14,7 @@ from fe_contact.elastic_body import ElasticBody, axisymmetric
 from fe_contact.forms import Array
 from fe_contact.kept import kept
 from fe_contact.numerics import Numerics
-from fe_contact.operators import ELEMENTS, SurfaceOperator
+from fe_contact.operators import SurfaceOperator, basis_on, made
 from fe_contact.pressed_surface import PressedSurface
 from fe_contact.pressing import Still
 from fe_contact.surface import Surface, ring_area
@@ -77,7 +76,7 @@ def _surface(poisson: float, *sizes: *Sizes) -> tuple[SurfaceOperator, PressedSu
 @kept
 def _body(elements: float, order: int, inner: float, outer: float, rim: float, bonded: bool) -> ElasticBody:
     """Of unit height, loaded up to the rim alone."""
-    basis = Basis(meshes.washer(elements, inner, outer, rim, bonded), ELEMENTS[order](), intorder=2 * order)
+    basis = basis_on(made(meshes.washer, elements, inner, outer, rim, bonded), order)
     fixed = held(basis, along=("base",) if bonded else (), across=("base",))
     dofs = basis.get_dofs("surface").flatten()
     dofs = dofs[np.argsort(basis.doflocs[0, dofs])]

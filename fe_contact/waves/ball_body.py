@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sparse
-from skfem import Basis
 
 import meshes
 from fe_contact.dynamics.body import Part
@@ -15,7 +14,7 @@ from fe_contact.dynamics.mass.consistent import Nodes
 from fe_contact.forms import Array, isotropic, mass, stiffness, vector_dofs
 from fe_contact.kept import kept
 from fe_contact.numerics import MASSES
-from fe_contact.operators import ELEMENTS
+from fe_contact.operators import basis_on, made
 from fe_contact.surface import Surface, crown
 from fe_contact.targets._zone import WIDEST
 from fe_contact.trace import contact_quadrature, trace_between
@@ -97,7 +96,7 @@ class Ball:
 @kept
 def unit_ball(poisson: float, elements: float, order: int, contact: float, masses: str) -> UnitBall:
     """Mesh and assemble; made once for all steps and penalties."""
-    basis: Any = Basis(meshes.sphere(elements, SMALLEST, contact), ELEMENTS[order](), intorder=2 * order)
+    basis = basis_on(made(meshes.sphere, elements, SMALLEST, contact), order)
     surface = crown(basis, contact, 0.0)
     free = np.setdiff1d(np.arange(2 * basis.N), 2 * basis.get_dofs("axis").flatten())
     inertia = get(MASSES, masses).of(mass(basis), vector_dofs(basis.element_dofs), 2 * basis.N, 2 * surface.dofs + 1)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sparse
-from skfem import Basis, FacetBasis
+from skfem import FacetBasis
 
 import meshes
 from fe_contact.dynamics.body import Body, Part, Pressing
@@ -16,7 +16,7 @@ from fe_contact.dynamics.mass.consistent import Nodes
 from fe_contact.far_field import absorbing
 from fe_contact.forms import Array, mass, vector_dofs
 from fe_contact.numerics import MASSES
-from fe_contact.operators import ELEMENTS, system_matrix
+from fe_contact.operators import basis_on, made, system_matrix
 from fe_contact.surface import flat
 from fe_contact.trace import contact_quadrature
 from fe_contact.waves.moving import Moving, with_striker
@@ -79,8 +79,7 @@ def unit_of(scene: Scene, numerics: WaveNumerics) -> UnitBody:
 def unit_body(poisson: float, size: tuple[float, float, float], order: int, masses: str) -> UnitBody:
     """Mesh and assemble; made once for all steps and penalties. ``size``: elements, how much finer, far radius."""
     elements, finer, far_radius = size
-    mesh = meshes.half_space_for_waves(elements, SMALLEST, far_radius, finer)
-    basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
+    basis = basis_on(made(meshes.half_space_for_waves, elements, SMALLEST, far_radius, finer), order)
     surface = flat(basis)
     far = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["far"], intorder=2 * order + 4)
     free = np.setdiff1d(np.arange(2 * basis.N), 2 * basis.get_dofs("axis").flatten())

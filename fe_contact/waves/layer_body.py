@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from skfem import Basis, FacetBasis
+from skfem import FacetBasis
 
 import meshes
 from fe_contact.dynamics.body import Body, Part, Pressing
@@ -17,7 +17,7 @@ from fe_contact.elastic_body import moduli
 from fe_contact.far_field.static import on_boundary
 from fe_contact.forms import Array, mass, plane_mass, vector_dofs
 from fe_contact.numerics import MASSES
-from fe_contact.operators import ELEMENTS
+from fe_contact.operators import basis_on, made
 from fe_contact.surface import flat
 from fe_contact.targets._zone import held, thickness_over
 from fe_contact.targets.layer import matrix
@@ -90,8 +90,7 @@ def unit_layer(
     ``sizes``: elements, how much finer they are at the surface, thickness, far radius.
     """
     elements, finer, thickness, far_radius = sizes
-    mesh = meshes.layer_for_waves(elements, SMALLEST, thickness, far_radius - 1.0, finer)
-    basis = Basis(mesh, ELEMENTS[order](), intorder=2 * order)
+    basis = basis_on(made(meshes.layer_for_waves, elements, SMALLEST, thickness, far_radius - 1.0, finer), order)
     surface = flat(basis, 2 if plane else 3)
     fixed = held(basis, along=("axis", "base") if bonded else ("axis",), across=("base",))
     free = np.setdiff1d(np.arange(2 * basis.N), fixed)
