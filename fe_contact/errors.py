@@ -70,6 +70,14 @@ class BodyTooFine(NotReached):
         super().__init__(f"{reason}: {accepted}; cure: {keys}, or a body thicker beside its contact")
 
 
+class WavesTooDear(NotReached):
+    """An impact with waves that would take many minutes or gigabytes."""
+
+    def __init__(self, cost: str, accepted: str) -> None:
+        cure = "cure: a larger tolerance, lower numerics.elements_per_contact or numerics.steps, fewer motion.impacts"
+        super().__init__(f"{cost}: accepted up to {accepted}; {cure}")
+
+
 class RodTooLong(NotReached):
     """The contact is so short beside the rod that no mesh of it can be afforded."""
 

@@ -29,10 +29,11 @@ class Grounded(Enum):
     CAUGHT = "the recovering surface meets a striker that still rises, which is not followed"
     OFF_CENTRE = "the next touch is off the centre of the last contact, which is not followed"
     SWINGS = "the next one swings on its weight for more steps than are allowed; cure: an earlier motion.end_time"
+    MANY = "more of them take more steps than are allowed; cure: fewer motion.impacts"
     REST = "the striker has come to rest"
 
 
-UNFOLLOWED = (Grounded.CAUGHT, Grounded.OFF_CENTRE, Grounded.SWINGS)
+UNFOLLOWED = (Grounded.CAUGHT, Grounded.OFF_CENTRE, Grounded.SWINGS, Grounded.MANY)
 
 
 class Landing(NamedTuple):

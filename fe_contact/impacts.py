@@ -13,6 +13,8 @@ from fe_contact.impact import marched
 from fe_contact.march import March, Strike
 from fe_contact.numerics import Numerics
 
+MOST_STEPS = 10_000  # after which no further contact is followed: a budget of some fifteen such rows takes a minute
+
 
 @dataclass(frozen=True)
 class Contact:
@@ -59,7 +61,7 @@ def follow(
 
     Raises the named failures of :mod:`fe_contact.errors` where a step does not converge.
     """
-    contacts, begun, heat = list[Contact](), strike, 0.0
+    contacts, begun, heat, steps = list[Contact](), strike, 0.0, 0
     while True:
         radii = expected[len(contacts)] if len(contacts) < len(expected) else ()
         stepper = struck.stepper(begun, placed(len(contacts), begun), accounted, radii)
@@ -70,8 +72,11 @@ def follow(
                 raise
             return Followed(tuple(contacts), Grounded.SWINGS)
         contacts.append(Contact(begun, march, heat))
+        steps += march.work.steps
         if len(contacts) == impacts or not march.separated:
             return Followed(tuple(contacts), None)
+        if steps > MOST_STEPS:
+            return Followed(tuple(contacts), Grounded.MANY)
         touch = landing(stepper, march)
         if isinstance(touch, Grounded):
             return Followed(tuple(contacts), touch)

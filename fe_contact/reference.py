@@ -26,6 +26,7 @@ from lumped.scene import Scene
 
 CURE = "cure: a larger tolerance, or fewer numerics of your own"
 ROUNDS = 4  # refinements before giving up
+MOST_STEPS = 20_000  # of all marches of a round, about half a minute; the next one may take twice as many
 DOMINANT = 0.5  # causes above this share of the largest one, or of the tolerance, are refined together
 
 
@@ -97,7 +98,7 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
                 raise
             break  # finer settings lose their way: what is known stands, with its bars
         better = refined_for(certified, numerics, chosen)
-        if better is None:
+        if better is None or 2 * certified.work.steps > MOST_STEPS:
             break
         finer = better
     if certified is None:

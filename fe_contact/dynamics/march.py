@@ -21,7 +21,8 @@ from fe_contact.dynamics.state import State, undeformed
 from fe_contact.errors import ContactLost, MotionUnbounded, TooManySteps
 from fe_contact.forms import Array
 
-MOST_STEPS = 200_000
+MOST_STEPS = 200_000  # of a small body: a minute and a half, nearly all of it beside the unknowns
+MOST_WORK = 3e8  # unknowns times steps, of a large one: some eight minutes of one core
 ROUNDING = 1e-9  # of times that are sums of steps
 UNBOUNDED = 1e6  # multiple of the fastest that gravity and the start explain
 
@@ -133,10 +134,10 @@ def onwards(
     stepper = _stepper(body, choices, choices.step / parts)
     state, energies, start = stepper.begun(begun.state), begun.energies, begun.state.time
     fastest = UNBOUNDED * (np.abs(state.velocity).max() + np.abs(body.gravity).max() * end_time)
-    samples = [_sample(body, state, 0.0, watch, energies, 0)]
+    samples, most = [_sample(body, state, 0.0, watch, energies, 0)], min(MOST_STEPS, int(MOST_WORK / body.size))
     while state.time - start < end_time * (1 - ROUNDING):
-        if (len(samples) - 1) * parts >= MOST_STEPS:
-            raise TooManySteps(MOST_STEPS, state.time)
+        if (len(samples) - 1) * parts >= most:
+            raise TooManySteps(most, state.time)
         length = choices.length(state.time - start) / parts
         if length != stepper.step:
             stepper = _stepper(body, choices, length)

@@ -6,12 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from fe_contact.dynamics import ledger
-from fe_contact.dynamics.march import Moment, Motion, onwards
+from fe_contact.dynamics.march import MOST_WORK, Moment, Motion, onwards
 from fe_contact.dynamics.state import undeformed
 from fe_contact.errors import TooManySteps
 from fe_contact.flight import FAINTEST, Grounded
 from fe_contact.impacts import Contact, Followed
 from fe_contact.march import Strike
+from fe_contact.waves.cost import MARCHES
 from fe_contact.waves.flight import Flights
 from fe_contact.waves.impact import choices_of, left, record
 from fe_contact.waves.moving import Moving
@@ -58,6 +59,8 @@ def follow(moving: Moving, scene: Scene, strike: Strike, numerics: WaveNumerics)
         contacts.append(Contact(strike, march))
         if len(contacts) == scene.motion.impacts or not march.separated:
             return done(None)
+        if (flights.steps + sum(one.march.work.steps for one in contacts)) * moving.body.size > MOST_WORK / MARCHES:
+            return done(Grounded.MANY)
         if scene.gravity <= 0.0:
             return done(Grounded.NO_GRAVITY)
         touch = flights.landing(Moment(found.final, found.samples[-1].energies), scene.end_time)

@@ -64,6 +64,12 @@ class Runs:
         curves = self._curves[settings]
         return curves[number] if number < len(curves) else None
 
+    @property
+    def spent(self) -> float:
+        """Unknowns times steps of all runs so far."""
+        runs = self._runs.values()
+        return float(sum(size * (run.steps + sum(one.march.work.steps for one in run.contacts)) for run, size in runs))
+
     def work(self) -> TotalWork:
         """What all runs cost together: a factorisation for every length of step, one back-substitution a step."""
         marches = [(one.march, settings) for settings, (run, _) in self._runs.items() for one in run.contacts]

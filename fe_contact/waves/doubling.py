@@ -14,6 +14,8 @@ from lumped.result import Result, meets
 from lumped.scene import Scene
 
 ROUNDS = 3  # refinements before giving up
+STEP = 2_000  # unknowns whose share of a step takes as long as all the rest of it
+MOST_WORK = 3e8  # unknowns, and those of a step itself, times steps, of all marches: about a minute
 
 
 def certified(
@@ -25,7 +27,7 @@ def certified(
     progress: Progress,
 ) -> Result:
     """March as planned and with one cause of error ``varied`` at a time; again with twice the steps, ``most_steps`` at
-    most, where a bar is too wide. Raises NotReached where a march does not end.
+    most, where a bar is too wide and the work allows it. Raises NotReached where a march does not end.
 
     Each march is made once: with twice the steps, the one before is what half of them give.
     """
@@ -38,8 +40,15 @@ def certified(
         found = Bars(marched(numerics), {cause: marched(settings) for cause, settings in varied(numerics).items()})
         runs |= dict.fromkeys(found.runs)
         stuck = "steps" in chosen.pinned or attempt == ROUNDS or 2 * numerics.steps > most_steps
-        if stuck or meets(found.quantities, numerics.tolerance):
+        twice = _work(2 * found.fine.steps, 2 * found.fine.unknowns)
+        dear = twice + sum(_work(one.steps, one.unknowns) for one in runs) > MOST_WORK
+        if stuck or dear or meets(found.quantities, numerics.tolerance):
             break
         numerics = numerics.varied(steps=2 * numerics.steps)
     timing = {"cpu_s": time.process_time() - cpu, "wall_s": time.perf_counter() - wall}
     return result_of(scene, chosen, numerics, found, timing, list(runs))
+
+
+def _work(steps: int, unknowns: int) -> float:
+    """Of a march."""
+    return float(steps) * (unknowns + STEP)

@@ -8,9 +8,11 @@ from typing import Any
 from fe_contact.numerics import RANGES
 from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
+from fe_contact.waves.cost import Cost
 from fe_contact.waves.flying_ball import on_plane
+from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.plan import SPRINGS, placed
-from fe_contact.waves.refining import refined_to_tolerance
+from fe_contact.waves.refining import cost_of, refined_to_tolerance
 from fe_contact.waves.targets.half_space import changing, too_fast
 from lumped.errors import BadInput
 from lumped.laws import mdr
@@ -31,6 +33,11 @@ def flying(scene: Scene, given: Mapping[str, Any], scales: ImpactScales, radius:
     """What ``given`` leaves open for an impact of these scales on bodies that end with a ball of this radius, m."""
     low, high = RANGES["far_radius"]
     return placed(scene, given, scales, min(max(2.0 * radius / scales.contact_radius, low), high))
+
+
+def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
+    """Of an error budget with these settings. Raises BodyTooFine."""
+    return cost_of(scene, numerics, on_plane)
 
 
 def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:

@@ -19,6 +19,7 @@ from fe_contact.numerics import ENFORCEMENTS, MASSES, WAVE_SCHEMES
 from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
 from fe_contact.waves.bar_reading import Ending, read
+from fe_contact.waves.cost import Cost
 from fe_contact.waves.doubling import certified
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.rod_record import Run
@@ -55,6 +56,11 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
         mass=usual_mass(scene),
     ).varied(**given)
     return Plan(numerics, frozenset(given) - {"tolerance"}, _ledger(scene, bar))
+
+
+def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
+    """Of an error budget with these settings."""
+    return Cost.of(max(numerics.steps // 2, 2), numerics, scene.motion.impacts)
 
 
 def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:

@@ -22,8 +22,10 @@ from fe_contact.progress import Progress
 from fe_contact.reference import result_of, strike_of
 from fe_contact.told import quantities_of, shares_of
 from fe_contact.waves.certify import ORDER, Runs, certify
+from fe_contact.waves.cost import Cost
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
+from lumped.errors import NotReached
 from lumped.result import Result, meets
 from lumped.scene import Scene
 
@@ -51,29 +53,41 @@ def refined_to_tolerance(
 ) -> Result:
     """Certify as planned, refine until the bars meet the tolerance or nothing is left; ``moving`` makes the body.
 
-    Raises NotReached where no march ends, BadInput for an impact that goes deeper than its bodies.
+    Raises NotReached where no march ends or the first budget costs too much, BadInput for an impact that goes deeper
+    than its bodies.
     """
     cpu, wall = time.process_time(), time.perf_counter()
     assert isinstance(chosen.numerics, WaveNumerics)
     numerics, certified, outgrown = chosen.numerics, None, None
     runs = Runs(scene, strike_of(scene), moving, numerics.steps // 2)
+    finer = numerics
     for attempt in range(ROUNDS + 1):
-        progress(f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements, waves")
         try:
-            certified = certify(runs, numerics)
+            cost = cost_of(scene, finer, moving)
+            cost.check(runs.spent)
+            progress(f"waves, {cost}")
+            certified, numerics = certify(runs, finer), finer
         except MemoryTooSmall as failure:
             outgrown = failure
-            numerics = numerics.varied(contact_radius=WIDER * numerics.contact_radius)
+            finer = finer.varied(contact_radius=WIDER * finer.contact_radius)
             continue
+        except NotReached:
+            if certified is None:
+                raise
+            break  # finer settings cost too much or lose their way: what is known stands, with its bars
         finer = refined(certified, numerics, chosen.pinned)
         if finer == numerics or attempt == ROUNDS:
             break
-        numerics = finer
     if certified is None:
         raise outgrown or MemoryTooSmall(numerics.contact_radius)
     scene.check_sunk(max(budget.curve.quantities["peak_depth"] or 0.0 for budget in certified.row))
     solved = Solved(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall)
     return result_of(scene, solved)
+
+
+def cost_of(scene: Scene, numerics: WaveNumerics, moving: Callable[[Scene, WaveNumerics], Moving]) -> Cost:
+    """What one error budget costs with these settings. Raises BodyTooFine."""
+    return Cost.of(moving(scene, numerics).body.size, numerics, scene.motion.impacts)
 
 
 def refined(certified: Budget, numerics: WaveNumerics, pinned: frozenset[str]) -> WaveNumerics:

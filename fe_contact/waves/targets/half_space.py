@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from fe_contact.progress import Progress, silent
+from fe_contact.waves.cost import Cost
 from fe_contact.waves.fields import write_fields as write_fields
 from fe_contact.waves.flying_ball import on_half_space
 from fe_contact.waves.half_space_body import moving
+from fe_contact.waves.moving import Moving
+from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.plan import plan as plan
-from fe_contact.waves.refining import refined_to_tolerance
+from fe_contact.waves.refining import cost_of, refined_to_tolerance
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.radiation import shear_speed
@@ -21,11 +24,19 @@ from lumped.scene import Scene
 FASTEST = 0.3  # of the speed of shear waves: beyond, strains are not small anywhere
 
 
+def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
+    """Of an error budget with these settings. Raises BodyTooFine."""
+    return cost_of(scene, numerics, _body(scene))
+
+
 def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
     """Force history with error bars. Raises BadInput for a scene it is not for, NotReached where no march ends."""
     check(scene)
-    body = moving if scene.striker_material is None else on_half_space
-    return refined_to_tolerance(scene, plan(scene, given), body, progress)
+    return refined_to_tolerance(scene, plan(scene, given), _body(scene), progress)
+
+
+def _body(scene: Scene) -> Callable[[Scene, WaveNumerics], Moving]:
+    return moving if scene.striker_material is None else on_half_space
 
 
 def check(scene: Scene) -> None:

@@ -10,10 +10,11 @@ from fe_contact.numerics import RANGES
 from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
 from fe_contact.scales import scales
+from fe_contact.waves.cost import Cost
 from fe_contact.waves.layer_body import moving
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.plan import DEFAULTS, SPREAD, TRAVEL, contact_time, placed
-from fe_contact.waves.refining import refined_to_tolerance
+from fe_contact.waves.refining import cost_of, refined_to_tolerance
 from fe_contact.waves.targets.half_space import too_fast
 from lumped.errors import BadInput, Fault
 from lumped.laws.mdr import ImpactScales
@@ -46,6 +47,11 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     check(scene)
     size = scales(scene, WaveNumerics(**DEFAULTS, **ROUGH))
     return placed(scene, given, size, _far_radius(scene, size), SPARE, _stiffness(scene, size))
+
+
+def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
+    """Of an error budget with these settings. Raises BodyTooFine."""
+    return cost_of(scene, numerics, moving)
 
 
 def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:

@@ -9,6 +9,8 @@ from typing import Any
 from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
 from fe_contact.waves import falling_ball, falling_block
+from fe_contact.waves.cost import Cost
+from fe_contact.waves.numerics import WaveNumerics
 from lumped.result import Result
 from lumped.scene import Scene
 from lumped.shapes._block import Block
@@ -17,6 +19,12 @@ from lumped.shapes._block import Block
 def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     """Choose what ``given`` (checked settings) leaves open."""
     found: Plan = _of(scene).plan(scene, given)
+    return found
+
+
+def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
+    """Of an error budget with these settings. Raises BodyTooFine."""
+    found: Cost = _of(scene).cost(scene, numerics)
     return found
 
 

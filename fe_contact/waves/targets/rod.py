@@ -16,6 +16,7 @@ from fe_contact.numerics import ENFORCEMENTS, RANGES, WAVE_SCHEMES
 from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
 from fe_contact.targets.rod import elements, moving, rod_mass, transit
+from fe_contact.waves.cost import Cost
 from fe_contact.waves.dent import Dent
 from fe_contact.waves.doubling import certified
 from fe_contact.waves.impact import energies, left
@@ -86,6 +87,11 @@ def _fewest(scene: Scene, dent: HertzImpact | None) -> float:
         needs += [DENTED * crossing / dent.duration, FRONT * crossing / grown]
     needs += [RELAXED * crossing / min(times)] if times else []
     return min(max(needs), MANY)
+
+
+def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
+    """Of an error budget with these settings."""
+    return Cost.of(elements(scene, numerics), numerics, scene.motion.impacts)
 
 
 def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:

@@ -8,9 +8,11 @@ from typing import Any
 
 from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
+from fe_contact.waves.cost import Cost
 from fe_contact.waves.falling_ball import check, flying
 from fe_contact.waves.flying_ball import on_ball
-from fe_contact.waves.refining import refined_to_tolerance
+from fe_contact.waves.numerics import WaveNumerics
+from fe_contact.waves.refining import cost_of, refined_to_tolerance
 from lumped.laws import correspondence
 from lumped.result import Result
 from lumped.scene import Scene
@@ -26,6 +28,11 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     assert isinstance(target, Sphere)
     without = replace(scene, target=replace(target, support=None), model=replace(scene.model, inertia=False))
     return flying(scene, given, correspondence.estimate(without), max(target.radius, own or 0.0))
+
+
+def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
+    """Of an error budget with these settings. Raises BodyTooFine."""
+    return cost_of(scene, numerics, on_ball)
 
 
 def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
