@@ -134,10 +134,10 @@ def tell(
         print("\n  ".join([title, *told]) if title else "\n".join(told))
 
 
-def report(args: argparse.Namespace, result: Result, where: Path) -> int:
-    """Print a result, warn of what the model lacks; the exit code."""
+def report(args: argparse.Namespace, result: Result, content: Mapping[str, Any], where: Path) -> int:
+    """Print a result, or the content of its file, warn of what the model lacks; the exit code."""
     if args.json:
-        print(json.dumps(result.to_json(), allow_nan=False))
+        print(json.dumps(content, allow_nan=False))
     else:
         print(summary(result, where))
     warn(result)
