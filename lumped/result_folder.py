@@ -20,7 +20,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +42,7 @@ def publish(directory: Path, write: Callable[[Path], object], record: str = RECO
     others: `files`, SHA-256 by name. Another run that writes into the same directory is waited for. Raises CannotWrite
     where the disk or its permissions refuse, or the other run does not end; nothing has changed then.
     """
+    new = not directory.exists()
     try:
         directory.mkdir(parents=True, exist_ok=True)
         with _alone(directory):
@@ -52,6 +53,9 @@ def publish(directory: Path, write: Callable[[Path], object], record: str = RECO
             finally:
                 _settle(directory)
     except OSError as failure:
+        if new:
+            with suppress(OSError):
+                directory.rmdir()
         raise CannotWrite(directory, failure.strerror or str(failure)) from failure
 
 
