@@ -112,7 +112,8 @@ def folder(args: argparse.Namespace, command: str, name: str) -> Path:
     Raises BadInput, before any work, where nothing can be written.
     """
     chosen: Path | None = args.out
-    changes = "".join(f"-{text}" for text in getattr(args, "overrides", ()))
+    overrides = (text for text in getattr(args, "overrides", ()) if text.partition("=")[0].strip() != "name")
+    changes = "".join(f"-{text}" for text in overrides)
     where = chosen or Path("fe-contact-out") / (f"{command}-{name}" + _part_of_a_name(changes))
     try:
         standing = next(place for place in (where, *where.absolute().parents) if place.exists())
