@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import resource
 import signal
 import subprocess
@@ -154,3 +155,11 @@ def test_a_crash_that_can_be_written_nowhere_is_still_one_line(
     err = capsys.readouterr().err
     assert len(err.splitlines()) == 1
     assert "a wire came loose" in err
+
+
+def test_a_home_that_cannot_be_written_is_nothing_to_talk_about(empty: Path) -> None:
+    home = {**os.environ, "HOME": "/proc/self", "XDG_CACHE_HOME": "", "XDG_CONFIG_HOME": "", "MPLCONFIGDIR": ""}
+    done = ended(empty, *FAST, "--plot", env=home)
+    assert done.returncode == 0
+    assert "atplotlib" not in done.stderr
+    assert is_whole(empty / "results")
