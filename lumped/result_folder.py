@@ -31,7 +31,7 @@ RECORD = "result.json"
 SCHEMAS = "fe-contact/"  # how the schema of each of our records begins
 HIDDEN = ".fe-contact-"
 LOCK = ".fe-contact.lock"
-WAIT, PAUSE = 60.0, 0.02  # s for another run to end its writing, charts and all: some seconds; between two looks
+WAIT, PAUSE = 300.0, 0.02  # s for other runs to end their writing, some seconds each with charts; between two looks
 NO_LINKS = (errno.EPERM, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.EXDEV, errno.EMLINK)
 
 
