@@ -1,5 +1,8 @@
 """The command line: finds the command, turns every failure into one line and an exit code.
 
+numpy, and all that needs it, is imported inside functions: where there is too little memory to load it, OpenBLAS never
+comes back or a traceback would be all that a user sees.
+
 What a signal interrupts ends like any failure, by an exception; where a library does not come back in time to raise
 it, a watching thread ends the process. Either is safe: results change all at once or not at all.
 """
@@ -22,12 +25,10 @@ from pathlib import Path
 from types import FrameType
 
 from fe_contact import __version__
-from fe_contact.commands import base
-from lumped.errors import FeContactError
-from lumped.members import available, get
 
 COMMANDS = "fe_contact.commands"
-DEFECT, BAD_INPUT, NOT_REACHED = 1, 2, 3
+DONE, DEFECT, BAD_INPUT, NOT_REACHED = 0, 1, 2, 3
+LEAST_MEMORY = 320 * 2**20  # bytes of address space: below, numpy's and scipy's libraries do not load
 SIGNALLED = 128  # plus the signal's number, as shells count: 130 after Ctrl-C, 143 after SIGTERM
 GRACE = 1.0  # s for a library to come back and let Python raise the interruption
 DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS, errno.EBADF)
@@ -43,6 +44,8 @@ class Interrupted(KeyboardInterrupt):
 
 def parser() -> argparse.ArgumentParser:
     """The parser of all commands."""
+    from lumped.members import available, get
+
     top = argparse.ArgumentParser(prog="fe-contact", description="Finite-element contact validation suite.")
     top.add_argument("--version", action="version", version=f"fe-contact {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -56,6 +59,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the exit code."""
     if sys.stdout is None:  # files would take its place
         return _said("stdout is closed: accepted an open one, as > /dev/null", BAD_INPUT)
+    if _memory_limit() < LEAST_MEMORY:
+        return _said(f"out of memory; cure: a limit of {LEAST_MEMORY // 1024} kB or more (ulimit -v)", NOT_REACHED)
+    from lumped.members import get
+
     args = parser().parse_args(arguments)
     try:
         with _interruptible():
@@ -67,9 +74,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _said(str(interruption) or "interrupted", getattr(interruption, "exit_code", number))
     except BrokenPipeError:  # the reader of our output has left: nothing more to say, and nobody to say it to
         _leave_stdout()
-        return base.DONE
+        return DONE
     except Exception as failure:  # noqa: BLE001 - the one place: a traceback never reaches a user
         return _failed(failure, args)
+
+
+def _memory_limit() -> float:
+    """Bytes of address space that this process may have."""
+    if sys.platform == "win32":
+        return float("inf")
+    import resource
+
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    return float("inf") if limit == resource.RLIM_INFINITY else limit
 
 
 @contextmanager
@@ -108,6 +125,7 @@ def _watch(reader: socket.socket, ended: threading.Event) -> None:
 
 
 def _failed(failure: Exception, args: argparse.Namespace) -> int:
+    from lumped.errors import FeContactError
     from meshes.errors import MeshError
 
     if isinstance(failure, FeContactError | MeshError):
