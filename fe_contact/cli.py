@@ -1,25 +1,51 @@
-"""The command line: finds the command, turns every failure into one line and an exit code."""
+"""The command line: finds the command, turns every failure into one line and an exit code.
+
+numpy, and all that needs it, is imported inside functions: where there is too little memory to load it, OpenBLAS never
+comes back or a traceback would be all that a user sees.
+
+What a signal interrupts ends like any failure, by an exception; where a library does not come back in time to raise
+it, a watching thread ends the process. Either is safe: results change all at once or not at all.
+"""
 
 from __future__ import annotations
 
 import argparse
+import errno
+import multiprocessing
 import os
+import signal
+import socket
 import sys
+import tempfile
+import threading
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from types import FrameType
 
 from fe_contact import __version__
-from fe_contact.commands import base
-from lumped.errors import FeContactError
-from lumped.members import available, get
 
 COMMANDS = "fe_contact.commands"
-DEFECT, BAD_INPUT, INTERRUPTED = 1, 2, 130
+DONE, DEFECT, BAD_INPUT, NOT_REACHED = 0, 1, 2, 3
+LEAST_MEMORY = 320 * 2**20  # bytes of address space: below, numpy's and scipy's libraries do not load
+SIGNALLED = 128  # plus the signal's number, as shells count: 130 after Ctrl-C, 143 after SIGTERM
+GRACE = 1.0  # s for a library to come back and let Python raise the interruption
+DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS, errno.EBADF)
+
+
+class Interrupted(KeyboardInterrupt):
+    """A signal asked us to end."""
+
+    def __init__(self, number: int) -> None:
+        self.exit_code = SIGNALLED + number
+        super().__init__("interrupted" if number == signal.SIGINT else f"ended by {signal.Signals(number).name}")
 
 
 def parser() -> argparse.ArgumentParser:
     """The parser of all commands."""
+    from lumped.members import available, get
+
     top = argparse.ArgumentParser(prog="fe-contact", description="Finite-element contact validation suite.")
     top.add_argument("--version", action="version", version=f"fe-contact {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -31,40 +57,110 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the exit code."""
+    if sys.stdout is None:  # files would take its place
+        return _said("stdout is closed: accepted an open one, as > /dev/null", BAD_INPUT)
+    if _memory_limit() < LEAST_MEMORY:
+        return _said(f"out of memory; cure: a limit of {LEAST_MEMORY // 1024} kB or more (ulimit -v)", NOT_REACHED)
+    from lumped.members import get
+
     args = parser().parse_args(arguments)
     try:
-        code: int = get(COMMANDS, args.command).execute(args)
-        return code
-    except KeyboardInterrupt:
-        print("fe-contact: interrupted", file=sys.stderr)
-        return INTERRUPTED
+        with _interruptible():
+            code: int = get(COMMANDS, args.command).execute(args)
+            sys.stdout.flush()
+            return code
+    except KeyboardInterrupt as interruption:
+        number = SIGNALLED + signal.SIGINT
+        return _said(str(interruption) or "interrupted", getattr(interruption, "exit_code", number))
     except BrokenPipeError:  # the reader of our output has left: nothing more to say, and nobody to say it to
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return base.DONE
+        _leave_stdout()
+        return DONE
     except Exception as failure:  # noqa: BLE001 - the one place: a traceback never reaches a user
         return _failed(failure, args)
 
 
+def _memory_limit() -> float:
+    """Bytes of address space that this process may have."""
+    if sys.platform == "win32":
+        return float("inf")
+    import resource
+
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    return float("inf") if limit == resource.RLIM_INFINITY else limit
+
+
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """SIGINT and SIGTERM raise Interrupted; what does not end soon after is ended."""
+    if threading.current_thread() is not threading.main_thread():  # Python gives signals to the main thread alone
+        yield
+        return
+    reader, writer = socket.socketpair()
+    writer.setblocking(False)
+    former = {number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
+    wakeup, ended = signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False), threading.Event()
+    threading.Thread(target=_watch, args=(reader, ended), daemon=True).start()
+    try:
+        yield
+    finally:
+        ended.set()
+        signal.set_wakeup_fd(wakeup)
+        for number, handler in former.items():
+            signal.signal(number, handler)
+        writer.close()
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    raise Interrupted(number)
+
+
+def _watch(reader: socket.socket, ended: threading.Event) -> None:
+    """Wait for the number of a signal, or for the end; a process that does not end after a signal is ended."""
+    with reader:
+        for number in iter(lambda: reader.recv(1), b""):
+            if number[0] in (signal.SIGINT, signal.SIGTERM) and not ended.wait(GRACE):
+                for worker in multiprocessing.active_children():
+                    worker.kill()
+                os._exit(_said(str(Interrupted(number[0])), SIGNALLED + number[0]))
+
+
 def _failed(failure: Exception, args: argparse.Namespace) -> int:
+    from lumped.errors import FeContactError
     from meshes.errors import MeshError
 
     if isinstance(failure, FeContactError | MeshError):
-        print(failure, file=sys.stderr)
-        return failure.exit_code
+        return _said(str(failure), failure.exit_code, "")
+    if isinstance(failure, MemoryError):
+        cure = "cure: a larger --tolerance, fewer numerics.elements_per_contact, or more memory"
+        return _said(f"out of memory; {cure}", NOT_REACHED)
     if isinstance(failure, OSError) and failure.filename is not None:
-        print(f"{failure.filename}: {failure.strerror}; accepted: a folder that can be written", file=sys.stderr)
-        return BAD_INPUT
-    where = _crash_folder(args) / "crash.txt"
-    where.write_text("".join(traceback.format_exception(failure)), encoding="utf-8")
-    print(f"fe-contact: a defect of ours: {failure!r}; traceback in {where}", file=sys.stderr)
-    return DEFECT
+        return _said(f"{failure.filename}: {failure.strerror}; accepted: a folder that can be written", BAD_INPUT, "")
+    if isinstance(failure, OSError) and failure.errno in DISK:
+        _leave_stdout()
+        return _said(f"cannot write: {failure.strerror}; accepted: a disk with room, an open stdout", BAD_INPUT)
+    return _said(f"a defect of ours: {failure!r}; {_crash(failure, args)}", DEFECT)
 
 
-def _crash_folder(args: argparse.Namespace) -> Path:
-    """A folder for the traceback: the asked one if it can be made, else the working folder."""
-    folder = getattr(args, "out", None) or Path("fe-contact-out")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return Path()
-    return Path(folder)
+def _said(message: str, code: int, name: str = "fe-contact: ") -> int:
+    """One line on stderr, where there is one; the exit code given."""
+    with suppress(OSError, AttributeError):
+        sys.stderr.write(f"{name}{message}\n")
+        sys.stderr.flush()
+    return code
+
+
+def _leave_stdout() -> None:
+    """Let Python's last flush of stdout go nowhere."""
+    with suppress(OSError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _crash(failure: Exception, args: argparse.Namespace) -> str:
+    """Write crash.txt into the folder asked for, else where it can be; where it is."""
+    text = "".join(traceback.format_exception(failure))
+    for folder in (getattr(args, "out", None) or Path("fe-contact-out"), Path(), Path(tempfile.gettempdir())):
+        with suppress(OSError):
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / "crash.txt").write_text(text, encoding="utf-8")
+            return f"traceback in {folder / 'crash.txt'}"
+    return "its traceback could not be written anywhere"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from pathlib import Path
 from typing import ClassVar
 
 SHOWN_FAULTS = 20
@@ -37,6 +38,16 @@ class BadInput(FeContactError):
         found = (faults,) if isinstance(faults, Fault) else tuple(faults)
         self.faults: tuple[Fault, ...] = found[:SHOWN_FAULTS]
         super().__init__("\n".join(str(fault) for fault in self.faults))
+
+
+class CannotWrite(FeContactError):
+    """A folder of results could not be written; what was in it stays as it was."""
+
+    exit_code = 2
+
+    def __init__(self, folder: Path, reason: str) -> None:
+        cure = "accepted: a folder with room in it that can be written; what was there is untouched"
+        super().__init__(str(Fault(str(folder), "", f"{reason}; {cure}")))
 
 
 class NotReached(FeContactError):

@@ -18,6 +18,7 @@ from lumped.indenter import Indenter
 from lumped.json_file import plain, write_json
 from lumped.model_ledger import Peak, ledger_at_rest
 from lumped.result import LedgerEntry, Quantity, provenance
+from lumped.result_folder import RECORD, publish
 from lumped.sufficiency import sufficient
 
 Array = NDArray[np.float64]
@@ -110,11 +111,17 @@ class Indentation:
         return found
 
     def write(self, directory: Path) -> None:
-        """Write indentation.csv and result.json into `directory`, made when it is not there."""
-        directory.mkdir(parents=True, exist_ok=True)
+        """Make indentation.csv and result.json the content of a folder of results.
+
+        Raises CannotWrite; what was there stays then, see :mod:`lumped.result_folder`.
+        """
+        publish(directory, self.write_files)
+
+    def write_files(self, folder: Path) -> None:
+        """The same files, one after the other, into a folder that is there."""
         columns = [self.depth, self.force, self.contact_radius, self.force_error]
-        write_columns(directory / "indentation.csv", COLUMNS, columns)
-        write_json(directory / "result.json", self.to_json())
+        write_columns(folder / "indentation.csv", COLUMNS, columns)
+        write_json(folder / RECORD, self.to_json())
 
 
 def power_law(depth: Array, force: Array, error: Array, row: float) -> dict[str, Quantity]:

@@ -16,6 +16,7 @@ from lumped.history import History
 from lumped.indentation_left import IndentationLeft
 from lumped.interpolation import peak
 from lumped.json_file import plain, write_json
+from lumped.result_folder import RECORD, publish
 from lumped.scene import Scene
 from lumped.scene_tables import Model
 from lumped.sufficiency import sufficient
@@ -120,16 +121,25 @@ class Result:
         return found
 
     def write(self, directory: Path) -> None:
-        """Write history.csv, result.json and, where it is told, recovery.csv into `directory`, made where it is not."""
-        directory.mkdir(parents=True, exist_ok=True)
-        self.history.write_csv(directory / "history.csv")
+        """Make history.csv, result.json and, where it is told, recovery.csv the content of a folder of results.
+
+        Raises CannotWrite; what was there stays then, see :mod:`lumped.result_folder`.
+        """
+        publish(directory, self.write_files)
+
+    def write_files(self, folder: Path) -> None:
+        """The same files, one after the other, into a folder that is there."""
+        self.history.write_csv(folder / "history.csv")
         if self.recovery is not None:
-            self.recovery.write_csv(directory / "recovery.csv")
-        write_json(directory / "result.json", self.to_json())
+            self.recovery.write_csv(folder / "recovery.csv")
+        write_json(folder / RECORD, self.to_json())
 
 
 def write_failure(directory: Path, scene: Scene, method: str, message: str) -> None:
-    """Write the result.json of an impact that no solve brought to an end: what is known, and null for the rest."""
+    """Write the result.json of an impact that no solve brought to an end: what is known, and null for the rest.
+
+    It takes the place of an older result. Raises CannotWrite.
+    """
     content = {
         "schema": SCHEMA,
         "method": method,
@@ -142,8 +152,7 @@ def write_failure(directory: Path, scene: Scene, method: str, message: str) -> N
         "quantities": {name: {"value": None, "error": None, "unit": unit} for name, unit in UNITS.items()},
         "provenance": provenance(),
     }
-    directory.mkdir(parents=True, exist_ok=True)
-    write_json(directory / "result.json", plain(content))
+    publish(directory, lambda folder: write_json(folder / RECORD, plain(content)))
 
 
 def quantities_of(history: History, separated: bool) -> dict[str, float | None]:

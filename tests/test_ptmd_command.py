@@ -75,9 +75,9 @@ def test_rows_and_contacts_belong_to_the_measures(tmp_path: Path) -> None:
     assert rows["time_s"][[0, -1]] == pytest.approx([0.0, 1.0])
 
 
-def test_the_default_folder_carries_the_name(empty: Path) -> None:
+def test_the_default_folder_carries_the_name_and_what_was_changed(empty: Path) -> None:
     assert main(["ptmd", *SHORT, "--set", "name=mine"]) == 0
-    assert [path.name for path in (empty / "fe-contact-out").iterdir()] == ["ptmd-mine"]
+    assert [path.name for path in (empty / "fe-contact-out").iterdir()] == ["ptmd-mine-motion.end_time=1.0"]
 
 
 def test_the_summary_tells_every_variant(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import os
+import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -21,6 +23,7 @@ from lumped.sufficiency import worst
 from lumped.toml_file import overridden, parse_assignment, parsed
 
 DONE, NOT_REACHED = 0, 3
+LONGEST = 80  # characters of what --set changed in a folder's name: file systems take 255 bytes with the scene's name
 Read = TypeVar("Read")
 
 
@@ -104,16 +107,30 @@ def number(text: str, option: str) -> float:
 
 
 def folder(args: argparse.Namespace, command: str, name: str) -> Path:
-    """Where the results of a command on a scene or the like go, by its name.
+    """Where the results of a command on a scene or the like go, by its name and what --set changed.
 
     Raises BadInput, before any work, where nothing can be written.
     """
     chosen: Path | None = args.out
-    where = chosen or Path("fe-contact-out") / f"{command}-{name}"
-    standing = next(place for place in (where, *where.absolute().parents) if place.exists())
-    if not standing.is_dir() or not os.access(standing, os.W_OK):
+    overrides = (text for text in getattr(args, "overrides", ()) if text.partition("=")[0].strip() != "name")
+    changes = "".join(f"-{text}" for text in overrides)
+    where = chosen or Path("fe-contact-out") / (f"{command}-{name}" + _part_of_a_name(changes))
+    try:
+        standing = next(place for place in (where, *where.absolute().parents) if place.exists())
+        writable = standing.is_dir() and os.access(standing, os.W_OK)
+    except (OSError, ValueError):  # a name too long, or with a null character
+        writable = False
+    if not writable:
         raise BadInput(Fault("--out", str(where), "accepted: a folder that can be written"))
     return where
+
+
+def _part_of_a_name(text: str) -> str:
+    """The text as it may stand in a file's name; told from every other by a checksum where it may not stand whole."""
+    plain = re.sub(r"[^\w.=+-]+", "_", text)
+    if plain == text and len(text) <= LONGEST:
+        return text
+    return f"{plain[:LONGEST]}-{hashlib.sha256(text.encode(errors='surrogateescape')).hexdigest()[:8]}"
 
 
 def progress_of(args: argparse.Namespace) -> Progress:
@@ -134,10 +151,10 @@ def tell(
         print("\n  ".join([title, *told]) if title else "\n".join(told))
 
 
-def report(args: argparse.Namespace, result: Result, where: Path) -> int:
-    """Print a result, warn of what the model lacks; the exit code."""
+def report(args: argparse.Namespace, result: Result, content: Mapping[str, Any], where: Path) -> int:
+    """Print a result, or the content of its file, warn of what the model lacks; the exit code."""
     if args.json:
-        print(json.dumps(result.to_json(), allow_nan=False))
+        print(json.dumps(content, allow_nan=False))
     else:
         print(summary(result, where))
     warn(result)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault
+from lumped.result_folder import publish
 from lumped.scene import Scene
 
 SUMMARY = "the finite-element reference against lumped laws: scores, verdict, chart"
@@ -26,10 +27,11 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.reference import result_of, solve
     from fe_contact.report.compare import plot_comparison
     from fe_contact.validation.compare import compare
-    from fe_contact.validation.compare_files import write_comparison
+    from fe_contact.validation.compare_files import comparison_content, write_comparison
     from lumped.score import read_curve
 
     scene, table = base.read_scene(args)
+    where = base.folder(args, "compare", scene.name)
     given, names = settings(table, None, scene.source), law_names(args.laws, scene)
     measured = None if args.measured is None else read_curve(args.measured)
     progress = base.progress_of(args)
@@ -41,9 +43,13 @@ def execute(args: argparse.Namespace) -> int:
         reference = result_of(scene, solved)
     progress("lumped laws")
     comparison = compare(solved, reference, names, measured)
-    where = base.folder(args, "compare", scene.name)
-    content = write_comparison(comparison, where)
-    plot_comparison(comparison, where)
+    content = comparison_content(comparison)
+
+    def write(folder: Path) -> None:
+        write_comparison(comparison, folder)
+        plot_comparison(comparison, folder)
+
+    publish(where, write)
     base.tell(args, content, content["verdict"], where, f"{scene.name}: against finite elements")
     base.warn(reference)
     return base.DONE if reference.converged else base.NOT_REACHED

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
+from lumped.result_folder import publish
 
 if TYPE_CHECKING:
     from fe_contact.validation.exponents import Curve
@@ -35,9 +37,13 @@ def execute(args: argparse.Namespace) -> int:
     progress = base.progress_of(args)
     found, checked = curves(args.quick, progress), checks(args.quick, progress)
     spheres = pairs(args.quick, progress)
-    content = write_exponents(found, checked, spheres, where)
-    progress("chart")
-    plot_exponents(found, checked, where)
+
+    def write(folder: Path) -> None:
+        write_exponents(found, checked, spheres, folder)
+        progress("chart")
+        plot_exponents(found, checked, folder)
+
+    content = publish(where, write, "exponents.json")
     base.tell(args, content, [*map(_curve, found), *map(_check, checked), *(pair.told for pair in spheres)], where)
     reached = [*(check.converged for check in checked), *(pair.converged for pair in spheres)]
     if missed := reached.count(False):

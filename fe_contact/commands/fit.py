@@ -6,10 +6,11 @@ import argparse
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault, NotReached
+from lumped.result_folder import publish
 
 if TYPE_CHECKING:
     from lumped.fit import Estimate, Fit
@@ -35,7 +36,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Fit, write, report; 0 or 3."""
     from fe_contact.report.fit import plot_fit
-    from lumped.fit import fit, write_failure
+    from lumped.fit import RECORD, fit, write_failure
     from lumped.score import read_curve
 
     _check_opensees(args)
@@ -50,17 +51,20 @@ def execute(args: argparse.Namespace) -> int:
     except NotReached as failure:
         write_failure(where, args.law, str(failure))
         raise
-    found.write(where)
-    plot_fit(curve, found, where)
-    _report(args, found, where)
+
+    def write(folder: Path) -> None:
+        found.write_files(folder)
+        plot_fit(curve, found, folder)
+
+    _report(args, found, publish(where, write, RECORD), where)
     return base.DONE if found.result.converged else base.NOT_REACHED
 
 
-def _report(args: argparse.Namespace, found: Fit, where: Path) -> None:
+def _report(args: argparse.Namespace, found: Fit, content: dict[str, Any], where: Path) -> None:
     """Parameters; for OpenSees the law, with the parameters as comments; warnings on stderr."""
     from lumped import laws, opensees
 
-    text, content = summary(found, where), found.to_json()
+    text = summary(found, where)
     if args.opensees:
         lines = opensees.lines(laws.get(found.law).of(found.scene), found.scene, language=args.opensees)
         text = "\n".join([*(f"# {line}" for line in text.splitlines()), lines])

@@ -10,6 +10,7 @@ from fe_contact.commands import base
 from lumped.errors import BadInput, Fault, NotReached, nearest
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
+from lumped.result_folder import publish
 
 SUMMARY = "slow indentation to given depths: indentation.csv and result.json, with error bars"
 EXACT = ("mdr", "ting", "correspondence")  # at rest all are the exact load curve, the first the half-space's alone
@@ -33,9 +34,9 @@ def execute(args: argparse.Namespace) -> int:
     depths = tuple(base.number(text, "--depths") for text in args.depths.split(","))
     where = base.folder(args, "indent", indenter.name)
     found = _indented(args, indenter, depths, given)
-    found.write(where)
+    content = publish(where, found.write_files)
     if args.json:
-        print(json.dumps(found.to_json(), allow_nan=False))
+        print(json.dumps(content, allow_nan=False))
     else:
         print("\n".join([*_lines(found), f"  written to {where}"]))
     base.warn(found)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
+from lumped.result_folder import publish
 
 if TYPE_CHECKING:
     from lumped.paper import Judged, Value
@@ -32,9 +34,13 @@ def execute(args: argparse.Namespace) -> int:
     where = base.folder(args, "paper", examples.name)
     progress = base.progress_of(args)
     found = study(examples, progress)
-    content = write_study(found, where)
-    progress("charts")
-    plot_paper(found, where)
+
+    def write(folder: Path) -> None:
+        write_study(found, folder)
+        progress("charts")
+        plot_paper(found, folder)
+
+    content = publish(where, write, "paper.json")
     base.tell(args, content, _lines(found), where)
     return base.DONE
 

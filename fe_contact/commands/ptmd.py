@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from lumped.errors import NotReached
+from lumped.result_folder import publish
 from lumped.sufficiency import worst
 
 if TYPE_CHECKING:
@@ -25,7 +27,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Simulate, write, report; 0 or 3."""
     from fe_contact.report.ptmd import plot_study
-    from fe_contact.validation.ptmd_files import write_failure, write_study
+    from fe_contact.validation.ptmd_files import RECORD, write_failure, write_study
     from lumped.pounding_tmd.case_file import load
     from lumped.pounding_tmd.study import study
 
@@ -36,8 +38,12 @@ def execute(args: argparse.Namespace) -> int:
     except NotReached as failure:
         write_failure(case, str(failure), where)
         raise
-    content = write_study(found, where)
-    plot_study(found, where)
+
+    def write(folder: Path) -> None:
+        write_study(found, folder)
+        plot_study(found, folder)
+
+    content = publish(where, write, RECORD)
     title = f"{case.name}: {case.end_time:g} s of free vibration"
     base.tell(args, content, _lines(found), where, title)
     for line in _warnings(found):

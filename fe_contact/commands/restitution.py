@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
+from lumped.result_folder import publish
 
 if TYPE_CHECKING:
     from lumped.restitution_table import Line
@@ -28,9 +30,13 @@ def execute(args: argparse.Namespace) -> int:
     progress = base.progress_of(args)
     progress("impacts")
     lines = table()
-    content = write_restitution(lines, where)
-    progress("chart")
-    plot_restitution(lines, where)
+
+    def write(folder: Path) -> None:
+        write_restitution(lines, folder)
+        progress("chart")
+        plot_restitution(lines, folder)
+
+    content = publish(where, write, "restitution.json")
     base.tell(args, content, [*map(_said, lines)], where)
     return base.DONE
 

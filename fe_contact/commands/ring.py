@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
+from lumped.result_folder import publish
 
 if TYPE_CHECKING:
     from fe_contact.validation.rings import RingCurve
@@ -30,9 +32,13 @@ def execute(args: argparse.Namespace) -> int:
     progress = base.progress_of(args)
     curves = rings(cases(), progress)
     impacts = struck(cases(), progress)
-    content = write_rings(curves, where, impacts)
-    progress("chart")
-    plot_rings(curves, where)
+
+    def write(folder: Path) -> None:
+        write_rings(curves, folder, impacts)
+        progress("chart")
+        plot_rings(curves, folder)
+
+    content = publish(where, write, "ring.json")
     lines = [line for curve in curves for line in _said(curve)] + [line for one in impacts for line in _told(one)]
     base.tell(args, content, lines, where)
     missed = [curve.case.name for curve in curves if not curve.found.converged]

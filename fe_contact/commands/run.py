@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.result import Result, write_failure
+from lumped.result_folder import publish
 from lumped.scene import Scene
 
 if TYPE_CHECKING:  # finite elements are loaded when they are needed
@@ -51,14 +52,19 @@ def _impact(args: argparse.Namespace, scene: Scene, table: dict[str, Any], where
         result = result_of(scene, solved)
     else:
         solved, result = None, simulate(scene, args.method, table, progress=base.progress_of(args))
-    result.write(where)
+    content = publish(where, lambda folder: _write(args, solved, result, folder))
+    return base.report(args, result, content, where)
+
+
+def _write(args: argparse.Namespace, solved: Solved | None, result: Result, folder: Path) -> None:
+    """The files of a result, and what else was asked for."""
+    result.write_files(folder)
     if args.fields:
-        _write_fields(scene, solved, result, where)
+        _write_fields(result.scene, solved, result, folder)
     if args.plot:
         from fe_contact.report.history import plot_history
 
-        plot_history(result, where, solved)
-    return base.report(args, result, where)
+        plot_history(result, folder, solved)
 
 
 def _check(args: argparse.Namespace, scene: Scene) -> None:

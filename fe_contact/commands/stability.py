@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
+from lumped.result_folder import publish
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,9 +33,13 @@ def execute(args: argparse.Namespace) -> int:
     where = base.folder(args, "stability", "bars")
     progress = base.progress_of(args)
     rows = rows_of(args.quick, args.jobs, where, progress)
-    content = write_stability(rows, where)
-    progress("charts")
-    plot_stability(rows, where)
+
+    def write(folder: Path) -> None:
+        write_stability(rows, folder)
+        progress("charts")
+        plot_stability(rows, folder)
+
+    content = publish(where, write, "stability.json")
     base.tell(args, content, _lines(rows), where)
     return base.DONE
 

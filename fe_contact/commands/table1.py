@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
+from lumped.result_folder import publish
 
 if TYPE_CHECKING:
     from fe_contact.validation.table1 import Trial
@@ -27,11 +29,15 @@ def execute(args: argparse.Namespace) -> int:
     where = base.folder(args, "table1", "paper")
     progress = base.progress_of(args)
     trials = table1(progress)
-    content = write_table1(trials, where)
-    progress("chart")
-    from fe_contact.report.table1 import plot_table1  # matplotlib, once the two processes are gone
 
-    plot_table1(trials, where)
+    def write(folder: Path) -> None:
+        write_table1(trials, folder)
+        progress("chart")
+        from fe_contact.report.table1 import plot_table1  # matplotlib, once the two processes are gone
+
+        plot_table1(trials, folder)
+
+    content = publish(where, write, "table1.json")
     base.tell(args, content, [line for trial in trials for line in _said(trial)], where)
     undecided = [trial.row.name for trial in trials if verdict(trial).word == UNDECIDED]
     if undecided:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from fe_contact.commands import base
+from lumped.result_folder import publish
 
 SUMMARY = "error over processor time and counted work, by every method; where the defaults lie"
 
@@ -24,10 +26,14 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.validation.tradeoff_files import write_tradeoff
 
     scene, table = base.read_scene(args)
+    where = base.folder(args, "tradeoff", scene.name)
     study = tradeoff_waves if scene.model.inertia else tradeoff
     points = study.tradeoff(scene, settings(table, None, scene.source), args.quick, base.progress_of(args))
-    where = base.folder(args, "tradeoff", scene.name)
-    content = write_tradeoff(scene, points, where)
-    plot_tradeoff(scene, points, where)
+
+    def write(folder: Path) -> None:
+        write_tradeoff(scene, points, folder)
+        plot_tradeoff(scene, points, folder)
+
+    content = publish(where, write, "tradeoff.json")
     base.tell(args, content, content["verdict"], where, f"{scene.name}: {len(points)} points")
     return base.DONE

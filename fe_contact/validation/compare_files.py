@@ -28,17 +28,15 @@ SCORE_COLUMNS = {
 }
 
 
-def write_comparison(comparison: Comparison, where: Path) -> dict[str, Any]:
-    """Write every history, ``scores.csv`` and ``compare.json`` into a folder; the content of the latter."""
-    comparison.reference.write(where)
+def write_comparison(comparison: Comparison, where: Path) -> None:
+    """Write every history, ``scores.csv`` and ``compare.json`` into a folder."""
+    comparison.reference.write_files(where)
     for name, law in comparison.laws.items():
         law.history.write_csv(where / f"{name}-history.csv")
     nested = comparison.nested and comparison.nested.holds  # of the reference: the same in every row
     rows = [[j.name, j.score_percent, *(j.errors[key] for key in SCORE_COLUMNS), nested] for j in comparison.judgements]
     write_csv(where / "scores.csv", ["law", "score_percent", *SCORE_COLUMNS.values(), "nested_areas"], rows)
-    content = comparison_content(comparison)
-    write_json(where / "compare.json", content)
-    return content
+    write_json(where / "compare.json", comparison_content(comparison))
 
 
 def comparison_content(comparison: Comparison) -> dict[str, Any]:

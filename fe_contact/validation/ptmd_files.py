@@ -14,8 +14,9 @@ from lumped.pounding_tmd.case import Case
 from lumped.pounding_tmd.result import COLUMNS
 from lumped.pounding_tmd.study import Study
 from lumped.result import provenance
+from lumped.result_folder import publish
 
-SCHEMA = "fe-contact/ptmd/1"
+SCHEMA, RECORD = "fe-contact/ptmd/1", "ptmd.json"
 CONTACT_COLUMNS = {
     "side": "side",
     "start": "start_s",
@@ -26,25 +27,22 @@ CONTACT_COLUMNS = {
 
 
 def write_study(study: Study, where: Path) -> dict[str, Any]:
-    """Write ``ptmd.csv``, ``contacts.csv`` and ``ptmd.json`` into a folder, made when it is not there; the last's
-    content.
-    """
-    where.mkdir(parents=True, exist_ok=True)
+    """Write ``ptmd.csv``, ``contacts.csv`` and ``ptmd.json`` into a folder; the content of the last."""
     motion = study.main.motion
     table = np.column_stack([getattr(motion, name) for name in COLUMNS])
     write_csv(where / "ptmd.csv", list(COLUMNS.values()), table.tolist())
     rows = [[getattr(contact, name) for name in CONTACT_COLUMNS] for contact in study.main.contacts]
     write_csv(where / "contacts.csv", list(CONTACT_COLUMNS.values()), rows)
     content = study_content(study)
-    write_json(where / "ptmd.json", content)
+    write_json(where / RECORD, content)
     return content
 
 
 def write_failure(case: Case, message: str, where: Path) -> None:
-    """Write the ``ptmd.json`` of a motion that was not followed to its end: what is known."""
-    where.mkdir(parents=True, exist_ok=True)
+    """Write the ``ptmd.json`` of a motion that was not followed to its end: what is known. Raises CannotWrite."""
     content = {"schema": SCHEMA, "name": case.name, "converged": False, "model_sufficient": None, "message": message}
-    write_json(where / "ptmd.json", plain(content | {"case": case.to_dict(), "provenance": provenance()}))
+    known = plain(content | {"case": case.to_dict(), "provenance": provenance()})
+    publish(where, lambda folder: write_json(folder / RECORD, known), RECORD)
 
 
 def study_content(study: Study) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from lumped.fit.record import RECORD as RECORD
 from lumped.fit.record import Estimate as Estimate
 from lumped.fit.record import Fit as Fit
 from lumped.fit.record import write_failure as write_failure

@@ -14,10 +14,11 @@ from lumped.csv_file import write_csv
 from lumped.history import History
 from lumped.json_file import write_json
 from lumped.result import Result
+from lumped.result_folder import publish
 from lumped.scene import Scene
 
 Array = NDArray[np.float64]
-SCHEMA = "fe-contact/fit/1"
+SCHEMA, RECORD = "fe-contact/fit/1", "fit.json"
 
 
 @dataclass(frozen=True)
@@ -81,17 +82,22 @@ class Fit:
         }
 
     def write(self, directory: Path) -> None:
-        """Write fit.json, fit.csv (the fitted history) and parameters.csv into `directory`, made when not there."""
-        directory.mkdir(parents=True, exist_ok=True)
-        write_json(directory / "fit.json", self.to_json())
-        self.history.write_csv(directory / "fit.csv")
+        """Make fit.json, fit.csv (the fitted history) and parameters.csv the content of a folder of results.
+
+        Raises CannotWrite; what was there stays then, see :mod:`lumped.result_folder`.
+        """
+        publish(directory, self.write_files, RECORD)
+
+    def write_files(self, folder: Path) -> None:
+        """The same files, one after the other, into a folder that is there."""
+        write_json(folder / RECORD, self.to_json())
+        self.history.write_csv(folder / "fit.csv")
         rows = [[name, *asdict(estimate).values()] for name, estimate in self.parameters.items()]
         rows += [[name, value, None, None, ""] for name, value in self.held.items()]
-        write_csv(directory / "parameters.csv", ("parameter", "value", "low", "high", "unit"), rows)
+        write_csv(folder / "parameters.csv", ("parameter", "value", "low", "high", "unit"), rows)
 
 
 def write_failure(directory: Path, law: str, message: str) -> None:
-    """Write the fit.json of a search that did not converge."""
-    directory.mkdir(parents=True, exist_ok=True)
+    """Write the fit.json of a search that did not converge; it takes the place of an older fit. Raises CannotWrite."""
     content = {"schema": SCHEMA, "law": law, "converged": False, "message": message, "parameters": None}
-    write_json(directory / "fit.json", content)
+    publish(directory, lambda folder: write_json(folder / RECORD, content), RECORD)
