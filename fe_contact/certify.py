@@ -32,12 +32,14 @@ from fe_contact.impacts import Followed
 from fe_contact.march import March, Strike
 from fe_contact.numerics import SCHEMES, Numerics
 from fe_contact.plan import SETTING
+from fe_contact.progress import Count, Progress, silent
 from fe_contact.runs import Runs, TotalWork
 from fe_contact.softening import Softening, compliance_change
 from fe_contact.trusted_order import trusted_orders
 from lumped.geometry import Geometry
 from lumped.members import get
 
+MARCHES = 2.5  # steps of all marches of a contact over those of the finest one: half and a quarter, and three of these
 SAFETY = 1.25
 LEAST_ORDER = {"penalty": 1, "far_field": 2}
 MESH_ORDER = {1: 0.5, 2: 1, 3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
@@ -103,12 +105,16 @@ class Certified(Several):
     surface: Struck
 
 
-def certify(strike: Strike, geometry: Geometry, numerics: Numerics, impacts: int = 1) -> Certified:
+def certify(
+    strike: Strike, geometry: Geometry, numerics: Numerics, impacts: int = 1, progress: Progress = silent
+) -> Certified:
     """March with ``numerics`` and with each setting varied; raises where the march itself fails.
 
     Up to so many ``impacts``: the budget is that of the first, those of the ``later`` ones stand in it.
     """
-    runs = Runs(strike, geometry, impacts)
+    message = f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements along the contact radius"
+    progress(message)
+    runs = Runs(strike, geometry, impacts, Count(progress, message, MARCHES * impacts * numerics.steps))
     followed = runs.follow(numerics)
     judged = [_judged(runs, number, numerics, impacts == 1) for number in range(len(followed.contacts))]
     surface = runs.surface(numerics)

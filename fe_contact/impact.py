@@ -12,6 +12,7 @@ from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall, To
 from fe_contact.forms import Array
 from fe_contact.march import March, Strike
 from fe_contact.numerics import Numerics
+from fe_contact.progress import Counted, uncounted
 from fe_contact.separation import time_left
 from fe_contact.steps import State, Step, Stepping
 from fe_contact.time_grid import GROWTH_AFTER, share_of_rest, step_length
@@ -43,15 +44,16 @@ def march(
     return marched(struck.stepper(strike, numerics, accounted, expected))
 
 
-def marched(stepper: Stepping) -> March:
-    """The same with what takes its steps."""
-    return _Marcher(stepper).run()
+def marched(stepper: Stepping, counted: Counted = uncounted) -> March:
+    """The same with what takes its steps, each of them ``counted``."""
+    return _Marcher(stepper, counted).run()
 
 
 class _Marcher:
     """The loop: what stays the same through an impact is held here, what changes is passed and returned."""
 
-    def __init__(self, stepper: Stepping) -> None:
+    def __init__(self, stepper: Stepping, counted: Counted) -> None:
+        self.counted = counted
         self.stepper, self.strike, self.numerics = stepper, stepper.strike, stepper.numerics
         self.shortest = stepper.shortest * self.numerics.contact_time
 
@@ -73,6 +75,7 @@ class _Marcher:
                 left = min(left or 0.0, self.shortest)
                 states += self._flight(states[-1], left) if separated else self._rest(states[-1], resting)
                 break
+            self.counted(1.0)
             steps.append(step)
             states.append(step.state)
         spread = float(np.ptp(predicted[-PREDICTIONS:])) if separated else 0.0

@@ -12,6 +12,7 @@ from fe_contact.forms import Array
 from fe_contact.impact import marched
 from fe_contact.march import March, Strike
 from fe_contact.numerics import Numerics
+from fe_contact.progress import Counted, uncounted
 
 MOST_STEPS = 10_000  # after which no further contact is followed: a budget of some fifteen such rows takes a minute
 
@@ -51,6 +52,7 @@ def follow(
     placed: Callable[[int, Strike], Numerics],
     accounted: bool = True,
     expected: Sequence[Sequence[float] | Array] = (),
+    counted: Counted = uncounted,
 ) -> Followed:
     """Up to ``impacts`` contacts.
 
@@ -58,6 +60,7 @@ def follow(
     ----------
     placed : settings for the contact of a number, from 0, and its strike, which say how long it is expected to last.
     accounted, expected : as of :func:`fe_contact.impact.march`, radii a contact.
+    counted : told of every step.
 
     Raises the named failures of :mod:`fe_contact.errors` where a step does not converge.
     """
@@ -66,7 +69,7 @@ def follow(
         radii = expected[len(contacts)] if len(contacts) < len(expected) else ()
         stepper = struck.stepper(begun, placed(len(contacts), begun), accounted, radii)
         try:
-            march = marched(stepper)
+            march = marched(stepper, counted)
         except TooManySteps:
             if not contacts:
                 raise

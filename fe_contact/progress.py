@@ -1,11 +1,192 @@
-"""How long work tells what it is doing: one line at a time, to whoever listens."""
+"""How long work tells what it is doing, how much of it is done and how long the rest may take, to whoever listens."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import shutil
+import sys
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from typing import Protocol, TextIO
 
-Progress = Callable[[str], None]
+OFTEN = 0.2  # s between two words on a terminal, as fast as anybody reads
+SELDOM = 1.0  # s between two lines of a log
 
 
-def silent(message: str) -> None:
+Counted = Callable[[float], None]  # told that so many parts of a work are done
+
+
+class Progress(Protocol):
+    """Told what is being done and, where it is known, how much of the ``total`` of it is ``done``, in any unit.
+
+    ``lasting``: worth a line even where nobody watches a terminal. It may be told as often as it is done: a word more
+    costs a look at the clock.
+    """
+
+    def __call__(self, message: str, done: float = 0, total: float = 0, lasting: bool = False) -> None: ...
+
+
+def silent(message: str, done: float = 0, total: float = 0, lasting: bool = False) -> None:
     """Nobody listens."""
+
+
+def to_all(listeners: Sequence[Progress]) -> Progress:
+    """Several listeners as one."""
+
+    def told(message: str, done: float = 0, total: float = 0, lasting: bool = False) -> None:
+        for listener in listeners:
+            listener(message, done, total, lasting)
+
+    return told if listeners else silent
+
+
+@dataclass
+class Count:
+    """Equal parts of one work, as the steps of marches, told as they are done; ``total`` of them are expected."""
+
+    progress: Progress
+    message: str
+    total: float
+    done: float = 0.0
+
+    def __call__(self, parts: float = 1.0) -> None:
+        """So many more are done."""
+        self.done += parts
+        self.progress(self.message, self.done, max(self.total, self.done))
+
+
+def uncounted(parts: float = 1.0) -> None:
+    """Nobody counts."""
+
+
+@dataclass
+class Pace:
+    """Since when the work, and what is being done of it now, goes on; ``pause``, s, between two words of the same."""
+
+    clock: Callable[[], float]
+    pause: float
+    message: str = ""
+    spoke: float = field(default=-float("inf"))
+
+    def __post_init__(self) -> None:
+        self.begun = self.since = self.clock()
+
+    def due(self, message: str, done: float, total: float) -> bool:
+        """Whether it is time for a word: what is new, or all done, is said at once."""
+        now = self.clock()
+        if message != self.message:
+            self.message, self.since = message, now
+        elif now - self.spoke < self.pause and not done >= total > 0:
+            return False
+        self.spoke = now
+        return True
+
+    def elapsed(self) -> float:
+        """S from the first moment on."""
+        return self.spoke - self.begun
+
+    def left(self, done: float, total: float) -> float | None:
+        """S that the rest takes if it goes on as it did; None before anything is known."""
+        passed = self.spoke - self.since
+        return passed * (total - done) / done if 0 < done <= total and passed > 0.0 else None
+
+
+class Line:
+    """The last line of a terminal, rewritten in place, never longer than it is wide."""
+
+    def __init__(
+        self,
+        stream: TextIO,
+        clock: Callable[[], float] = time.monotonic,
+        width: Callable[[], int] = lambda: shutil.get_terminal_size().columns,
+    ) -> None:
+        self._stream, self._pace, self._width, self._shown = stream, Pace(clock, OFTEN), width, 0
+
+    def __call__(self, message: str, done: float = 0, total: float = 0, lasting: bool = False) -> None:
+        """Tell; see :class:`Progress`."""
+        global _line
+        if self._pace.due(message, done, total):
+            _line = self
+            counted = f", {_share(done, total)}" if total else ""
+            left = self._pace.left(done, total)
+            rest = f", about {_spoken(left)} left" if left else ""
+            self._write(f"fe-contact: {message}{counted}{rest} ...")
+
+    def clear(self) -> None:
+        """Leave the line empty, as if nothing had been told."""
+        self._write("")
+
+    def _write(self, text: str) -> None:
+        text = text[: max(self._width() - 1, 0)]  # a full line would wrap
+        blank = " " * (self._shown - len(text))
+        with suppress(OSError, ValueError):  # nobody is there to see it
+            self._stream.write(f"\r{text}{blank}" if text else f"\r{blank}\r" * bool(blank))
+            self._stream.flush()
+        self._shown = len(text)
+
+
+_line: Line | None = None  # the one that stands on the terminal
+
+
+def clear() -> None:
+    """Make room on the terminal for what is not progress."""
+    global _line
+    if _line is not None:
+        _line.clear()
+        _line = None
+
+
+def lasting_to(stream: TextIO) -> Progress:
+    """One that hears only what is worth a line where nobody watches."""
+
+    def told(message: str, done: float = 0, total: float = 0, lasting: bool = False) -> None:
+        if lasting:
+            with suppress(OSError, ValueError):
+                stream.write(f"fe-contact: {message} ...\n")
+
+    return told
+
+
+class Log:
+    """A line of a file for each word, with the time of day, s since the start, what is done and about what is left."""
+
+    def __init__(
+        self,
+        stream: TextIO,
+        clock: Callable[[], float] = time.monotonic,
+        today: Callable[[], datetime] = lambda: datetime.now(UTC),
+    ) -> None:
+        self._stream, self._pace, self._today = stream, Pace(clock, SELDOM), today
+
+    def __call__(self, message: str, done: float = 0, total: float = 0, lasting: bool = False) -> None:
+        """Tell; see :class:`Progress`."""
+        if self._pace.due(message, done, total):
+            left = self._pace.left(done, total)
+            parts = [f"{self._today():%Y-%m-%dT%H:%M:%SZ}", f"{self._pace.elapsed():.1f} s", message]
+            parts += [_share(done, total)] if total else []
+            parts += [] if left is None else [f"about {_spoken(left)} left"]
+            self._stream.write(", ".join(parts) + "\n")
+            self._stream.flush()
+
+
+def log_to(path: str) -> Log:
+    """A log in a file made anew; raises OSError where it cannot be."""
+    return Log(open(path, "w", encoding="utf-8"))  # noqa: PTH123 - it ends with the process
+
+
+def terminal() -> Line:
+    """The line of the terminal that stderr is."""
+    return Line(sys.stderr)
+
+
+def _share(done: float, total: float) -> str:
+    return f"{done:.0f} of {total:.0f}"
+
+
+def _spoken(seconds: float) -> str:
+    """A time to come, in the unit that people use for it."""
+    if seconds < 100.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 6000.0 else f"{seconds / 3600.0:.1f} h"

@@ -72,7 +72,7 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     ----------
     scene : physics.
     given : checked settings that the plan must keep.
-    progress : told, in a line, what happens.
+    progress : told what happens, and the steps done of those expected.
 
     Raises NotReached where no march came to an end, BadInput for a scene without geometry, of several impacts on a body
     that does not remember by its surface alone, or that goes deeper than its bodies.
@@ -86,9 +86,8 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     numerics = finer = chosen.numerics
     certified, outgrown = None, None
     for _ in range(ROUNDS + 1):
-        progress(f"{finer.steps} steps, {finer.elements_per_contact:g} elements along the contact radius")
         try:
-            certified, numerics = certify(strike, scene.geometry, finer, scene.motion.impacts), finer
+            certified, numerics = certify(strike, scene.geometry, finer, scene.motion.impacts, progress), finer
         except MemoryTooSmall as failure:
             outgrown = failure
             finer = finer.varied(contact_radius=1.5 * finer.contact_radius)

@@ -14,6 +14,7 @@ from fe_contact.impacts import Followed, follow
 from fe_contact.march import March, Strike
 from fe_contact.numerics import Numerics
 from fe_contact.plan import share_of_peak
+from fe_contact.progress import Counted, uncounted
 from lumped.errors import NotReached
 from lumped.geometry import Geometry
 
@@ -36,9 +37,10 @@ class TotalWork:
 
 
 class Runs:
-    """Marches of a strike and of up to so many ``impacts`` in a row, with different settings."""
+    """Marches of a strike and of up to so many ``impacts`` in a row, with different settings, steps ``counted``."""
 
-    def __init__(self, strike: Strike, geometry: Geometry, impacts: int) -> None:
+    def __init__(self, strike: Strike, geometry: Geometry, impacts: int, counted: Counted = uncounted) -> None:
+        self._counted = counted
         self._strike, self._geometry, self._impacts = strike, geometry, impacts
         self._marches: list[March] = []
         self._radii: dict[int, list[Array]] = {}
@@ -50,7 +52,7 @@ class Runs:
         """One run, its contact radii expected to be those of the first with as many steps; raises where it fails."""
         surface, expected = self.surface(settings), self._radii.get(settings.steps, [])
         placed = partial(self._placed, settings, surface)
-        followed = follow(self._strike, surface, self._impacts, placed, not self._marches, expected)
+        followed = follow(self._strike, surface, self._impacts, placed, not self._marches, expected, self._counted)
         marches = [contact.march for contact in followed.contacts]
         self._marches += marches
         self._radii.setdefault(settings.steps, [one.radius for one in marches])

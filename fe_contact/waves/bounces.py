@@ -6,12 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from fe_contact.dynamics import ledger
-from fe_contact.dynamics.march import MOST_WORK, Moment, Motion, onwards
+from fe_contact.dynamics.march import MOST_WORK, Moment, Motion, Sample, onwards
 from fe_contact.dynamics.state import undeformed
 from fe_contact.errors import TooManySteps
 from fe_contact.flight import FAINTEST, Grounded
 from fe_contact.impacts import Contact, Followed
 from fe_contact.march import Strike
+from fe_contact.progress import Counted, uncounted
 from fe_contact.waves.cost import MARCHES
 from fe_contact.waves.flight import Flights
 from fe_contact.waves.impact import choices_of, left, record
@@ -36,12 +37,14 @@ class Bounces(Followed):
         return self.contacts[-1].march.energy
 
 
-def follow(moving: Moving, scene: Scene, strike: Strike, numerics: WaveNumerics) -> Bounces:
-    """Up to as many contacts as the scene asks for, the first one a ``strike`` on a body at rest.
+def follow(
+    moving: Moving, scene: Scene, strike: Strike, numerics: WaveNumerics, counted: Counted = uncounted
+) -> Bounces:
+    """Up to as many contacts as the scene asks for, the first one a ``strike`` on a body at rest; steps ``counted``.
 
     Raises the named failures of :mod:`fe_contact.errors` where a step does not converge.
     """
-    flights = Flights(moving.body, choices_of(scene, numerics), max(round(PATIENCE * numerics.steps), 2))
+    flights = Flights(moving.body, choices_of(scene, numerics), max(round(PATIENCE * numerics.steps), 2), counted)
     still = undeformed(moving.body, moving.velocity)
     moment, contacts = Moment(still, ledger.opened(moving.body, still)), list[Contact]()
 
@@ -50,7 +53,7 @@ def follow(moving: Moving, scene: Scene, strike: Strike, numerics: WaveNumerics)
 
     while True:
         try:
-            found = _pressed(moving, moment, scene, strike, numerics)
+            found = _pressed(moving, moment, scene, strike, numerics, counted)
         except TooManySteps:
             if not contacts:
                 raise
@@ -63,7 +66,10 @@ def follow(moving: Moving, scene: Scene, strike: Strike, numerics: WaveNumerics)
             return done(Grounded.MANY)
         if scene.gravity <= 0.0:
             return done(Grounded.NO_GRAVITY)
-        touch = flights.landing(Moment(found.final, found.samples[-1].energies), scene.end_time)
+        try:
+            touch = flights.landing(Moment(found.final, found.samples[-1].energies), scene.end_time)
+        except TooManySteps:
+            return done(Grounded.MANY)
         if touch is None:
             return done(Grounded.LATE)
         strike = _again(strike, moving, touch, scene.end_time)
@@ -72,11 +78,18 @@ def follow(moving: Moving, scene: Scene, strike: Strike, numerics: WaveNumerics)
         moment = touch
 
 
-def _pressed(moving: Moving, begun: Moment, scene: Scene, strike: Strike, numerics: WaveNumerics) -> Motion:
+def _pressed(
+    moving: Moving, begun: Moment, scene: Scene, strike: Strike, numerics: WaveNumerics, counted: Counted
+) -> Motion:
     """One contact, by the clock of its touch; raises TooManySteps where one of several swings for too long."""
     longest = LONGEST * numerics.contact_time if scene.motion.impacts > 1 else strike.end_time
     until = min(longest, strike.end_time)
-    found = onwards(moving.body, begun, choices_of(scene, numerics), until, moving.watch, left)
+
+    def finished(sample: Sample) -> bool:
+        counted(1.0)
+        return left(sample)
+
+    found = onwards(moving.body, begun, choices_of(scene, numerics), until, moving.watch, finished)
     if until < strike.end_time and not left(found.samples[-1]):
         raise TooManySteps(len(found.samples) - 1, found.final.time)
     clocked = tuple(sample._replace(time=sample.time - strike.touched_at) for sample in found.samples)

@@ -18,6 +18,7 @@ from fe_contact.change import Change
 from fe_contact.curve import Curve
 from fe_contact.forms import Array
 from fe_contact.march import March, Strike
+from fe_contact.progress import Counted, uncounted
 from fe_contact.runs import TotalWork
 from fe_contact.waves.bounces import Bounces, follow
 from fe_contact.waves.moving import Moving
@@ -44,12 +45,17 @@ class Runs:
         self._scene, self._strike, self._moving, self.cheap = scene, strike, moving, cheap
         self._curves: dict[WaveNumerics, tuple[Curve, ...]] = {}
         self._runs: dict[WaveNumerics, tuple[Bounces, int]] = {}
+        self.counted: Counted = uncounted  # told of the work of every step
+
+    def _count(self, unknowns: int, steps: float) -> None:
+        self.counted(unknowns * steps)
 
     def follow(self, settings: WaveNumerics) -> Bounces:
         """One run; raises where it fails."""
         if settings not in self._runs:
             body = self._moving(self._scene, settings)
-            followed = follow(body, self._scene, self._strike, settings)
+            counted = partial(self._count, body.body.size)
+            followed = follow(body, self._scene, self._strike, settings, counted)
             self._runs[settings] = followed, body.body.size
             self._curves[settings] = tuple(curve_of(one.march, one.strike, settings) for one in followed.contacts)
         return self._runs[settings][0]

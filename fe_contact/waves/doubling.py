@@ -36,7 +36,7 @@ def certified(
     runs = dict[Run, None]()
     for attempt in range(ROUNDS + 1):
         assert isinstance(numerics, WaveNumerics)
-        progress(f"{numerics.steps} steps")
+        progress(f"{numerics.steps} steps of waves along a line")
         found = Bars(marched(numerics), {cause: marched(settings) for cause, settings in varied(numerics).items()})
         runs |= dict.fromkeys(found.runs)
         stuck = "steps" in chosen.pinned or attempt == ROUNDS or 2 * numerics.steps > most_steps

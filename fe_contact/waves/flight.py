@@ -14,10 +14,12 @@ import numpy as np
 from fe_contact.dynamics import events, ledger
 from fe_contact.dynamics.body import Body
 from fe_contact.dynamics.implicit import ImplicitStepper
-from fe_contact.dynamics.march import Choices, Moment
+from fe_contact.dynamics.march import MOST_WORK, Choices, Moment
 from fe_contact.dynamics.schemes import generalised_alpha
 from fe_contact.dynamics.state import State
+from fe_contact.errors import TooManySteps
 from fe_contact.kept import Store
+from fe_contact.progress import Counted, uncounted
 
 DAMPED = generalised_alpha.of(0.5)  # waves that no step follows any more die away, by half a step
 KEPT = 8  # lengths of step whose factors are kept, some 10 MB each
@@ -27,16 +29,17 @@ LOCATED = 1e-6  # of a step: a touch sooner than that is now
 class Flights:
     """Flights of one body, their first steps as long as those of the contacts; every ``patience`` steps they double.
 
-    ``steps`` taken, ``factorizations`` made so far, of which the last ones used are kept.
+    ``steps`` taken, ``factorizations`` made so far, of which the last ones used are kept; steps are ``counted``.
     """
 
-    def __init__(self, body: Body, choices: Choices, patience: int) -> None:
+    def __init__(self, body: Body, choices: Choices, patience: int, counted: Counted = uncounted) -> None:
+        self._counted, self._most = counted, MOST_WORK / body.size
         self._body, self._choices, self._patience = body, choices, patience
         self._steppers = Store(KEPT)
         self.steps = self.factorizations = 0
 
     def landing(self, parted: Moment, until: float) -> Moment | None:
-        """The touch that follows a separation; None where ``until``, s, comes before."""
+        """The touch that follows a separation; None where ``until``, s, comes before. Raises TooManySteps."""
         moment, level, highest, taken = parted, 0, np.inf, 0
         while moment.state.time < until:
             state = self._flown(moment, self._stepper(level))
@@ -63,8 +66,11 @@ class Flights:
         return self._entered(moment, touch._replace(signed_pressure=open_yet))
 
     def _flown(self, moment: Moment, stepper: ImplicitStepper) -> State:
-        """A step later, whether or not anything meets in it."""
+        """A step later, whether or not anything meets in it. Raises TooManySteps."""
+        if self.steps >= self._most:
+            raise TooManySteps(self.steps, moment.state.time)
         self.steps += 1
+        self._counted(1.0)
         return stepper.flown(moment.state)
 
     def _entered(self, moment: Moment, state: State) -> Moment:

@@ -18,7 +18,7 @@ from fe_contact.errors import MemoryTooSmall
 from fe_contact.forms import Array
 from fe_contact.numerics import RANGES, Numerics
 from fe_contact.plan import SETTING, Plan
-from fe_contact.progress import Progress
+from fe_contact.progress import Count, Progress
 from fe_contact.reference import result_of, strike_of
 from fe_contact.told import quantities_of, shares_of
 from fe_contact.waves.certify import ORDER, Runs, certify
@@ -65,7 +65,8 @@ def refined_to_tolerance(
         try:
             cost = cost_of(scene, finer, moving)
             cost.check(runs.spent)
-            progress(f"waves, {cost}")
+            progress(f"waves, {cost}", lasting=cost.long)
+            runs.counted = Count(progress, f"waves, {cost.unknowns} unknowns", cost.work)
             certified, numerics = certify(runs, finer), finer
         except MemoryTooSmall as failure:
             outgrown = failure
