@@ -8,19 +8,27 @@ import sys
 import traceback
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NoReturn
 
 from fe_contact import __version__
 from fe_contact.commands import base
-from lumped.errors import FeContactError
+from lumped.errors import FeContactError, printable
 from lumped.members import available, get
 
 COMMANDS = "fe_contact.commands"
 DEFECT, BAD_INPUT, INTERRUPTED = 1, 2, 130
 
 
-def parser() -> argparse.ArgumentParser:
+class OneLine(argparse.ArgumentParser):
+    """A parser that says what is wrong in one line, which no terminal obeys."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(BAD_INPUT, f"{self.prog}: {printable(message)}; see {self.prog} --help\n")
+
+
+def parser() -> OneLine:
     """The parser of all commands."""
-    top = argparse.ArgumentParser(prog="fe-contact", description="Finite-element contact validation suite.")
+    top = OneLine(prog="fe-contact", description="Finite-element contact validation suite.")
     top.add_argument("--version", action="version", version=f"fe-contact {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name in available(COMMANDS):

@@ -12,7 +12,8 @@ from typing import Any, Protocol, TypeVar
 
 from fe_contact.numerics import faults
 from fe_contact.progress import Progress, silent
-from lumped.errors import BadInput, Fault
+from lumped.bounded_file import exists
+from lumped.errors import BadInput, Fault, shown
 from lumped.indenter import Indenter
 from lumped.result import LedgerEntry, Result
 from lumped.scene import Scene
@@ -100,7 +101,7 @@ def number(text: str, option: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise BadInput(Fault(option, "", f"{text!r}: accepted a number")) from None
+        raise BadInput(Fault(option, "", f"{shown(text)}: accepted a number")) from None
 
 
 def folder(args: argparse.Namespace, command: str, name: str) -> Path:
@@ -110,9 +111,9 @@ def folder(args: argparse.Namespace, command: str, name: str) -> Path:
     """
     chosen: Path | None = args.out
     where = chosen or Path("fe-contact-out") / f"{command}-{name}"
-    standing = next(place for place in (where, *where.absolute().parents) if place.exists())
-    if not standing.is_dir() or not os.access(standing, os.W_OK):
-        raise BadInput(Fault("--out", str(where), "accepted: a folder that can be written"))
+    standing = next(place for place in (where, *where.absolute().parents) if exists(place))
+    if not standing.is_dir() or not os.access(standing, os.W_OK) or not str(where).isprintable():
+        raise BadInput(Fault("--out", str(where), "accepted: a folder that can be written, its name printable"))
     return where
 
 
