@@ -86,7 +86,8 @@ def check_kind(given: Mapping[str, Any], inertia: bool, source: str) -> None:
     state, found = f"with model.inertia = {str(inertia).lower()}", []
     schemes = available(WAVE_SCHEMES if inertia else SCHEMES)
     if given.get("scheme", schemes[0]) not in schemes:
-        found.append(Fault(source, "numerics.scheme", f"{shown(given['scheme'])}: {state} accepted {', '.join(schemes)}"))
+        reason = f"{shown(given['scheme'])}: {state} accepted {', '.join(schemes)}"
+        found.append(Fault(source, "numerics.scheme", reason))
     if not inertia:
         found += [Fault(source, f"numerics.{key}", f"no such setting {state}") for key in OF_WAVES if key in given]
     if found:

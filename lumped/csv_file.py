@@ -77,8 +77,9 @@ def _columns(source: str, rows: Iterator[list[str]], places: Mapping[str, int], 
             try:
                 found[name].append(float(row[place]))
             except (ValueError, IndexError) as error:
-                said = f"row {number} holds no number in this column, but {shown(row[place] if place < len(row) else '')}"
-                raise BadInput(Fault(source, name, said)) from error
+                cell = row[place] if place < len(row) else ""
+                reason = f"row {number} holds no number in this column, but {shown(cell)}"
+                raise BadInput(Fault(source, name, reason)) from error
     return {name: np.array(column) for name, column in found.items()}
 
 

@@ -16,7 +16,7 @@ MOST_BYTES, MOST_DEPTH = 100_000, 16
 TEXT_OR_COMMENT = re.compile(
     r'''"{3}(?:[^\\]|\\.)*?(?:"{3,5}|\Z)|'{3}.*?(?:'{3,5}|\Z)|"(?:[^"\\\n]|\\.)*"?|'[^'\n]*'?|\#[^\n]*''', re.DOTALL
 )
-DEEP_KEY = re.compile(r"(?<![\w-])(?:[\w-]+[ \t]*\.[ \t]*){%d}" % MOST_DEPTH)
+DEEP_KEY = re.compile(rf"(?<![\w-])(?:[\w-]+[ \t]*\.[ \t]*){{{MOST_DEPTH}}}")
 TOO_DEEP = f"nested too deep; accepted: dotted keys, tables and lists up to {MOST_DEPTH} deep"
 LINE = re.compile(r"at line (\d+)")
 
