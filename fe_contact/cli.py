@@ -23,6 +23,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType
+from typing import NoReturn
 
 from fe_contact import __version__
 
@@ -42,11 +43,20 @@ class Interrupted(KeyboardInterrupt):
         super().__init__("interrupted" if number == signal.SIGINT else f"ended by {signal.Signals(number).name}")
 
 
-def parser() -> argparse.ArgumentParser:
+class OneLine(argparse.ArgumentParser):
+    """A parser that says what is wrong in one line, which no terminal obeys."""
+
+    def error(self, message: str) -> NoReturn:
+        from lumped.errors import printable
+
+        self.exit(BAD_INPUT, f"{self.prog}: {printable(message)}; see {self.prog} --help\n")
+
+
+def parser() -> OneLine:
     """The parser of all commands."""
     from lumped.members import available, get
 
-    top = argparse.ArgumentParser(prog="fe-contact", description="Finite-element contact validation suite.")
+    top = OneLine(prog="fe-contact", description="Finite-element contact validation suite.")
     top.add_argument("--version", action="version", version=f"fe-contact {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name in available(COMMANDS):

@@ -9,7 +9,7 @@ from fe_contact.numerics import WAVES, check_kind, checked
 from fe_contact.progress import Progress, silent
 from lumped import laws
 from lumped import simulate as simulate_law
-from lumped.errors import BadInput, Fault, FeContactError, nearest
+from lumped.errors import BadInput, Fault, FeContactError, nearest, shown
 from lumped.members import get
 from lumped.result import Result
 from lumped.scene import Scene
@@ -46,7 +46,7 @@ def simulate(
         return _cheapest(scene, given, progress)
     if method not in laws.available():
         names = (*OWN, *laws.available())
-        raise BadInput(Fault("--method", "", f"{method!r}: accepted {', '.join(names)}{nearest(method, names)}"))
+        raise BadInput(Fault("--method", "", f"{shown(method)}: accepted {', '.join(names)}{nearest(method, names)}"))
     return _lumped(scene, method, given)
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
+from itertools import islice
 from typing import Any
 
-from lumped.errors import BadInput, Fault, nearest
+from lumped.errors import SHOWN_FAULTS, BadInput, Fault, nearest, shown
 from lumped.members import available
 
 ENFORCEMENTS = "fe_contact.enforcement"
@@ -76,7 +77,8 @@ def checked(table: Mapping[str, Any], source: str) -> dict[str, Any]:
 
 def faults(table: Mapping[str, Any], source: str) -> list[Fault]:
     """Everything wrong with a table of settings."""
-    return [fault for key, value in table.items() for fault in _faults(key, value, source)]
+    found = (fault for key, value in table.items() for fault in _faults(key, value, source))
+    return list(islice(found, SHOWN_FAULTS))
 
 
 def check_kind(given: Mapping[str, Any], inertia: bool, source: str) -> None:
@@ -84,7 +86,8 @@ def check_kind(given: Mapping[str, Any], inertia: bool, source: str) -> None:
     state, found = f"with model.inertia = {str(inertia).lower()}", []
     schemes = available(WAVE_SCHEMES if inertia else SCHEMES)
     if given.get("scheme", schemes[0]) not in schemes:
-        found.append(Fault(source, "numerics.scheme", f"{given['scheme']!r}: {state} accepted {', '.join(schemes)}"))
+        reason = f"{shown(given['scheme'])}: {state} accepted {', '.join(schemes)}"
+        found.append(Fault(source, "numerics.scheme", reason))
     if not inertia:
         found += [Fault(source, f"numerics.{key}", f"no such setting {state}") for key in OF_WAVES if key in given]
     if found:
@@ -105,12 +108,12 @@ def _faults(key: str, value: Any, source: str) -> list[Fault]:
         if value in names:
             return []
         hint = nearest(value, names) if isinstance(value, str) else ""
-        return [Fault(source, where, f"{value!r}: accepted {', '.join(names)}{hint}")]
+        return [Fault(source, where, f"{shown(value)}: accepted {', '.join(names)}{hint}")]
     if key not in RANGES:
         return [Fault(source, where, f"unknown key; accepted: {', '.join(KEYS)}{nearest(key, KEYS)}")]
     low, high = RANGES[key]
     kind = "a whole number" if key in INTEGERS else "a number"
-    number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    number = isinstance(value, int | float) and not isinstance(value, bool)
     if number and low <= value <= high and (key not in INTEGERS or float(value).is_integer()):
         return []
-    return [Fault(source, where, f"{value!r}: accepted {kind} from {low:g} to {high:g}")]
+    return [Fault(source, where, f"{shown(value)}: accepted {kind} from {low:g} to {high:g}")]

@@ -72,8 +72,8 @@ class PressedSurface:
         return other
 
     @cached_property
-    def _factors(self) -> tuple[Array, Array]:
-        """Of the stiffness alone."""
+    def _factors(self) -> tuple[Array, npt.NDArray[np.int32]]:
+        """Of the stiffness alone, with their pivots."""
         return dgetrf(self.stiffness)[:2]
 
     @cached_property

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import ClassVar
 
 SHOWN_FAULTS = 20
+SHOWN_CHARACTERS = 60  # of a value or a key that is told back
 
 
 class FeContactError(Exception):
@@ -26,7 +27,8 @@ class Fault:
     message: str
 
     def __str__(self) -> str:
-        return ": ".join(" ".join(part.split()) for part in (self.source, self.key, self.message) if part)
+        parts = (self.source, shortened(printable(self.key)), self.message)
+        return ": ".join(printable(part) for part in parts if part)
 
 
 class BadInput(FeContactError):
@@ -60,7 +62,26 @@ class TooManySteps(NotReached):
     """An integration used up its steps before the contact ended."""
 
 
+def printable(text: str) -> str:
+    """The text in one line that no terminal obeys: what cannot be printed stands as its escape."""
+    line = " ".join(text.split())
+    return line if line.isprintable() else "".join(c if c.isprintable() else ascii(c)[1:-1] for c in line)
+
+
+def shortened(text: str) -> str:
+    """The text, the end of a long one left out."""
+    return text if len(text) <= SHOWN_CHARACTERS else text[: SHOWN_CHARACTERS - 3] + "..."
+
+
+def shown(value: object) -> str:
+    """A value as the user wrote it, about, and not at length."""
+    try:
+        return shortened(str(value).lower() if isinstance(value, bool) else repr(value))
+    except ValueError:  # Python prints no number of more than 4300 digits
+        return "a number of thousands of digits"
+
+
 def nearest(name: str, accepted: Sequence[str]) -> str:
     """`; did you mean radius?` when one accepted name resembles `name`, else an empty string."""
-    close = get_close_matches(name, accepted, n=1, cutoff=0.5)
+    close = get_close_matches(name[:SHOWN_CHARACTERS], accepted, n=1, cutoff=0.5)
     return f"; did you mean {close[0]}?" if close else ""

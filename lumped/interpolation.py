@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 POINTS = 4
 FITTED, DEGREE = 13, 4
+EQUAL = 1e-12  # of all the rows: two as close as that are one, and no slope lies between them but rounding's
 
 
 def local(x: Array, y: Array, at: Array, points: int = POINTS) -> Array:
@@ -31,9 +32,9 @@ def local(x: Array, y: Array, at: Array, points: int = POINTS) -> Array:
 
 
 def peak(x: Array, y: Array) -> tuple[float, float]:
-    """Place and height of the highest point of a smooth curve given by its rows, x ascending; of equal x the first."""
-    new = np.concatenate([[True], np.diff(x) > 0.0])
-    rows, values = x[new], y[new]
+    """Place and height of the highest point of a smooth curve given by rows, x ascending; of equal x the highest."""
+    new = np.flatnonzero(np.diff(x, prepend=-np.inf) > EQUAL * (x[-1] - x[0]))
+    rows, values = x[new], np.maximum.reduceat(y, new)
     return highest(lambda at: local(rows, values, at), rows)
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from lumped.errors import BadInput, Fault, nearest
+from lumped.errors import SHOWN_FAULTS, BadInput, Fault, nearest, shown
 from lumped.keys import Key
 
 
@@ -16,7 +17,8 @@ def read_table(
 ) -> tuple[dict[str, Any], list[Fault]]:
     """Check a table against its keys: the accepted values, and every fault (unknown, missing, refused)."""
     values: dict[str, Any] = {}
-    faults = [Fault(source, _join(path, name), unknown_key(name, keys)) for name in table if name not in keys]
+    strange = islice((name for name in table if name not in keys), SHOWN_FAULTS)
+    faults = [Fault(source, _join(path, name), unknown_key(name, keys)) for name in strange]
     for name, key in keys.items():
         if name not in table:
             if key.required:
@@ -58,9 +60,4 @@ def _join(path: str, name: str) -> str:
 
 
 def _refused(key: Key, value: object) -> str:
-    return f"{_shown(value)} is not accepted; accepted: {key.accepted}"
-
-
-def _shown(value: object) -> str:
-    text = str(value).lower() if isinstance(value, bool) else repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+    return f"{shown(value)} is not accepted; accepted: {key.accepted}"

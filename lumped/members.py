@@ -8,7 +8,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 from types import ModuleType
 
-from lumped.errors import BadInput, Fault, nearest
+from lumped.errors import BadInput, Fault, nearest, shown
 
 NOT_MEMBERS = ("base",)
 
@@ -23,7 +23,7 @@ def available(package: str) -> tuple[str, ...]:
 def unavailable(package: str, name: str) -> str:
     """What to say of a name which is no member of `package`."""
     names = available(package)
-    return f"{name!r} is not available in this version; accepted: {', '.join(names)}{nearest(name, names)}"
+    return f"{shown(name)} is not available in this version; accepted: {', '.join(names)}{nearest(name, names)}"
 
 
 def get(package: str, name: str, source: str = "lumped", key: str = "name") -> ModuleType:

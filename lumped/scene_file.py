@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from lumped import data
+from lumped.bounded_file import exists
 from lumped.indenter import Indenter
 from lumped.scene import Scene
 from lumped.scene_reader import SceneReader
@@ -35,7 +36,7 @@ def load_indenter(source: str | Path, overrides: Mapping[str, object] | None = N
 def resolved(source: str | Path) -> Path:
     """The file that a path or the name of a packaged scene stands for. Raises BadInput for an unknown name."""
     path = Path(source)
-    if not path.exists() and path.suffix != ".toml" and path.name == str(source):
+    if not exists(path) and path.suffix != ".toml" and path.name == str(source):
         return data.scene_path(str(source))
     return path
 

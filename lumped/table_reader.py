@@ -40,12 +40,15 @@ class TableReader:
     def name(self) -> str:
         """The name given, by default the file's; checks the keys of the top level too."""
         top = {key: value for key, value in self.raw.items() if key not in self.TABLES}
-        values, faults = read_table(self.source, "", top, NAME_KEYS)
+        values, faults = read_table(self.source, "", {"name": Path(self.source).stem} | top, NAME_KEYS)
         names = [*NAME_KEYS, *self.TABLES]
         for fault in faults:
-            unknown = fault.key not in NAME_KEYS
-            self.faults.append(replace(fault, message=unknown_key(fault.key, names)) if unknown else fault)
-        return str(values.get("name", Path(self.source).stem))
+            if fault.key not in NAME_KEYS:
+                fault = replace(fault, message=unknown_key(fault.key, names))
+            elif fault.key not in top:
+                fault = replace(fault, message=f"missing, and the file's own name will not do: {fault.message}")
+            self.faults.append(fault)
+        return str(values.get("name", ""))
 
     def checked(self, path: str, table: Table, keys: Mapping[str, Key]) -> Table:
         """The accepted values of a table; what is refused becomes a fault."""

@@ -14,7 +14,7 @@ from typing import Any, Protocol, TypeVar
 
 from fe_contact.numerics import faults
 from fe_contact.progress import Progress, silent
-from lumped.errors import BadInput, Fault
+from lumped.errors import BadInput, Fault, shown
 from lumped.indenter import Indenter
 from lumped.result import LedgerEntry, Result
 from lumped.scene import Scene
@@ -103,7 +103,7 @@ def number(text: str, option: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise BadInput(Fault(option, "", f"{text!r}: accepted a number")) from None
+        raise BadInput(Fault(option, "", f"{shown(text)}: accepted a number")) from None
 
 
 def folder(args: argparse.Namespace, command: str, name: str) -> Path:
@@ -115,14 +115,21 @@ def folder(args: argparse.Namespace, command: str, name: str) -> Path:
     overrides = (text for text in getattr(args, "overrides", ()) if text.partition("=")[0].strip() != "name")
     changes = "".join(f"-{text}" for text in overrides)
     where = chosen or Path("fe-contact-out") / (f"{command}-{name}" + _part_of_a_name(changes))
-    try:
-        standing = next(place for place in (where, *where.absolute().parents) if place.exists())
-        writable = standing.is_dir() and os.access(standing, os.W_OK)
-    except (OSError, ValueError):  # a name too long, or with a null character
-        writable = False
-    if not writable:
-        raise BadInput(Fault("--out", str(where), "accepted: a folder that can be written"))
+    if not _writable(where):
+        raise BadInput(Fault("--out", str(where), "accepted: a folder that can be written, its name printable"))
     return where
+
+
+def _writable(where: Path) -> bool:
+    """Whether a folder is there, or can be made, in which files can be made."""
+    try:
+        where.lstat()
+    except FileNotFoundError:  # it can be made where the folder above it is
+        pass
+    except (OSError, ValueError):  # a name too long, or with a null byte; a file where a folder should be
+        return False
+    standing = next(place for place in (where, *where.absolute().parents) if os.path.lexists(place))
+    return standing.is_dir() and os.access(standing, os.W_OK) and str(where).isprintable()
 
 
 def _part_of_a_name(text: str) -> str:

@@ -59,14 +59,14 @@ def law_names(text: str | None, scene: Scene) -> tuple[str, ...]:
     """Checked names of the laws asked for, each once; raises BadInput with every unknown one and the nearest."""
     from fe_contact.methods import EXACT_WITH_INERTIA
     from fe_contact.validation.compare import DEFAULT_LAWS
-    from lumped.errors import nearest
+    from lumped.errors import nearest, shown
     from lumped.laws import available
 
     if text is None:
         return EXACT_WITH_INERTIA if scene.target.only_with_inertia else DEFAULT_LAWS
     names, known = tuple(dict.fromkeys(name.strip() for name in text.split(","))), available()
     faults = [
-        Fault("--laws", "", f"{name!r}: accepted {', '.join(known)}{nearest(name, known)}")
+        Fault("--laws", "", f"{shown(name)}: accepted {', '.join(known)}{nearest(name, known)}")
         for name in names
         if name not in known
     ]

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fe_contact.commands import base
-from lumped.errors import BadInput, Fault, NotReached
+from lumped.errors import BadInput, Fault, NotReached, shown
 from lumped.result_folder import publish
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ def _check_opensees(args: argparse.Namespace) -> None:
         return
     opensees.check(args.law)
     if args.opensees not in opensees.LANGUAGES:
-        reason = f"{args.opensees!r}: accepted {', '.join(opensees.LANGUAGES)}"
+        reason = f"{shown(args.opensees)}: accepted {', '.join(opensees.LANGUAGES)}"
         raise BadInput(Fault("--opensees", "", reason))
 
 
@@ -116,5 +116,5 @@ def _bounds(text: str) -> Iterator[tuple[str, tuple[float, float]]]:
     for name, ends in _pairs(text, "--bounds"):
         low, sign, high = ends.partition(":")
         if not sign:
-            raise BadInput(Fault("--bounds", name, f"{ends!r}: accepted low:high"))
+            raise BadInput(Fault("--bounds", name, f"{shown(ends)}: accepted low:high"))
         yield name, (base.number(low, "--bounds"), base.number(high, "--bounds"))

@@ -7,7 +7,7 @@ import json
 from typing import Any
 
 from fe_contact.commands import base
-from lumped.errors import BadInput, Fault, NotReached, nearest
+from lumped.errors import BadInput, Fault, NotReached, nearest, shown
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
 from lumped.result_folder import publish
@@ -54,7 +54,7 @@ def _indented(
         return by_elements(indenter, depths, given, args.instant, base.progress_of(args))
     names = ("fe", "cheapest", "hertz", *EXACT)
     if args.method not in names:
-        reason = f"{args.method!r}: accepted {', '.join(names)}{nearest(args.method, names)}"
+        reason = f"{shown(args.method)}: accepted {', '.join(names)}{nearest(args.method, names)}"
         raise BadInput(Fault("--method", "", reason))
     from lumped.slow import indent as closed_form
 

@@ -74,7 +74,7 @@ def radau(count: int) -> Nodes:
     """The `count` right-hand Radau points: zeros of P_s - P_(s-1), mapped to (0, 1]."""
     difference = np.zeros(count + 1)
     difference[-1], difference[-2] = 1.0, -1.0
-    zeros = np.sort(np.real(legendre.legroots(difference)))
+    zeros = np.sort(np.real(legendre.legroots(difference)))  # all of them real; complex numbers from numpy 2.5 on
     for _ in range(2):  # the eigenvalues behind the roots leave a few last digits
         zeros -= legendre.legval(zeros, difference) / legendre.legval(zeros, legendre.legder(difference))
     zeros[-1] = 1.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -46,9 +47,14 @@ class Phase:
     steps: tuple[Step, ...]
     event: str | None
 
+    @cached_property
+    def times(self) -> Array:
+        """Where its steps begin, and where the last one ends, s, shape (n + 1,)."""
+        return self.start_time + np.cumsum([0.0, *(step.length for step in self.steps)])
+
     @property
     def end_time(self) -> float:
-        return self.start_time + sum(step.length for step in self.steps)
+        return float(self.times[-1])
 
     @property
     def last(self) -> Step:

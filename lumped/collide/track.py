@@ -47,7 +47,7 @@ class Row(NamedTuple):
     def of(cls, phase: Phase) -> Row:
         """Those of a phase."""
         lengths = np.array([step.length for step in phase.steps])
-        starts = phase.start_time + np.concatenate([[0.0], np.cumsum(lengths)[:-1]])
+        starts = phase.times[:-1]
         depths, rates = np.array([step.start[:2] for step in phase.steps]).T
         powers = np.array([float(step.nodes.power) for step in phase.steps])
         begun = np.array([step.nodes.begun for step in phase.steps])
@@ -66,7 +66,7 @@ class Track:
     @cached_property
     def times(self) -> Array:
         """Where its steps begin and end, s, ascending; the force may jump at touch, so the instant before is there."""
-        ends = [phase.start_time + np.cumsum([0.0, *(s.length for s in phase.steps)]) for phase in self._phases]
+        ends = [phase.times for phase in self._phases]
         touches = np.array([contact.start_time for contact in self.motion.contacts[1:]])
         parted = np.array([contact.end_time for contact in self.motion.contacts[:-1]])
         return np.unique(np.concatenate([*ends, np.nextafter(touches, 0.0), np.nextafter(parted, np.inf)]))
@@ -78,8 +78,7 @@ class Track:
         for one, following in pairwise(self.motion.contacts):
             close.append(np.linspace(one.end_time, following.start_time, IN_FLIGHT))
         for phase in self._phases:
-            starts = phase.start_time + np.cumsum([0.0, *(step.length for step in phase.steps)])
-            for start, step in zip(starts, phase.steps, strict=False):
+            for start, step in zip(phase.times, phase.steps, strict=False):
                 power, begun, mirrored = step.nodes.power, step.nodes.begun, step.nodes.mirrored
                 if power > 1 and begun == 0.0:
                     share = step.length * 2.0 ** (-power * np.arange(1.0, NEAREST / power))

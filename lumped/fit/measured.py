@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 ENDED = 0.05
 # How far beyond its end a longer contact is told from it, as a share of its length.
 BEYOND = 0.5
+# A law that a scene has to follow is smooth between as many points; more would cost time and tell nothing.
+MOST_POINTS = 2000
 # Noise has no memory: residuals above the first, whose neighbours correlate by more than the second, are no noise.
 EXACT, RANDOM = 1e-5, 0.5
 
@@ -26,7 +28,7 @@ class Measured:
     """Times, s, and forces, N: `points` of the curve's own, then the silence; `peak`, N.
 
     `weight`: roots of the times that the points stand for, one where they are equally spaced: rows that crowd count
-    no more than others.
+    no more than others. `together`: how many neighbouring rows of the curve each point is the mean of.
     """
 
     time: Array
@@ -34,19 +36,21 @@ class Measured:
     weight: Array
     points: int
     peak: float
+    together: int = 1
 
     @classmethod
     def of(cls, curve: History | Curve) -> Measured:
-        """The own rows of a measured curve, or 201 rows of a computed history. Raises BadInput."""
+        """The own rows of a measured curve, of many the means, or 201 rows of a computed history. Raises BadInput."""
         rows = _spread(curve.time) if isinstance(curve, History) else slice(None)
-        time, force = curve.time[rows], curve.force[rows]
+        together = 1 if isinstance(curve, History) else -(-curve.time.size // MOST_POINTS)
+        time, force = _means(curve.time[rows], together), _means(curve.force[rows], together)
         highest = peak(curve.time, curve.force)[1] if isinstance(curve, History) else float(force.max())
         if not highest > 0.0 or not time[-1] > max(time[0], 0.0):
             raise BadInput(Fault("fit", "curve", "has no force above zero after t = 0; accepted: a contact"))
         after = _silence(time) if force[-1] <= ENDED * highest else time[:0]
         spacing = _spacing(time)
         weight = np.append(np.sqrt(spacing / spacing.mean()), np.ones(after.size))
-        return cls(np.append(time, after), np.append(force, 0.0 * after), weight, time.size, highest)
+        return cls(np.append(time, after), np.append(force, 0.0 * after), weight, time.size, highest, together)
 
     @property
     def ended(self) -> bool:
@@ -88,6 +92,12 @@ class Measured:
 def _spread(time: Array) -> NDArray[np.intp]:
     """Rows nearest to equally spaced times: between the rows even a computed history is only interpolated."""
     return np.unique(np.searchsorted(time, np.linspace(time[0], time[-1], POINTS)))
+
+
+def _means(column: Array, together: int) -> Array:
+    """The means of so many neighbouring rows each: they are known as well as the rows are."""
+    starts = np.arange(0, column.size, together)
+    return np.asarray(np.add.reduceat(column, starts) / np.diff(np.append(starts, column.size)))
 
 
 def _spacing(time: Array) -> Array:

@@ -63,8 +63,14 @@ def search(
         force_at_depth=certainty.force_at_depth,
         peak_held=peak,
         points=measured.points,
-        warnings=certainty.warnings + (() if result.converged else (result.message,)),
+        warnings=(*_thinned(measured), *certainty.warnings, *(() if result.converged else (result.message,))),
     )
+
+
+def _thinned(measured: Measured) -> tuple[str, ...]:
+    """What to say where the points are fewer than the rows."""
+    said = f"fitted to {measured.points} points, each the mean of {measured.together} neighbouring rows"
+    return (said,) if measured.together > 1 else ()
 
 
 def delayed(history: History, touch: float) -> History:

@@ -1,7 +1,4 @@
-"""Radau's collocation as tables of numbers: nodes, integrals up to them, and the polynomial through them.
-
-Hairer and Wanner, Solving Ordinary Differential Equations II, section IV.5, doi 10.1007/978-3-642-05221-7.
-"""
+"""Radau's collocation with the start of its interval: what polynomials through it and the nodes need."""
 
 from __future__ import annotations
 
@@ -9,8 +6,10 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.polynomial import chebyshev, legendre
+from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
+
+from lumped.collide import nodes as collocation
 
 Array = NDArray[np.float64]
 
@@ -35,14 +34,10 @@ class Radau:
 
 @cache
 def radau(points: int) -> Radau:
-    """The tables for this number of nodes: the zeros of P_{N-1} - P_N on (-1, 1]."""
-    x = legendre.legroots([0.0] * (points - 1) + [1.0, -1.0])
-    x[-1] = 1.0
-    degrees = np.eye(points)
-    integrals = np.array([legendre.legval(x, legendre.legint(degree, lbnd=-1)) for degree in degrees]).T
-    integral = 0.5 * integrals @ np.linalg.inv(legendre.legvander(x, points - 1))
-    series = np.linalg.inv(chebyshev.chebvander(np.append(-1.0, x), points))
-    return Radau(0.5 * (x + 1.0), integral, series)
+    """The tables for this number of nodes."""
+    nodes = collocation.radau(points)
+    basis = chebyshev.chebvander(2.0 * np.append(0.0, nodes.points) - 1.0, points)
+    return Radau(nodes.points, nodes.once, np.asarray(np.linalg.inv(basis), dtype=float))
 
 
 @cache

@@ -54,7 +54,8 @@ class Johnson(LoadCurve):
         from scipy.special import lambertw
 
         square = 4.0 * self.datum_depth**2 * exp(-self._side)
-        share = 4.0 * self.radius * np.maximum(np.asarray(depth, dtype=float), 0.0) / square
+        depth = np.asarray(depth, dtype=float)
+        share = 4.0 * self.radius * np.maximum(depth, 0.0) / square
         if np.max(share, initial=0.0) > 1.0 / e:
             raise NotReached(
                 f"no contact on {self} is {np.max(depth):g} m deep: its half-width nears the datum's depth"

@@ -44,7 +44,7 @@ class Layer:
 
     def check_depth(self, depth: ArrayLike) -> None:
         """Raises BadInput where a depth reaches the thickness."""
-        deepest = np.max(depth, initial=0.0)
+        deepest = np.max(np.asarray(depth), initial=0.0)
         if deepest >= self.thickness:
             message = f"must stay below the thickness of {self.thickness:g} m, is {deepest:g}"
             raise BadInput(Fault("layer", "depth", message))

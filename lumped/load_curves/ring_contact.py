@@ -58,7 +58,7 @@ class RingContact:
 
     def check_depth(self, depth: ArrayLike) -> None:
         """Raises BadInput where a depth reaches the limit."""
-        deepest = np.max(depth, initial=0.0)
+        deepest = np.max(np.asarray(depth), initial=0.0)
         if deepest >= self.depth_limit:
             message = f"must stay below thickness and radius, {self.depth_limit:g} m, is {deepest:g}"
             raise BadInput(Fault("ring", "depth", message))

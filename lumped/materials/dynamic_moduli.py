@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.csv_file import read_columns
+from lumped.csv_file import read_columns, read_header
 from lumped.errors import BadInput, Fault
 from lumped.materials.relaxation import Relaxation
 
@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 
 HERTZ, RADIANS = "frequency_Hz", "angular_frequency_rad_per_s"
 MODULI = ("storage_Pa", "loss_Pa")
+MOST_ROWS = 10_000  # ten times what a rheometer gives; the fit weighs some 100 times against all of them
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,9 +45,14 @@ class DynamicModuli:
     def read_csv(cls, path: Path) -> DynamicModuli:
         """A file with the columns storage_Pa, loss_Pa and one of frequency_Hz, angular_frequency_rad_per_s."""
         frequency = _frequency_column(path)
-        table = read_columns(path, (frequency, *MODULI))
+        columns = (frequency, *MODULI)
+        table = read_columns(path, columns, MOST_ROWS)
         turns = 2.0 * np.pi if frequency == HERTZ else 1.0
-        return cls(turns * table[frequency], table["storage_Pa"], table["loss_Pa"], str(path))
+        try:
+            return cls(turns * table[frequency], table["storage_Pa"], table["loss_Pa"], str(path))
+        except BadInput as bad:
+            called = dict(zip(("omega", "storage", "loss"), columns, strict=True))
+            raise BadInput(replace(fault, key=called.get(fault.key, "")) for fault in bad.faults) from None
 
     @classmethod
     def of(cls, relaxation: Relaxation, omega: ArrayLike) -> DynamicModuli:
@@ -79,11 +85,7 @@ def _faults(omega: Array, storage: Array, loss: Array) -> list[tuple[str, str]]:
 
 def _frequency_column(path: Path) -> str:
     """Which of the two frequency columns the header has. Raises BadInput when it has both."""
-    try:
-        with path.open(encoding="utf-8") as file:
-            header = [name.strip() for name in file.readline().split(",")]
-    except (OSError, UnicodeDecodeError):
-        return HERTZ  # read_columns says what is wrong with the file
+    header = read_header(path)
     if HERTZ in header and RADIANS in header:
         raise BadInput(Fault(str(path), RADIANS, f"accepted: one of {HERTZ} and {RADIANS}, not both"))
     return RADIANS if RADIANS in header else HERTZ

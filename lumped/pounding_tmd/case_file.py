@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from lumped import data
+from lumped.bounded_file import exists
 from lumped.errors import BadInput, Fault, nearest
 from lumped.keys import Choice, Key, Number
 from lumped.materials import Material
@@ -56,7 +57,7 @@ def load(source: str | Path = DEFAULT, overrides: Mapping[str, object] | None = 
     Raises BadInput with every fault found, at most 20.
     """
     path = Path(source)
-    if not path.exists() and path.suffix != ".toml" and path.name == str(source):
+    if not exists(path) and path.suffix != ".toml" and path.name == str(source):
         if path.name not in names():
             known = f"neither a file nor a packaged case; packaged: {', '.join(names())}{nearest(path.name, names())}"
             raise BadInput(Fault(path.name, "", known))

@@ -79,6 +79,12 @@ class Equations:
             return np.zeros_like(y[0])
         return self.surface.force(self._surface_state(index, stage, y), self.speed(index, stage, y))
 
+    def force_at_touch(self, index: int, y: Array) -> float:
+        """Force of a held side that the damper just meets, N: there the depth is zero, whatever rounding left of it."""
+        if self.surface is None:
+            return 0.0
+        return float(self.surface.force(y[self.side(index)], self.speed(index, Stage.PRESSED, y)))
+
     def _surface_state(self, index: int, stage: Stage, y: Array) -> Array:
         """State of the surface of a side; where it goes with the damper, and not linearly, its place is that of the
         damper: an integrated one drifts off, and would keep a force after the damper has gone.

@@ -10,7 +10,7 @@ from math import ceil, log2
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.pounding_tmd.crossing import first_fall
+from lumped.pounding_tmd.crossing import first_fall, suspect
 from lumped.pounding_tmd.equations import SURFACES, Equations, Stages
 from lumped.pounding_tmd.exponential import exponential
 from lumped.pounding_tmd.phase import Follow, Phase
@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 BLOCK = 64
 LEAST_SHARE = 0.01  # of the spacing: a row nearer to the start of a phase would show nothing but rounding
 SERIES_TERMS, SERIES_REACH = 18, 0.25
+ROUNDING = 1e-13
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,11 +127,61 @@ def route(equations: Equations, spacing: float, end_time: float) -> Follow:
     return next_phase
 
 
+@dataclass(frozen=True)
+class LevelRow:
+    """One level between two rows: `state` at the first, `length` seconds to the second."""
+
+    flow: Flow
+    level: int
+    state: Array
+    length: float
+
+    def value(self, offset: float) -> float:
+        """The level."""
+        rows, constants = self.flow.levels
+        return float(rows[self.level] @ (self.flow.propagator(offset) @ self.state) + constants[self.level])
+
+    def slope(self, offset: float) -> float:
+        """Its rate."""
+        row = self.flow.levels[0][self.level] @ self.flow.matrix
+        return float(row @ (self.flow.propagator(offset) @ self.state))
+
+
+@dataclass(frozen=True)
+class Fall:
+    """Which level falls through zero, when, s, and the state there, shape (size,)."""
+
+    level: int
+    time: float
+    state: Array
+
+
+def first_of(flow: Flow, time: float, state: Array, times: Array, states: Array, fresh: bool) -> Fall | None:
+    """The first fall between `time` and the rows `times`, (k,), with states (size, k); None without one.
+
+    `fresh`: a phase has just begun, so a level may start at zero.
+    """
+    rows, constants = flow.levels
+    times, states = np.append(time, times), np.concatenate([state[:, None], states], axis=1)
+    levels, lengths = rows @ states + constants[:, None], np.diff(times)
+    # Where a phase begins no level lies below zero, but for the rounding of the switch before.
+    begun = fresh & (levels[:, 0] <= ROUNDING * (np.abs(rows) @ np.abs(state) + np.abs(constants)))
+    suspects = suspect(lengths, levels, rows @ flow.matrix @ states)
+    suspects[0] |= begun.any()
+    for i in np.flatnonzero(suspects):
+        here = [LevelRow(flow, level, states[:, i], float(lengths[i])) for level in range(constants.size)]
+        found = first_fall(here, (begun & (i == 0)).tolist())
+        if found is not None:
+            offset, level = found
+            return Fall(level, float(times[i]) + offset, flow.propagator(offset) @ states[:, i])
+    return None
+
+
 def follow(flow: Flow, state: Array, time: float, end_time: float) -> tuple[Phase, Switch | None]:
     """One phase, and the switch that ends it; None at `end_time`."""
     times, columns, switch = [np.array([time])], [state[:, None]], None
     for block_times, block in _blocks(flow, state, time, end_time):
-        found = first_fall(flow, times[-1][-1], columns[-1][:, -1], block_times, block, fresh=len(times) == 1)
+        found = first_of(flow, times[-1][-1], columns[-1][:, -1], block_times, block, fresh=len(times) == 1)
         if found is None:
             times.append(block_times)
             columns.append(block)

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import NotReached
+from lumped.pounding_tmd.crossing import first_fall, suspect
 from lumped.pounding_tmd.equations import Equations, Stages
-from lumped.pounding_tmd.graze import NEAR, first_graze
 from lumped.pounding_tmd.phase import Follow, Phase, fastest
 from lumped.pounding_tmd.switches import Switch, switches
 from lumped.pounding_tmd.system import Start
@@ -19,7 +18,8 @@ from lumped.pounding_tmd.system import Start
 Array = NDArray[np.float64]
 RTOL, ATOL = 1e-12, 1e-14  # the second relative to the largest values that the energy of the start allows
 INTEGRALS = 6
-TINY = 1e-300
+NEAR = 1e-4  # of the longest step: a slope is a difference over it
+BEGUN = 1e-9  # of the change in a step: where time is long beside a step, a switch lies no nearer to zero
 
 
 def route(equations: Equations, start: Start, spacing: float, end_time: float) -> Follow:
@@ -39,43 +39,96 @@ def _follow(
     from scipy import integrate
 
     size, known = equations.size, switches(equations, stages)
-    ahead = state + NEAR * spacing * equations.rates(stages, state)
-    events = [_terminal(switch.level, size, span[0], float(switch.level(ahead)) > 0.0) for switch in known]
 
     def rate(_: float, y: Array) -> Array:
         return np.concatenate([equations.rates(stages, y[:size]), equations.integrands(stages, y[:size])])
 
-    solve_ivp: Any = integrate.solve_ivp  # its stubs know only their own array shapes
-    solution = solve_ivp(
-        rate, span, np.concatenate([state, np.zeros(INTEGRALS)]), method="DOP853", rtol=RTOL, atol=ATOL * scales,
-        max_step=spacing, dense_output=True, events=events or None,
+    stepper: Any = integrate.DOP853  # its stubs know only their own array shapes
+    solver = stepper(
+        rate, span[0], np.concatenate([state, np.zeros(INTEGRALS)]), span[1],
+        rtol=RTOL, atol=ATOL * scales, max_step=spacing,
     )  # fmt: skip
-    if solution.status < 0:
-        raise NotReached(f"the integration stopped: {solution.message}")
-    fallen = [i for i, hits in enumerate(solution.t_events or []) if hits.size]
-    phase = _phase(stages, solution, size)
-    levels = [switch.level for switch in known]
-    graze = first_graze(levels, phase.times, phase.states, lambda y: equations.rates(stages, y), phase.at)
-    if graze is not None:
-        return _cut(phase, graze.time), known[graze.level]
-    return phase, known[fallen[0]] if fallen else None
+    levels = [Level(switch.level, lambda y: equations.rates(stages, y), NEAR * spacing) for switch in known]
+    times, states, pieces, switch = [span[0]], [solver.y], [], None
+    before = _asked(levels, state, solver.f[:size])
+    while solver.status == "running" and switch is None:
+        message = solver.step()
+        if solver.status == "failed":
+            raise NotReached(f"the integration stopped: {message}")
+        pieces.append(solver.dense_output())
+        after = _asked(levels, solver.y[:size], solver.f[:size])
+        end = solver.t
+        fall = _fall(levels, pieces[-1], np.stack([before, after]), fresh=len(pieces) == 1)
+        if fall is not None:
+            end, switch = times[-1] + fall[0], known[fall[1]]
+        if end > times[-1]:
+            times.append(end)
+            states.append(pieces[-1](end) if switch else solver.y)
+        before = after
+    return _phase(stages, np.array(times), np.column_stack(states), pieces, size), switch
 
 
-def _cut(phase: Phase, end: float) -> Phase:
-    """The phase up to a time, s."""
-    kept = phase.times < end
-    states = np.column_stack([phase.states[:, kept], phase.at(end)])
-    return replace(phase, times=np.append(phase.times[kept], end), states=states)
+class Level(NamedTuple):
+    """A level as a function of states, with `rates` of states; a slope is a difference over `near`, s, both ways."""
+
+    of: Callable[[Array], Array]
+    rates: Callable[[Array], Array]
+    near: float
+
+    def slope(self, y: Array, rates: Array) -> float:
+        """Its rate at a state of these rates."""
+        ahead = self.near * rates
+        return float(self.of(y + ahead) - self.of(y - ahead)) / (2.0 * self.near)
 
 
-def _phase(stages: Stages, solution: Any, size: int) -> Phase:
+class LevelRow(NamedTuple):
+    """A level over one step, from its interpolant; `length` in s."""
+
+    level: Level
+    piece: Any
+    length: float
+
+    def value(self, offset: float) -> float:
+        """The level."""
+        return float(self.level.of(self._at(offset)))
+
+    def slope(self, offset: float) -> float:
+        """Its rate."""
+        y = self._at(offset)
+        return self.level.slope(y, self.level.rates(y))
+
+    def _at(self, offset: float) -> Array:
+        return np.asarray(self.piece(self.piece.t_old + offset)[:-INTEGRALS])
+
+
+def _asked(levels: list[Level], y: Array, rates: Array) -> Array:
+    """Every level and its slope at a state, shape (2, m)."""
+    return np.array([[float(level.of(y)) for level in levels], [level.slope(y, rates) for level in levels]])
+
+
+def _fall(levels: list[Level], piece: Any, ends: Array, fresh: bool) -> tuple[float, int] | None:
+    """Offset, s, and index of the first fall within a step; `ends` (2, 2, m): level and slope before and after it."""
+    length = float(piece.t - piece.t_old)
+    values, slopes = ends[:, 0].T, ends[:, 1].T
+    # Where a phase begins no level lies below zero, but for the rounding of the switch before.
+    begun = fresh & (values[:, 0] <= BEGUN * length * np.abs(slopes).max(axis=1, initial=0.0))
+    if not begun.any() and not suspect(np.array([length]), values, slopes).any():
+        return None
+    return first_fall([LevelRow(level, piece, length) for level in levels], begun.tolist())
+
+
+def _phase(stages: Stages, times: Array, states: Array, pieces: list[Any], size: int) -> Phase:
+    def solution(time: float) -> Array:
+        i = int(np.clip(np.searchsorted(times, time, side="right") - 1, 0, len(pieces) - 1))
+        return np.asarray(pieces[i](time))
+
     def at(time: float) -> Array:
-        return np.asarray(solution.sol(time)[:size])
+        return solution(time)[:size]
 
     def integrals(time: float) -> Array:
-        return np.asarray(solution.sol(time)[size:])
+        return solution(time)[size:]
 
-    return Phase(stages, solution.t, solution.y[:size], at, integrals)
+    return Phase(stages, times, states[:size], at, integrals)
 
 
 def _scales(equations: Equations, start: Start) -> Array:
@@ -88,19 +141,3 @@ def _scales(equations: Equations, start: Start) -> Array:
     surfaces = [length**exponent] * (equations.size - len(bodies))
     squares = [length**2 / omega, omega**3 * length**2]
     return np.array([*bodies, *surfaces, *squares, *[energy] * (INTEGRALS - len(squares))])
-
-
-def _terminal(level: Callable[[Array], Array], size: int, start: float, rises: bool) -> Callable[[float, Array], float]:
-    """The level in scipy's manner: attributes of the function say that it ends the run, and only falling.
-
-    `rises`: from the start on. Then a fall within the first step is not that at the start.
-    """
-    least = TINY if rises else 0.0
-
-    def marked(time: float, y: Array) -> float:
-        # No level is below zero when a phase begins; what rounding says there would hide a fall from zero.
-        return max(float(level(y[:size])), least) if time == start else float(level(y[:size]))
-
-    marked.terminal = True  # type: ignore[attr-defined]
-    marked.direction = -1.0  # type: ignore[attr-defined]
-    return marked

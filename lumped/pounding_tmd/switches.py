@@ -61,10 +61,10 @@ def after(equations: Equations, stages: Stages, switch: Switch, y: Array) -> tup
             state[side] = 0.0
     if to is Stage.RECOVERING:
         state[side.start] = equations.place(switch.side, y)
-    if to is Stage.PRESSED and stages[switch.side] is not Stage.FOLLOWED:
+    if to is Stage.PRESSED and stages[switch.side] is Stage.RECOVERING:
         state[side.start] = equations.place(switch.side, y)
-        if float(equations.side_force(switch.side, to, state)) < 0.0 and stages[switch.side] is Stage.HELD:
-            to = Stage.FOLLOWED
+    if to is Stage.PRESSED and stages[switch.side] is Stage.HELD and equations.force_at_touch(switch.side, y) < 0.0:
+        to = Stage.FOLLOWED
     return (*stages[: switch.side], to, *stages[switch.side + 1 :]), state
 
 

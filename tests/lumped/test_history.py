@@ -68,6 +68,9 @@ def test_peak_lies_between_the_rows() -> None:
     x = np.linspace(0.0, 1.0, 41)
     place, height = peak(x, np.sin(2.9 * x))
     assert (place, height) == (pytest.approx(np.pi / 5.8, abs=1e-5), pytest.approx(1.0, abs=1e-6))
+    twice = np.insert(x, 22, np.nextafter(x[22], 0.0))
+    shaken = np.sin(2.9 * twice) + 1e-15 * (np.arange(42.0) % 3.0)
+    assert peak(twice, shaken) == (pytest.approx(place, abs=1e-12), pytest.approx(height, abs=1e-12))
     assert highest(lambda t: 1.0 - t, x) == (pytest.approx(0.0), pytest.approx(1.0))
 
 

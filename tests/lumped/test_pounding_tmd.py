@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.special import gamma
 
 from lumped import BadInput, Relaxation
 from lumped.materials.networks import sls
 from lumped.pounding_tmd import Memory, Oscillator, PoundingDamper, PtmdResult, Ring, Start, simulate
+from lumped.pounding_tmd import exact as exact_route
+from lumped.pounding_tmd.crossing import first_fall
 from lumped.pounding_tmd.equations import Equations
 from lumped.pounding_tmd.exact import Flow
 from lumped.pounding_tmd.exponential import exponential
@@ -296,23 +302,27 @@ def test_a_graze_that_begins_below_zero_by_rounding_is_followed() -> None:
     assert abs(exact.energy.residual) < 1e-12 * exact.energy.initial
 
 
-def swing_of_the_damper(start: Start, end: float) -> tuple[float, float]:
-    """The widest |x2 - x1| without a ring, m, and its curvature there, m/s2; by the modes of the matrix."""
+@cache
+def swing_of_the_damper(start: Start, end: float) -> tuple[float, float, float]:
+    """The widest |x2 - x1| without a ring, m, its curvature there, m/s2, and when, s; by the modes of the matrix."""
     flow, t = Flow(Equations(PLAIN), (), 0.01), np.linspace(0.0, end, 200_001)
     values, modes = np.linalg.eig(flow.matrix)
     weights = np.linalg.solve(modes, Equations(PLAIN).initial(start))
     apart = np.array([-1.0, 0.0, 1.0, 0.0]) @ modes * weights
     swing, curvature = (np.real((apart * values**power) @ np.exp(np.outer(values, t))) for power in (0, 2))
     i = int(np.argmax(np.abs(swing)))
-    return float(abs(swing[i])), float(abs(curvature[i]))
+    return float(abs(swing[i])), float(abs(curvature[i])), float(t[i])
+
+
+GRAZES = (3e-4, 1e-3, 1.5e-3)  # s
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5])
 @pytest.mark.parametrize("start", [BOTH, STRUCTURE])
 def test_a_graze_between_two_steps_is_not_stepped_over(start: Start, exponent: float) -> None:
     """The ring stands a hair inside the widest swing: for c t^2/8 the damper is in it for the time t."""
-    widest, curvature = swing_of_the_damper(start, 0.7)
-    for lasting in (3e-4, 1e-3, 1.5e-3):
+    widest, curvature, _ = swing_of_the_damper(start, 0.7)
+    for lasting in GRAZES:
         ring = replace(lining(), gap=widest - curvature * lasting**2 / 8.0, exponent=exponent)
         (contact,) = simulate(with_ring(ring), start, 0.7, route="integrated").contacts
         # the ring hardly pushes, and relaxes meanwhile: it lets go a little earlier than the flight without it does
@@ -320,6 +330,72 @@ def test_a_graze_between_two_steps_is_not_stepped_over(start: Start, exponent: f
         if exponent == 1.0:
             (exact,) = simulate(with_ring(ring), start, 0.7, route="exact").contacts
             assert contact.end - contact.start == pytest.approx(exact.end - exact.start, rel=1e-7)
+
+
+def grazes(start: Start, gaps: range, route: str, exponent: float) -> list[float]:
+    """How long the one contact lasts, over what it should, at gaps so many units in the last place from a graze."""
+    widest, curvature, time = swing_of_the_damper(start, 0.7)
+    before = 0.01
+    x1, v1, x2, v2 = Flow(Equations(PLAIN), (), 0.01).propagator(time - before) @ Equations(PLAIN).initial(start)
+    found = []
+    for lasting in GRAZES:
+        for ulps in gaps:
+            gap = widest - curvature * lasting**2 / 8.0 + ulps * float(np.spacing(widest))
+            system = with_ring(replace(lining(), gap=gap, exponent=exponent))
+            (contact,) = simulate(system, Start(x1, x2, v1, v2), 2.0 * before, before, route).contacts
+            assert contact.end is not None
+            found.append((contact.end - contact.start) / lasting)
+    return found
+
+
+@pytest.mark.parametrize(("route", "exponent"), [("exact", 1.0), ("integrated", 1.0), ("integrated", 1.5)])
+@pytest.mark.parametrize("start", [BOTH, STRUCTURE])
+def test_rounding_decides_no_graze(
+    start: Start,
+    route: str,
+    exponent: float,
+    campaign_size: Callable[[int], int],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """At every gap within 20 units in the last place; and on a machine whose sums end in other digits."""
+    gaps = range(-20, 21, 41 // campaign_size(41))
+    found = grazes(start, gaps, route, exponent)
+    assert found == pytest.approx(np.repeat(found[:: len(gaps)], len(gaps)), rel=1e-6)
+    assert all(0.96 < share < 1.0 for share in found)
+    generator, rates = np.random.default_rng(12), Equations.rates
+
+    def other_digits(values: Any) -> Any:
+        return values * (1.0 + 1e-15 * generator.standard_normal(values.shape))
+
+    monkeypatch.setattr(exact_route, "exponential", lambda matrices: other_digits(exponential(matrices)))
+    monkeypatch.setattr(Equations, "rates", lambda *given: other_digits(rates(*given)))
+    assert grazes(start, gaps, route, exponent) == pytest.approx(found, rel=1e-6)
+
+
+@dataclass(frozen=True)
+class Parabola:
+    """A level that starts at zero and comes back to it, as rounding leaves it."""
+
+    length: float
+    steepness: float
+    back: float
+    rounding: float
+
+    def value(self, offset: float) -> float:
+        noise = self.rounding * np.sin(1e9 * offset + 4.0)  # below zero where it should start at it
+        return float(self.steepness * offset * (1.0 - offset / self.back) + noise)
+
+    def slope(self, offset: float) -> float:
+        return self.steepness * (1.0 - 2.0 * offset / self.back)
+
+
+@given(st.floats(0.01, 3.0), st.floats(1e-3, 1e3), st.floats(0.0, 1e-12))
+def test_a_level_that_rises_from_rounding_falls_where_it_should(back: float, steepness: float, rounding: float) -> None:
+    level = Parabola(1.0, steepness, back, rounding * steepness)
+    found = first_fall([level], [True])
+    assert found == (None if back > 1.0 else pytest.approx((back, 0), rel=1e-9))
+    falling = replace(level, steepness=-steepness)
+    assert first_fall([falling], [True]) == (0.0, 0)
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
