@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import closing
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from fe_contact import __version__
 from fe_contact.progress import Progress
+from fe_contact.validation.journal import measured
 from fe_contact.validation.stability.base import STUDIES, Case, Row, row
 from lumped.csv_file import write_csv
 from lumped.json_file import plain, write_json
@@ -56,17 +58,11 @@ def write_stability(rows: Sequence[Row], where: Path) -> dict[str, Any]:
 
 def _measured(asked: Sequence[tuple[str, Case]], jobs: int) -> Iterator[tuple[str, Case, dict[str, Any]]]:
     """Rows as they come, from some processes or from this one."""
-    if jobs == 1 or not asked:
-        for study, case in asked:
-            yield study, case, plain(row(study, case))
-        return
-    with ProcessPoolExecutor(jobs) as pool:
-        waiting = {pool.submit(row, study, case): (study, case) for study, case in asked}
-        try:
-            for future in as_completed(waiting):
-                yield *waiting[future], plain(future.result())
-        finally:
-            pool.shutdown(cancel_futures=True)
+    calls = {_key(study, case): partial(row, study, case) for study, case in asked}
+    cases = {_key(study, case): (study, case) for study, case in asked}
+    with closing(measured(calls, jobs)) as found:
+        for key, one in found:
+            yield *cases[key], plain(one)
 
 
 def _read(path: Path) -> dict[str, Row]:

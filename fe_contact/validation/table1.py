@@ -6,12 +6,10 @@ ratios over it tell E*. Line contact tells its E* by the slope of its logarithm.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import closing
 from dataclasses import dataclass, field
-from functools import cache
-from multiprocessing import get_context
+from functools import cache, partial
 
 import numpy as np
 
@@ -19,6 +17,7 @@ from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.validation.blocks import Block, blocks
 from fe_contact.validation.datum import Place, places
+from fe_contact.validation.journal import measured
 from fe_contact.validation.table1_impact import FromImpact, line_impacts, power_law_impacts
 from fe_contact.validation.table1_reach import Reach, reach
 from lumped.errors import NotReached
@@ -65,11 +64,11 @@ def bodies(row: Row, nu: float) -> tuple[Elastic, ...]:
 
 def table1(progress: Progress = silent) -> tuple[Trial, ...]:
     """Every row of the table, in its order; two batches at a time, in two processes."""
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # two processes for two cores: matrices are small
     found: dict[int, Trial] = {}
-    with ProcessPoolExecutor(WORKERS, get_context("spawn")) as pool:
-        for done in as_completed([pool.submit(_tried, batch) for batch in batches()]):
-            for one in done.result():
+    calls = {str(place): partial(_tried, batch) for place, batch in enumerate(batches())}
+    with closing(measured(calls, WORKERS)) as tried:
+        for _, batch in tried:
+            for one in batch:
                 progress(f"row {one.row.number}: {one.row.case}")
                 found[one.row.number] = one
     return tuple(found[number] for number in sorted(found))
