@@ -33,8 +33,8 @@ def execute(args: argparse.Namespace) -> int:
 
     where = base.folder(args, "exponents", "layers")
     progress = base.progress_of(args)
-    found, checked = curves(args.quick, progress), checks(args.quick, progress)
-    spheres = pairs(args.quick, progress)
+    found, checked = curves(args.quick, where, progress), checks(args.quick, where, progress)
+    spheres = pairs(args.quick, where, progress)
     content = write_exponents(found, checked, spheres, where)
     progress("chart")
     plot_exponents(found, checked, where)

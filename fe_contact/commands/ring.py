@@ -28,8 +28,8 @@ def execute(args: argparse.Namespace) -> int:
 
     where = base.folder(args, "ring", "paper")
     progress = base.progress_of(args)
-    curves = rings(cases(), progress)
-    impacts = struck(cases(), progress)
+    curves = rings(cases(), where, progress)
+    impacts = struck(cases(), where, progress)
     content = write_rings(curves, where, impacts)
     progress("chart")
     plot_rings(curves, where)

@@ -26,7 +26,7 @@ def execute(args: argparse.Namespace) -> int:
 
     where = base.folder(args, "table1", "paper")
     progress = base.progress_of(args)
-    trials = table1(progress)
+    trials = table1(where, progress)
     content = write_table1(trials, where)
     progress("chart")
     from fe_contact.report.table1 import plot_table1  # matplotlib, once the two processes are gone
