@@ -93,3 +93,11 @@ class MotionUnbounded(NotReached):
     def __init__(self, time: float) -> None:
         cure = "cure: raise numerics.steps, or another numerics.scheme: staged, generalised_alpha"
         super().__init__(f"the motion grows without bound at t = {time:.6g} s; {cure}")
+
+
+class WorkerLost(NotReached):
+    """A process that measured rows of a study died."""
+
+    def __init__(self) -> None:
+        reason = "a process of the study was killed, as systems do for want of memory"
+        super().__init__(f"{reason}; cure: free some, then the same command again: rows that were measured are kept")

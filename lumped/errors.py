@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 SHOWN_FAULTS = 20
 SHOWN_CHARACTERS = 60  # of a value or a key that is told back
@@ -16,6 +16,10 @@ class FeContactError(Exception):
     """Base of every failure with a name; `exit_code` is what a command returns for it."""
 
     exit_code: ClassVar[int]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Another process gets what it says, not what it was made of: kinds differ in their arguments."""
+        return type(self).__new__, (type(self), *self.args), self.__dict__
 
 
 @dataclass(frozen=True)
