@@ -128,7 +128,7 @@ def curves(quick: bool = False, progress: Progress = silent) -> tuple[Curve, ...
     ratio = np.geomspace(*SPAN, FEW_POINTS if quick else POINTS)
     found = []
     for profile in PROFILES:
-        progress(f"{profile.name}, exponent {profile.n:g}")
+        progress(f"{profile.name}, exponent {profile.n:g}", PROFILES.index(profile), len(PROFILES))
         found += [curve(profile, base, nu, ratio) for base, nu in layers(quick)]
     return tuple(found)
 

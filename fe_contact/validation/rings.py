@@ -97,9 +97,9 @@ def _case(indenter: Indenter) -> RingCase:
 
 def rings(chosen: Sequence[RingCase], progress: Progress = silent) -> tuple[RingCurve, ...]:
     """Every case over three decades of depth. Raises NotReached."""
-    found = []
+    found = list[RingCurve]()
     for case in chosen:
-        progress(case.name)
+        progress(case.name, len(found), len(chosen))
         found.append(pressed(case))
     return tuple(found)
 

@@ -73,9 +73,9 @@ class RingStruck:
 def struck(cases: Sequence[RingCase], progress: Progress = silent) -> tuple[RingStruck, ...]:
     """The paper's ring for each of its thicknesses and two speeds. Raises NotReached."""
     own = [case for case in cases if case.name.startswith(PAPER)]
-    found = []
+    found = list[RingStruck]()
     for case in own:
-        progress(f"{case.name}, struck")
+        progress(f"{case.name}, struck", len(found), len(own) * len(STRAINS))
         found += [_struck(case, strain) for strain in STRAINS]
     return tuple(found)
 

@@ -32,7 +32,7 @@ def rows_of(quick: bool, jobs: int, where: Path, progress: Progress) -> list[Row
             done[_key(study, case)] = measured
             file.write(json.dumps({"key": _key(study, case), "row": measured}, allow_nan=False) + "\n")
             file.flush()
-            progress(f"{count} of {len(asked)} cases")
+            progress("cases", count, len(asked))
     return [done[_key(study, case)] for study, case in asked]
 
 

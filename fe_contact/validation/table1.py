@@ -70,7 +70,7 @@ def table1(progress: Progress = silent) -> tuple[Trial, ...]:
     with ProcessPoolExecutor(WORKERS, get_context("spawn")) as pool:
         for done in as_completed([pool.submit(_tried, batch) for batch in batches()]):
             for one in done.result():
-                progress(f"row {one.row.number}: {one.row.case}")
+                progress(f"row {one.row.number}: {one.row.case}", len(found) + 1, len(examples()))
                 found[one.row.number] = one
     return tuple(found[number] for number in sorted(found))
 

@@ -7,7 +7,7 @@ tolerance, and Ting's solution for the row of springs itself.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, replace
 from functools import partial
 from typing import Any
@@ -18,6 +18,7 @@ from fe_contact.bodies.struck import Deformable
 from fe_contact.certify import Certified, certify
 from fe_contact.forms import Array
 from fe_contact.numerics import Numerics
+from fe_contact.progress import Progress
 from fe_contact.reference import check_target, strike_of
 from fe_contact.runs import TotalWork
 from fe_contact.targets import half_space
@@ -35,7 +36,6 @@ ROW_ELEMENTS = (25, 50, 100, 200, 400)
 LAW_TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
 MODELS = ("hertz", "correspondence")
 
-Progress = Callable[[str], None]
 
 
 def tradeoff(scene: Scene, given: Mapping[str, Any], quick: bool, progress: Progress) -> tuple[Point, ...]:
@@ -50,10 +50,10 @@ def tradeoff(scene: Scene, given: Mapping[str, Any], quick: bool, progress: Prog
     _certify(scene, chosen[0])  # imports and the processor's warm-up belong to no point
     points = []
     for count, numerics in enumerate(chosen, 1):
-        progress(f"finite elements {count} of {len(chosen)}")
+        progress("finite elements", count - 1, len(chosen))
         points.append(_fe(scene, numerics, exact, marked.get(numerics)))
     for count in range(2, ROUNDS + 1):
-        progress(f"finite elements again, {count} of {ROUNDS}")
+        progress("finite elements again", count - 2, ROUNDS - 1)
         points = [_again(scene, numerics, point) for numerics, point in zip(chosen, points, strict=True)]
     progress("exact laws and models")
     return (*points, *_rows(scene, exact), *_laws(scene, exact, quick))

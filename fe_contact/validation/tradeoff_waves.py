@@ -44,7 +44,7 @@ def tradeoff(scene: Scene, given: Mapping[str, Any], quick: bool, progress: Prog
     points = [*reference, _point(default, truth, cpu, study, base.tolerance)]
     chosen = _chosen(base, given, study.variations(base, quick))
     for count, numerics in enumerate(chosen, 1):
-        progress(f"finite elements {count} of {len(chosen)}")
+        progress("finite elements", count - 1, len(chosen))
         points.append(_varied(numerics, truth, study, run))
     return (*points, *_laws(scene, truth))
 
