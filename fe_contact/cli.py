@@ -26,6 +26,7 @@ from types import FrameType
 from typing import NoReturn
 
 from fe_contact import __version__
+from fe_contact.progress import clear
 
 COMMANDS = "fe_contact.commands"
 DONE, DEFECT, BAD_INPUT, NOT_REACHED = 0, 1, 2, 3
@@ -153,6 +154,7 @@ def _failed(failure: Exception, args: argparse.Namespace) -> int:
 
 def _said(message: str, code: int, name: str = "fe-contact: ") -> int:
     """One line on stderr, where there is one; the exit code given."""
+    clear()
     with suppress(OSError, AttributeError):
         sys.stderr.write(f"{name}{message}\n")
         sys.stderr.flush()

@@ -74,6 +74,13 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     return Plan(placed.varied(**given), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
 
 
+def cost(scene: Scene, chosen: Plan) -> Any:
+    """What an error budget with these settings takes, a :class:`fe_contact.waves.cost.Cost`; None without waves:
+    seconds. Raises BodyTooFine.
+    """
+    return get(WAVES, scene.target.name).cost(scene, chosen.numerics) if scene.model.inertia else None
+
+
 def share_of_peak(peak_time: float, contact_time: float) -> float:
     """Time of the force's peak over that of the contact; one that falls from the touch on has no rise to resolve."""
     share = peak_time / contact_time

@@ -7,8 +7,9 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import UTC, datetime
+from pathlib import Path
 from typing import Protocol, TextIO
 
 OFTEN = 0.2  # s between two words on a terminal, as fast as anybody reads
@@ -63,22 +64,22 @@ def uncounted(parts: float = 1.0) -> None:
 
 @dataclass
 class Pace:
-    """Since when the work, and what is being done of it now, goes on; ``pause``, s, between two words of the same."""
+    """Since when the work, and the part of it that is counted now, goes on; ``pause``, s, between words of the same."""
 
     clock: Callable[[], float]
     pause: float
-    message: str = ""
-    spoke: float = field(default=-float("inf"))
 
     def __post_init__(self) -> None:
-        self.begun = self.since = self.clock()
+        self.begun = self.spoke = self.since = self.clock()
+        self.message, self.counted = "", (0.0, 0.0)
 
     def due(self, message: str, done: float, total: float) -> bool:
         """Whether it is time for a word: what is new, or all done, is said at once."""
         now = self.clock()
-        if message != self.message:
-            self.message, self.since = message, now
-        elif now - self.spoke < self.pause and not done >= total > 0:
+        if total != self.counted[1] or done < self.counted[0]:  # another part begins
+            self.since = now
+        again, self.message, self.counted = message == self.message, message, (done, total)
+        if again and now - self.spoke < self.pause and not done >= total > 0:
             return False
         self.spoke = now
         return True
@@ -154,11 +155,11 @@ class Log:
 
     def __init__(
         self,
-        stream: TextIO,
+        write: Callable[[str], object],
         clock: Callable[[], float] = time.monotonic,
         today: Callable[[], datetime] = lambda: datetime.now(UTC),
     ) -> None:
-        self._stream, self._pace, self._today = stream, Pace(clock, SELDOM), today
+        self._write, self._pace, self._today = write, Pace(clock, SELDOM), today
 
     def __call__(self, message: str, done: float = 0, total: float = 0, lasting: bool = False) -> None:
         """Tell; see :class:`Progress`."""
@@ -167,13 +168,18 @@ class Log:
             parts = [f"{self._today():%Y-%m-%dT%H:%M:%SZ}", f"{self._pace.elapsed():.1f} s", message]
             parts += [_share(done, total)] if total else []
             parts += [] if left is None else [f"about {_spoken(left)} left"]
-            self._stream.write(", ".join(parts) + "\n")
-            self._stream.flush()
+            self._write(", ".join(parts) + "\n")
 
 
-def log_to(path: str) -> Log:
-    """A log in a file made anew; raises OSError where it cannot be."""
-    return Log(open(path, "w", encoding="utf-8"))  # noqa: PTH123 - it ends with the process
+def log_to(path: Path) -> Log:
+    """A log in a file made anew; raises OSError where it cannot be. A disk that fills up later costs the log alone."""
+    path.write_text("", encoding="utf-8")
+
+    def write(line: str) -> None:
+        with suppress(OSError), path.open("a", encoding="utf-8") as file:
+            file.write(line)
+
+    return Log(write)
 
 
 def terminal() -> Line:

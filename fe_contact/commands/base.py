@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from fe_contact.numerics import faults
-from fe_contact.progress import Progress, silent
+from fe_contact.progress import Progress, clear, lasting_to, log_to, terminal, to_all
 from lumped.errors import BadInput, Fault, shown
 from lumped.indenter import Indenter
 from lumped.result import LedgerEntry, Result
@@ -49,10 +49,11 @@ def json_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def output_arguments(parser: argparse.ArgumentParser) -> None:
-    """--out, --json and --quiet."""
+    """--out, --json, --quiet and --log."""
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the results")
     json_argument(parser)
     parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
+    parser.add_argument("--log", metavar="FILE", help="write progress into a file, line by line")
 
 
 def overrides_of(args: argparse.Namespace) -> dict[str, object]:
@@ -141,16 +142,27 @@ def _part_of_a_name(text: str) -> str:
 
 
 def progress_of(args: argparse.Namespace) -> Progress:
-    """Progress for a person who watches: silent with --quiet or when stderr is piped."""
-    if args.quiet or not sys.stderr.isatty():
-        return silent
-    return lambda message: print(f"fe-contact: {message} ...", file=sys.stderr)
+    """Progress in the last line of a terminal, what lasts long also where stderr is piped, neither with --quiet; and
+    into the file of --log.
+
+    Raises BadInput, before any work, where that cannot be written.
+    """
+    listeners = list[Progress]()
+    if args.log is not None:
+        try:
+            listeners.append(log_to(Path(args.log)))
+        except (OSError, ValueError) as failure:  # a name with a null character is none
+            raise BadInput(Fault("--log", args.log, f"{failure}: accepted a file that can be written")) from None
+    if not args.quiet:
+        listeners.append(terminal() if sys.stderr.isatty() else lasting_to(sys.stderr))
+    return to_all(listeners)
 
 
 def tell(
     args: argparse.Namespace, content: Mapping[str, Any], lines: Sequence[str], where: Path, title: str = ""
 ) -> None:
     """On stdout what was found: as JSON, or line by line, under a title indented, and where it was written."""
+    clear()
     if args.json:
         print(json.dumps(content, allow_nan=False))
     else:
@@ -160,6 +172,7 @@ def tell(
 
 def report(args: argparse.Namespace, result: Result, content: Mapping[str, Any], where: Path) -> int:
     """Print a result, or the content of its file, warn of what the model lacks; the exit code."""
+    clear()
     if args.json:
         print(json.dumps(content, allow_nan=False))
     else:
@@ -198,6 +211,7 @@ def warn(result: Judged) -> None:
 
 def complain(message: str) -> None:
     """One line on stderr."""
+    clear()
     print(f"fe-contact: {message}", file=sys.stderr)
 
 

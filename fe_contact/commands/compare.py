@@ -41,8 +41,7 @@ def execute(args: argparse.Namespace) -> int:
         scene.check_single("compare")
         solved = solve(scene, given, progress)
         reference = result_of(scene, solved)
-    progress("lumped laws")
-    comparison = compare(solved, reference, names, measured)
+    comparison = compare(solved, reference, names, measured, progress)
     content = comparison_content(comparison)
 
     def write(folder: Path) -> None:

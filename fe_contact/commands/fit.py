@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fe_contact.commands import base
+from fe_contact.progress import clear
 from lumped.errors import BadInput, Fault, NotReached, shown
 from lumped.result_folder import publish
 
@@ -69,6 +70,7 @@ def _report(args: argparse.Namespace, found: Fit, content: dict[str, Any], where
         lines = opensees.lines(laws.get(found.law).of(found.scene), found.scene, language=args.opensees)
         text = "\n".join([*(f"# {line}" for line in text.splitlines()), lines])
         content["opensees"] = lines.splitlines()
+    clear()
     print(json.dumps(content, allow_nan=False) if args.json else text)
     for warning in found.warnings:
         base.complain(warning)

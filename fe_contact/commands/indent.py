@@ -7,6 +7,7 @@ import json
 from typing import Any
 
 from fe_contact.commands import base
+from fe_contact.progress import clear
 from lumped.errors import BadInput, Fault, NotReached, nearest, shown
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
@@ -35,6 +36,7 @@ def execute(args: argparse.Namespace) -> int:
     where = base.folder(args, "indent", indenter.name)
     found = _indented(args, indenter, depths, given)
     content = publish(where, found.write_files)
+    clear()
     if args.json:
         print(json.dumps(content, allow_nan=False))
     else:
@@ -50,8 +52,9 @@ def _indented(
     from fe_contact.indentation import indent as by_elements
     from fe_contact.plan import DEFAULT_TOLERANCE
 
+    progress = base.progress_of(args)
     if args.method == "fe":
-        return by_elements(indenter, depths, given, args.instant, base.progress_of(args))
+        return by_elements(indenter, depths, given, args.instant, progress)
     names = ("fe", "cheapest", "hertz", *EXACT)
     if args.method not in names:
         reason = f"{shown(args.method)}: accepted {', '.join(names)}{nearest(args.method, names)}"
@@ -64,7 +67,7 @@ def _indented(
     try:
         return closed_form(indenter, depths, EXACT[indenter.target.has_length], args.instant, tolerance)
     except NotReached:  # the load curve ends before
-        return by_elements(indenter, depths, given, args.instant, base.progress_of(args))
+        return by_elements(indenter, depths, given, args.instant, progress)
 
 
 def _lines(found: Indentation) -> list[str]:

@@ -7,6 +7,7 @@ import json
 from dataclasses import asdict
 
 from fe_contact.commands import base
+from fe_contact.progress import clear
 
 SUMMARY = "the settings chosen and what the model leaves out, without solving"
 
@@ -20,17 +21,24 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Print settings and ledger; 0."""
     from fe_contact.methods import settings
-    from fe_contact.plan import plan
+    from fe_contact.plan import cost, plan
 
     scene, table = base.read_scene(args)
+    progress = base.progress_of(args)
+    progress("plan")
     chosen = plan(scene, settings(table, None, scene.source))
+    takes = cost(scene, chosen)
+    clear()
     ledger = [asdict(entry) for entry in chosen.ledger]
     if args.json:
-        print(json.dumps({"numerics": chosen.numerics.as_dict(), "model_ledger": ledger}, allow_nan=False))
+        content = {"numerics": chosen.numerics.as_dict(), "model_ledger": ledger, "cost": takes and takes.as_dict()}
+        print(json.dumps(content, allow_nan=False))
         return base.DONE
     print(f"{scene.name}")
     for key, value in chosen.numerics.as_dict().items():
         print(f"  {key:21s} {value if not isinstance(value, float) else format(value, '.6g')}")
+    if takes is not None:
+        print(f"  takes {takes}")
     print("  left out, relative to the peak force:")
     for entry in chosen.ledger:
         size = "unknown" if entry.estimate is None else f"{entry.estimate:.2g}"

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.progress import Progress, silent
 from fe_contact.reference import Solved
 from fe_contact.validation.deviations import force_bars, force_errors, pressure_error, radius_error
 from fe_contact.validation.nested_areas import NestedAreas, nested_areas
@@ -68,14 +69,19 @@ class Comparison:
 
 
 def compare(
-    solved: Solved | None, reference: Result, names: tuple[str, ...], measured: Measured | None = None
+    solved: Solved | None,
+    reference: Result,
+    names: tuple[str, ...],
+    measured: Measured | None = None,
+    progress: Progress = silent,
 ) -> Comparison:
     """Judge laws by their names, and a measured curve where there is one. Raises BadInput for an unknown law."""
     members = {name: get(name) for name in names}
     scene, curve_error = known(reference.scene, reference.quantities["peak_depth"].value or 0.0)
     laws: dict[str, Result] = {}
     refused: dict[str, str] = {}
-    for name, member in members.items():
+    for count, (name, member) in enumerate(members.items()):
+        progress(f"law {name}", count, len(members))
         try:
             laws[name] = simulate(member.of(scene), scene, LAW_TOLERANCE)
         except FeContactError as failure:  # what has no answer is told, and the others go on

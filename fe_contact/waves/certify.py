@@ -45,10 +45,12 @@ class Runs:
         self._scene, self._strike, self._moving, self.cheap = scene, strike, moving, cheap
         self._curves: dict[WaveNumerics, tuple[Curve, ...]] = {}
         self._runs: dict[WaveNumerics, tuple[Bounces, int]] = {}
-        self.counted: Counted = uncounted  # told of the work of every step
+        self.counted: Counted = uncounted  # told of every step, as the share of one on the largest body so far
+        self._largest = 1
 
     def _count(self, unknowns: int, steps: float) -> None:
-        self.counted(unknowns * steps)
+        self._largest = max(self._largest, unknowns)
+        self.counted(steps * unknowns / self._largest)
 
     def follow(self, settings: WaveNumerics) -> Bounces:
         """One run; raises where it fails."""

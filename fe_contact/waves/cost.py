@@ -42,6 +42,11 @@ class Cost:
         return cls(unknowns, steps, MARCHES * (unknowns + STEP) * steps)
 
     @property
+    def all_steps(self) -> float:
+        """Of all marches of the budget, counted as if all were on the finest mesh."""
+        return MARCHES * self.steps
+
+    @property
     def seconds(self) -> float:
         """Of one core."""
         return SECONDS * self.work
@@ -61,6 +66,10 @@ class Cost:
             f"{self.unknowns} unknowns, {self.steps} steps: "
             f"about {self.seconds:.2g} s of one core and {self.bytes / 1e9:.1f} GB"
         )
+
+    def as_dict(self) -> dict[str, float]:
+        """Plain data for JSON."""
+        return {"unknowns": self.unknowns, "steps": self.steps, "cpu_s": self.seconds, "memory_bytes": self.bytes}
 
     def check(self, spent: float = 0.0) -> None:
         """Raise WavesTooDear where this, after what has been ``spent``, is more work than one march may be."""

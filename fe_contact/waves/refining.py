@@ -66,7 +66,7 @@ def refined_to_tolerance(
             cost = cost_of(scene, finer, moving)
             cost.check(runs.spent)
             progress(f"waves, {cost}", lasting=cost.long)
-            runs.counted = Count(progress, f"waves, {cost.unknowns} unknowns", cost.work)
+            runs.counted = Count(progress, f"waves, {cost.unknowns} unknowns", cost.all_steps)
             certified, numerics = certify(runs, finer), finer
         except MemoryTooSmall as failure:
             outgrown = failure

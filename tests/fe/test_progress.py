@@ -1,0 +1,141 @@
+"""What long work tells: one line in place, a log with times, steps counted of those expected."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import pytest
+
+from fe_contact import cli
+from fe_contact.methods import simulate
+from fe_contact.progress import OFTEN, Count, Line, Log, clear, lasting_to, to_all
+from fe_contact.reference import solve
+from lumped import Scene
+
+
+class Clock:
+    """A time that goes on when it is told to."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def screen(written: str) -> str:
+    """What a terminal shows in its line after all that was written."""
+    shown = ""
+    for part in written.split("\r"):
+        shown = part + shown[len(part) :]
+    return shown
+
+
+def test_a_terminal_shows_one_line_never_wider_than_itself() -> None:
+    stream, clock = io.StringIO(), Clock()
+    line = Line(stream, clock, lambda: 30)
+    for done in range(5):
+        clock.now += 1.0
+        line("a message that is longer than the terminal is wide" if done % 2 else "short", done, 4)
+        shown = stream.getvalue()
+        assert "\n" not in shown
+        assert all(len(part) < 30 for part in shown.split("\r"))
+    assert screen(stream.getvalue()).rstrip() == "fe-contact: short, 4 of 4 ..."
+    clear()
+    assert not screen(stream.getvalue()).strip(), "nothing is left of it"
+    length = len(stream.getvalue())
+    clear()
+    assert len(stream.getvalue()) == length, "nothing more to clear"
+
+
+def test_the_time_left_is_that_of_the_rest_at_the_same_pace() -> None:
+    stream, clock = io.StringIO(), Clock()
+    line = Line(stream, clock, lambda: 80)
+    line("steps", 0, 10)
+    clock.now += 6.0
+    line("steps", 2, 10)
+    assert "2 of 10, about 24 s left" in screen(stream.getvalue())
+    line("another part", 0, 3)
+    clock.now += 600.0
+    line("another part", 1, 3)
+    assert "1 of 3, about 20 min left" in screen(stream.getvalue()), "counted from its own begin"
+
+
+def test_a_million_steps_write_a_few_words() -> None:
+    """Told at every step, at a rate that costs nothing: five words a second, and the end."""
+    stream, clock = io.StringIO(), Clock()
+    count = Count(Line(stream, clock, lambda: 80), "steps", 10_000)
+    for _ in range(10_000):
+        clock.now += 1e-3
+        count()
+    assert stream.getvalue().count("\r") <= 10.0 / OFTEN + 2
+    assert "10000 of 10000" in screen(stream.getvalue())
+
+
+def test_more_steps_than_expected_are_no_more_than_all() -> None:
+    stream = io.StringIO()
+    count = Count(Line(stream, Clock(), lambda: 80), "steps", 2)
+    for _ in range(3):
+        count()
+    assert "3 of 3" in screen(stream.getvalue())
+
+
+def test_a_log_has_a_line_a_word_with_times_and_shares() -> None:
+    stream, clock = io.StringIO(), Clock()
+    log = Log(stream.write, clock)
+    log("begun")
+    clock.now += 2.0
+    log("rows", 1, 4)
+    clock.now += 3.0
+    log("rows", 2, 4)
+    log("rows", 3, 4)
+    first, second, third = stream.getvalue().splitlines()
+    assert first.endswith("Z, 0.0 s, begun")
+    assert second.endswith("Z, 2.0 s, rows, 1 of 4")
+    assert third.endswith("Z, 5.0 s, rows, 2 of 4, about 3 s left")
+
+
+def test_where_nobody_watches_only_what_lasts_is_told() -> None:
+    stream, heard = io.StringIO(), list[str]()
+    told = to_all([lasting_to(stream), lambda message, *_: heard.append(message)])
+    told("quick")
+    told("about an hour", lasting=True)
+    assert stream.getvalue() == "fe-contact: about an hour ...\n"
+    assert heard == ["quick", "about an hour"]
+
+
+@pytest.mark.parametrize("name", ["polymer-sphere", "ball-bouncing"])
+def test_an_impact_tells_the_steps_of_all_its_marches(name: str) -> None:
+    told = list[tuple[str, float, float]]()
+    solved = solve(Scene.load(name), {}, lambda *word, **_: told.append((*word, 0.0, 0.0)[:3]))
+    first = [(done, total) for message, done, total in told if message == told[0][0]][1:]
+    assert [done for done, _ in first] == list(range(1, len(first) + 1)), "every step once"
+    assert 0.3 < first[-1][0] / first[0][1] < 3.0, "as many as were expected"
+    assert len(told) > solved.certified.work.steps
+
+
+def test_waves_tell_their_cost_and_their_steps() -> None:
+    told = list[tuple[str, float, float]]()
+    given = {"tolerance": 0.03, "elements_per_contact": 3.0, "steps": 64}
+    scene = Scene.load("polymer-sphere-waves")
+    simulate(scene, "fe", given, progress=lambda *word, **_: told.append((*word, 0.0, 0.0)[:3]))
+    assert "GB" in told[0][0]
+    done, total = told[-1][1:]
+    assert 0.5 < done / total <= 1.0
+
+
+@pytest.mark.parametrize("place", ["missing/log", "."])
+def test_a_log_that_cannot_be_written_is_refused_before_the_work(
+    place: str, empty: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["run", "steel-ball", "--log", place]) == 2
+    assert capsys.readouterr().err.startswith(f"--log: {place}: ")
+    assert not list(empty.iterdir())
+
+
+def test_a_log_is_written_where_nobody_watches(empty: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["run", "steel-ball", "--log", "log.txt", "--quiet"]) == 0
+    lines = Path("log.txt").read_text(encoding="utf-8").splitlines()
+    assert " steps, " in lines[0]
+    assert not [line for line in capsys.readouterr().err.splitlines() if "..." in line]
