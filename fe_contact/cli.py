@@ -11,6 +11,7 @@ from pathlib import Path
 
 from fe_contact import __version__
 from fe_contact.commands import base
+from fe_contact.threads import one_thread
 from lumped.errors import FeContactError
 from lumped.members import available, get
 
@@ -33,7 +34,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; the exit code."""
     args = parser().parse_args(arguments)
     try:
-        code: int = get(COMMANDS, args.command).execute(args)
+        with one_thread:
+            code: int = get(COMMANDS, args.command).execute(args)
         return code
     except KeyboardInterrupt:
         print("fe-contact: interrupted", file=sys.stderr)

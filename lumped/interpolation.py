@@ -32,7 +32,7 @@ def local(x: Array, y: Array, at: Array, points: int = POINTS) -> Array:
 
 
 def peak(x: Array, y: Array) -> tuple[float, float]:
-    """Place and height of the highest point of a smooth curve given by its rows, x ascending; of equal x the highest."""
+    """Place and height of the highest point of a smooth curve given by rows, x ascending; of equal x the highest."""
     new = np.flatnonzero(np.diff(x, prepend=-np.inf) > EQUAL * (x[-1] - x[0]))
     rows, values = x[new], np.maximum.reduceat(y, new)
     return highest(lambda at: local(rows, values, at), rows)

@@ -6,7 +6,6 @@ ratios over it tell E*. Line contact tells its E* by the slope of its logarithm.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
@@ -17,6 +16,7 @@ import numpy as np
 
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
+from fe_contact.threads import one_thread
 from fe_contact.validation.blocks import Block, blocks
 from fe_contact.validation.datum import Place, places
 from fe_contact.validation.table1_impact import FromImpact, line_impacts, power_law_impacts
@@ -65,7 +65,6 @@ def bodies(row: Row, nu: float) -> tuple[Elastic, ...]:
 
 def table1(progress: Progress = silent) -> tuple[Trial, ...]:
     """Every row of the table, in its order; two batches at a time, in two processes."""
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # two processes for two cores: matrices are small
     found: dict[int, Trial] = {}
     with ProcessPoolExecutor(WORKERS, get_context("spawn")) as pool:
         for done in as_completed([pool.submit(_tried, batch) for batch in batches()]):
@@ -85,6 +84,7 @@ def batches() -> tuple[tuple[Row, ...], ...]:
     return (*((row,) for row in alone), blocks)
 
 
+@one_thread
 def _tried(rows: tuple[Row, ...]) -> tuple[Trial, ...]:
     return tuple(trial(row) for row in rows)
 
