@@ -27,6 +27,7 @@ from typing import NoReturn
 
 from fe_contact import __version__
 from fe_contact.progress import clear
+from fe_contact.threads import one_thread
 
 COMMANDS = "fe_contact.commands"
 DONE, DEFECT, BAD_INPUT, NOT_REACHED = 0, 1, 2, 3
@@ -76,7 +77,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     args = parser().parse_args(arguments)
     try:
-        with _interruptible():
+        with _interruptible(), one_thread:
             code: int = get(COMMANDS, args.command).execute(args)
             sys.stdout.flush()
             return code

@@ -18,6 +18,7 @@ from fe_contact.numerics import RANGES, TARGETS, Numerics, check_kind
 from fe_contact.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, RIM_PENALTY, SETTING, refined
 from fe_contact.pressing import Still
 from fe_contact.progress import Progress, silent
+from fe_contact.threads import one_thread
 from lumped.clock import Clock
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
@@ -46,6 +47,7 @@ class Pressing:
     ends: bool
 
 
+@one_thread
 def indent(
     indenter: Indenter,
     depths: tuple[float, ...],
