@@ -24,7 +24,7 @@ def distance(x: float, y: float) -> str:
 
 
 def checked(name: str, value: float, low: float, high: float) -> float:
-    """A number within its range, as a plain float: gmsh reads its digits. Raises MeshError."""
+    """A number within its range, as a plain float: gmsh reads its digits. Raises MeshError, `name` in plain words."""
     from meshes.errors import MeshError
 
     if not low <= value <= high:

@@ -7,7 +7,7 @@ APT_LINE = (
 
 
 class MeshError(Exception):
-    """A mesh that cannot be made: the message names the number and its accepted range."""
+    """A mesh that cannot be made: the message says in plain words which number, and its accepted range."""
 
     exit_code = 2
 

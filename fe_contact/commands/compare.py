@@ -32,6 +32,7 @@ def execute(args: argparse.Namespace) -> int:
     scene, table = base.read_scene(args)
     given, names = settings(table, None, scene.source), law_names(args.laws, scene)
     measured = None if args.measured is None else read_curve(args.measured)
+    where = base.folder(args, "compare", scene.name)
     progress = base.progress_of(args)
     if scene.model.inertia:
         solved, reference = None, simulate(scene, "fe", given, progress=progress)
@@ -41,7 +42,6 @@ def execute(args: argparse.Namespace) -> int:
         reference = result_of(scene, solved)
     progress("lumped laws")
     comparison = compare(solved, reference, names, measured)
-    where = base.folder(args, "compare", scene.name)
     content = write_comparison(comparison, where)
     plot_comparison(comparison, where)
     base.tell(args, content, content["verdict"], where, f"{scene.name}: against finite elements")

@@ -25,8 +25,8 @@ def execute(args: argparse.Namespace) -> int:
 
     scene, table = base.read_scene(args)
     study = tradeoff_waves if scene.model.inertia else tradeoff
-    points = study.tradeoff(scene, settings(table, None, scene.source), args.quick, base.progress_of(args))
-    where = base.folder(args, "tradeoff", scene.name)
+    given, where = settings(table, None, scene.source), base.folder(args, "tradeoff", scene.name)
+    points = study.tradeoff(scene, given, args.quick, base.progress_of(args))
     content = write_tradeoff(scene, points, where)
     plot_tradeoff(scene, points, where)
     base.tell(args, content, content["verdict"], where, f"{scene.name}: {len(points)} points")

@@ -41,7 +41,7 @@ def search(
     measured = Measured.of(curve)
     if measured.points <= len(space.free):
         reason = f"{measured.points} points for {len(space.free)} parameters; accepted: more points than parameters"
-        raise BadInput(Fault("fit", "curve", reason))
+        raise BadInput(Fault("curve", "", reason))
     stiff = [name for name in STIFFNESSES if name in space.free] or list(space.free)
     problem = Problem(space, measured, stiff[0] if peak else None)
     found = best(problem)

@@ -38,4 +38,5 @@ def simulate(model: Law, scene: Scene, tolerance: float = 1e-6) -> Result:
     if scene.mass == 0.0:
         reason = "0: a lumped law moves a rigid mass; accepted: more, or --method fe"
         raise BadInput(Fault(scene.source, "striker.mass", reason))
-    return model.simulate(scene, tolerance)
+    with scene.addressed():
+        return model.simulate(scene, tolerance)
