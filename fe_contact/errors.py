@@ -10,9 +10,10 @@ from lumped.errors import BadInput, Fault, NotReached
 from lumped.indenter import Indenter
 from lumped.keys import Number
 from lumped.scene import Scene
-from meshes.errors import GmshMissing, MeshError
+from meshes.errors import GmshMissing, MeshError, MeshTooFine
 
 Said = TypeVar("Said", Scene, Indenter)
+FINENESS = "numerics.tolerance, numerics.elements_per_contact"
 Given = ParamSpec("Given")
 Found = TypeVar("Found")
 
@@ -27,6 +28,8 @@ def says_which_key(door: Callable[Concatenate[Said, Given], Found]) -> Callable[
                 return door(scene, *args, **options)
             except GmshMissing:  # no number's fault
                 raise
+            except MeshTooFine as refused:
+                raise BadInput(Fault(scene.source, FINENESS, f"{refused}; cure: a larger tolerance")) from refused
             except MeshError as refused:
                 raise BadInput(Fault(scene.source, _lengths(scene), str(refused))) from refused
 

@@ -12,6 +12,10 @@ class MeshError(Exception):
     exit_code = 2
 
 
+class MeshTooFine(MeshError):
+    """More elements along a contact than a mesh is made for."""
+
+
 class GmshMissing(MeshError):
     """gmsh is installed but a system library it needs is not (bare Debian lacks libGLU and friends)."""
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from skfem import MeshTri
 
-from meshes._sizes import beyond, checked, distance, larger, smaller
+from meshes._sizes import beyond, checked, distance, elements_checked, larger, smaller
 from meshes.errors import MeshError
 from meshes.session import session
 from meshes.triangles import triangulated
@@ -71,7 +71,7 @@ def half_space_for_waves(elements_per_radius: float, smallest: float, far_radius
     ------
     MeshError for numbers outside these ranges.
     """
-    elements = checked("elements along the contact radius", elements_per_radius, 1.0, 200.0)
+    elements = elements_checked("the contact radius", elements_per_radius, 1.0, 200.0)
     low = checked("smallest contact over the largest", smallest, 1e-3, 1.0)
     far = checked("far_radius", far_radius, 2.0, 1e6)
     at_surface = elements * checked("refinement of the surface", finer, 1.0, 16.0)

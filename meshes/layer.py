@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from skfem import MeshTri
 
-from meshes._sizes import checked
-from meshes.errors import MeshError
+from meshes._sizes import checked, elements_checked
 from meshes.session import session
 from meshes.triangles import triangulated
 
@@ -105,14 +104,13 @@ def _rectangle(size: str, node: float, thickness: float, width: float) -> MeshTr
 
 
 def _check(elements: float, smallest: float, thickness: float, width: float) -> None:
+    elements_checked("the contact radius", elements, 1.0, 200.0)
     for name, value, low, high in (
-        ("elements along the contact radius", elements, 1.0, 200.0),
         ("smallest contact over the largest", smallest, 1e-6, 1.0),
         ("thickness over the largest contact", thickness, 1e-3, 1e6),
         ("width beyond the contact over it", width, 1e-3, 1e8),
     ):
-        if not low <= value <= high:
-            raise MeshError(f"{name} = {value:g}: accepted {low:g} to {high:g}")
+        checked(name, value, low, high)
 
 
 def _least(formula: str, bound: float) -> str:

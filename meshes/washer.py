@@ -5,7 +5,7 @@ from __future__ import annotations
 from skfem import MeshTri
 
 from meshes._rectangle import rectangle
-from meshes._sizes import checked
+from meshes._sizes import checked, elements_checked
 
 
 def washer(elements: float, inner: float, outer: float, rim: float, bonded: bool) -> MeshTri:
@@ -26,7 +26,7 @@ def washer(elements: float, inner: float, outer: float, rim: float, bonded: bool
     ------
     MeshError for numbers outside these ranges.
     """
-    n = checked("elements along the shortest length", elements, 0.5, 200.0)
+    n = elements_checked("the shortest length", elements, 0.5, 200.0)
     outer = checked("outer radius over the height", outer, 1e-4, 1e4)
     inner = checked("inner radius over the height", inner, 1e-9, outer)
     rim = checked("radius of the contact over the height", rim, inner, outer)

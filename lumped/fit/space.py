@@ -72,8 +72,8 @@ def space_of(law: str, scene: Scene, free: Sequence[str] | None, fixed: Mapping[
     faults = [_unknown(place, name, known) for place, name in asked if name not in known]
     faults += [Fault(FREE, "", "empty; accepted: at least one parameter")] if not names else []
     faults += [Fault(FREE, name, UNSEEN[name]) for name in names if name in UNSEEN]
-    faults += [Fault(FIXED, name, "free, too; accepted: one of both") for name in names if name in fixed]
-    faults += [Fault(BOUNDS, name, "is not free; accepted: free") for name in bounds if name not in names]
+    faults += [Fault(FIXED, name, "both free and fixed; accepted: one of them") for name in names if name in fixed]
+    faults += [Fault(BOUNDS, name, "has bounds and is not free; accepted: free") for name in bounds if name not in names]
     faults += [
         Fault(BOUNDS, name, f"{low:g}:{high:g} is empty; accepted: low < high")
         for name, (low, high) in bounds.items()

@@ -165,5 +165,6 @@ def _panel(curve: TabulatedCurve, index: int) -> Array:
     ratios = (kept.depth / fresh.depth, kept.force / fresh.force, kept.stiffness / fresh.stiffness)
     error = max(abs(float(ratio[0]) - 1.0) for ratio in ratios)
     if not error <= ACCURACY:
-        raise NotReached(f"the load curve at a contact radius of {radius[0]:g} m: two resolutions differ by {error:.1e}")
+        place = f"the load curve at a contact radius of {radius[0]:g} m"
+        raise NotReached(f"{place}: two resolutions differ by {error:.1e}")
     return table
