@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from fe_contact.certify import LEAST_HALVED_SETTING, LEAST_ORDER, MESH_ORDER, SAFETY
+from fe_contact.errors import says_which_key
 from fe_contact.expected_contacts import expected
 from fe_contact.forms import Array
 from fe_contact.numerics import RANGES, TARGETS, Numerics, check_kind
@@ -48,6 +49,7 @@ class Pressing:
 
 
 @one_thread
+@says_which_key
 def indent(
     indenter: Indenter,
     depths: tuple[float, ...],

@@ -7,7 +7,7 @@ APT_LINE = (
 
 
 class MeshError(Exception):
-    """A mesh that cannot be made: the message names the number and its accepted range."""
+    """A mesh that cannot be made: the message says in plain words which number, and its accepted range."""
 
     exit_code = 2
 
@@ -21,6 +21,10 @@ class MeshTooLarge(MeshError):
         self.most = most
         reason = f"a mesh of more than {most} nodes is not made"
         super().__init__(f"{reason}; cure: fewer elements along a contact, a thicker body, a nearer far end")
+
+
+class MeshTooFine(MeshError):
+    """More elements along a contact than a mesh is made for."""
 
 
 class GmshMissing(MeshError):
