@@ -1,5 +1,7 @@
 """Named failures of the geometry floor."""
 
+from typing import Any
+
 APT_LINE = (
     "apt-get update && apt-get install -y --no-install-recommends "
     "libglu1-mesa libgl1 libxcursor1 libxft2 libxinerama1 libgomp1"
@@ -10,6 +12,10 @@ class MeshError(Exception):
     """A mesh that cannot be made: the message says in plain words which number, and its accepted range."""
 
     exit_code = 2
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Another process gets what it says, not what it was made of: kinds differ in their arguments."""
+        return type(self).__new__, (type(self), *self.args), self.__dict__
 
 
 class MeshTooLarge(MeshError):

@@ -11,14 +11,14 @@ import json
 import os
 import signal
 from collections.abc import Generator, Iterator, Mapping
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing, contextmanager
 from functools import cache, partial
 from hashlib import sha256
 from importlib.util import find_spec
-from multiprocessing import active_children, get_context, parent_process
-from multiprocessing.connection import wait
+from itertools import islice
+from multiprocessing import active_children, connection, get_context, parent_process
 from pathlib import Path
 from threading import Thread
 from typing import Any, TypeVar, get_type_hints
@@ -106,13 +106,17 @@ def measured(calls: Mapping[str, partial[R]], jobs: int) -> Generator[tuple[str,
     if min(jobs, len(calls)) < 2:
         yield from ((name, call()) for name, call in calls.items())
         return
-    strangers = active_children()
-    pool = ProcessPoolExecutor(min(jobs, len(calls)), get_context("spawn"), _begin)
+    strangers, left = active_children(), iter(calls.items())
+    # One pool a process: a pool of several may not hear that the last one which it started has died.
+    pools = [ProcessPoolExecutor(1, get_context("spawn"), _begin) for _ in range(min(jobs, len(calls)))]
     try:
         with _signals_held():  # a process that is interrupted while it starts would print how far it came
-            waiting = {pool.submit(call): name for name, call in calls.items()}
-        for done in as_completed(waiting):
-            yield waiting[done], done.result()
+            waiting = {pool.submit(call): (name, pool) for pool, (name, call) in zip(pools, left, strict=False)}
+        while waiting:
+            for done in wait(waiting, return_when=FIRST_COMPLETED).done:
+                name, pool = waiting.pop(done)
+                waiting |= {pool.submit(call): (following, pool) for following, call in islice(left, 1)}
+                yield name, done.result()
     except BrokenProcessPool:
         raise WorkerLost from None
     finally:
@@ -120,7 +124,8 @@ def measured(calls: Mapping[str, partial[R]], jobs: int) -> Generator[tuple[str,
             for child in active_children():
                 if child not in strangers:
                     child.kill()
-        pool.shutdown(cancel_futures=True)
+        for pool in pools:
+            pool.shutdown(cancel_futures=True)
 
 
 @contextmanager
@@ -147,5 +152,5 @@ def _begin() -> None:
 def _end_with_parent() -> None:
     parent = parent_process()
     assert parent is not None
-    wait([parent.sentinel])
+    connection.wait([parent.sentinel])
     os._exit(1)
