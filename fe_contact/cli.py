@@ -31,7 +31,7 @@ from fe_contact.threads import one_thread
 
 COMMANDS = "fe_contact.commands"
 DONE, DEFECT, BAD_INPUT, NOT_REACHED = 0, 1, 2, 3
-LEAST_MEMORY = 320 * 2**20  # bytes of address space: below, numpy's and scipy's libraries do not load
+LEAST_MEMORY = 640 * 2**20  # bytes of address space: below, the libraries of gmsh and scipy crash while they load
 SIGNALLED = 128  # plus the signal's number, as shells count: 130 after Ctrl-C, 143 after SIGTERM
 GRACE = 1.0  # s for a library to come back and let Python raise the interruption
 DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS, errno.EBADF)

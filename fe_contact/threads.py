@@ -22,9 +22,10 @@ def _libraries() -> ThreadpoolController:
 
     Kept, because finding them takes longer than a lumped law.
     """
-    import scipy.linalg  # noqa: F401 - for its BLAS
+    from scipy.linalg import blas
     from threadpoolctl import ThreadpoolController
 
+    blas.dgemv(1.0, [[1.0]], [1.0])  # takes its work space now: with no memory left it would ask for it for ever
     return ThreadpoolController().select(user_api="blas")
 
 
