@@ -151,9 +151,12 @@ def test_a_named_failure_comes_out_of_a_process_as_it_went_in() -> None:
 # studies that are killed
 
 
-def ended(process: subprocess.Popen[str], within: float) -> str:
-    """What it said on stderr, which ends when the last of its processes has: all hold it. Fails after a time, s."""
-    return process.communicate(timeout=within)[1]
+def ended(process: subprocess.Popen[str], within: float) -> tuple[str, str]:
+    """What it said on stdout and stderr, which end when the last of its processes has: all hold them.
+
+    Fails after a time, s.
+    """
+    return process.communicate(timeout=within)
 
 
 def begun(*arguments: object) -> subprocess.Popen[str]:
@@ -186,10 +189,9 @@ def killed(study: str, where: Path, sent: signal.Signals, count: int, delay: flo
         os.killpg(process.pid, sent)  # as ^C: every process of the study gets it
     else:
         process.send_signal(sent)
-    said = ended(process, ORPHAN)
-    if sent is signal.SIGINT:
-        assert process.returncode in (0, 3, 130)
-        assert "Traceback" not in said
+    out, err = ended(process, ORPHAN)
+    if sent is signal.SIGINT and "written to" not in out:
+        assert (process.returncode, err) == (130, "fe-contact: interrupted\n")
 
 
 def written(study: str, where: Path) -> dict[str, Any]:
@@ -211,7 +213,9 @@ def test_killed_studies_resume_byte_by_byte(request: pytest.FixtureRequest, tmp_
         killed(study, where, sent, int(rng.integers(4)), float(rng.uniform(0.0, 0.5)))
     whole = {study: tmp_path / study for study in chosen}
     resumed = [part for pair in zip(chosen, folders, strict=True) for part in pair]
-    said = ended(begun(*resumed, *(part for pair in whole.items() for part in pair)), len(chosen) * LONG)
+    process = begun(*resumed, *(part for pair in whole.items() for part in pair))
+    _, said = ended(process, len(chosen) * LONG)
+    assert process.returncode in (0, 3), said  # small studies may miss their tolerance
     for study, where in zip(chosen, folders, strict=True):
-        assert written(study, where) == written(study, whole[study]), said
+        assert written(study, where) == written(study, whole[study])
         assert len(kept(where)) == len(set(kept(where))) == len(kept(whole[study]))
