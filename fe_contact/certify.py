@@ -39,6 +39,7 @@ from fe_contact.trusted_order import trusted_orders
 from lumped.geometry import Geometry
 from lumped.members import get
 
+MANY_STEPS = 5_000  # of all marches, some ten seconds, which are told before they begin
 MARCHES = 2.5  # steps of all marches of a contact over those of the finest one: half and a quarter, and three of these
 SAFETY = 1.25
 LEAST_ORDER = {"penalty": 1, "far_field": 2}
@@ -113,8 +114,9 @@ def certify(
     Up to so many ``impacts``: the budget is that of the first, those of the ``later`` ones stand in it.
     """
     message = f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements along the contact radius"
-    progress(message)
-    runs = Runs(strike, geometry, impacts, Count(progress, message, MARCHES * impacts * numerics.steps))
+    expected = MARCHES * impacts * numerics.steps
+    progress(message, lasting=expected > MANY_STEPS)
+    runs = Runs(strike, geometry, impacts, Count(progress, message, expected))
     followed = runs.follow(numerics)
     judged = [_judged(runs, number, numerics, impacts == 1) for number in range(len(followed.contacts))]
     surface = runs.surface(numerics)

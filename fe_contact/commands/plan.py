@@ -5,9 +5,16 @@ from __future__ import annotations
 import argparse
 import json
 from dataclasses import asdict
+from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from fe_contact.progress import clear
+from lumped.errors import NotReached
+from lumped.scene import Scene
+
+if TYPE_CHECKING:  # finite elements are loaded when they are needed
+    from fe_contact.plan import Plan
+    from fe_contact.waves.cost import Cost
 
 SUMMARY = "the settings chosen and what the model leaves out, without solving"
 
@@ -19,21 +26,21 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Print settings and ledger; 0."""
+    """Print settings, ledger and, with waves, what it takes; 0, or 3 where that is refused."""
     from fe_contact.methods import settings
-    from fe_contact.plan import cost, plan
+    from fe_contact.plan import plan
 
     scene, table = base.read_scene(args)
     progress = base.progress_of(args)
     progress("plan")
     chosen = plan(scene, settings(table, None, scene.source))
-    takes = cost(scene, chosen)
+    takes, refused = _takes(scene, chosen)
     clear()
     ledger = [asdict(entry) for entry in chosen.ledger]
     if args.json:
         content = {"numerics": chosen.numerics.as_dict(), "model_ledger": ledger, "cost": takes and takes.as_dict()}
-        print(json.dumps(content, allow_nan=False))
-        return base.DONE
+        print(json.dumps(content | {"refused": refused}, allow_nan=False))
+        return base.NOT_REACHED if refused else base.DONE
     print(f"{scene.name}")
     for key, value in chosen.numerics.as_dict().items():
         print(f"  {key:21s} {value if not isinstance(value, float) else format(value, '.6g')}")
@@ -43,4 +50,19 @@ def execute(args: argparse.Namespace) -> int:
     for entry in chosen.ledger:
         size = "unknown" if entry.estimate is None else f"{entry.estimate:.2g}"
         print(f"    {entry.effect} ({entry.treated}): {size}; {entry.note}")
-    return base.DONE
+    if refused:
+        base.complain(refused)
+    return base.NOT_REACHED if refused else base.DONE
+
+
+def _takes(scene: Scene, chosen: Plan) -> tuple[Cost | None, str | None]:
+    """What waves take, None without them, and why that is refused, None where it is not."""
+    from fe_contact.plan import cost
+
+    try:
+        takes = cost(scene, chosen)
+        if takes is not None:
+            takes.check()
+    except NotReached as failure:
+        return None, str(failure)
+    return takes, None

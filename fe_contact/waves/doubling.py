@@ -14,6 +14,7 @@ from lumped.result import Result, meets
 from lumped.scene import Scene
 
 ROUNDS = 3  # refinements before giving up
+LONG = 5e7  # work that is told before it begins: ten seconds
 STEP = 2_000  # unknowns whose share of a step takes as long as all the rest of it
 MOST_WORK = 3e8  # unknowns, and those of a step itself, times steps, of all marches: about a minute
 
@@ -33,10 +34,10 @@ def certified(
     """
     cpu, wall = time.process_time(), time.perf_counter()
     numerics, marched = chosen.numerics, cache(run)
-    runs = dict[Run, None]()
+    runs, twice = dict[Run, None](), 0.0
     for attempt in range(ROUNDS + 1):
         assert isinstance(numerics, WaveNumerics)
-        progress(f"{numerics.steps} steps of waves along a line")
+        progress(f"{numerics.steps} steps of waves along a line", lasting=twice > LONG)
         found = Bars(marched(numerics), {cause: marched(settings) for cause, settings in varied(numerics).items()})
         runs |= dict.fromkeys(found.runs)
         stuck = "steps" in chosen.pinned or attempt == ROUNDS or 2 * numerics.steps > most_steps

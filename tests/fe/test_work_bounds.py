@@ -1,0 +1,132 @@
+"""Every answer has a bound of counted work: what is refused is named before, what was found before stands."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_contact import cli, operators, reference
+from fe_contact.dynamics import march
+from fe_contact.errors import BodyTooFine, TooManySteps, WavesTooDear
+from fe_contact.flight import Grounded
+from fe_contact.methods import simulate
+from fe_contact.numerics import WAVES
+from fe_contact.waves import cost, doubling
+from fe_contact.waves.certify import Runs
+from lumped import Scene
+from lumped.members import get
+from lumped.scene_file import load
+
+COARSE = {"tolerance": 3e-2, "elements_per_contact": 3.0, "steps": 64, "order": 2}
+QUICK = [f"--set=numerics.{key}={value}" for key, value in COARSE.items() if key != "tolerance"]
+
+
+def overridden(name: str, **changes: Any) -> Scene:
+    return load(name, {key.replace("__", "."): value for key, value in changes.items()})[0]
+
+
+@pytest.mark.parametrize("bound", ["fe_contact.operators.MOST_UNKNOWNS", "meshes.triangles.MOST_NODES"])
+@pytest.mark.parametrize("name", ["steel-ball", "polymer-layer", "two-cylinders", "rod-in-ring", "polymer-layer-waves"])
+def test_a_body_too_fine_is_refused_before_its_matrix(name: str, bound: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bound, 70)
+    with pytest.raises(BodyTooFine, match=r" 70.*cure: .*numerics.elements_per_contact, numerics.order"):
+        simulate(Scene.load(name), "fe", {"elements_per_contact": 7.7})
+
+
+def test_a_finer_body_that_is_refused_leaves_what_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, given = Scene.load("steel-ball"), {"tolerance": 1e-5, "steps": 16, "order": 2}
+    monkeypatch.setattr(reference, "ROUNDS", 0)
+    first = simulate(scene, "fe", given)
+    monkeypatch.setattr(reference, "ROUNDS", 4)
+    monkeypatch.setattr(operators, "MOST_UNKNOWNS", first.work["degrees_of_freedom"])
+    found = simulate(scene, "fe", given)
+    assert not found.converged
+    assert found.work == first.work
+    assert found.quantities == first.quantities
+
+
+def test_rounds_end_where_the_next_one_takes_too_many_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, given = Scene.load("polymer-sphere"), {"tolerance": 1e-6, "elements_per_contact": 2.0}
+    monkeypatch.setattr(reference, "MOST_STEPS", 100)
+    found = simulate(scene, "fe", given)
+    assert not found.converged
+    assert found.quantities["peak_force"].error is not None
+    assert found.numerics["elements_per_contact"] == 2.0
+
+
+def test_a_row_of_contacts_ends_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("fe_contact.impacts.MOST_STEPS", 60)
+    found = simulate(overridden("ball-bouncing", motion__impacts=1000), "fe", {"tolerance": 1e-2})
+    assert Grounded.MANY.value in found.message
+    assert not found.converged
+    assert found.contacts
+
+
+@pytest.mark.parametrize(
+    "name", ["polymer-sphere-waves", "ball-bouncing-waves", "polymer-layer-waves", "two-finite-spheres-waves"]
+)
+def test_the_cost_of_waves_is_known_before(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Within a factor of two: what is counted is unknowns times steps."""
+    spent = list[float]()
+    follow = Runs.follow
+
+    def followed(runs: Runs, settings: Any) -> Any:
+        found = follow(runs, settings)
+        spent.append(runs.spent)
+        return found
+
+    monkeypatch.setattr(Runs, "follow", followed)
+    monkeypatch.setattr("fe_contact.waves.refining.ROUNDS", 0)
+    scene = Scene.load(name)
+    target = get(WAVES, scene.target.name)
+    expected = target.cost(scene, target.plan(scene, COARSE).numerics)
+    simulate(scene, "fe", COARSE)
+    share = expected.work / (expected.unknowns + cost.STEP) * expected.unknowns / spent[-1]
+    assert 0.5 < share < 2.0
+
+
+def test_waves_that_cost_too_much_are_refused_before_the_first_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cost, "MOST_WORK", 1e3)
+    monkeypatch.setattr(Runs, "follow", lambda *_: pytest.fail("marched"))
+    with pytest.raises(WavesTooDear, match=r"unknowns, \d+ steps: about .* s of one core .*cure: a larger tolerance"):
+        simulate(Scene.load("polymer-sphere-waves"), "fe", COARSE)
+
+
+def test_finer_waves_that_cost_too_much_leave_what_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, given = Scene.load("polymer-sphere-waves"), {"tolerance": 3e-3, "elements_per_contact": 2.0, "order": 1}
+    target = get(WAVES, scene.target.name)
+    first = target.cost(scene, target.plan(scene, given).numerics)
+    monkeypatch.setattr(cost, "MOST_WORK", 1.01 * first.work)
+    found = simulate(scene, "fe", given)
+    assert not found.converged
+    assert found.numerics["steps"] == first.steps
+    assert np.isfinite(found.quantities["peak_force"].error or np.nan)
+
+
+def test_a_march_ends_after_so_much_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(march, "MOST_WORK", 1e4)
+    with pytest.raises(TooManySteps, match="cure: "):
+        simulate(Scene.load("rod"), "fe", {})
+
+
+def test_lines_are_doubled_as_far_as_their_work_is_bearable(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doubling, "MOST_WORK", 1.0)
+    found, free = simulate(Scene.load("bar"), "fe", {}), get(WAVES, "plane").plan(Scene.load("bar"), {})
+    assert not found.converged
+    assert found.numerics["steps"] == free.numerics.steps
+
+
+def test_plan_says_what_waves_take_and_what_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["plan", "polymer-sphere-waves", "--json", *QUICK]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["cost"]["unknowns"] > 100
+    assert found["refused"] is None
+    assert cli.main(["plan", "polymer-sphere-waves", "--json", *QUICK, "--set=numerics.steps=8192"]) == 0
+    assert json.loads(capsys.readouterr().out)["cost"]["cpu_s"] > 50 * found["cost"]["cpu_s"]
+    assert cli.main(["plan", "polymer-sphere-waves", "--tolerance", "1e-4"]) == 3
+    told = capsys.readouterr()
+    assert "elements_per_contact" in told.out
+    assert "cure: " in told.err
