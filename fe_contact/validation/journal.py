@@ -25,6 +25,7 @@ from typing import Any, TypeVar, get_type_hints
 
 from fe_contact.errors import WorkerLost
 from fe_contact.progress import Progress
+from fe_contact.threads import one_thread
 from lumped import data
 from lumped.json_file import decoded, encoded
 from lumped.result import provenance
@@ -93,8 +94,8 @@ def _kept(file: Path) -> dict[str, Any]:
 def _keep(file: Path, line: str) -> None:
     """A line more, at once; a line's end before it parts it from one that was cut short."""
     file.parent.mkdir(parents=True, exist_ok=True)
-    with file.open("a", encoding="utf-8") as lines:
-        lines.write(f"\n{line}")
+    with file.open("ab", buffering=0) as lines:  # in one call: no line of another run comes between
+        lines.write(f"\n{line}".encode())
 
 
 def measured(calls: Mapping[str, partial[R]], jobs: int) -> Generator[tuple[str, R], None, None]:
@@ -104,7 +105,10 @@ def measured(calls: Mapping[str, partial[R]], jobs: int) -> Generator[tuple[str,
     when this process is killed itself. Raises WorkerLost, and whatever a call raises.
     """
     if min(jobs, len(calls)) < 2:
-        yield from ((name, call()) for name, call in calls.items())
+        for name, call in calls.items():
+            with one_thread:
+                found = call()
+            yield name, found
         return
     strangers, left = active_children(), iter(calls.items())
     # One pool a process: a pool of several may not hear that the last one which it started has died.
@@ -147,6 +151,7 @@ def _begin() -> None:
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, signal.SIGTERM})
     Thread(target=_end_with_parent, daemon=True).start()
+    one_thread.__enter__()  # for as long as this process lives
 
 
 def _end_with_parent() -> None:

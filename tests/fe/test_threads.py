@@ -6,9 +6,9 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from threading import Barrier, Thread
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -18,8 +18,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 import fe_contact
 import fe_contact.indentation
 from fe_contact.threads import one_thread
-from fe_contact.validation import table1
-from fe_contact.validation.stability import base as stability
+from fe_contact.validation import journal
 from lumped import Scene
 from lumped.indenter import Indenter
 
@@ -82,11 +81,10 @@ def test_every_front_door_has_one_thread(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr("fe_contact.indentation.check_kind", lambda *_: 1 / len(look()))
     with pytest.raises(ZeroDivisionError):
         fe_contact.indentation.indent(Indenter.load("steel-ball"), (1e-6,), {})
-    monkeypatch.setattr(stability, "get", lambda *_: SimpleNamespace(measure=look))
-    stability.row("", {})
-    monkeypatch.setattr(table1, "trial", look)
-    table1._tried(table1.examples()[:1])
-    assert inside == [{1}] * 4
+    dict(journal.measured({"a row of a study": partial(look)}, jobs=1))
+    for _, found in journal.measured({name: partial(threadpool_info) for name in "ab"}, jobs=2):
+        inside.append({library["num_threads"] for library in found if library["user_api"] == "blas"})
+    assert inside == [{1}] * 5
     assert blas_threads() == {2}
 
 

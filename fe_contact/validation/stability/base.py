@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from fe_contact.threads import one_thread
 from lumped.errors import NotReached
 from lumped.json_file import plain
 from lumped.members import get
@@ -33,7 +32,6 @@ class Chart:
     measures: Mapping[str, Measure]
 
 
-@one_thread
 def row(study: str, case: Case) -> Row:
     """The case with its numbers, or with the name of its failure."""
     try:
