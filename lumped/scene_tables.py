@@ -77,7 +77,8 @@ def inertia_faults(source: str, inertia: bool, density: float | None, target: Ta
     """What is missing for `model.inertia = true`, or speaks against false; without geometry there is no target."""
     if not inertia:
         if target is not None and target.only_with_inertia:
-            return [Fault(source, "model.inertia", f"false: a {target.name} is made of waves; accepted: true")]
+            reason = f"missing or false: a {target.name} is made of waves; accepted: true"
+            return [Fault(source, "model.inertia", reason)]
         return []
     faults = []
     if target is None or not target.has_inertia:

@@ -86,6 +86,8 @@ def _read(args: argparse.Namespace, reader: Callable[..., tuple[Read, dict[str, 
     fixed = any(text.split("=")[0].strip() == "numerics.tolerance" for text in args.overrides)
     if tolerance is not None and not fixed:
         table = {**table, "tolerance": number(tolerance, "--tolerance")}
+        if refused := faults({"tolerance": table["tolerance"]}, ""):
+            raise BadInput(Fault("--tolerance", "", fault.message) for fault in refused)
     return scene, table
 
 

@@ -73,7 +73,8 @@ def space_of(law: str, scene: Scene, free: Sequence[str] | None, fixed: Mapping[
     faults += [Fault(FREE, "", "empty; accepted: at least one parameter")] if not names else []
     faults += [Fault(FREE, name, UNSEEN[name]) for name in names if name in UNSEEN]
     faults += [Fault(FIXED, name, "both free and fixed; accepted: one of them") for name in names if name in fixed]
-    faults += [Fault(BOUNDS, name, "has bounds and is not free; accepted: free") for name in bounds if name not in names]
+    unbound = [name for name in bounds if name not in names]
+    faults += [Fault(BOUNDS, name, "has bounds and is not free; accepted: free") for name in unbound]
     faults += [
         Fault(BOUNDS, name, f"{low:g}:{high:g} is empty; accepted: low < high")
         for name, (low, high) in bounds.items()

@@ -146,7 +146,7 @@ class Parameters:
         once = replace(self.scene, motion=replace(self.scene.motion, impacts=1))
         e = laws.get(exact).of(once).simulate(once, EXACT_TOLERANCE).quantities["restitution"].value
         if e is None:
-            reason = f"the scene does not separate, so it has no restitution to take; accepted: law.e for {self.name}"
+            reason = f"missing, and the scene, which does not separate, has none; accepted: law.e for {self.name}"
             self.faults.append(Fault(self.scene.source, "law.e", reason))
             return 1.0
         self.taken.append(f"e = {e:.6g} of the scene by {exact}")

@@ -16,6 +16,8 @@ from lumped.load_curves.base import LoadCurve
 from lumped.shapes.base import Shape
 from lumped.targets.base import Target
 
+# Inner radius over thickness: the waves in the annulus' answer grow with it, and with them the time, to seconds here.
+THINNEST = 1000.0
 KEYS: Mapping[str, Key] = {"inner_radius": Number(1e-9, 1e4, "m"), "thickness": Number(1e-9, 1e4, "m")}
 
 
@@ -31,6 +33,9 @@ class Ring(Target):
 
     def __post_init__(self) -> None:
         check_fields("ring", self, KEYS)
+        if self.inner_radius > THINNEST * self.thickness:
+            reason = f"{self.thickness:g}: accepted from {self.inner_radius / THINNEST:g} m on in a ring as wide"
+            raise BadInput(Fault("ring", "thickness", reason))
 
     @property
     def length_of_place(self) -> float:

@@ -1,0 +1,196 @@
+"""Packaged scenes with keys dropped, doubled, misspelt and exchanged, and with every kind of value.
+
+None of them is a defect, a hang or a file written by halves: it runs, or every line names the file and a key of it.
+"""
+
+from __future__ import annotations
+
+import copy
+import datetime
+import json
+import math
+import random
+import tomllib
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lumped import laws
+from lumped.data import scene_names, scene_path
+
+Table = dict[str, Any]
+SCENES = 20_000
+SEED = 20260512
+TOP = ("name", "striker", "target", "model", "motion", "law", "numerics")
+BODIES = ("striker", "target")
+TEXTS = ("", "heavy", "\x1b[31mred", "\u202egnp", "sphere", "a" * 300, "../x", "true", "1e3", "nan", "\n\n", "\0")
+EXTREMES = (0, 0.0, -0.0, 5e-324, 1.7e308, 1e150, -1e150, 2**53, 1, 2, 0.5, math.nan, math.inf, -math.inf)
+DIGITS = (20, 150, 400, 5000)
+SWITCHES: dict[str, tuple[Table, ...]] = {
+    "model": ({"inertia": True}, {"inertia": False}, {"profile": "parabola"}, {"gravity": 9.81}, {"gravity": -1e5}),
+    "motion": ({"impacts": 2}, {"impacts": 1000}, {"end_time": 1e-15}, {"end_time": 1e12}, {"end_time": 1.0}),
+    "numerics": (
+        {"tolerance": 1e-6},
+        {"tolerance": 0.1},
+        {"steps": 8},
+        {"steps": 10**400},
+        {"penalty": 1e300},
+        {"order": 2.5},
+        {"scheme": "galerkin"},
+        {"mass": "lumped"},
+        {"far_radius": 2.0},
+        {"elements_per_contact": 1},
+        {"enforcement": "exact"},
+        {"contact_radius": 1.0},
+    ),
+}
+DEPTHS = ("1e-6,2e-6,5e-6", "1e-4", "1e-9,1e-3", "1e3", "nan", "0", "-1", "1e-5,x", "")
+TOLERANCES = ("1e-6", "0.1", "x", "nan", "1e400", "-1", "0")
+
+
+def written(value: object) -> str:
+    """A value in TOML."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return json.dumps(value)
+    if isinstance(value, list):
+        return f"[{', '.join(written(item) for item in value)}]"
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{json.dumps(key)} = {written(item)}' for key, item in value.items())}}}"
+    if isinstance(value, int) and abs(value) >= 10**300:
+        return hex(value)
+    return str(value)
+
+
+def tables_of(table: Table) -> Iterator[Table]:
+    yield table
+    for value in table.values():
+        if isinstance(value, dict):
+            yield from tables_of(value)
+
+
+class Mutations:
+    """Draws scenes from one generator: a packaged one, changed in one to four places."""
+
+    def __init__(self, seed: int) -> None:
+        self.rng = random.Random(seed)
+        self.known = {name: tomllib.loads(scene_path(name).read_text(encoding="utf-8")) for name in scene_names()}
+        self.ways = (
+            self.drop, self.misspell, self.replace, self.replace, self.scale, self.scale, self.scale, self.scale,
+            self.exchange_part, self.exchange_material, self.switch, self.switch,
+        )  # fmt: skip
+
+    def scene(self) -> Table:
+        table = copy.deepcopy(self.rng.choice(list(self.known.values())))
+        for _ in range(self.rng.choice((1, 1, 2, 2, 3, 4))):
+            self.rng.choice(self.ways)(table)
+        return table
+
+    def drop(self, table: Table) -> None:
+        place = self.rng.choice([place for place in tables_of(table) if place] or [table])
+        place.pop(self.rng.choice(list(place)), None) if place else None
+
+    def misspell(self, table: Table) -> None:
+        place = self.rng.choice([place for place in tables_of(table) if place] or [{"": 0}])
+        key = self.rng.choice(list(place))
+        cut = self.rng.randrange(len(key) or 1)
+        ways = (key[:cut] + key[cut + 1 :], key[:cut] + key[cut : cut + 1] + key[cut:], key + "_", key.upper())
+        place[self.rng.choice((*ways, "\x1b[" + key, key.replace("_", " ")))] = place.pop(key)
+
+    def replace(self, table: Table) -> None:
+        place = self.rng.choice([place for place in tables_of(table) if place] or [{"": 0}])
+        key = self.rng.choice(list(place))
+        place[key] = self.anything(place[key])
+
+    def anything(self, value: object) -> object:
+        """A value of any other kind, or the same one repeated, or deep in brackets."""
+        deep = value
+        for _ in range(self.rng.choice((3, 14, 40))):
+            deep = [deep]
+        wide = self.rng.choice((1.0, -1.0)) * 10.0 ** self.rng.uniform(-300, 300)
+        kinds = (True, [], {"a": 1}, datetime.date(2020, 1, 1), [value] * self.rng.choice((1, 2, 200)), deep, wide)
+        drawn = (self.rng.choice(TEXTS), self.rng.choice(EXTREMES), 10 ** self.rng.choice(DIGITS))
+        return self.rng.choice((*kinds, *drawn, *drawn))
+
+    def scale(self, table: Table) -> None:
+        """A number moved within what might be accepted: most of these scenes run."""
+        numbers = [
+            (place, key)
+            for place in tables_of(table)
+            for key, value in place.items()
+            if isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e200
+        ]
+        if numbers:
+            place, key = self.rng.choice(numbers)
+            place[key] *= self.rng.choice((1.0, 1.0, 1.0, -1.0)) * 10.0 ** (
+                self.rng.uniform(-1, 1) + self.rng.choice((0, 0, 1, -1, 2, -2, 4, -4, 8, -8))
+            )
+
+    def exchange_part(self, table: Table) -> None:
+        part, other = self.rng.choice(TOP[1:]), self.rng.choice(list(self.known.values()))
+        if part in other:
+            table[part] = copy.deepcopy(other[part])
+
+    def exchange_material(self, table: Table) -> None:
+        other = self.rng.choice(list(self.known.values()))
+        found = [other[part]["material"] for part in BODIES if "material" in other.get(part, {})]
+        body = table.get(self.rng.choice(BODIES))
+        if found and isinstance(body, dict):
+            body["material"] = copy.deepcopy(found[0])
+
+    def switch(self, table: Table) -> None:
+        part = self.rng.choice(list(SWITCHES))
+        place = table.setdefault(part, {})
+        if isinstance(place, dict):
+            place.update(self.rng.choice(SWITCHES[part]))
+
+    def command(self, scene: Path, curve: Path) -> list[str]:
+        """A command on the scene; finite elements only where `cheapest` falls back on them."""
+        every = laws.available()
+        kind = self.rng.random()
+        if kind < 0.3:
+            command = ["plan", str(scene)]
+        elif kind < 0.82:
+            command = ["run", str(scene), "--method", self.rng.choice((*every, "cheapest"))]
+        elif kind < 0.96:
+            method = self.rng.choice(("mdr", "ting", "correspondence", "hertz", "hertzz"))
+            instant = self.rng.choice(([], ["--instant"]))
+            command = ["indent", str(scene), "--depths", self.rng.choice(DEPTHS), "--method", method, *instant]
+        else:
+            return ["fit", str(curve), "--law", self.rng.choice(every), "--scene", str(scene)]
+        return command + (["--tolerance", self.rng.choice(TOLERANCES)] if self.rng.random() < 0.1 else [])
+
+
+@pytest.fixture(scope="module")
+def curve(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("curve") / "curve.csv"
+    time = np.linspace(0.0, 6e-5, 60)
+    force = 40.0 * np.maximum(np.sin(np.pi * time / 5.5e-5), 0.0) ** 1.5
+    np.savetxt(path, np.column_stack([time, force]), delimiter=",", header="time_s,force_N", comments="")
+    return path
+
+
+def test_a_changed_scene_runs_or_every_line_names_its_file_and_key(
+    tmp_path: Path,
+    curve: Path,
+    hundredth: Callable[[int], int],
+    run: Callable[[Sequence[str]], Any],
+    faults_of: Callable[..., list[str]],
+) -> None:
+    mutations, wrong, codes = Mutations(SEED), [], set()
+    scene = tmp_path / "scene.toml"
+    keys = "|".join(TOP)
+    for _ in range(hundredth(SCENES)):
+        scene.write_text("".join(f"{json.dumps(k)} = {written(v)}\n" for k, v in mutations.scene().items()))
+        command = mutations.command(scene, curve)
+        ended = run(command)
+        named = rf"scene\.toml: (({keys})[.\w]*|[^:]+: unknown key|name: )|.*: not a TOML file|--\w+: |.*curve\.csv: "
+        found = faults_of(ended, named, solves=command[0] == "fit" or "cheapest" in command)
+        wrong += [f"{fault}\n{scene.read_text()}" for fault in found]
+        codes.add(ended.code)
+    assert not wrong, "\n".join(wrong)
+    assert codes >= {0, 2}, "both what runs and what is refused is among them"
