@@ -7,16 +7,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from lumped import Result, Scene
-
-# The dense systems have some 70 unknowns: a second BLAS thread only waits, and processor time doubles.
-# Read when numpy's and scipy's libraries are loaded; a user's own setting stands.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 __all__ = ["run"]
 __version__ = "0.1.0"
@@ -43,5 +38,7 @@ def run(
     BadInput for what cannot be used, NotReached where no march came to an end.
     """
     from fe_contact.methods import simulate
+    from fe_contact.threads import one_thread
 
-    return simulate(scene, method, numerics or {}, tolerance)
+    with one_thread:
+        return simulate(scene, method, numerics or {}, tolerance)

@@ -27,10 +27,11 @@ from typing import NoReturn
 
 from fe_contact import __version__
 from fe_contact.progress import clear
+from fe_contact.threads import one_thread
 
 COMMANDS = "fe_contact.commands"
 DONE, DEFECT, BAD_INPUT, NOT_REACHED = 0, 1, 2, 3
-LEAST_MEMORY = 320 * 2**20  # bytes of address space: below, numpy's and scipy's libraries do not load
+LEAST_MEMORY = 640 * 2**20  # bytes of address space: below, the libraries of gmsh and scipy crash while they load
 SIGNALLED = 128  # plus the signal's number, as shells count: 130 after Ctrl-C, 143 after SIGTERM
 GRACE = 1.0  # s for a library to come back and let Python raise the interruption
 DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS, errno.EBADF)
@@ -76,7 +77,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     args = parser().parse_args(arguments)
     try:
-        with _interruptible():
+        with _interruptible(), one_thread:
             code: int = get(COMMANDS, args.command).execute(args)
             sys.stdout.flush()
             return code

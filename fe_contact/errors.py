@@ -2,7 +2,45 @@
 
 from __future__ import annotations
 
-from lumped.errors import NotReached
+from collections.abc import Callable
+from functools import wraps
+from typing import Concatenate, ParamSpec, TypeVar
+
+from lumped.errors import BadInput, Fault, NotReached
+from lumped.indenter import Indenter
+from lumped.keys import Number
+from lumped.scene import Scene
+from meshes.errors import GmshMissing, MeshError, MeshTooFine
+
+Said = TypeVar("Said", Scene, Indenter)
+FINENESS = "numerics.tolerance, numerics.elements_per_contact"
+Given = ParamSpec("Given")
+Found = TypeVar("Found")
+
+
+def says_which_key(door: Callable[Concatenate[Said, Given], Found]) -> Callable[Concatenate[Said, Given], Found]:
+    """A door whose faults name the scene's file and its keys, whatever part or mesh refused a number inside."""
+
+    @wraps(door)
+    def named(scene: Said, /, *args: Given.args, **options: Given.kwargs) -> Found:
+        with scene.addressed():
+            try:
+                return door(scene, *args, **options)
+            except GmshMissing:  # no number's fault
+                raise
+            except MeshTooFine as refused:
+                raise BadInput(Fault(scene.source, FINENESS, f"{refused}; cure: a larger tolerance")) from refused
+            except MeshError as refused:
+                raise BadInput(Fault(scene.source, _lengths(scene), str(refused))) from refused
+
+    return named
+
+
+def _lengths(scene: Scene | Indenter) -> str:
+    """The keys of the body that is meshed."""
+    part, body = ("target", scene.target) if scene.target.deformable else ("striker", scene.shape)
+    numbers = () if body is None else [key for key, kind in body.keys.items() if isinstance(kind, Number)]
+    return ", ".join(f"{part}.{key}" for key in numbers) or part
 
 
 class ContactNotSettled(NotReached):
@@ -93,3 +131,11 @@ class MotionUnbounded(NotReached):
     def __init__(self, time: float) -> None:
         cure = "cure: raise numerics.steps, or another numerics.scheme: staged, generalised_alpha"
         super().__init__(f"the motion grows without bound at t = {time:.6g} s; {cure}")
+
+
+class WorkerLost(NotReached):
+    """A process that measured rows of a study died."""
+
+    def __init__(self) -> None:
+        reason = "a process of the study was killed, as systems do for want of memory"
+        super().__init__(f"{reason}; cure: free some, then the same command again: rows that were measured are kept")

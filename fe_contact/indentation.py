@@ -12,12 +12,14 @@ from typing import Any
 import numpy as np
 
 from fe_contact.certify import LEAST_HALVED_SETTING, LEAST_ORDER, MESH_ORDER, SAFETY
+from fe_contact.errors import says_which_key
 from fe_contact.expected_contacts import expected
 from fe_contact.forms import Array
 from fe_contact.numerics import RANGES, TARGETS, Numerics, check_kind
 from fe_contact.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, RIM_PENALTY, SETTING, refined
 from fe_contact.pressing import Still
 from fe_contact.progress import Progress, silent
+from fe_contact.threads import one_thread
 from lumped.clock import Clock
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
@@ -46,6 +48,8 @@ class Pressing:
     ends: bool
 
 
+@one_thread
+@says_which_key
 def indent(
     indenter: Indenter,
     depths: tuple[float, ...],

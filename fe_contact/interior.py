@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import math
+import sys
+from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -11,6 +15,9 @@ import scipy.sparse.linalg as linalg
 
 from fe_contact.floating import Floating
 from fe_contact.forms import Array
+
+FACTORS = 160  # bytes a matrix entry: ten entries of the factors, each a number, its place and as much while they grow
+WORK_SPACE = 100e6  # bytes that BLAS and SuperLU take beside
 
 
 class Solve(Protocol):
@@ -43,13 +50,7 @@ class Interior:
 
     def factorised(self) -> Factorised:
         """The same with its factors."""
-        factor = linalg.splu(
-            self.matrix,
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
-        return Factorised(self, factor)
+        return Factorised(self, factorized(self.matrix))
 
     def __call__(self, forces: Array) -> Array:
         """See :class:`Solve`."""
@@ -61,7 +62,7 @@ class Factorised:
     """An interior with its factors: as large as all the rest of a body and ten times more."""
 
     interior: Interior
-    factor: Any
+    solve: Callable[[Array], Array]
 
     def __call__(self, forces: Array) -> Array:
         """See :class:`Solve`."""
@@ -70,5 +71,33 @@ class Factorised:
         if body.floating is not None:
             load = body.floating.balanced(load)
         answer = np.zeros_like(load)
-        answer[body.free] = self.factor.solve(load[body.free])
+        answer[body.free] = self.solve(load[body.free])
         return answer if body.floating is None else body.floating.centred(answer)
+
+
+def factorized(matrix: Any) -> Callable[[Array], Array]:
+    """Back-substitution for a symmetric positive definite sparse matrix, of one right-hand side or several.
+
+    Raises MemoryError where the process may not have so much: SuperLU would crash, and BLAS ask for ever.
+    """
+    if FACTORS * matrix.nnz + WORK_SPACE > _room():
+        raise MemoryError
+    factor = linalg.splu(
+        matrix.tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    solve: Callable[[Array], Array] = factor.solve
+    return solve
+
+
+def _room() -> float:
+    """Bytes of address space left to this process, where it has a limit."""
+    if sys.platform != "linux":
+        return math.inf
+    import resource
+
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    taken = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * resource.getpagesize()
+    return math.inf if limit == resource.RLIM_INFINITY else limit - taken

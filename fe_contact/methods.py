@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from fe_contact.errors import says_which_key
 from fe_contact.numerics import WAVES, check_kind, checked
 from fe_contact.progress import Progress, silent
 from lumped import laws
@@ -31,6 +32,7 @@ def default(scene: Scene) -> str:
     return FE if scene.law is None else scene.law.name
 
 
+@says_which_key
 def simulate(
     scene: Scene,
     method: str | None,

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from fe_contact.errors import says_which_key
 from fe_contact.numerics import RANGES, WAVES, Numerics, check_kind
 from fe_contact.scales import scales
 from lumped.members import get
@@ -48,6 +49,7 @@ class Plan:
     ledger: tuple[LedgerEntry, ...]
 
 
+@says_which_key
 def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     """Choose what ``given`` (checked settings, see :func:`fe_contact.numerics.checked`) leaves open.
 

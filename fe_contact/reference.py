@@ -11,7 +11,7 @@ import numpy as np
 
 from fe_contact.bodies.chosen import struck
 from fe_contact.certify import CAUSES, Budget, Certified, Several, certify
-from fe_contact.errors import MemoryTooSmall
+from fe_contact.errors import MemoryTooSmall, says_which_key
 from fe_contact.march import Strike
 from fe_contact.numerics import RANGES, TARGETS, Numerics
 from fe_contact.plan import SETTING, Plan, plan, refined
@@ -65,6 +65,7 @@ def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> R
     return result_of(scene, solve(scene, given, progress))
 
 
+@says_which_key
 def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Solved:
     """Plan, certify, refine until the bars meet the tolerance or nothing is left to refine.
 

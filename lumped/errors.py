@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 SHOWN_FAULTS = 20
 SHOWN_CHARACTERS = 60  # of a value or a key that is told back
@@ -17,14 +18,31 @@ class FeContactError(Exception):
 
     exit_code: ClassVar[int]
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Another process gets what it says, not what it was made of: kinds differ in their arguments."""
+        return type(self).__new__, (type(self), *self.args), self.__dict__
+
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing wrong with the input: where it came from, which (dotted) key, what is accepted."""
+    """One thing wrong with the input: where it came from, which (dotted) key, what is accepted.
+
+    `source` is a file or an option; or the name of a part that knows neither, as "layer": see :func:`addressed`.
+    """
 
     source: str
     key: str
     message: str
+
+    def at(self, source: str, places: Mapping[str, str]) -> Fault:
+        """The fault of a part at its place, the table "target" of the file `source`, or the option "--depths"."""
+        place = places.get(self.source)
+        if place is None:
+            return self
+        if place.startswith("-"):
+            return replace(self, source=place)
+        inside = self.key if "." in self.key else ".".join(part for part in (place, self.key) if part)
+        return Fault(source, inside, self.message)
 
     def __str__(self) -> str:
         parts = (self.source, shortened(printable(self.key)), self.message)
@@ -50,6 +68,15 @@ class CannotWrite(FeContactError):
     def __init__(self, folder: Path, reason: str) -> None:
         cure = "accepted: a folder with room in it that can be written; what was there is untouched"
         super().__init__(str(Fault(str(folder), "", f"{reason}; {cure}")))
+
+
+@contextmanager
+def addressed(source: str, places: Mapping[str, str]) -> Iterator[None]:
+    """Inside, what a part refuses is said of the file `source`; `places` maps names of parts to tables or options."""
+    try:
+        yield
+    except BadInput as bad:
+        raise BadInput(fault.at(source, places) for fault in bad.faults) from bad
 
 
 class NotReached(FeContactError):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -10,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.errors import BadInput, Fault
+from lumped.errors import BadInput, Fault, addressed
 from lumped.keys import Number
 from lumped.materials import Material
-from lumped.pair import check_striker_material, contact_modulus, tables
+from lumped.pair import check_striker_material, contact_modulus, places, tables
 from lumped.scene_tables import Model
 from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
@@ -56,6 +57,10 @@ class Indenter:
     def profile(self) -> Shape:
         """The striker's shape as `model.profile` resolves it."""
         return self.shape.resolved(self.model.profile)
+
+    def addressed(self) -> AbstractContextManager[None]:
+        """Inside, what a part refuses is said of the file and its keys, or of --depths."""
+        return addressed(self.source, places(self.shape, self.target, "--depths"))
 
     def elastic(self, instant: bool) -> Indenter:
         """The same with the elastic materials that a slow or, `instant`, a sudden indentation meets."""

@@ -1,14 +1,18 @@
-"""Writing a JSON file: Python's own types only, null for what is not finite."""
+"""JSON: files of Python's own types, null for what is not finite; dataclasses as plain data and back, every digit."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
 from pathlib import Path
-from typing import Any
+from types import NoneType
+from typing import Any, get_args, get_origin, get_type_hints
 
 import numpy as np
+
+GIVEN = "given argument"  # no field and no key of ours is called so
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:
@@ -30,3 +34,50 @@ def plain(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
+
+
+def encoded(value: Any, given: Sequence[Any] = ()) -> Any:
+    """Plain data for json.dumps, from which :func:`decoded` makes the value again; NaN and infinities stay.
+
+    A dataclass becomes a dictionary of its fields; one that equals a `given` dataclass, its place among those.
+    """
+    if is_dataclass(value):
+        for place, one in enumerate(given):
+            if type(one) is type(value) and one == value:
+                return {GIVEN: place}
+        return {one.name: encoded(getattr(value, one.name), given) for one in fields(value)}
+    if isinstance(value, Mapping):
+        return {str(key): encoded(item, given) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [encoded(item, given) for item in value]
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    return value
+
+
+def decoded(kind: Any, content: Any, given: Sequence[Any] = ()) -> Any:
+    """The value of an annotated `kind` which :func:`encoded` made into `content`.
+
+    A kind is a dataclass or a named tuple, a number, a text, an array, a tuple, a mapping whose keys are texts or
+    numbers, one of those or None, or Any: plain data.
+    """
+    origin, parts = get_origin(kind), get_args(kind)
+    if isinstance(content, dict) and content.keys() == {GIVEN}:
+        return given[content[GIVEN]]
+    if NoneType in parts:
+        (other,) = (part for part in parts if part is not NoneType)
+        return None if content is None else decoded(other, content, given)
+    if origin is np.ndarray:
+        return np.array(content, dtype=float)
+    if origin is tuple:
+        kinds = parts[:1] * len(content) if parts[1:] == (...,) else parts
+        return tuple(decoded(*pair, given) for pair in zip(kinds, content, strict=True))
+    if isinstance(content, dict) and parts:
+        name, item = parts
+        return {name(key): decoded(item, one, given) for key, one in content.items()}
+    if is_dataclass(kind):
+        hints = get_type_hints(kind)
+        return kind(**{name: decoded(hints[name], one, given) for name, one in content.items()})  # type: ignore[operator]  # a class
+    if isinstance(kind, type) and issubclass(kind, tuple):
+        return kind(*(decoded(*pair, given) for pair in zip(get_type_hints(kind).values(), content, strict=True)))
+    return content

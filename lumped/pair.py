@@ -58,6 +58,13 @@ def flying_faults(source: str, geometry: Geometry, mass: float, target_mass: flo
     return faults
 
 
+def places(shape: Shape, target: Target, deep: str) -> dict[str, str]:
+    """Where in a scene file stands what a part refuses; `deep`: what a depth comes from."""
+    yielding = "target" if target.deformable else "striker"
+    own = {"material": f"{yielding}.material", "relaxation": f"{yielding}.material", "numerics": "numerics"}
+    return {**own, "depth": deep, target.name: "target", shape.name: "striker"}
+
+
 def tables(
     shape: Shape, target: Target, material: Material, striker: Material | None
 ) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from lumped.errors import BadInput, Fault
+from lumped.errors import BadInput, Fault, addressed
 from lumped.geometry import Geometry
 from lumped.key_table import check_fields
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material, Relaxation
 from lumped.members import get
-from lumped.pair import check_striker_material, contact_modulus, flying_faults, tables
+from lumped.pair import check_striker_material, contact_modulus, flying_faults, places, tables
 from lumped.scales import absurd_depth, relaxed_impact
 from lumped.scene_tables import (
     LAWS,
@@ -134,7 +135,8 @@ class Scene:
     def load_curve(self) -> LoadCurve:
         """The target's exact elastic answer to the profile, per unit E* (and length). Raises BadInput without one."""
         self.check_memory()
-        return self.target.load_curve(self.profile, self.geometry.material.nu)
+        with self.addressed():
+            return self.target.load_curve(self.profile, self.geometry.material.nu)
 
     @cached_property
     def elastic_contact_time(self) -> float:
@@ -171,6 +173,11 @@ class Scene:
             "law": {} if self.law is None else {"name": self.law.name, **self.law.values},
         }
         return {"name": self.name} | {key: table for key, table in given.items() if table}
+
+    def addressed(self) -> AbstractContextManager[None]:
+        """Inside, what a part refuses is said of this scene's file and keys."""
+        known = {} if self.shape is None else places(self.shape, self.target, "striker.velocity")
+        return addressed(self.source, known)
 
     def check_single(self, method: str) -> None:
         """Raise BadInput for several impacts, which need a memory that `method` does not have."""

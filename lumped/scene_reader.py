@@ -57,7 +57,8 @@ class SceneReader(TableReader):
             raise BadInput(self.faults)
         built = Scene(**bodies, law=law, model=Model(**model), motion=Motion(**motion), name=name, source=self.source)
         if law is not None and law_known:
-            get(LAWS, law.name).of(built)
+            with built.addressed():
+                get(LAWS, law.name).of(built)
         return built, numerics
 
     def indenter(self) -> tuple[Indenter, Table]:
@@ -124,7 +125,7 @@ class SceneReader(TableReader):
         kind: ModuleType | None = values.pop("shape", None)
         shared = {key: values.pop(key) for key in common if key in values}
         complete = kind is not None and values.keys() >= {key for key in own if own[key].required}
-        return shared, kind.of(**values) if kind is not None and complete else None
+        return shared, self.made(part, kind.of, values, str(table["shape"])) if kind is not None and complete else None
 
     def material(self, part: str) -> Material | None:
         """The material of a body, None with a fault noted."""

@@ -25,8 +25,9 @@ def indent(
     clock = Clock()
     depth, modulus = np.array(indenter.checked(depths)), indenter.modulus(instant)
     shape = indenter.shape.resolved("parabola") if method == "hertz" else indenter.profile
-    curve = indenter.target.load_curve(shape, indenter.elastic(instant).material.nu)
-    force = modulus * shape.total * np.asarray(curve.force(depth))
+    with indenter.addressed():
+        curve = indenter.target.load_curve(shape, indenter.elastic(instant).material.nu)
+        force = modulus * shape.total * np.asarray(curve.force(depth))
     return Indentation(
         indenter=indenter,
         method=method,

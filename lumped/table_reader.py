@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
@@ -56,6 +56,16 @@ class TableReader:
         self.faults += faults
         return values
 
+    def made(self, path: str, make: Callable[..., Any], values: Table, *parts: str) -> Any:
+        """What is made of a table's checked values; None with a fault noted, which one of `parts` found at its key."""
+        try:
+            return make(**values)
+        except ValueError as error:
+            self.faults.append(Fault(self.source, path, str(error)))
+        except BadInput as bad:
+            self.faults += [fault.at(self.source, dict.fromkeys(parts, path)) for fault in bad.faults]
+        return None
+
     def network(self, path: str, table: Table) -> Material | None:
         """The material of a table, None with a fault noted."""
         own = max(alternatives(NETWORKS, table.get("law")), key=lambda keys: len(keys.keys() & table.keys()))
@@ -68,13 +78,8 @@ class TableReader:
 
     def _built(self, path: str, law: ModuleType, values: Table, common: Table) -> Material | None:
         """The material of a network's checked values."""
-        try:
-            young = law.of(**placed(values, self.folder))
-        except ValueError as error:
-            self.faults.append(Fault(self.source, path, str(error)))
-            return None
-        except BadInput as bad:
-            self.faults += bad.faults
+        young = self.made(path, law.of, placed(values, self.folder), "material", "samples", "prony fit")
+        if young is None:
             return None
         message = bulk_fault(common.get("constant", "poisson"), common.get("bulk_modulus"), young.relaxed)
         if message:

@@ -23,8 +23,17 @@ def distance(x: float, y: float) -> str:
     return f"Sqrt((x-({x!r}))^2+(y-({y!r}))^2)"
 
 
+def elements_checked(along: str, value: float, low: float, high: float) -> float:
+    """Elements along a length within their range. Raises MeshTooFine, or MeshError where there are too few."""
+    from meshes.errors import MeshTooFine
+
+    if value > high:
+        raise MeshTooFine(f"{value:g} elements along {along}: accepted {low:g} to {high:g}")
+    return checked(f"elements along {along}", value, low, high)
+
+
 def checked(name: str, value: float, low: float, high: float) -> float:
-    """A number within its range, as a plain float: gmsh reads its digits. Raises MeshError."""
+    """A number within its range, as a plain float: gmsh reads its digits. Raises MeshError, `name` in plain words."""
     from meshes.errors import MeshError
 
     if not low <= value <= high:

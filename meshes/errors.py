@@ -1,5 +1,7 @@
 """Named failures of the geometry floor."""
 
+from typing import Any
+
 APT_LINE = (
     "apt-get update && apt-get install -y --no-install-recommends "
     "libglu1-mesa libgl1 libxcursor1 libxft2 libxinerama1 libgomp1"
@@ -7,9 +9,13 @@ APT_LINE = (
 
 
 class MeshError(Exception):
-    """A mesh that cannot be made: the message names the number and its accepted range."""
+    """A mesh that cannot be made: the message says in plain words which number, and its accepted range."""
 
     exit_code = 2
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Another process gets what it says, not what it was made of: kinds differ in their arguments."""
+        return type(self).__new__, (type(self), *self.args), self.__dict__
 
 
 class MeshTooLarge(MeshError):
@@ -21,6 +27,10 @@ class MeshTooLarge(MeshError):
         self.most = most
         reason = f"a mesh of more than {most} nodes is not made"
         super().__init__(f"{reason}; cure: fewer elements along a contact, a thicker body, a nearer far end")
+
+
+class MeshTooFine(MeshError):
+    """More elements along a contact than a mesh is made for."""
 
 
 class GmshMissing(MeshError):

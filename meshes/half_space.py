@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from skfem import MeshTri
 
-from meshes._sizes import beyond, checked, distance, larger, smaller
+from meshes._sizes import beyond, checked, distance, elements_checked, larger, smaller
 from meshes.errors import MeshError
 from meshes.session import session
 from meshes.triangles import Outline, triangulated
@@ -71,9 +71,10 @@ def half_space_for_waves(elements_per_radius: float, smallest: float, far_radius
     ------
     MeshError for numbers outside these ranges.
     """
-    elements = checked("elements_per_radius", elements_per_radius, 1.0, 200.0)
-    low, far = checked("smallest", smallest, 1e-3, 1.0), checked("far_radius", far_radius, 2.0, 1e6)
-    at_surface = elements * checked("finer", finer, 1.0, 16.0)
+    elements = elements_checked("the contact radius", elements_per_radius, 1.0, 200.0)
+    low = checked("smallest contact over the largest", smallest, 1e-3, 1.0)
+    far = checked("far_radius", far_radius, 2.0, 1e6)
+    at_surface = elements * checked("refinement of the surface", finer, 1.0, 16.0)
     within = smaller(larger("x", repr(low)), repr(ZONE))
     growth = min(WAVE_GROWTH / elements, LARGEST_WAVE_GROWTH)
     return _quarter(f"{within}/{at_surface!r}+{growth!r}*(Fabs(y)+{beyond('x', ZONE)})", ZONE, far)

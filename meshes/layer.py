@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from skfem import MeshTri
 
-from meshes._sizes import checked
-from meshes.errors import MeshError
+from meshes._sizes import checked, elements_checked
 from meshes.session import session
 from meshes.triangles import Outline, triangulated
 
@@ -58,7 +57,7 @@ def layer_for_waves(
     and errors as of :func:`layer`.
     """
     _check(elements_per_radius, smallest, thickness, width)
-    at_surface = elements_per_radius * checked("finer", finer, 1.0, 16.0)
+    at_surface = elements_per_radius * checked("refinement of the surface", finer, 1.0, 16.0)
     growth = min(WAVE_GROWTH / elements_per_radius, LARGEST_WAVE_GROWTH)
     largest = min(LARGEST_WAVE / elements_per_radius, COARSEST)
     return _rectangle(_sizes(at_surface, smallest, thickness, growth, largest), ZONE, thickness, width)
@@ -105,14 +104,13 @@ def _rectangle(size: str, node: float, thickness: float, width: float) -> MeshTr
 
 
 def _check(elements: float, smallest: float, thickness: float, width: float) -> None:
+    elements_checked("the contact radius", elements, 1.0, 200.0)
     for name, value, low, high in (
-        ("elements_per_radius", elements, 1.0, 200.0),
-        ("smallest", smallest, 1e-6, 1.0),
-        ("thickness", thickness, 1e-3, 1e6),
-        ("width", width, 1e-3, 1e8),
+        ("smallest contact over the largest", smallest, 1e-6, 1.0),
+        ("thickness over the largest contact", thickness, 1e-3, 1e6),
+        ("width beyond the contact over it", width, 1e-3, 1e8),
     ):
-        if not low <= value <= high:
-            raise MeshError(f"{name} = {value:g}: accepted {low:g} to {high:g}")
+        checked(name, value, low, high)
 
 
 def _least(formula: str, bound: float) -> str:

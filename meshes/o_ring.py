@@ -5,7 +5,7 @@ from __future__ import annotations
 from skfem import MeshTri, MeshTri2
 
 from meshes._round import rounded, sizes
-from meshes._sizes import checked
+from meshes._sizes import checked, elements_checked
 from meshes.session import session
 from meshes.triangles import Outline, triangulated
 
@@ -28,8 +28,10 @@ def o_ring(elements: float, smallest: float, contact: float, mean_radius: float)
     ------
     MeshError for numbers outside these ranges.
     """
-    n, mean_radius = checked("elements", elements, 1.0, 200.0), checked("mean_radius", mean_radius, 1.0, 1e9)
-    size = sizes(n, checked("smallest", smallest, 1e-6, 1.0), checked("contact", contact, 1e-9, 1.4))
+    n = elements_checked("a contact", elements, 1.0, 200.0)
+    mean_radius = checked("mean radius over the section's", mean_radius, 1.0, 1e9)
+    low = checked("smallest contact over the largest", smallest, 1e-6, 1.0)
+    size = sizes(n, low, checked("angle of the largest contact", contact, 1e-9, 1.4))
     with session("o_ring") as gmsh:
         geometry = gmsh.model.geo
         left, top, right, centre = (geometry.addPoint(x, y, 0) for x, y in ((-1, -1), (0, 0), (1, -1), (0, -1)))

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from skfem import MeshTri
 
 from meshes._rectangle import rectangle
-from meshes._sizes import checked
+from meshes._sizes import checked, elements_checked
 
 NEAR = 2.0  # shorter sides from face and side within which triangles are well shaped: what ends there decays as fast
 
@@ -33,8 +33,8 @@ def prism(elements: float, half_height: float, sharp: bool) -> MeshTri:
     ------
     MeshError for numbers outside these ranges.
     """
-    n = checked("elements", elements, 0.5, 200.0)
-    half_height = checked("half_height", half_height, 1e-4, 1e4)
+    n = elements_checked("the shorter side", elements, 0.5, 200.0)
+    half_height = checked("half of the height over the radius", half_height, 1e-4, 1e4)
     near = NEAR * min(half_height, 1.0)
     width, height = (_drawn_in(side, near) for side in (1.0, half_height))
     mesh = rectangle(1.0 - width, 1.0, height, (), ((1.0, 0.0),) if sharp else (), n)

@@ -26,6 +26,6 @@ def rod(elements: int) -> MeshLine:
     MeshError for a number outside this range.
     """
     if not 1 <= elements <= MOST:
-        raise MeshError(f"elements = {elements:g}: accepted 1 to {MOST}")
+        raise MeshError(f"elements along the rod = {elements:g}: accepted 1 to {MOST}")
     mesh = MeshLine(np.linspace(0.0, 1.0, elements + 1))
     return mesh.with_boundaries({"struck": lambda x: x[0] == 0.0, "end": lambda x: x[0] == 1.0})

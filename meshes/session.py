@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -24,6 +25,7 @@ def session(name: str) -> Iterator[Any]:
     gmsh = _load()
     with _ONE_AT_A_TIME:
         gmsh.initialize(interruptible=False)
+        _ignore_closed_pipes()
         try:
             gmsh.option.setNumber("General.Terminal", 0)
             for source in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
@@ -33,6 +35,12 @@ def session(name: str) -> Iterator[Any]:
             yield gmsh
         finally:
             gmsh.finalize()
+
+
+def _ignore_closed_pipes() -> None:
+    """As Python does: gmsh undoes that, and then a reader who leaves would end this process without a word."""
+    if hasattr(signal, "SIGPIPE") and threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGPIPE, signal.getsignal(signal.SIGPIPE))
 
 
 def _load() -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from skfem import MeshTri, MeshTri2
 
 from meshes._round import rounded, sizes
-from meshes._sizes import checked
+from meshes._sizes import checked, elements_checked
 from meshes.session import session
 from meshes.triangles import Outline, triangulated
 
@@ -27,8 +27,9 @@ def sphere(elements: float, smallest: float, contact: float) -> MeshTri2:
     ------
     MeshError for numbers outside these ranges.
     """
-    n = checked("elements", elements, 1.0, 200.0)
-    size = sizes(n, checked("smallest", smallest, 1e-6, 1.0), checked("contact", contact, 1e-9, 1.4))
+    n = elements_checked("a contact", elements, 1.0, 200.0)
+    low = checked("smallest contact over the largest", smallest, 1e-6, 1.0)
+    size = sizes(n, low, checked("angle of the largest contact", contact, 1e-9, 1.4))
     with session("sphere") as gmsh:
         geometry = gmsh.model.geo
         corners = ((0, 0), (1, -1), (0, -2), (0, -1))

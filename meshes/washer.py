@@ -5,7 +5,7 @@ from __future__ import annotations
 from skfem import MeshTri
 
 from meshes._rectangle import rectangle
-from meshes._sizes import checked
+from meshes._sizes import checked, elements_checked
 
 
 def washer(elements: float, inner: float, outer: float, rim: float, bonded: bool) -> MeshTri:
@@ -26,10 +26,10 @@ def washer(elements: float, inner: float, outer: float, rim: float, bonded: bool
     ------
     MeshError for numbers outside these ranges.
     """
-    n = checked("elements", elements, 0.5, 200.0)
-    outer = checked("outer", outer, 1e-4, 1e4)
-    inner = checked("inner", inner, 1e-9, outer)
-    rim = checked("rim", rim, inner, outer)
+    n = elements_checked("the shortest length", elements, 0.5, 200.0)
+    outer = checked("outer radius over the height", outer, 1e-4, 1e4)
+    inner = checked("inner radius over the height", inner, 1e-9, outer)
+    rim = checked("radius of the contact over the height", rim, inner, outer)
     sharp = ((inner, -1.0), (outer, -1.0)) if bonded else ()
     inside = rim < outer
     return rectangle(inner, outer, 1.0, (rim,) if inside else (), ((rim, 0.0),) * inside + sharp, n)

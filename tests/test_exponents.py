@@ -26,8 +26,8 @@ ENDS = np.array([1e-4, 18.0])
 
 
 @pytest.fixture(scope="module")
-def found() -> tuple[Curve, ...]:
-    return curves(quick=True)
+def found(tmp_path_factory: pytest.TempPathFactory) -> tuple[Curve, ...]:
+    return curves(True, tmp_path_factory.mktemp("exponents"))
 
 
 @pytest.fixture(scope="module")
@@ -38,8 +38,8 @@ def checked() -> tuple[Check, ...]:
 
 
 @pytest.fixture(scope="module")
-def spheres() -> tuple[Pair, ...]:
-    return pairs(quick=True)
+def spheres(tmp_path_factory: pytest.TempPathFactory) -> tuple[Pair, ...]:
+    return pairs(True, tmp_path_factory.mktemp("spheres"))
 
 
 def test_limits_of_the_thin_layer() -> None:
@@ -173,13 +173,13 @@ def test_the_command(
     code: int,
 ) -> None:
     spots = (*checked[:-1], replace(checked[-1], converged=converged))
-    monkeypatch.setattr("fe_contact.validation.exponents_check.checks", lambda quick, progress: spots)
-    monkeypatch.setattr("fe_contact.validation.finite_spheres.pairs", lambda quick, progress: spheres)
+    monkeypatch.setattr("fe_contact.validation.exponents_check.checks", lambda quick, where, progress: spots)
+    monkeypatch.setattr("fe_contact.validation.finite_spheres.pairs", lambda quick, where, progress: spheres)
     assert main(["exponents", "--quick", "--out", str(tmp_path / "out"), "--quiet"]) == code
     said = capsys.readouterr()
     assert len(said.out.splitlines()) == len(found) + len(spots) + len(spheres) + 1
     assert ("tolerance not reached at 1 of 6" in said.err) == (code == 3)
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         "finite_spheres.csv",
-        *(f"exponents.{kind}" for kind in ("csv", "json", "svg", "png")),
+        *(f"exponents.{kind}" for kind in ("csv", "json", "jsonl", "svg", "png")),
     }

@@ -20,7 +20,8 @@ TOP_LEVEL = FILES | {"data", "tests"} | {*PACKAGES}
 STANDARD = sys.stdlib_module_names
 LUMPED = STANDARD | {"lumped", "numpy", "scipy"}
 MESHES = STANDARD | {"meshes", "numpy", "scipy", "skfem", "meshio", "gmsh"}
-ALLOWED = {"lumped": LUMPED, "meshes": MESHES, "fe_contact": LUMPED | MESHES | {"fe_contact", "matplotlib"}}
+FINITE_ELEMENTS = LUMPED | MESHES | {"fe_contact", "matplotlib", "threadpoolctl"}
+ALLOWED = {"lumped": LUMPED, "meshes": MESHES, "fe_contact": FINITE_ELEMENTS}
 HEAVY = {"skfem", "gmsh", "matplotlib", "meshio", "scipy.integrate"}
 NOT_LOADED = {
     "lumped": HEAVY | {"meshes", "fe_contact"},

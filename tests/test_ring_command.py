@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fe_contact.validation.rings import RingCurve, cases, local_exponent, pressed
+from fe_contact.validation.rings import RingCurve, cases, local_exponent, rings
 from fe_contact.validation.rings_files import write_rings
 from fe_contact.validation.rings_impact import JUDGED, RingStruck, _struck
 from fe_contact.validation.rings_verdict import verdict
@@ -23,8 +23,9 @@ CASES = {case.name: case for case in cases()}
 
 
 @pytest.fixture(scope="module")
-def curves() -> dict[str, RingCurve]:
-    return {name: pressed(CASES[name]) for name in ("rod-in-ring", "polymer-washer")}
+def curves(tmp_path_factory: pytest.TempPathFactory) -> dict[str, RingCurve]:
+    chosen = [CASES[name] for name in ("rod-in-ring", "polymer-washer")]
+    return {curve.case.name: curve for curve in rings(chosen, tmp_path_factory.mktemp("rings"))}
 
 
 def test_a_rod_in_its_ring_follows_the_exact_annulus(curves: dict[str, RingCurve]) -> None:
@@ -81,8 +82,8 @@ def test_the_files_say_what_was_found(curves: dict[str, RingCurve], tmp_path: Pa
 
 
 @pytest.fixture(scope="module")
-def impact() -> RingStruck:
-    return _struck(CASES["paper-ring-10mm"], 0.01)
+def impact(tmp_path_factory: pytest.TempPathFactory) -> RingStruck:
+    return _struck(CASES["paper-ring-10mm"], 0.01, tmp_path_factory.mktemp("impact"))
 
 
 def test_the_impacts_verdict_is_what_the_exact_ring_says(impact: RingStruck) -> None:

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-import time
 from collections.abc import Callable
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +14,6 @@ import pytest
 from fe_contact.bodies.bar import TIP, falling, pitch
 from fe_contact.cli import main
 from fe_contact.errors import MotionUnbounded
-from fe_contact.validation import stability_files
 from fe_contact.validation.stability import explicit_limit, table
 from fe_contact.validation.stability._bar import BAR, DEFAULT, bounced, measured
 from fe_contact.validation.stability.base import STUDIES, row
@@ -190,49 +187,6 @@ def test_the_command_writes_rows_and_counts(few: list[dict[str, Any]], tmp_path:
     assert content["cases"] == len(few)
     assert content["failures"] == {"MotionUnbounded": 1}
     assert content["steps"] == int(rows[0]["steps"])
-
-
-def test_an_interrupted_study_resumes(
-    few: list[dict[str, Any]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The first row is kept; a line that was cut short is measured again."""
-    calls = []
-    monkeypatch.setattr(stability_files, "row", lambda study, case: calls.append(case) or row(study, case))
-    whole = stability_files.rows_of(True, 1, tmp_path, lambda message: None)
-    assert len(calls) == 2
-    path = tmp_path / stability_files.KEPT
-    path.write_text(path.read_text()[:-20])
-    calls.clear()
-    again = stability_files.rows_of(True, 1, tmp_path, lambda message: None)
-    assert calls == [few[1]]
-    assert again == whole
-    assert np.isfinite(again[0]["drift"])
-
-
-def test_a_study_that_is_killed_resumes(
-    few: list[dict[str, Any]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Killed at its second case, it measures that one alone the next time."""
-    calls = []
-
-    def stuck(study: str, case: dict[str, Any]) -> Any:
-        if case == few[1]:
-            time.sleep(600.0)
-        return row(study, case)
-
-    monkeypatch.setattr(stability_files, "row", stuck)
-    running = get_context("fork").Process(
-        target=stability_files.rows_of, args=(True, 1, tmp_path, lambda message: None)
-    )
-    running.start()
-    while not (tmp_path / stability_files.KEPT).exists() or not (tmp_path / stability_files.KEPT).read_text():
-        time.sleep(0.01)
-    running.kill()
-    running.join()
-    monkeypatch.setattr(stability_files, "row", lambda study, case: calls.append(case) or row(study, case))
-    resumed = stability_files.rows_of(True, 1, tmp_path, lambda message: None)
-    assert calls == [few[1]]
-    assert [one["failure"] for one in resumed] == ["", "MotionUnbounded"]
 
 
 def test_the_chart_shows_every_case(tmp_path: Path) -> None:

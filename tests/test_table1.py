@@ -19,7 +19,7 @@ from fe_contact.validation import blocks as blocks_module
 from fe_contact.validation import datum
 from fe_contact.validation.blocks import Block, within
 from fe_contact.validation.datum import DEPTH, Place, curve
-from fe_contact.validation.table1 import RATIOS, Trial, bodies, trial
+from fe_contact.validation.table1 import RATIOS, Trial, bodies, table1
 from fe_contact.validation.table1_files import COLUMNS, write_table1
 from fe_contact.validation.table1_reach import LIMIT, Reach
 from fe_contact.validation.table1_verdict import HOLDS, RANGE, UNDECIDED, UNTRIED, WRONG, deviations, verdict
@@ -31,12 +31,12 @@ ROUNDING = 1e-9
 
 
 @pytest.fixture(scope="module")
-def trials() -> Iterator[dict[str, Trial]]:
+def trials(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Trial]]:
     """Every row, line contact at few places."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(datum, "CHECKED", {"datum": (3.0,), "bonded layer": (0.3,)})
         patch.setattr(datum, "HELD", {"free": (2.0, 20.0), "held": (2.0,)})
-        yield {row.name: trial(row) for row in examples()}
+        yield {one.row.name: one for one in table1(tmp_path_factory.mktemp("table1"), jobs=1)}
 
 
 def value(quantity: Quantity | None) -> float:
@@ -273,7 +273,7 @@ def test_the_command(
     code: int,
 ) -> None:
     tried = (made_up(sphere.EXAMPLE, factor=factor), trials["cone"], trials["two_cylinders"])
-    monkeypatch.setattr("fe_contact.validation.table1.table1", lambda progress: tried)
+    monkeypatch.setattr("fe_contact.validation.table1.table1", lambda where, progress: tried)
     assert main(["table1", "--out", str(tmp_path / "out"), "--quiet"]) == code
     said = capsys.readouterr()
     assert [line[0] for line in said.out.splitlines() if line[0].isdigit()] == ["4", "6", "8"]

@@ -32,17 +32,21 @@ def none_varied(*_: object) -> tuple[()]:
     return ()
 
 
+def no_laws(*_: object) -> dict[str, object]:
+    return {}
+
+
 @pytest.fixture(scope="module")
 def scene() -> Scene:
     return Scene.load("polymer-sphere")
 
 
 @pytest.fixture(scope="module")
-def points(scene: Scene) -> tuple[Point, ...]:
+def points(scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> tuple[Point, ...]:
     """The defaults, the exact laws and the models."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(study, "variations", none_varied)
-        return tradeoff(scene, {}, True, lambda message: None)
+        return tradeoff(scene, {}, True, tmp_path_factory.mktemp("tradeoff"), lambda message: None)
 
 
 @given(st.lists(st.tuples(st.floats(1e-3, 1e3), st.floats(1e-9, 1.0)), min_size=1, max_size=30))
@@ -109,7 +113,9 @@ def test_every_default_keeps_its_promise(points: tuple[Point, ...]) -> None:
         assert one.cpu > 0.0
 
 
-def test_every_point_builds_its_operators_again(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_point_builds_its_operators_again(
+    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """What a user pays holds the factorizations, and no point lives on those of another."""
     built = []
 
@@ -120,8 +126,8 @@ def test_every_point_builds_its_operators_again(scene: Scene, monkeypatch: pytes
     original = half_space.surface_operator
     monkeypatch.setattr(half_space, "surface_operator", counted)
     monkeypatch.setattr(study, "variations", none_varied)
-    monkeypatch.setattr(study, "_laws", none_varied)
-    found = finite_elements(tradeoff(scene, {}, True, lambda message: None))
+    monkeypatch.setattr(study, "_laws", no_laws)
+    found = finite_elements(tradeoff(scene, {}, True, tmp_path, lambda message: None))
     warm_up = found[0].work["factorizations"]
     assert len(built) == warm_up + study.ROUNDS * sum(p.work["factorizations"] for p in found)
 
@@ -145,7 +151,7 @@ def test_the_command_writes_table_and_chart(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(study, "variations", none_varied)
-    monkeypatch.setattr(study, "_laws", none_varied)
+    monkeypatch.setattr(study, "_laws", no_laws)
     assert main(["tradeoff", "polymer-sphere", "--quick", "--json", "--quiet", "--out", str(tmp_path)]) == 0
     printed = json.loads(capsys.readouterr().out)
     assert printed == json.loads((tmp_path / "tradeoff.json").read_text(encoding="utf-8"))

@@ -44,8 +44,8 @@ def planned(name: str, **given: Any) -> WaveNumerics:
 
 
 @pytest.fixture(scope="module")
-def points() -> tuple[Point, ...]:
-    return study.tradeoff(Scene.load("rod"), {}, True, lambda message: None)
+def points(tmp_path_factory: pytest.TempPathFactory) -> tuple[Point, ...]:
+    return study.tradeoff(Scene.load("rod"), {}, True, tmp_path_factory.mktemp("rod"), lambda message: None)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -140,11 +140,13 @@ def test_a_default_marches_each_choice_of_settings_once() -> None:
     assert result.work["marches"] == 3
 
 
-def test_without_exact_waves_the_reference_is_finer_and_its_bar_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_exact_waves_the_reference_is_finer_and_its_bar_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The half-space, coarse: no error within the reference's own bar can be held against a setting."""
     monkeypatch.setattr(meshed, "variations", lambda base, quick: iter([{"steps": 40}]))
     pinned = {"steps": 80, "elements_per_contact": 4.0, "tolerance": 0.05}
-    found = study.tradeoff(Scene.load("steel-ball-waves"), pinned, True, lambda message: None)
+    found = study.tradeoff(Scene.load("steel-ball-waves"), pinned, True, tmp_path, lambda message: None)
     reference = found[0]
     assert reference.method == REFERENCE
     assert known_to(found) == reference.bar

@@ -31,9 +31,9 @@ def execute(args: argparse.Namespace) -> int:
     from lumped.score import read_curve
 
     scene, table = base.read_scene(args)
-    where = base.folder(args, "compare", scene.name)
     given, names = settings(table, None, scene.source), law_names(args.laws, scene)
     measured = None if args.measured is None else read_curve(args.measured)
+    where = base.folder(args, "compare", scene.name)
     progress = base.progress_of(args)
     if scene.model.inertia:
         solved, reference = None, simulate(scene, "fe", given, progress=progress)

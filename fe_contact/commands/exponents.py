@@ -35,8 +35,8 @@ def execute(args: argparse.Namespace) -> int:
 
     where = base.folder(args, "exponents", "layers")
     progress = base.progress_of(args)
-    found, checked = curves(args.quick, progress), checks(args.quick, progress)
-    spheres = pairs(args.quick, progress)
+    found, checked = curves(args.quick, where, progress), checks(args.quick, where, progress)
+    spheres = pairs(args.quick, where, progress)
 
     def write(folder: Path) -> None:
         write_exponents(found, checked, spheres, folder)

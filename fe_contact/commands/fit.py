@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from fe_contact.commands import base
 from fe_contact.progress import clear
-from lumped.errors import BadInput, Fault, NotReached, shown
+from lumped.errors import BadInput, Fault, NotReached, addressed, shown
 from lumped.result_folder import publish
 
 if TYPE_CHECKING:
@@ -47,8 +47,10 @@ def execute(args: argparse.Namespace) -> int:
     bounds = dict(_bounds(args.bounds))
     where = base.folder(args, "fit", scene.name)
     base.progress_of(args)(f"fit of {args.law}")
+    options = {"free": "--free", "fixed": "--fix", "bounds": "--bounds", "law": "--law"}
     try:
-        found = fit(curve, args.law, scene, free, fixed, bounds, args.peak)
+        with addressed(str(args.curve), {**options, "curve": "force_N"}), scene.addressed():
+            found = fit(curve, args.law, scene, free, fixed, bounds, args.peak)
     except NotReached as failure:
         write_failure(where, args.law, str(failure))
         raise

@@ -30,8 +30,8 @@ def execute(args: argparse.Namespace) -> int:
 
     where = base.folder(args, "ring", "paper")
     progress = base.progress_of(args)
-    curves = rings(cases(), progress)
-    impacts = struck(cases(), progress)
+    curves = rings(cases(), where, progress)
+    impacts = struck(cases(), where, progress)
 
     def write(folder: Path) -> None:
         write_rings(curves, folder, impacts)

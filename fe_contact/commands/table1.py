@@ -28,7 +28,7 @@ def execute(args: argparse.Namespace) -> int:
 
     where = base.folder(args, "table1", "paper")
     progress = base.progress_of(args)
-    trials = table1(progress)
+    trials = table1(where, progress)
 
     def write(folder: Path) -> None:
         write_table1(trials, folder)

@@ -28,7 +28,7 @@ def execute(args: argparse.Namespace) -> int:
     scene, table = base.read_scene(args)
     where = base.folder(args, "tradeoff", scene.name)
     study = tradeoff_waves if scene.model.inertia else tradeoff
-    points = study.tradeoff(scene, settings(table, None, scene.source), args.quick, base.progress_of(args))
+    points = study.tradeoff(scene, settings(table, None, scene.source), args.quick, where, base.progress_of(args))
 
     def write(folder: Path) -> None:
         write_tradeoff(scene, points, folder)

@@ -8,8 +8,8 @@ import numpy as np
 
 from fe_contact.dynamics import memory
 from fe_contact.dynamics.body import Body
-from fe_contact.dynamics.factor import factorized
 from fe_contact.forms import Array
+from fe_contact.interior import factorized
 
 
 class State(NamedTuple):

@@ -7,13 +7,16 @@ speaks for every steepness.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 
 from fe_contact.forms import Array
 from fe_contact.progress import Progress, silent
+from fe_contact.validation import journal
 from lumped.load_curves.half_space import HalfSpaceCurve
 from lumped.load_curves.layer import Layer
 from lumped.load_curves.layer_curve import LayerCurve, LayerPunch
@@ -27,6 +30,7 @@ FULL, QUICK = (0.0, 0.3, 0.45, 0.49, INCOMPRESSIBLE), (0.3, INCOMPRESSIBLE)
 SPAN = (0.01, 10.0)  # contact radius over thickness
 SMALL = 1e-3  # steepness at its end: depths stay far below the thickness
 POINTS, FEW_POINTS = 61, 16
+KEPT = "exponents.jsonl"
 
 
 @dataclass(frozen=True)
@@ -123,14 +127,18 @@ class Curve:
         return self.profile.thin(self.base, self.nu)
 
 
-def curves(quick: bool = False, progress: Progress = silent) -> tuple[Curve, ...]:
-    """Every profile on every layer: bonded with each nu, and sliding, where nothing but E* knows nu."""
-    ratio = np.geomspace(*SPAN, FEW_POINTS if quick else POINTS)
-    found = []
-    for profile in PROFILES:
-        progress(f"{profile.name}, exponent {profile.n:g}", PROFILES.index(profile), len(PROFILES))
-        found += [curve(profile, base, nu, ratio) for base, nu in layers(quick)]
-    return tuple(found)
+def curves(quick: bool, where: Path, progress: Progress = silent) -> tuple[Curve, ...]:
+    """Every profile on every layer: bonded with each nu, and sliding, where nothing but E* knows nu.
+
+    Rows are kept in the folder `where`. Raises NotReached.
+    """
+    ratio = tuple(np.geomspace(*SPAN, FEW_POINTS if quick else POINTS).tolist())
+    calls = {
+        f"{profile.label}, {named(base, nu)}": partial(curve, profile, base, nu, ratio)
+        for profile in PROFILES
+        for base, nu in layers(quick)
+    }
+    return tuple(journal.rows(where / KEPT, calls, progress).values())
 
 
 def layers(quick: bool) -> Iterator[tuple[str, float | None]]:
@@ -139,8 +147,14 @@ def layers(quick: bool) -> Iterator[tuple[str, float | None]]:
     yield "sliding", None
 
 
-def curve(profile: Profile, base: str, nu: float | None, ratio: Array) -> Curve:
+def named(base: str, nu: float | None) -> str:
+    """What a person calls a layer."""
+    return f"{base}, " + ("any nu" if nu is None else f"nu = {nu:g}")
+
+
+def curve(profile: Profile, base: str, nu: float | None, ratio: Sequence[float] | Array) -> Curve:
     """One profile on one layer at contact radii over thickness, shape (n,). Raises NotReached."""
+    ratio = np.asarray(ratio)
     layer = Layer(1.0, INCOMPRESSIBLE if nu is None else nu, base)
     if np.isinf(profile.n):
         kappa = np.array([LayerPunch(float(a), layer).stiffness for a in ratio]) / (2.0 * ratio)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 
 from fe_contact.forms import Array
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
-from fe_contact.validation.exponents import PROFILES, SMALL, Profile
+from fe_contact.validation import journal
+from fe_contact.validation.exponents import KEPT, PROFILES, SMALL, Profile, named
 from lumped.indentation import power_law
 from lumped.indenter import Indenter
 from lumped.load_curves.layer import Layer
@@ -49,14 +52,16 @@ class Check:
         return all(abs((one.value or 0.0) - exact) <= (one.error or 0.0) + 1e-9 for one, exact in pairs)
 
 
-def checks(quick: bool = False, progress: Progress = silent) -> tuple[Check, ...]:
-    """Every named profile at a few places; raises NotReached."""
-    found = []
-    for profile in (one for one in PROFILES if one.name != "power" or (one.n == 4.0 and not quick)):
-        progress(f"finite elements: {profile.name}")
-        for (base, nu), tried in (QUICK_PLACES if quick else PLACES).items():
-            found += [check(profile, base, nu, ratio) for ratio in tried]
-    return tuple(found)
+def checks(quick: bool, where: Path, progress: Progress = silent) -> tuple[Check, ...]:
+    """Every named profile at a few places; rows are kept in the folder `where`. Raises NotReached."""
+    calls = {
+        f"{profile.label}, {named(base, nu)}, FE at a/h = {ratio:g}": partial(check, profile, base, nu, ratio)
+        for profile in PROFILES
+        if profile.name != "power" or (profile.n == 4.0 and not quick)
+        for (base, nu), tried in (QUICK_PLACES if quick else PLACES).items()
+        for ratio in tried
+    }
+    return tuple(journal.rows(where / KEPT, calls, progress).values())
 
 
 def check(profile: Profile, base: str, nu: float | None, ratio: float) -> Check:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
+from fe_contact.validation import journal
+from fe_contact.validation.exponents import KEPT
 from lumped.finite_size import FiniteSize
 from lumped.indenter import Indenter
 from lumped.materials import Material, Relaxation
@@ -51,10 +55,14 @@ class Pair:
         )
 
 
-def pairs(quick: bool = False, progress: Progress = silent) -> tuple[Pair, ...]:
-    """Both supports with each nu; raises NotReached."""
-    progress("finite elements: finite spheres")
-    return tuple(pair(support, nu) for support in SUPPORTS for nu in (FEW_RATIOS if quick else RATIOS))
+def pairs(quick: bool, where: Path, progress: Progress = silent) -> tuple[Pair, ...]:
+    """Both supports with each nu; rows are kept in the folder `where`. Raises NotReached."""
+    calls = {
+        f"finite spheres, {support}, nu = {nu:g}": partial(pair, support, nu)
+        for support in SUPPORTS
+        for nu in (FEW_RATIOS if quick else RATIOS)
+    }
+    return tuple(journal.rows(where / KEPT, calls, progress).values())
 
 
 def pair(support: str, nu: float) -> Pair:

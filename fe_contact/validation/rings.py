@@ -9,12 +9,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 
 from fe_contact.forms import Array
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
+from fe_contact.validation import journal
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
 from lumped.materials import Material
@@ -28,10 +31,11 @@ from lumped.targets.o_ring import ORing
 from lumped.targets.ring import Ring
 from lumped.targets.washer import Washer
 
-TOLERANCE = 3e-4
+SETTINGS = {"tolerance": 3e-4}
 STRAINS = tuple(float(strain) for strain in np.geomspace(1e-3, 0.3, 13))  # depth over what is pressed
 SMALL_STRAIN = 0.05  # beyond, linear theory is no more than an indication
 HOLDS = 0.01  # of the force: a row this near to it holds
+KEPT = "ring.jsonl"
 PACKAGED = ("rod-in-ring", "polymer-o-ring", "polymer-washer")
 
 
@@ -95,18 +99,18 @@ def _case(indenter: Indenter) -> RingCase:
     return RingCase(indenter.name, indenter, math.pi * (target.inner_radius + pressed), target.height)
 
 
-def rings(chosen: Sequence[RingCase], progress: Progress = silent) -> tuple[RingCurve, ...]:
-    """Every case over three decades of depth. Raises NotReached."""
-    found = list[RingCurve]()
-    for case in chosen:
-        progress(case.name, len(found), len(chosen))
-        found.append(pressed(case))
-    return tuple(found)
+def rings(chosen: Sequence[RingCase], where: Path, progress: Progress = silent) -> tuple[RingCurve, ...]:
+    """Every case over three decades of depth; rows are kept in the folder `where`. Raises NotReached."""
+    calls = {
+        case.name: partial(indent, case.indenter, tuple(case.height * strain for strain in STRAINS), SETTINGS)
+        for case in chosen
+    }
+    found = journal.rows(where / KEPT, calls, progress)
+    return tuple(curve(case, found[case.name]) for case in chosen)
 
 
-def pressed(case: RingCase) -> RingCurve:
-    """One ring by finite elements, with bars."""
-    found = indent(case.indenter, tuple(case.height * strain for strain in STRAINS), {"tolerance": TOLERANCE})
+def curve(case: RingCase, found: Indentation) -> RingCurve:
+    """What an indentation by finite elements says of the row."""
     relative = found.force_error / found.force
     factor = found.force / (0.25 * math.pi * found.modulus * case.length * found.depth)
     exponent, exponent_error = local_exponent(found.depth, found.force, relative)

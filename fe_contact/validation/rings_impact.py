@@ -9,16 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
 
 from fe_contact.progress import Progress, silent
 from fe_contact.reference import fe
-from fe_contact.validation.rings import HOLDS, SMALL_STRAIN, RingCase
+from fe_contact.validation import journal
+from fe_contact.validation.rings import HOLDS, KEPT, SMALL_STRAIN, RingCase
 from lumped.paper.examples import Examples
 from lumped.paper.ring_impact import RingImpact, impact, stiffness
 from lumped.result import Quantity, Result
 from lumped.scene import Scene
 
-TOLERANCE = 1e-3
+SETTINGS = {"tolerance": 1e-3}
 STRAINS = (0.2 * SMALL_STRAIN, SMALL_STRAIN)  # depth by the row over the thickness
 JUDGED = ("peak_depth", "duration", "restitution")
 PAPER = "paper-ring"
@@ -70,17 +73,16 @@ class RingStruck:
         return f"{'holds' if self.holds else 'wrong'}: by the law {', '.join(parts)}"
 
 
-def struck(cases: Sequence[RingCase], progress: Progress = silent) -> tuple[RingStruck, ...]:
-    """The paper's ring for each of its thicknesses and two speeds. Raises NotReached."""
+def struck(cases: Sequence[RingCase], where: Path, progress: Progress = silent) -> tuple[RingStruck, ...]:
+    """The paper's ring for each of its thicknesses and two speeds; impacts are kept in the folder `where`.
+
+    Raises NotReached.
+    """
     own = [case for case in cases if case.name.startswith(PAPER)]
-    found = list[RingStruck]()
-    for case in own:
-        progress(f"{case.name}, struck", len(found), len(own) * len(STRAINS))
-        found += [_struck(case, strain) for strain in STRAINS]
-    return tuple(found)
+    return tuple(_struck(case, strain, where, progress) for case in own for strain in STRAINS)
 
 
-def _struck(case: RingCase, strain: float) -> RingStruck:
+def _struck(case: RingCase, strain: float, where: Path, progress: Progress = silent) -> RingStruck:
     """At the speed that by the row reaches a strain."""
     paper, indenter = Examples.load(), case.indenter
     mass = paper.ptmd.m1 * paper.ptmd.m2 / (paper.ptmd.m1 + paper.ptmd.m2)
@@ -88,8 +90,9 @@ def _struck(case: RingCase, strain: float) -> RingStruck:
     velocity = strain * case.height / row.depth_per_velocity
     scene = Scene(indenter.shape, mass, velocity, indenter.material, target=indenter.target, name=case.name)
     other = replace(scene, material=replace(indenter.material, constant="bulk"))
-    results = [fe(one, {"tolerance": TOLERANCE}) for one in (scene, other)]
-    return RingStruck(case.name, strain, mass, velocity, row, *results)
+    told = f"{case.name}, struck at {1e3 * velocity:.3g} mm/s"
+    calls = {told: partial(fe, scene, SETTINGS), f"{told}, constant bulk modulus": partial(fe, other, SETTINGS)}
+    return RingStruck(case.name, strain, mass, velocity, row, *journal.rows(where / KEPT, calls, progress).values())
 
 
 def _known(quantity: Quantity) -> tuple[float, float]:

@@ -6,17 +6,17 @@ ratios over it tell E*. Line contact tells its E* by the slope of its logarithm.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass, field
-from functools import cache
-from multiprocessing import get_context
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
+from fe_contact.validation import journal
 from fe_contact.validation.blocks import Block, blocks
 from fe_contact.validation.datum import Place, places
 from fe_contact.validation.table1_impact import FromImpact, line_impacts, power_law_impacts
@@ -36,6 +36,7 @@ LINE = (1e-5, 1e-4)  # line contact has no power law to look for
 TOLERANCE = 3e-4
 LINE_TOLERANCE = 1e-4  # the slope of a logarithm is a difference
 WORKERS = 2
+KEPT = "table1.jsonl"
 
 
 @dataclass(frozen=True)
@@ -63,34 +64,27 @@ def bodies(row: Row, nu: float) -> tuple[Elastic, ...]:
     return (Elastic(YOUNG, nu), Elastic(2.0 * YOUNG, 0.5 * nu))[: row.bodies]
 
 
-def table1(progress: Progress = silent) -> tuple[Trial, ...]:
-    """Every row of the table, in its order; two batches at a time, in two processes."""
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # two processes for two cores: matrices are small
-    found: dict[int, Trial] = {}
-    with ProcessPoolExecutor(WORKERS, get_context("spawn")) as pool:
-        for done in as_completed([pool.submit(_tried, batch) for batch in batches()]):
-            for one in done.result():
-                progress(f"row {one.row.number}: {one.row.case}", len(found) + 1, len(examples()))
-                found[one.row.number] = one
-    return tuple(found[number] for number in sorted(found))
+def table1(where: Path, progress: Progress = silent, jobs: int = WORKERS) -> tuple[Trial, ...]:
+    """Every row of the table, in its order, by so many processes; rows are kept in the folder `where`.
 
-
-def batches() -> tuple[tuple[Row, ...], ...]:
-    """Rows tried one after the other in one process; blocks share their bonded ones.
-
-    The longest work first: line contact at all its places, then two bodies before one.
+    The longest work first: line contact at all its places, then two bodies before one, then the bonded blocks, which
+    two rows share. Raises NotReached.
     """
-    blocks = tuple(row for row in examples() if row.block)
-    alone = sorted((row for row in examples() if not row.block), key=lambda row: (row.single, -row.bodies))
-    return (*((row,) for row in alone), blocks)
+    order = sorted(examples(), key=lambda row: (row.single, -row.bodies))
+    calls: dict[str, partial[Any]] = {_named(row): partial(trial, row) for row in order}
+    stuck = {f"bonded blocks, nu = {nu:g}": partial(blocks, Elastic(YOUNG, nu)) for nu in RATIOS if nu}
+    found = journal.rows(where / KEPT, calls | stuck, progress, jobs)
+    bonded = tuple(block for name in stuck for block in found[name])
+    tried = (found[_named(row)] for row in examples())
+    return tuple(replace(one, bonded=bonded) if one.row.block and not one.failure else one for one in tried)
 
 
-def _tried(rows: tuple[Row, ...]) -> tuple[Trial, ...]:
-    return tuple(trial(row) for row in rows)
+def _named(row: Row) -> str:
+    return f"row {row.number}: {row.case}"
 
 
 def trial(row: Row) -> Trial:
-    """One row; what finite elements cannot answer is said in ``failure``."""
+    """One row but for its blocks; what finite elements cannot answer is said in ``failure``."""
     try:
         return _power_law(row) if row.single else _line_contact(row)
     except NotReached as failure:
@@ -103,22 +97,14 @@ def _power_law(row: Row) -> Trial:
     if whole != row.scene(*bodies(row, RATIOS[1])):
         far = {RATIOS[1]: _pressed(row, whole, WHOLE)}
     law = identified_law(row, curves[0.0])
-    stuck = _bonded() if row.block else ()
     struck = power_law_impacts(row, {nu: bodies(row, nu) for nu in RATIOS})
     return Trial(
         row,
         *law,
         identified_moduli(row, curves),
         reach(row, far, {nu: bodies(row, nu) for nu in far}),
-        bonded=stuck,
         impact=struck,
     )
-
-
-@cache
-def _bonded() -> tuple[Block, ...]:
-    """The same blocks stand beside both rows that press one."""
-    return tuple(block for nu in RATIOS if nu for block in blocks(Elastic(YOUNG, nu)))
 
 
 def _line_contact(row: Row) -> Trial:

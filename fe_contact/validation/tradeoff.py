@@ -7,9 +7,10 @@ tolerance, and Ting's solution for the row of springs itself.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, replace
-from functools import partial
+from functools import cache, partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from fe_contact.progress import Progress
 from fe_contact.reference import check_target, strike_of
 from fe_contact.runs import TotalWork
 from fe_contact.targets import half_space
+from fe_contact.validation import journal
 from fe_contact.validation.design import defaults, variations
 from fe_contact.validation.point import Point, errors_of, largest_bar, timed, values_of
 from lumped import laws, simulate
@@ -34,29 +36,41 @@ ROUNDS = 3  # through all settings: the least of so many times counts, and a slo
 REPEATS = 2  # of what takes milliseconds
 ROW_ELEMENTS = (25, 50, 100, 200, 400)
 LAW_TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
+KEPT = "tradeoff.jsonl"
 MODELS = ("hertz", "correspondence")
 
+Exact = Callable[[], Result]  # computed where a point is still to measure
 
 
-def tradeoff(scene: Scene, given: Mapping[str, Any], quick: bool, progress: Progress) -> tuple[Point, ...]:
-    """Measure every point of the study. Raises NotReached where the exact impact itself has no answer."""
+def tradeoff(scene: Scene, given: Mapping[str, Any], quick: bool, where: Path, progress: Progress) -> tuple[Point, ...]:
+    """Measure every point of the study; points are kept, with the time they took, in the folder `where`.
+
+    Raises NotReached where the exact impact itself has no answer.
+    """
     scene.check_single("tradeoff")
     check_target(scene)
-    exact = _simulate(scene, "mdr", EXACT_TOLERANCE)
     planned = defaults(scene, given)
     base = next(iter(planned.values()))
     marked = {n.varied(tolerance=base.tolerance): tolerance for tolerance, n in planned.items()}
     chosen = tuple(dict.fromkeys((*marked, *variations(base, given, quick))))
-    _certify(scene, chosen[0])  # imports and the processor's warm-up belong to no point
-    points = []
-    for count, numerics in enumerate(chosen, 1):
-        progress("finite elements", count - 1, len(chosen))
-        points.append(_fe(scene, numerics, exact, marked.get(numerics)))
-    for count in range(2, ROUNDS + 1):
-        progress("finite elements again", count - 2, ROUNDS - 1)
-        points = [_again(scene, numerics, point) for numerics, point in zip(chosen, points, strict=True)]
-    progress("exact laws and models")
-    return (*points, *_rows(scene, exact), *_laws(scene, exact, quick))
+
+    @cache
+    def exact() -> Result:
+        _certify(scene, chosen[0])  # imports and the processor's warm-up belong to no point
+        return _simulate(scene, "mdr", EXACT_TOLERANCE)
+
+    elements = {
+        f"finite elements {place} of {len(chosen)}, time {count} of {ROUNDS}": partial(
+            _fe, scene, numerics, marked.get(numerics), count, exact=exact
+        )
+        for count in range(1, ROUNDS + 1)
+        for place, numerics in enumerate(chosen, 1)
+    }
+    calls = elements | _rows(scene, exact) | _laws(scene, exact, quick)
+    found = list(journal.rows(where / KEPT, calls, progress).values())
+    tried, others = found[: len(elements)], found[len(elements) :]
+    rounds = [tried[place :: len(chosen)] for place in range(len(chosen))]
+    return (*(replace(first, cpu=min(first.cpu, *(one.cpu for one in again))) for first, *again in rounds), *others)
 
 
 def operations(work: TotalWork, surface: Deformable) -> float:
@@ -70,27 +84,21 @@ def operations(work: TotalWork, surface: Deformable) -> float:
     return float(condensation + work.iterations * (zone**2 * points + zone**3 / 3))
 
 
-def _fe(scene: Scene, numerics: Numerics, exact: Result, default_for: float | None) -> Point:
+def _fe(scene: Scene, numerics: Numerics, default_for: float | None, count: int, exact: Exact) -> Point:
+    """A choice of settings, measured for the so-manieth time."""
+    truth = exact()
     settings = numerics.as_dict() | {"tolerance": default_for}
     try:
         certified, cpu = timed(partial(_certify, scene, numerics), 1)
     except NotReached as failure:
         return Point("fe", settings, default_for=default_for, failure=str(failure))
     curve = certified.curve
-    errors = _errors(exact, curve.quantities, curve.dense_time, curve.dense_force)
+    errors = _errors(truth, curve.quantities, curve.dense_time, curve.dense_force)
     bars = [certified.total("history_l2"), certified.total("restitution") if "restitution" in errors else 0.0]
     bars += [certified.total(name) / abs(curve.quantities[name] or np.inf) for name in ("peak_force", "duration")]
     assert isinstance(certified.surface, Deformable)
     work = asdict(certified.work) | {"operations": operations(certified.work, certified.surface)}
     return Point("fe", settings, cpu, errors, max(bars), work, default_for)
-
-
-def _again(scene: Scene, numerics: Numerics, point: Point) -> Point:
-    """The same point with the lesser of two times."""
-    if point.failure:
-        return point
-    _, cpu = timed(partial(_certify, scene, numerics), 1)
-    return replace(point, cpu=min(cpu, point.cpu))
 
 
 def _certify(scene: Scene, numerics: Numerics) -> Certified:
@@ -99,30 +107,37 @@ def _certify(scene: Scene, numerics: Numerics) -> Certified:
     return certify(strike_of(scene), scene.geometry, numerics)
 
 
-def _rows(scene: Scene, exact: Result) -> Iterator[Point]:
-    """The row of springs at fixed numbers of elements: one march, no bar, no history."""
-    row = laws.get("mdr")
-    for elements in ROW_ELEMENTS:
-        scales, cpu = timed(partial(row.estimate, scene, elements=elements), REPEATS)
-        errors = _errors(exact, vars(scales))
-        yield Point("mdr row", {"elements": elements}, cpu, errors, work={"elements": elements})
+def _rows(scene: Scene, exact: Exact) -> dict[str, partial[Point]]:
+    """The row of springs at fixed numbers of elements."""
+    return {f"row of {count} springs": partial(_row, scene, count, exact=exact) for count in ROW_ELEMENTS}
 
 
-def _laws(scene: Scene, exact: Result, quick: bool) -> Iterator[Point]:
+def _row(scene: Scene, elements: int, exact: Exact) -> Point:
+    """One march, no bar, no history."""
+    truth = exact()
+    scales, cpu = timed(partial(laws.get("mdr").estimate, scene, elements=elements), REPEATS)
+    return Point("mdr row", {"elements": elements}, cpu, _errors(truth, vars(scales)), work={"elements": elements})
+
+
+def _laws(scene: Scene, exact: Exact, quick: bool) -> dict[str, partial[Point]]:
     """Exact laws at several tolerances with their bars; the models, which err however finely they are integrated."""
     tolerances = LAW_TOLERANCES[::2] if quick else LAW_TOLERANCES
     chosen = [(name, tolerance) for name in ("mdr", "ting") for tolerance in tolerances]
-    other = _simulate(scene, "ting", EXACT_TOLERANCE)
-    for name, tolerance in [*chosen, *((name, LAW_TOLERANCES[-2]) for name in MODELS)]:
-        settings = {"tolerance": tolerance}
-        try:
-            result, cpu = timed(partial(_simulate, scene, name, tolerance), REPEATS)
-        except FeContactError as failure:
-            yield Point(name, settings, failure=str(failure))
-            continue
-        truth = other if name == "mdr" else exact
-        errors = _errors(truth, values_of(result), result.history.time, result.history.force)
-        yield Point(name, settings, cpu, errors, largest_bar(result), dict(result.work))
+    other = cache(partial(_simulate, scene, "ting", EXACT_TOLERANCE))
+    return {
+        f"{name} to {tolerance:g}": partial(_law, scene, name, tolerance, exact=other if name == "mdr" else exact)
+        for name, tolerance in [*chosen, *((name, LAW_TOLERANCES[-2]) for name in MODELS)]
+    }
+
+
+def _law(scene: Scene, name: str, tolerance: float, exact: Exact) -> Point:
+    truth, settings = exact(), {"tolerance": tolerance}
+    try:
+        result, cpu = timed(partial(_simulate, scene, name, tolerance), REPEATS)
+    except FeContactError as failure:
+        return Point(name, settings, failure=str(failure))
+    errors = _errors(truth, values_of(result), result.history.time, result.history.force)
+    return Point(name, settings, cpu, errors, largest_bar(result), dict(result.work))
 
 
 def _simulate(scene: Scene, name: str, tolerance: float) -> Result:

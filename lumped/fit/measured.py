@@ -46,7 +46,7 @@ class Measured:
         time, force = _means(curve.time[rows], together), _means(curve.force[rows], together)
         highest = peak(curve.time, curve.force)[1] if isinstance(curve, History) else float(force.max())
         if not highest > 0.0 or not time[-1] > max(time[0], 0.0):
-            raise BadInput(Fault("fit", "curve", "has no force above zero after t = 0; accepted: a contact"))
+            raise BadInput(Fault("curve", "", "has no force above zero after t = 0; accepted: a contact"))
         after = _silence(time) if force[-1] <= ENDED * highest else time[:0]
         spacing = _spacing(time)
         weight = np.append(np.sqrt(spacing / spacing.mean()), np.ones(after.size))

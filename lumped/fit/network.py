@@ -12,7 +12,7 @@ from lumped.members import get
 
 NETWORKS = "lumped.materials.networks"
 FAMILIES = ("elastic", "kelvin_voigt", "maxwell", "sls")
-SOURCE = "fit"
+SOURCE = "free"
 
 
 def keys() -> dict[str, Number]:
@@ -60,7 +60,7 @@ def _network(young: Relaxation, names: Iterable[str]) -> tuple[str, tuple[str, .
     if not found:
         sets = [", ".join(kind) for family in _open_to(young) for kind in _sets(family)]
         reason = f"no network of the material has {', '.join(names)}; accepted, of one set: {'; '.join(sets)}"
-        raise BadInput(Fault(SOURCE, "free", reason))
+        raise BadInput(Fault(SOURCE, "", reason))
     return min(found, key=lambda kind: len(kind[1]))
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lumped.csv_file import write_csv
 from lumped.history import History
-from lumped.json_file import write_json
+from lumped.json_file import plain, write_json
 from lumped.result import Result
 from lumped.result_folder import publish
 from lumped.scene import Scene
@@ -63,7 +63,7 @@ class Fit:
 
     def to_json(self) -> dict[str, Any]:
         """The content of fit.json."""
-        return {
+        content = {
             "schema": SCHEMA,
             "law": self.law,
             "converged": True,
@@ -80,6 +80,7 @@ class Fit:
             "quantities": {name: asdict(quantity) for name, quantity in self.result.quantities.items()},
             "scene": self.scene.to_dict(),
         }
+        return dict(plain(content))
 
     def write(self, directory: Path) -> None:
         """Make fit.json, fit.csv (the fitted history) and parameters.csv the content of a folder of results.

@@ -15,7 +15,7 @@ from lumped.fit.record import Fit
 from lumped.fit.space import Bounds, space_of
 from lumped.fit.starts import starts
 from lumped.history import History
-from lumped.laws.base import simulate
+from lumped.laws.base import check_mass, simulate
 from lumped.scene import Scene
 from lumped.score import Curve, normalized_error
 
@@ -37,11 +37,12 @@ def search(
     peak: bool = False,
 ) -> Fit:
     """See :func:`lumped.fit`."""
+    check_mass(scene)
     space = space_of(law, scene, free, fixed or {}, bounds or {})
     measured = Measured.of(curve)
     if measured.points <= len(space.free):
         reason = f"{measured.points} points for {len(space.free)} parameters; accepted: more points than parameters"
-        raise BadInput(Fault("fit", "curve", reason))
+        raise BadInput(Fault("curve", "", reason))
     stiff = [name for name in STIFFNESSES if name in space.free] or list(space.free)
     problem = Problem(space, measured, stiff[0] if peak else None)
     found = best(problem)

@@ -24,6 +24,8 @@ TOUCH = "touch"
 TOUCH_KEY = Number(-1e12, 1e12, "s")
 # What nobody has bounded is sought within this factor of its first guess.
 REACH = 1e8
+# Parts of a fit that know no option: see :func:`lumped.errors.addressed`.
+FREE, FIXED, BOUNDS = "free", "fixed", "bounds"
 UNSEEN = {"gap": "no force tells it, for time starts at touch; accepted: fixed"}
 
 
@@ -66,18 +68,20 @@ def space_of(law: str, scene: Scene, free: Sequence[str] | None, fixed: Mapping[
     scene.check_single("a fit")
     known = {**network.keys(), **own_keys(law), TOUCH: TOUCH_KEY}
     names = tuple(default_free(law, scene, fixed) if free is None else free)
-    faults = [_unknown(name, known) for name in dict.fromkeys((*names, *fixed, *bounds)) if name not in known]
-    faults += [Fault("fit", "free", "empty; accepted: at least one parameter")] if not names else []
-    faults += [Fault("fit", name, UNSEEN[name]) for name in names if name in UNSEEN]
-    faults += [Fault("fit", name, "both free and fixed; accepted: one of them") for name in names if name in fixed]
-    faults += [Fault("fit", name, "has bounds and is not free; accepted: free") for name in bounds if name not in names]
+    asked = [(FREE, name) for name in names] + [(FIXED, name) for name in fixed] + [(BOUNDS, name) for name in bounds]
+    faults = [_unknown(place, name, known) for place, name in asked if name not in known]
+    faults += [Fault(FREE, "", "empty; accepted: at least one parameter")] if not names else []
+    faults += [Fault(FREE, name, UNSEEN[name]) for name in names if name in UNSEEN]
+    faults += [Fault(FIXED, name, "both free and fixed; accepted: one of them") for name in names if name in fixed]
+    faults += [Fault(BOUNDS, name, "has bounds and is not free; accepted: free") for name in bounds if name not in names]
     faults += [
-        Fault("fit", name, f"{ends} is empty; accepted: low < high")
-        for name, ends in bounds.items()
-        if ends[0] >= ends[1]
+        Fault(BOUNDS, name, f"{low:g}:{high:g} is empty; accepted: low < high")
+        for name, (low, high) in bounds.items()
+        if not low < high
     ]
-    given = [*fixed.items(), *((name, end) for name, ends in bounds.items() for end in ends)]
-    faults += [fault for name, value in given if name in known for fault in _range_faults(name, value, known[name])]
+    given = [(FIXED, *one) for one in fixed.items()]
+    given += [(BOUNDS, name, end) for name, ends in bounds.items() for end in ends]
+    faults += [fault for one in given if one[1] in known for fault in _range_faults(*one, known[one[1]])]
     if faults:
         raise BadInput(faults)
     return Space(law, scene, {name: known[name] for name in names}, dict(fixed), dict(bounds))
@@ -113,13 +117,13 @@ def _said(scene: Scene, law: str, chosen: Mapping[str, float]) -> dict[str, Any]
     return {name: value for name, value in scene.law.values.items() if name not in dropped}
 
 
-def _unknown(name: str, known: Mapping[str, Number]) -> Fault:
-    return Fault("fit", name, f"unknown parameter; accepted: {', '.join(known)}{nearest(name, tuple(known))}")
+def _unknown(place: str, name: str, known: Mapping[str, Number]) -> Fault:
+    return Fault(place, name, f"unknown parameter; accepted: {', '.join(known)}{nearest(name, tuple(known))}")
 
 
-def _range_faults(name: str, value: float, key: Number) -> list[Fault]:
+def _range_faults(place: str, name: str, value: float, key: Number) -> list[Fault]:
     try:
         key.read(value)
     except ValueError:
-        return [Fault("fit", name, f"{value!r} is not accepted; accepted: {key.accepted}")]
+        return [Fault(place, name, f"{value!r} is not accepted; accepted: {key.accepted}")]
     return []

@@ -13,7 +13,7 @@ def available() -> tuple[str, ...]:
 
 def get(name: str) -> Any:
     """The law's module, which has `of(scene)`; raises BadInput with the nearest name."""
-    return _members.get(__name__, name, source="law")
+    return _members.get(__name__, name, source="law", key="")
 
 
 def __getattr__(name: str) -> Any:

@@ -35,7 +35,13 @@ def simulate(model: Law, scene: Scene, tolerance: float = 1e-6) -> Result:
         with concurrent.futures.ProcessPoolExecutor() as pool:
             found = list(pool.map(restitution, numpy.linspace(0.1, 2.0, 10_000), chunksize=100))
     """
+    check_mass(scene)
+    with scene.addressed():
+        return model.simulate(scene, tolerance)
+
+
+def check_mass(scene: Scene) -> None:
+    """Raise BadInput for a striker without a rigid mass."""
     if scene.mass == 0.0:
         reason = "0: a lumped law moves a rigid mass; accepted: more, or --method fe"
         raise BadInput(Fault(scene.source, "striker.mass", reason))
-    return model.simulate(scene, tolerance)

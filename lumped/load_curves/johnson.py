@@ -58,7 +58,7 @@ class Johnson(LoadCurve):
         share = 4.0 * self.radius * np.maximum(depth, 0.0) / square
         if np.max(share, initial=0.0) > 1.0 / e:
             raise NotReached(
-                f"no contact on {self} is {np.max(depth):g} m deep: its half-width nears the datum's depth"
+                f"no contact on the half-plane is {np.max(depth):g} m deep: its half-width nears the datum's depth"
             )
         answer = np.real(lambertw(-np.where(share > 0.0, share, 0.1), -1))
         return np.where(share > 0.0, np.sqrt(square * np.exp(answer)), 0.0)

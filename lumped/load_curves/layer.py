@@ -46,8 +46,8 @@ class Layer:
         """Raises BadInput where a depth reaches the thickness."""
         deepest = np.max(np.asarray(depth), initial=0.0)
         if deepest >= self.thickness:
-            message = f"must stay below the thickness of {self.thickness:g} m, is {deepest:g}"
-            raise BadInput(Fault("layer", "depth", message))
+            message = f"a depth of {deepest:.3g} m; accepted below the layer's thickness {self.thickness:g} m"
+            raise BadInput(Fault("depth", "", message))
 
 
 def deficit(nu: float, base: str, u: Array) -> Array:

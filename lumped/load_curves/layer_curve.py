@@ -32,7 +32,7 @@ class LayerCurve(TabulatedCurve):
 
     def __post_init__(self) -> None:
         if not isinstance(self.half_space, HalfSpaceCurve):
-            message = f"must be a curve of the half-space under a profile that touches at a point, is {self.half_space}"
+            message = "must be a curve of the half-space under a profile that touches at a point"
             raise BadInput(Fault("layer", "half_space", message))
 
     @cached_property

@@ -60,8 +60,8 @@ class RingContact:
         """Raises BadInput where a depth reaches the limit."""
         deepest = np.max(np.asarray(depth), initial=0.0)
         if deepest >= self.depth_limit:
-            message = f"must stay below thickness and radius, {self.depth_limit:g} m, is {deepest:g}"
-            raise BadInput(Fault("ring", "depth", message))
+            message = f"a depth of {deepest:.3g} m; accepted below thickness and radius, {self.depth_limit:g} m"
+            raise BadInput(Fault("depth", "", message))
 
     def pressed(self, depth: float, refinement: float) -> Grown:
         """The contact at one depth, m; its force is the component along the motion. Raises NotReached."""
@@ -73,7 +73,7 @@ class RingContact:
         half_length = self.inner_radius * angle
         force, stiffness = half_length * rule.total(np.stack([q, growth]) * np.cos(theta))
         if not min(force, stiffness) > 0.0:
-            raise NotReached(f"{self} at a depth of {depth:g} m: {theta.size} points do not resolve the pressure")
+            raise NotReached(f"the ring at a depth of {depth:g} m: {theta.size} points do not resolve the pressure")
         return Grown(rule, half_length, q, depth, float(force), 1.0 / float(stiffness))
 
     def depth_at(self, angle: float) -> float:
@@ -89,7 +89,7 @@ class RingContact:
             if step <= 1e-13 * depth:
                 return depth
             depth += step
-        raise NotReached(f"the depth of {self} at a half-angle of {angle:g} was not found in {NEWTON_STEPS} steps")
+        raise NotReached(f"the depth in the ring at a half-angle of {angle:g} was not found in {NEWTON_STEPS} steps")
 
     def _half_angle(self, depth: float, refinement: float) -> float:
         """The half-angle at whose ends the pressure vanishes: searched with few points, found by a secant with all."""
@@ -109,7 +109,7 @@ class RingContact:
             low *= 0.5
         while self._excess(high, depth, refinement) > 0.0:
             if high > 0.999 * widest:
-                raise NotReached(f"the contact of {self} at a depth of {depth:g} m has no end")
+                raise NotReached(f"the contact in the ring at a depth of {depth:g} m has no end")
             low, high = high, min(1.4 * high, 0.9995 * widest)
         return float(brentq(self._excess, low, high, args=(depth, refinement), xtol=1e-300, rtol=1e-9))
 

@@ -62,7 +62,7 @@ class TabulatedCurve(LoadCurve):
         a = np.asarray(contact_radius, dtype=float)
         panels = int(np.searchsorted(self.edges, a.max(initial=0.0)))
         if panels > len(self.edges) - 1:
-            raise NotReached(f"{self} serves contact radii up to {self.edges[-1]:g} m, not {a.max():g}")
+            raise NotReached(f"the load curve serves contact radii up to {self.edges[-1]:g} m, not {a.max():g}")
         flat = State(*(np.asarray(part) for part in self._at(a.ravel(), max(panels, 1))))
         return State(*(part.reshape(a.shape) for part in flat))
 
@@ -110,14 +110,14 @@ class TabulatedCurve(LoadCurve):
             radius = np.minimum(radius * np.exp(-step), self.edges[panels])
             if np.abs(step).max() < LAST_STEP:
                 return radius
-        raise NotReached(f"the contact radius of {self} at a depth of {depth.max():g} m was not found")
+        raise NotReached(f"the contact radius at a depth of {depth.max():g} m was not found")
 
     def _panels_down_to(self, depth: float) -> int:
         for panels in range(1, len(self.edges)):
             if float(self._at(np.array([self.edges[panels]]), panels).depth[0]) >= depth:
                 return panels
         reason = f"the contact grows beyond {self.edges[-1]:g} m; cure: a smaller depth, a lower velocity"
-        raise NotReached(f"{self} at a depth of {depth:g} m: {reason}")
+        raise NotReached(f"the load curve at a depth of {depth:g} m: {reason}")
 
     def _at(self, radius: Array, panels: int) -> State:
         edges = np.array(self.edges[: panels + 1])
@@ -165,5 +165,6 @@ def _panel(curve: TabulatedCurve, index: int) -> Array:
     ratios = (kept.depth / fresh.depth, kept.force / fresh.force, kept.stiffness / fresh.stiffness)
     error = max(abs(float(ratio[0]) - 1.0) for ratio in ratios)
     if not error <= ACCURACY:
-        raise NotReached(f"{curve} at a contact radius of {radius[0]:g} m: two resolutions differ by {error:.1e}")
+        place = f"the load curve at a contact radius of {radius[0]:g} m"
+        raise NotReached(f"{place}: two resolutions differ by {error:.1e}")
     return table

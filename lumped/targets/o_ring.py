@@ -36,7 +36,7 @@ class ORing(Target):
         check_fields("o_ring", self, KEYS)
         if self.section_radius >= self.mean_radius:
             reason = f"{self.section_radius:g}: accepted below the mean radius {self.mean_radius:g} m"
-            raise BadInput(Fault("o_ring", "target.section_radius", reason))
+            raise BadInput(Fault("o_ring", "section_radius", reason))
 
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
         """depth/2 - (s - sqrt(s^2 - x^2)), s the section's radius and `r` the distance x from its top."""

@@ -39,7 +39,7 @@ class Washer(Target):
         check_fields("washer", self, KEYS)
         if self.inner_radius >= self.outer_radius:
             reason = f"{self.inner_radius:g}: accepted below the outer radius {self.outer_radius:g} m"
-            raise BadInput(Fault("washer", "target.inner_radius", reason))
+            raise BadInput(Fault("washer", "inner_radius", reason))
 
     @property
     def body_depth(self) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import subprocess
 import sys
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
@@ -146,6 +147,13 @@ def test_a_worker_process_makes_the_same_mesh() -> None:
     with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
         made = pool.submit(meshes.half_space, 2.0, 12.0).result()
     assert identical(made, meshes.half_space(2.0, 12.0))
+
+
+def test_a_reader_who_leaves_is_an_error_after_meshing_too() -> None:
+    """As in all of Python, and not the silent end of the process, which gmsh asks for."""
+    probe = "import os, meshes; meshes.half_space(2.0, 12.0); ends = os.pipe(); os.close(ends[0]); os.write(ends[1], b' ')"
+    run = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stderr.splitlines()[-1]) == (1, "BrokenPipeError: [Errno 32] Broken pipe")
 
 
 def broken_session() -> None:

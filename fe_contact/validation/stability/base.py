@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from fe_contact.threads import one_thread
 from lumped.errors import NotReached
+from lumped.json_file import plain
 from lumped.members import get
 
 STUDIES = "fe_contact.validation.stability"
@@ -31,9 +33,11 @@ class Chart:
     measures: Mapping[str, Measure]
 
 
+@one_thread
 def row(study: str, case: Case) -> Row:
     """The case with its numbers, or with the name of its failure."""
     try:
-        return {"study": study, **case, **get(STUDIES, study).measure(case), "failure": ""}
+        numbers: Row = plain(get(STUDIES, study).measure(case))
+        return {"study": study, **case, **numbers, "failure": ""}
     except NotReached as failure:
         return {"study": study, **case, "failure": type(failure).__name__}

@@ -1,0 +1,63 @@
+"""BLAS on one thread where finite elements run.
+
+Their dense systems have some 70 unknowns: a second thread only waits, and processor time doubles or worse. With one
+thread every sum is also taken in one order, so the same scene gives the same bytes on any number of processors. An
+environment variable would come too late where numpy was imported first.
+"""
+
+from __future__ import annotations
+
+from contextlib import ContextDecorator
+from functools import cache
+from threading import Lock
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
+
+
+@cache
+def _libraries() -> ThreadpoolController:
+    """The BLAS of numpy and that of scipy, which comes with scipy.linalg: once both are there no import adds another.
+
+    Kept, because finding them takes longer than a lumped law.
+    """
+    from scipy.linalg import blas
+    from threadpoolctl import ThreadpoolController
+
+    blas.dgemv(1.0, [[1.0]], [1.0])  # takes its work space now: with no memory left it would ask for it for ever
+    return ThreadpoolController().select(user_api="blas")
+
+
+def _limit(threads: int | list[dict[str, Any]]) -> None:
+    """Set one number, or what `info` found before, from whatever thread of the process.
+
+    From 3.7 on threadpoolctl lets only the thread that set a limit last set another, until it leaves a `with`.
+    """
+    _libraries().limit(limits=threads)
+    with _libraries().limit(limits=None):
+        pass
+
+
+class _OneThread(ContextDecorator):
+    """Holds while anyone is inside, in any thread of the process; the last one out restores what was set before."""
+
+    def __init__(self) -> None:
+        self._lock, self._inside = Lock(), 0
+        self._before: list[dict[str, Any]] = []
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if self._inside == 0:
+                self._before = _libraries().info()
+                _limit(1)
+            self._inside += 1
+
+    def __exit__(self, *_: object) -> None:
+        with self._lock:
+            self._inside -= 1
+            if self._inside == 0:
+                _limit(self._before)
+
+
+one_thread = _OneThread()

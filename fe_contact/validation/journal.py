@@ -1,0 +1,156 @@
+"""How a study comes by its rows: measured by several processes, kept on disk one by one, taken from there again.
+
+A row is what a call gives: a function of the suite and its arguments. It is kept the moment it is known, as a line of a
+file of its study, under its call and the suite that answered. So a study that was interrupted measures the rest alone,
+and what is asked of another suite, of another scene or with other settings is measured anew.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from collections.abc import Generator, Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing, contextmanager
+from functools import cache, partial
+from hashlib import sha256
+from importlib.util import find_spec
+from itertools import islice
+from multiprocessing import active_children, connection, get_context, parent_process
+from pathlib import Path
+from threading import Thread
+from typing import Any, TypeVar, get_type_hints
+
+from fe_contact.errors import WorkerLost
+from fe_contact.progress import Progress
+from lumped import data
+from lumped.json_file import decoded, encoded
+from lumped.result import provenance
+
+PACKAGES = ("lumped", "meshes", "fe_contact")
+SOURCES = (".py", ".toml", ".csv")
+R = TypeVar("R")
+
+
+def rows(file: Path, calls: Mapping[str, partial[R]], progress: Progress, jobs: int = 1) -> dict[str, R]:
+    """What every call gives, by its name and in their order; what `file` keeps is not measured again.
+
+    `calls` are of functions of a module, annotated with what they return. A positional argument is what the row depends
+    on, and its `repr` says all of it; a keyword only saves work. `progress` hears the name of every row once. Raises
+    WorkerLost, and what a call raises; the rows until then are kept.
+    """
+    known = _kept(file)
+    for name in (name for name, call in calls.items() if _said(call) in known):
+        progress(name)
+    left = {name: call for name, call in calls.items() if _said(call) not in known}
+    with closing(measured(left, jobs)) as found:
+        for name, row in found:
+            call = left[name]
+            line = json.dumps({"suite": _suite(), "call": _said(call), "row": encoded(row, call.args)})
+            _keep(file, line)
+            known[_said(call)] = json.loads(line)["row"]  # as another run reads it
+            progress(name)
+    return {name: _row(call, known[_said(call)]) for name, call in calls.items()}
+
+
+def _row(call: partial[R], content: Any) -> R:
+    row: R = decoded(get_type_hints(call.func)["return"], content, call.args)
+    return row
+
+
+def _said(call: partial[Any]) -> str:
+    """A call in words: all that its row depends on, but for the suite."""
+    return f"{call.func.__module__}.{call.func.__qualname__}({', '.join(map(repr, call.args))})"
+
+
+@cache
+def _suite() -> str:
+    """A digest of the suite, of its data and of the versions beneath it."""
+    specs = [find_spec(package) for package in PACKAGES]
+    folders = [Path(place) for spec in specs if spec for place in spec.submodule_search_locations or ()]
+    found = {path for folder in (*folders, data.directory()) for path in folder.rglob("*") if path.suffix in SOURCES}
+    digest = sha256(repr(provenance()).encode())
+    for path in sorted(found):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def _kept(file: Path) -> dict[str, Any]:
+    """Rows by their calls; a line that an interruption cut short is none, nor is another suite's."""
+    found = {}
+    for line in file.read_text(encoding="utf-8", errors="replace").splitlines() if file.exists() else ():
+        try:
+            content = json.loads(line)
+        except json.JSONDecodeError:
+            continue
+        if isinstance(content, dict) and content.get("suite") == _suite():
+            found[content["call"]] = content["row"]
+    return found
+
+
+def _keep(file: Path, line: str) -> None:
+    """A line more, at once; a line's end before it parts it from one that was cut short."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with file.open("a", encoding="utf-8") as lines:
+        lines.write(f"\n{line}")
+
+
+def measured(calls: Mapping[str, partial[R]], jobs: int) -> Generator[tuple[str, R], None, None]:
+    """Names and results of calls as they come, from so many processes; from this one where one is enough.
+
+    The processes are killed when the caller stops, fails or is interrupted: close the iterator then. They also end
+    when this process is killed itself. Raises WorkerLost, and whatever a call raises.
+    """
+    if min(jobs, len(calls)) < 2:
+        yield from ((name, call()) for name, call in calls.items())
+        return
+    strangers, left = active_children(), iter(calls.items())
+    # One pool a process: a pool of several may not hear that the last one which it started has died.
+    pools = [ProcessPoolExecutor(1, get_context("spawn"), _begin) for _ in range(min(jobs, len(calls)))]
+    try:
+        with _signals_held():  # a process that is interrupted while it starts would print how far it came
+            waiting = {pool.submit(call): (name, pool) for pool, (name, call) in zip(pools, left, strict=False)}
+        while waiting:
+            for done in wait(waiting, return_when=FIRST_COMPLETED).done:
+                name, pool = waiting.pop(done)
+                waiting |= {pool.submit(call): (following, pool) for following, call in islice(left, 1)}
+                yield name, done.result()
+    except BrokenProcessPool:
+        raise WorkerLost from None
+    finally:
+        with _signals_held():
+            for child in active_children():
+                if child not in strangers:
+                    child.kill()
+        for pool in pools:
+            pool.shutdown(cancel_futures=True)
+
+
+@contextmanager
+def _signals_held() -> Iterator[None]:
+    """Signals that end this process come afterwards; processes started meanwhile hold them too."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _begin() -> None:
+    """In a new process: an interrupt is its parent's to answer, and without its parent it ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, signal.SIGTERM})
+    Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    assert parent is not None
+    connection.wait([parent.sentinel])
+    os._exit(1)
