@@ -14,9 +14,9 @@ from lumped.result import Result, meets
 from lumped.scene import Scene
 
 ROUNDS = 3  # refinements before giving up
-LONG = 5e7  # work that is told before it begins: ten seconds
+LONG = 3e7  # work that is told before it begins: five seconds
 STEP = 2_000  # unknowns whose share of a step takes as long as all the rest of it
-MOST_WORK = 3e8  # unknowns, and those of a step itself, times steps, of all marches: about a minute
+MOST_WORK = 1e8  # unknowns, and those of a step itself, times steps, of all marches: some fifteen seconds
 
 
 def certified(
