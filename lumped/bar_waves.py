@@ -186,8 +186,12 @@ def _falls(pressing: float, rate: float) -> float:
 
 
 def _closes(gap: float, pressing: float, rate: float) -> float:
-    """The first s > 0 at which gap - pressing s - rate s^2/2 = 0."""
-    roots = np.roots([-0.5 * rate, -pressing, gap]) if rate or pressing else np.empty(0)
+    """The first s > 0 at which gap - pressing s - rate s^2/2 = 0; none where the gap is still open when it turns."""
+    square = pressing**2 + 2.0 * rate * gap
+    if square < 0.0:
+        return math.inf
+    added = pressing + math.copysign(math.sqrt(square), pressing)  # without a difference of like numbers
+    roots = [-added / rate] if rate else []
+    roots += [2.0 * gap / added] if added else []
     least = ROUNDING * abs(pressing / rate) if rate else 0.0
-    real = [float(root.real) for root in roots if abs(root.imag) <= 1e-12 * abs(root) and root.real > least]
-    return min(real, default=math.inf)
+    return min((root for root in roots if root > least), default=math.inf)

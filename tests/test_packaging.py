@@ -62,7 +62,7 @@ def test_each_readme_command_is_one_line() -> None:
 
 def test_ci_runs_exactly_the_test_command() -> None:
     script = ROOT / ".ci" / "run"
-    assert script.read_text(encoding="utf-8").splitlines()[-1] == TEST_COMMAND
+    assert script.read_text(encoding="utf-8").splitlines().count(TEST_COMMAND) == 1
     assert os.access(script, os.X_OK)
 
 
