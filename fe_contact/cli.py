@@ -12,7 +12,7 @@ from typing import NoReturn
 
 from fe_contact import __version__
 from fe_contact.commands import base
-from lumped.errors import FeContactError, printable
+from lumped.errors import SHOWN_OF_A_LINE, FeContactError, printable, shortened
 from lumped.members import available, get
 
 COMMANDS = "fe_contact.commands"
@@ -23,7 +23,7 @@ class OneLine(argparse.ArgumentParser):
     """A parser that says what is wrong in one line, which no terminal obeys."""
 
     def error(self, message: str) -> NoReturn:
-        self.exit(BAD_INPUT, f"{self.prog}: {printable(message)}; see {self.prog} --help\n")
+        self.exit(BAD_INPUT, f"{self.prog}: {shortened(printable(message), SHOWN_OF_A_LINE)}; see {self.prog} --help\n")
 
 
 def parser() -> OneLine:

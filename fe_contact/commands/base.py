@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any, Protocol, TypeVar
 
 from fe_contact.numerics import faults
@@ -113,9 +113,15 @@ def folder(args: argparse.Namespace, command: str, name: str) -> Path:
     """
     chosen: Path | None = args.out
     where = chosen or Path("fe-contact-out") / f"{command}-{name}"
+    if not str(where).isprintable():
+        raise BadInput(Fault("--out", str(where), "accepted: a folder with a printable name"))
     standing = next(place for place in (where, *where.absolute().parents) if exists(place))
-    if not standing.is_dir() or not os.access(standing, os.W_OK) or not str(where).isprintable():
-        raise BadInput(Fault("--out", str(where), "accepted: a folder that can be written, its name printable"))
+    try:
+        with TemporaryFile(dir=standing):
+            pass
+    except OSError as error:
+        reason = f"{error.strerror}; accepted: a folder that can be written"
+        raise BadInput(Fault("--out", str(where), reason)) from error
     return where
 
 
