@@ -49,9 +49,9 @@ class OneLine(argparse.ArgumentParser):
     """A parser that says what is wrong in one line, which no terminal obeys."""
 
     def error(self, message: str) -> NoReturn:
-        from lumped.errors import printable
+        from lumped.errors import SHOWN_OF_A_LINE, printable, shortened
 
-        self.exit(BAD_INPUT, f"{self.prog}: {printable(message)}; see {self.prog} --help\n")
+        self.exit(BAD_INPUT, f"{self.prog}: {shortened(printable(message), SHOWN_OF_A_LINE)}; see {self.prog} --help\n")
 
 
 def parser() -> OneLine:

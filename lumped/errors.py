@@ -11,6 +11,7 @@ from typing import Any, ClassVar
 
 SHOWN_FAULTS = 20
 SHOWN_CHARACTERS = 60  # of a value or a key that is told back
+SHOWN_OF_A_LINE = 300  # of a file's name, or of another line that holds what the user wrote
 
 
 class FeContactError(Exception):
@@ -45,8 +46,8 @@ class Fault:
         return Fault(source, inside, self.message)
 
     def __str__(self) -> str:
-        parts = (self.source, shortened(printable(self.key)), self.message)
-        return ": ".join(printable(part) for part in parts if part)
+        source, key = shortened(printable(self.source), SHOWN_OF_A_LINE), shortened(printable(self.key))
+        return ": ".join(part for part in (source, key, printable(self.message)) if part)
 
 
 class BadInput(FeContactError):
@@ -95,9 +96,9 @@ def printable(text: str) -> str:
     return line if line.isprintable() else "".join(c if c.isprintable() else ascii(c)[1:-1] for c in line)
 
 
-def shortened(text: str) -> str:
+def shortened(text: str, most: int = SHOWN_CHARACTERS) -> str:
     """The text, the end of a long one left out."""
-    return text if len(text) <= SHOWN_CHARACTERS else text[: SHOWN_CHARACTERS - 3] + "..."
+    return text if len(text) <= most else text[: most - 3] + "..."
 
 
 def shown(value: object) -> str:

@@ -9,7 +9,9 @@ import os
 import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any, Protocol, TypeVar
 
 from fe_contact.numerics import faults
@@ -126,13 +128,13 @@ def folder(args: argparse.Namespace, command: str, name: str) -> Path:
 def _writable(where: Path) -> bool:
     """Whether a folder is there, or can be made, in which files can be made."""
     try:
-        where.lstat()
-    except FileNotFoundError:  # it can be made where the folder above it is
-        pass
+        with suppress(FileNotFoundError):  # it can be made in the folder above it
+            where.lstat()
+        standing = next(place for place in (where, *where.absolute().parents) if os.path.lexists(place))
+        with TemporaryFile(dir=standing):
+            return str(where).isprintable()
     except (OSError, ValueError):  # a name too long, or with a null byte; a file where a folder should be
         return False
-    standing = next(place for place in (where, *where.absolute().parents) if os.path.lexists(place))
-    return standing.is_dir() and os.access(standing, os.W_OK) and str(where).isprintable()
 
 
 def _part_of_a_name(text: str) -> str:

@@ -98,7 +98,7 @@ def faults_of() -> Callable[..., list[str]]:
             wrong += [f"wrote {name}" for name in ended.written]
             wrong += [f"names no key: {line}" for line in ended.said if not re.match(named, line)]
             wrong += [] if 1 <= len(ended.said) <= MOST_LINES else [f"{len(ended.said)} lines"]
-        return [f"{' '.join(ended.arguments)!r}: {reason}" for reason in wrong]
+        return [f"{' '.join(ended.arguments)[:300]!r}: {reason}" for reason in wrong]
 
     return found
 
