@@ -2,17 +2,20 @@
 
     python tests/small_studies.py STUDY DIR [STUDY DIR ...]
 
-Says "begun" when all is imported. What is made small stands before `if __name__`, so that it is in the processes of a
-study, too.
+Says "begun" when a command has begun. What is made small stands before `if __name__`, so that it is in the processes of
+a study, too.
 """
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 from fe_contact.cli import main
+from fe_contact.commands import base
 from fe_contact.validation import (
     blocks,
     exponents,
@@ -54,6 +57,15 @@ SMALLER: dict[ModuleType, dict[str, Any]] = {
     tradeoff_waves: {"LAWS": ("hertz",)},
     _rod: {"variations": lambda base, quick: iter([{"steps": 100}, {"steps": 200}])},
 }
+
+
+def begun(*arguments: Any, folder: Callable[..., Path] = base.folder) -> Path:
+    """What every command asks first: where its results go."""
+    sys.stdout.write("begun\n")
+    sys.stdout.flush()
+    return folder(*arguments)
+
+
 for study in available(STUDIES):
     SMALLER[get(STUDIES, study)] = {"cases": lambda quick, own=study: CASES if own == "table" else []}
 for module, changes in SMALLER.items():
@@ -65,7 +77,6 @@ if __name__ == "__main__":
     for name in ("table1", "exponents", "rings", "tradeoff", "stability"):  # charts follow from the rows
         chart = sys.modules[f"fe_contact.report.{name}"] = ModuleType(name)
         setattr(chart, f"plot_{name}", lambda *_: ())
-    sys.stdout.write("begun\n")
-    sys.stdout.flush()
+    base.folder = begun
     asked = zip(sys.argv[1::2], sys.argv[2::2], strict=True)
     sys.exit(max([main([*COMMANDS[study], "--out", where, "--quiet"]) for study, where in asked]))
