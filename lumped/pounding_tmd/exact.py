@@ -17,6 +17,7 @@ from lumped.pounding_tmd.phase import Follow, Phase
 from lumped.pounding_tmd.switches import Switch, switches
 
 Array = NDArray[np.float64]
+MOST_ROWS = 300_000  # some twenty seconds
 BLOCK = 64
 LEAST_SHARE = 0.01  # of the spacing: a row nearer to the start of a phase would show nothing but rounding
 SERIES_TERMS, SERIES_REACH = 18, 0.25

@@ -7,7 +7,7 @@ from lumped.key_table import read_table
 from lumped.keys import Number
 from lumped.pounding_tmd import reading
 from lumped.pounding_tmd.equations import Equations
-from lumped.pounding_tmd.march import march, route_of
+from lumped.pounding_tmd.march import march, most_rows, route_of
 from lumped.pounding_tmd.phase import ROWS_PER_PERIOD, row_spacing
 from lumped.pounding_tmd.result import PtmdResult
 from lumped.pounding_tmd.system import PoundingDamper, Start
@@ -41,7 +41,7 @@ def simulate(
         faults.append(Fault("start", "x1", "nothing moves without a damper; accepted: x1 or v1 that is not zero"))
     if faults:
         raise BadInput(faults)
-    spacing = row_spacing(equations, start, end_time, rows_per_period)
+    spacing = row_spacing(equations, start, end_time, rows_per_period, most_rows(route))
     follow = route_of(route, equations, start, spacing, end_time)
     track = Track(equations, march(equations, start, end_time, follow))
     found = reading.contacts(track)

@@ -17,6 +17,7 @@ from lumped.pounding_tmd.system import Start
 
 Array = NDArray[np.float64]
 RTOL, ATOL = 1e-12, 1e-14  # the second relative to the largest values that the energy of the start allows
+MOST_ROWS = 30_000  # some minutes: each is a step of twelve stages, and more where a switch is located
 INTEGRALS = 6
 NEAR = 1e-4  # of the longest step: a slope is a difference over it
 BEGUN = 1e-9  # of the change in a step: where time is long beside a step, a switch lies no nearer to zero

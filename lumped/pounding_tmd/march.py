@@ -19,6 +19,11 @@ def route_of(name: str, equations: Equations, start: Start, spacing: float, end_
     return integrated.route(equations, start, spacing, end_time)
 
 
+def most_rows(name: str) -> int:
+    """How many rows a route may take."""
+    return exact.MOST_ROWS if name == "exact" else integrated.MOST_ROWS
+
+
 def march(equations: Equations, start: Start, end_time: float, follow: Follow) -> tuple[Phase, ...]:
     """The phases from t = 0 to `end_time`, s. Raises NotReached when the ring switches without end."""
     phases: list[Phase] = []

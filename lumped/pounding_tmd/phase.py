@@ -15,7 +15,6 @@ from lumped.pounding_tmd.system import Start
 
 Array = NDArray[np.float64]
 ROWS_PER_PERIOD = 64
-MOST_ROWS = 1_000_000
 # Beyond this ratio of row to relaxation time the exponentials of a phase lose the digits that are promised.
 STIFFEST = 1e5
 
@@ -48,14 +47,14 @@ class Phase:
 Follow = Callable[[Stages, Array, float], tuple[Phase, Switch | None]]
 
 
-def row_spacing(equations: Equations, start: Start, end_time: float, rows: int = ROWS_PER_PERIOD) -> float:
-    """Time between two rows, s: a share of the shortest period, the ring as stiff as it can be.
+def row_spacing(equations: Equations, start: Start, end_time: float, rows: int, most: int) -> float:
+    """Time between two of ``rows`` a period, s: a share of the shortest one, the ring as stiff as it can be.
 
-    Raises BadInput when the rows would be too many or the ring relaxes far too fast for them.
+    Raises BadInput when the rows would be more than ``most`` or the ring relaxes far too fast for them.
     """
     spacing = 2.0 * np.pi / (rows * fastest(equations, start))
-    if end_time > spacing * MOST_ROWS:
-        message = f"more than {MOST_ROWS} rows; accepted: at most {spacing * MOST_ROWS:.3g} s for these oscillators"
+    if end_time > spacing * most:
+        message = f"more than {most} rows; accepted: at most {spacing * most:.3g} s for these oscillators"
         raise BadInput(Fault("motion", "end_time", message))
     shortest = STIFFEST**-1 * spacing
     if equations.surface is not None:

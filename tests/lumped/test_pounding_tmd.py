@@ -23,6 +23,7 @@ from lumped.pounding_tmd.crossing import first_fall
 from lumped.pounding_tmd.equations import Equations
 from lumped.pounding_tmd.exact import Flow
 from lumped.pounding_tmd.exponential import exponential
+from lumped.pounding_tmd.march import most_rows
 
 POLE, DAMPER = Oscillator(20.0, 7248.9, 7.615), Oscillator(1.67, 592.9, 0.6312)
 SOLID = sls.of(E0=0.6e6, R1=0.5, R2=0.01)
@@ -534,3 +535,10 @@ def test_exponentials_with_a_closed_form() -> None:
 def test_bad_input_is_named(bad: Any, named: str) -> None:
     with pytest.raises(BadInput, match=named):
         bad()
+
+
+@pytest.mark.parametrize("route", ["exact", "integrated"])
+def test_a_motion_of_too_many_rows_is_refused_before_it_begins(route: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lumped.pounding_tmd.free_vibration.march", lambda *_: pytest.fail("marched"))
+    with pytest.raises(BadInput, match=rf"more than {most_rows(route)} rows; accepted: at most "):
+        simulate(PLAIN, Start(0.05), 1e6, route=route)
