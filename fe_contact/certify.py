@@ -39,7 +39,6 @@ from fe_contact.trusted_order import trusted_orders
 from lumped.geometry import Geometry
 from lumped.members import get
 
-MANY_STEPS = 5_000  # of all marches, some ten seconds, which are told before they begin
 MARCHES = 2.5  # steps of all marches of a contact over those of the finest one: half and a quarter, and three of these
 SAFETY = 1.25
 LEAST_ORDER = {"penalty": 1, "far_field": 2}
@@ -115,7 +114,7 @@ def certify(
     """
     message = f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements along the contact radius"
     expected = MARCHES * impacts * numerics.steps
-    progress(message, lasting=expected > MANY_STEPS)
+    progress(message)
     runs = Runs(strike, geometry, impacts, Count(progress, message, expected))
     followed = runs.follow(numerics)
     judged = [_judged(runs, number, numerics, impacts == 1) for number in range(len(followed.contacts))]

@@ -22,23 +22,22 @@ Counted = Callable[[float], None]  # told that so many parts of a work are done
 class Progress(Protocol):
     """Told what is being done and, where it is known, how much of the ``total`` of it is ``done``, in any unit.
 
-    ``lasting``: worth a line even where nobody watches a terminal. It may be told as often as it is done: a word more
-    costs a look at the clock.
+    It may be told as often as it is done: a word more costs a look at the clock.
     """
 
-    def __call__(self, message: str, done: float = 0, total: float = 0, lasting: bool = False) -> None: ...
+    def __call__(self, message: str, done: float = 0, total: float = 0) -> None: ...
 
 
-def silent(message: str, done: float = 0, total: float = 0, lasting: bool = False) -> None:
+def silent(message: str, done: float = 0, total: float = 0) -> None:
     """Nobody listens."""
 
 
 def to_all(listeners: Sequence[Progress]) -> Progress:
     """Several listeners as one."""
 
-    def told(message: str, done: float = 0, total: float = 0, lasting: bool = False) -> None:
+    def told(message: str, done: float = 0, total: float = 0) -> None:
         for listener in listeners:
-            listener(message, done, total, lasting)
+            listener(message, done, total)
 
     return told if listeners else silent
 
@@ -105,7 +104,7 @@ class Line:
     ) -> None:
         self._stream, self._pace, self._width, self._shown = stream, Pace(clock, OFTEN), width, 0
 
-    def __call__(self, message: str, done: float = 0, total: float = 0, lasting: bool = False) -> None:
+    def __call__(self, message: str, done: float = 0, total: float = 0) -> None:
         """Tell; see :class:`Progress`."""
         global _line
         if self._pace.due(message, done, total):
@@ -139,17 +138,6 @@ def clear() -> None:
         _line = None
 
 
-def lasting_to(stream: TextIO) -> Progress:
-    """One that hears only what is worth a line where nobody watches."""
-
-    def told(message: str, done: float = 0, total: float = 0, lasting: bool = False) -> None:
-        if lasting:
-            with suppress(OSError, ValueError):
-                stream.write(f"fe-contact: {message} ...\n")
-
-    return told
-
-
 class Log:
     """A line of a file for each word, with the time of day, s since the start, what is done and about what is left."""
 
@@ -161,7 +149,7 @@ class Log:
     ) -> None:
         self._write, self._pace, self._today = write, Pace(clock, SELDOM), today
 
-    def __call__(self, message: str, done: float = 0, total: float = 0, lasting: bool = False) -> None:
+    def __call__(self, message: str, done: float = 0, total: float = 0) -> None:
         """Tell; see :class:`Progress`."""
         if self._pace.due(message, done, total):
             left = self._pace.left(done, total)

@@ -15,7 +15,7 @@ from tempfile import TemporaryFile
 from typing import Any, Protocol, TypeVar
 
 from fe_contact.numerics import faults
-from fe_contact.progress import Progress, clear, lasting_to, log_to, terminal, to_all
+from fe_contact.progress import Progress, clear, log_to, terminal, to_all
 from lumped.errors import BadInput, Fault, shown
 from lumped.indenter import Indenter
 from lumped.result import LedgerEntry, Result
@@ -146,8 +146,7 @@ def _part_of_a_name(text: str) -> str:
 
 
 def progress_of(args: argparse.Namespace) -> Progress:
-    """Progress in the last line of a terminal, what lasts long also where stderr is piped, neither with --quiet; and
-    into the file of --log.
+    """Progress in the last line of a terminal, but not with --quiet, and into the file of --log.
 
     Raises BadInput, before any work, where that cannot be written.
     """
@@ -157,8 +156,8 @@ def progress_of(args: argparse.Namespace) -> Progress:
             listeners.append(log_to(Path(args.log)))
         except (OSError, ValueError) as failure:  # a name with a null character is none
             raise BadInput(Fault("--log", args.log, f"{failure}: accepted a file that can be written")) from None
-    if not args.quiet:
-        listeners.append(terminal() if sys.stderr.isatty() else lasting_to(sys.stderr))
+    if sys.stderr.isatty() and not args.quiet:
+        listeners.append(terminal())
     return to_all(listeners)
 
 

@@ -22,7 +22,6 @@ MARCHES = 2.5  # that a budget takes beside the finest one, at most, in units of
 FLIGHT = 1.5  # a contact and the flight that follows, in contacts
 MANY = 12  # contacts that are expected at most: few bodies come back so often
 MOST_BYTES = 2e9
-LONG = 1e7  # work that is told before it begins: a quarter of a minute
 
 
 @dataclass(frozen=True)
@@ -55,11 +54,6 @@ class Cost:
     def bytes(self) -> float:
         """Of memory."""
         return AT_LEAST + BYTES * self.unknowns
-
-    @property
-    def long(self) -> bool:
-        """Whether it is worth a word before it begins."""
-        return self.work > LONG
 
     def __str__(self) -> str:
         return (

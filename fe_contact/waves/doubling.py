@@ -14,7 +14,6 @@ from lumped.result import Result, meets
 from lumped.scene import Scene
 
 ROUNDS = 3  # refinements before giving up
-LONG = 3e7  # work that is told before it begins: five seconds
 STEP = 2_000  # unknowns whose share of a step takes as long as all the rest of it
 MOST_WORK = 1e8  # unknowns, and those of a step itself, times steps, of all marches: some fifteen seconds
 
@@ -34,10 +33,10 @@ def certified(
     """
     cpu, wall = time.process_time(), time.perf_counter()
     numerics, marched = chosen.numerics, cache(run)
-    runs, twice = dict[Run, None](), 0.0
+    runs = dict[Run, None]()
     for attempt in range(ROUNDS + 1):
         assert isinstance(numerics, WaveNumerics)
-        progress(f"{numerics.steps} steps of waves along a line", lasting=twice > LONG)
+        progress(f"{numerics.steps} steps of waves along a line")
         found = Bars(marched(numerics), {cause: marched(settings) for cause, settings in varied(numerics).items()})
         runs |= dict.fromkeys(found.runs)
         stuck = "steps" in chosen.pinned or attempt == ROUNDS or 2 * numerics.steps > most_steps

@@ -65,7 +65,7 @@ def refined_to_tolerance(
         try:
             cost = cost_of(scene, finer, moving)
             cost.check(runs.spent)
-            progress(f"waves, {cost}", lasting=cost.long)
+            progress(f"waves, {cost}")
             runs.counted = Count(progress, f"waves, {cost.unknowns} unknowns", cost.all_steps)
             certified, numerics = certify(runs, finer), finer
         except MemoryTooSmall as failure:

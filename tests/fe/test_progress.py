@@ -9,7 +9,7 @@ import pytest
 
 from fe_contact import cli
 from fe_contact.methods import simulate
-from fe_contact.progress import OFTEN, Count, Line, Log, clear, lasting_to, to_all
+from fe_contact.progress import OFTEN, Count, Line, Log, clear
 from fe_contact.reference import solve
 from lumped import Scene
 
@@ -94,15 +94,6 @@ def test_a_log_has_a_line_a_word_with_times_and_shares() -> None:
     assert first.endswith("Z, 0.0 s, begun")
     assert second.endswith("Z, 2.0 s, rows, 1 of 4")
     assert third.endswith("Z, 5.0 s, rows, 2 of 4, about 3 s left")
-
-
-def test_where_nobody_watches_only_what_lasts_is_told() -> None:
-    stream, heard = io.StringIO(), list[str]()
-    told = to_all([lasting_to(stream), lambda message, *_: heard.append(message)])
-    told("quick")
-    told("about an hour", lasting=True)
-    assert stream.getvalue() == "fe-contact: about an hour ...\n"
-    assert heard == ["quick", "about an hour"]
 
 
 @pytest.mark.parametrize("name", ["polymer-sphere", "ball-bouncing"])
