@@ -74,11 +74,13 @@ class Pace:
 
     def due(self, message: str, done: float, total: float) -> bool:
         """Whether it is time for a word: what is new, or all done, is said at once."""
-        now = self.clock()
-        if total != self.counted[1] or done < self.counted[0]:  # another part begins
+        now, (before, expected) = self.clock(), self.counted
+        more = done >= before and done >= total  # than was expected, where that grows with it
+        if done < before or (total != expected and not more):  # another part begins
             self.since = now
+        ended = done >= total > 0 and not before >= expected > 0
         again, self.message, self.counted = message == self.message, message, (done, total)
-        if again and now - self.spoke < self.pause and not done >= total > 0:
+        if again and now - self.spoke < self.pause and not ended:
             return False
         self.spoke = now
         return True
@@ -109,10 +111,10 @@ class Line:
         global _line
         if self._pace.due(message, done, total):
             _line = self
-            counted = f", {_share(done, total)}" if total else ""
             left = self._pace.left(done, total)
-            rest = f", about {_spoken(left)} left" if left else ""
-            self._write(f"fe-contact: {message}{counted}{rest} ...")
+            parts = [_share(done, total)] if total else []
+            parts += [f"about {_spoken(left)} left"] if left else []
+            self._write(f"fe-contact: {', '.join([*parts, message])} ...")  # a narrow terminal cuts the message
 
     def clear(self) -> None:
         """Leave the line empty, as if nothing had been told."""
