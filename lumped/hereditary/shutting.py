@@ -111,8 +111,9 @@ class _Fallen(NamedTuple):
 def _power(problem: Hereditary, state: Array) -> tuple[float, float]:
     """Power and unit of the load y = unit depth^power around a state; F falls about straight with y, not with depth."""
     load, slope = (float(value[0]) for value in problem.loads(state[:1]))
-    power = slope * float(state[DEPTH]) / load
-    return power, load / float(state[DEPTH]) ** power
+    depth = float(state[DEPTH])
+    power = slope * depth / load
+    return power, abs(load) / abs(depth) ** power  # the load is odd, of a surface that is drawn out too
 
 
 def _mean_modulus(problem: Hereditary, duration: float) -> float:

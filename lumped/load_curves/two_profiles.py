@@ -47,11 +47,12 @@ class TwoProfiles(HalfSpaceCurve):
         asked = np.asarray(depth, dtype=float)
         wanted = asked[asked > 0.0]
         radius = np.minimum(self.first.contact_radius(wanted), self.second.contact_radius(wanted))
-        for _ in range(STEPS):
-            step = (self.depth(radius) - wanted) / self.depth_slope(radius)
-            radius = radius - step
-            if np.all(np.abs(step) <= LAST_STEP * radius):
-                break
+        with np.errstate(invalid="ignore"):  # of an infinite depth, which a solver asks that has lost its way
+            for _ in range(STEPS):
+                step = (self.depth(radius) - wanted) / self.depth_slope(radius)
+                radius = radius - step
+                if np.all(np.abs(step) <= LAST_STEP * radius):
+                    break
         found = np.zeros_like(asked)
         found[asked > 0.0] = radius
         return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from lumped.errors import addressed
 from lumped.pounding_tmd.case import Case
 from lumped.pounding_tmd.free_vibration import simulate
 from lumped.pounding_tmd.phase import ROWS_PER_PERIOD
@@ -66,12 +67,13 @@ class Study:
 def study(case: Case, progress: Callable[[str], None] = lambda message: None) -> Study:
     """Simulate the case twice and its simpler variants once. Raises BadInput and NotReached."""
     results: dict[str, PtmdResult] = {}
-    for name, system in variants(case.system).items():
-        progress(name)
-        if system.damper is not None or case.start.x1 or case.start.v1:
-            results[name] = simulate(system, case.start, case.end_time, case.window)
-    progress("finer rows")
-    again = simulate(case.system, case.start, case.end_time, case.window, rows_per_period=FINER)
+    with addressed(case.source, {"motion": "motion", "ring": "ring", "start": "motion"}):
+        for name, system in variants(case.system).items():
+            progress(name)
+            if system.damper is not None or case.start.x1 or case.start.v1:
+                results[name] = simulate(system, case.start, case.end_time, case.window)
+        progress("finer rows")
+        again = simulate(case.system, case.start, case.end_time, case.window, rows_per_period=FINER)
     main = next(iter(results.values()))
     return Study(case, results, convergence(main, again), ledger(case, main))
 
