@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.linalg  # noqa: F401 - brings its own BLAS
 from hypothesis import settings
+from threadpoolctl import threadpool_limits
 
 from lumped import Result
 
@@ -41,6 +43,13 @@ def campaign_size(request: pytest.FixtureRequest) -> Callable[[int], int]:
     """
     full: bool = request.config.getoption("--full")
     return lambda n: n if full else -(-n // TENTH)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def one_blas_thread() -> Iterator[None]:
+    """Tests also call what stands behind the front doors, and only these give BLAS one thread."""
+    with threadpool_limits(1, user_api="blas"):
+        yield
 
 
 @pytest.fixture

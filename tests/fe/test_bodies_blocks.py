@@ -139,7 +139,7 @@ def test_a_wide_washer_with_a_needle_hole_is_the_layer(base: str, outer_radius: 
 @pytest.mark.parametrize(
     ("key", "build"),
     [
-        ("target.inner_radius", lambda: Washer(0.01, 0.01, 0.01, "bonded")),
+        ("inner_radius", lambda: Washer(0.01, 0.01, 0.01, "bonded")),
         ("striker.radius", lambda: washer(0.004, "bonded")),
         ("striker.shape", lambda: Indenter(prism.of(AREA, 0.1), polymer(), Washer(0.005, 0.01, 0.01, "bonded"))),
         ("striker.shape", lambda: Indenter(Punch(0.01), polymer(), Plane())),

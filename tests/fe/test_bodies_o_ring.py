@@ -75,7 +75,7 @@ def test_the_bar_covers_wherever_the_edges_lie(slenderness: float, nu: float) ->
 @pytest.mark.parametrize(
     ("key", "build"),
     [
-        ("target.section_radius", lambda: ORing(0.005, 0.005)),
+        ("section_radius", lambda: ORing(0.005, 0.005)),
         ("striker.radius", lambda: Indenter(Punch(0.054), Material(Relaxation(1e6), 0.3), ORing(0.05, 0.005))),
         ("striker.shape", lambda: Indenter(Sphere(1.0), Material(Relaxation(1e6), 0.3), ORing(0.05, 0.005))),
         ("--depths", lambda: indent(pressed(0.05), (0.01,), {})),

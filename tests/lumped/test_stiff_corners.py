@@ -72,5 +72,5 @@ def test_a_weight_far_above_the_impact_is_named_not_divided_by() -> None:
     soft = Material(Relaxation(2.29e6, (1.79e6, 2.01e6), (5.7e-3, 2.34e-2)), 0.49)
     blunt, layer = PowerProfile(2316.7, 2.615), Layer(1.524e-4, "sliding")
     scene = Scene(blunt, 0.18423, 8.179e-5, soft, target=layer, model=Model(gravity=9.81))
-    with pytest.raises(BadInput, match="below the thickness"):
+    with pytest.raises(BadInput, match="below the layer's thickness"):
         correspondence.estimate(scene)
