@@ -22,10 +22,12 @@ def _libraries() -> ThreadpoolController:
 
     Kept, because finding them takes longer than a lumped law.
     """
+    import numpy as np
     from scipy.linalg import blas
     from threadpoolctl import ThreadpoolController
 
-    blas.dgemv(1.0, [[1.0]], [1.0])  # takes its work space now: with no memory left it would ask for it for ever
+    one = np.ones((1, 1))
+    blas.dgemv(1.0, one, one[0])  # takes its work space now: with no memory left it would ask for it for ever
     return ThreadpoolController().select(user_api="blas")
 
 
