@@ -100,9 +100,10 @@ class Several(Budget):
 
 @dataclass(frozen=True)
 class Certified(Several):
-    """The same with the ``surface`` of the finest run."""
+    """The same with the ``surface`` of the finest run and its settings, placed where the contact turned out to be."""
 
     surface: Struck
+    numerics: Numerics
 
 
 def certify(
@@ -116,7 +117,8 @@ def certify(
     expected = MARCHES * impacts * numerics.steps
     progress(message)
     runs = Runs(strike, geometry, impacts, Count(progress, message, expected))
-    followed = runs.follow(numerics)
+    numerics = runs.placed(numerics, numerics.steps // 4 if numerics.steps >= LEAST_HALVED else numerics.steps)
+    followed = runs.follow(numerics, accounted=True)
     judged = [_judged(runs, number, numerics, impacts == 1) for number in range(len(followed.contacts))]
     surface = runs.surface(numerics)
     work = runs.work(surface)
@@ -124,7 +126,7 @@ def certify(
         Budget(curve, contact.march, changes, work)
         for (curve, changes), contact in zip(judged, followed.contacts, strict=True)
     ]
-    return Certified(row[0].curve, row[0].march, row[0].changes, work, followed, tuple(row[1:]), surface)
+    return Certified(row[0].curve, row[0].march, row[0].changes, work, followed, tuple(row[1:]), surface, numerics)
 
 
 def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[Curve, Mapping[str, Causes]]:
@@ -207,8 +209,8 @@ def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics) -
         fourfold = curve(numerics.varied(steps=4 * numerics.steps))
         if double is None or fourfold is None or not _end_alike(fourfold, double):
             return _TimeSteps(fine, None, (), 4 * numerics.steps)
-        best = extrapolated(fourfold, double, order)
-        return _TimeSteps(fine, Change(fine, best, SAFETY), (), 4 * numerics.steps)
+        best, before = extrapolated(fourfold, double, order), extrapolated(double, fine, order)
+        return _TimeSteps(fine, Change(fine, best, SAFETY), (Change(best, before, SAFETY),), 4 * numerics.steps, True)
     half = curve(numerics.varied(steps=numerics.steps // 2))
     quarter = curve(numerics.varied(steps=numerics.steps // 4))
     if half is None or quarter is None or not _end_alike(fine, half, quarter):

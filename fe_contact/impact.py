@@ -15,7 +15,7 @@ from fe_contact.numerics import Numerics
 from fe_contact.progress import Counted, uncounted
 from fe_contact.separation import time_left
 from fe_contact.steps import State, Step, Stepping
-from fe_contact.time_grid import GROWTH_AFTER, share_of_rest, step_length
+from fe_contact.time_grid import growth, share_of_rest, step_length
 
 PREDICTIONS = 2  # of the separation: how far they lie apart tells how well its time can be read
 NOISE = 1e-4  # share of the peak force below which a contact problem may drown in the mesh's error
@@ -117,8 +117,8 @@ class _Marcher:
         """What does not separate swings about its weight, which no long step would see, until it has settled."""
         strike, time = self.strike, self.numerics.contact_time
         swing = abs(last.force / strike.mass - strike.gravity) + abs(last.state.velocity) / time
-        settled = GROWTH_AFTER * last.length if swing < SETTLED * self.numerics.tolerance * strike.gravity else 0.0
-        return max(settled, LONGEST * time / self.numerics.steps)
+        steps, small = self.numerics.steps, SETTLED * self.numerics.tolerance * strike.gravity
+        return max(growth(steps) * last.length if swing < small else 0.0, LONGEST * time / steps)
 
     def _flight(self, state: State, left: float) -> list[State]:
         """The little time to separation, over which the force is below any rounding that matters."""

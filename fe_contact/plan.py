@@ -26,7 +26,7 @@ FIXED_ELEMENTS = 2.0  # the same on a mesh that stays, four times refined where 
 SPARE = 1.2  # such a mesh is fine beyond the largest contact, where the gap tells how wide that is
 RIM_PENALTY = 16.0  # penalty under a rim over the usual: the pressure is infinite there
 VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
-STEPS_AT_DEFAULT = 40
+STEPS_AT_DEFAULT = 40  # and no fewer at any tolerance: halved twice, they still tell something
 STEPS_ORDER = 0.176  # steps grow with tolerance to this power: 60 at 1e-4
 AT_TOUCH = 1e-12  # share of the contact before which a peak is the touch itself, but for rounding
 SOONEST_PEAK = 1e-6  # share of the contact below which the time grid would lose its digits
@@ -122,9 +122,8 @@ def _stays(scene: Scene) -> bool:
 def _steps(tolerance: float, peak_share: float) -> int:
     """Time steps per contact, a multiple of four so that the budget can halve them twice."""
     early = max(1.0, EARLY_PEAK / peak_share)
-    wanted = early * STEPS_AT_DEFAULT * (DEFAULT_TOLERANCE / tolerance) ** STEPS_ORDER
-    lowest, highest = RANGES["steps"]
-    return int(min(max(4 * math.ceil(wanted / 4), 2 * lowest), highest))
+    wanted = early * STEPS_AT_DEFAULT * max(DEFAULT_TOLERANCE / tolerance, 1.0) ** STEPS_ORDER
+    return int(min(4 * math.ceil(wanted / 4), RANGES["steps"][1]))
 
 
 def refined(numerics: Numerics, cause: str) -> Numerics:

@@ -88,7 +88,8 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     certified, outgrown = None, None
     for _ in range(ROUNDS + 1):
         try:
-            certified, numerics = certify(strike, scene.geometry, finer, scene.motion.impacts, progress), finer
+            certified = certify(strike, scene.geometry, finer, scene.motion.impacts, progress)
+            numerics = certified.numerics
         except MemoryTooSmall as failure:
             outgrown = failure
             finer = finer.varied(contact_radius=1.5 * finer.contact_radius)

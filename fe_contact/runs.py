@@ -19,6 +19,8 @@ from lumped.errors import NotReached
 from lumped.geometry import Geometry
 
 PILOT_STEPS = 24  # of a march that only places the steps of others
+PLACED = 0.05  # share by which a contact may last longer, or less, than was expected
+PLACINGS = 4  # marches of few steps that look for its end, where an estimate is out by an order
 
 
 @dataclass(frozen=True)
@@ -48,11 +50,24 @@ class Runs:
         self._curves: dict[Numerics, tuple[Curve, ...]] = {}
         self._places: dict[int, dict[str, float]] = {}
 
-    def follow(self, settings: Numerics) -> Followed:
+    def placed(self, settings: Numerics, few: int) -> Numerics:
+        """The settings for a contact as long, and as wide, as a march of ``few`` steps finds it.
+
+        Where it fails, or does not separate, what was expected stands.
+        """
+        for _ in range(PLACINGS):
+            found = self.curve(0, settings.varied(steps=few))
+            if found is None or not found.separated or abs(found.duration / settings.contact_time - 1.0) <= PLACED:
+                break
+            share = share_of_peak(found.quantities["peak_time"] or 0.0, found.duration)
+            settings = settings.varied(contact_time=found.duration, peak_share=share)
+        return settings
+
+    def follow(self, settings: Numerics, accounted: bool = False) -> Followed:
         """One run, its contact radii expected to be those of the first with as many steps; raises where it fails."""
         surface, expected = self.surface(settings), self._radii.get(settings.steps, [])
         placed = partial(self._placed, settings, surface)
-        followed = follow(self._strike, surface, self._impacts, placed, not self._marches, expected, self._counted)
+        followed = follow(self._strike, surface, self._impacts, placed, accounted, expected, self._counted)
         marches = [contact.march for contact in followed.contacts]
         self._marches += marches
         self._radii.setdefault(settings.steps, [one.radius for one in marches])

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from functools import lru_cache
 
-GROWTH_AFTER = 1.25  # ratio of successive steps once the expected contact time is over
-LONG_AGO = 100  # steps later their length is beyond any use
-LAST_SHARE = (0.4, 0.75)  # least and largest share of the time left that a step near separation may take
+OVERTIME = 10.0  # past the expected end a step takes so much over the settings' steps of the time since: 1/4 of 40
+MOST_OF_REST = 0.75  # largest share of the time left that a step near separation may take
 
 
 def step_length(done: int, steps: int, peak_share: float) -> float:
@@ -25,7 +24,12 @@ def step_length(done: int, steps: int, peak_share: float) -> float:
     if done < steps:
         return elapsed((done + 1) / steps, peak_share) - elapsed(done / steps, peak_share)
     last = 1 - elapsed((steps - 1) / steps, peak_share)
-    return last * GROWTH_AFTER ** min(done - steps + 1, LONG_AGO)
+    return last * growth(steps) ** (done - steps + 1)
+
+
+def growth(steps: int) -> float:
+    """Ratio of successive steps once the expected contact time is over."""
+    return 1 + OVERTIME / steps
 
 
 def share_of_rest(left: float, steps: int) -> float:
@@ -34,7 +38,7 @@ def share_of_rest(left: float, steps: int) -> float:
     As many steps are left as the grading at the end of a contact would have: the time left falls with their square.
     """
     to_go = max(steps * math.sqrt(left / 3), 1.0)
-    return min(max((2 * to_go - 1) / to_go**2, LAST_SHARE[0]), LAST_SHARE[1])
+    return min((2 * to_go - 1) / to_go**2, MOST_OF_REST)
 
 
 @lru_cache(maxsize=4096)
