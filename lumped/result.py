@@ -184,7 +184,7 @@ def unmet(quantities: Mapping[str, Quantity], tolerance: float) -> str:
     for name in (*RULED_RELATIVE, *RULED_ABSOLUTE):
         quantity = quantities[name]
         scale = abs(quantity.value or 0.0) if name in RULED_RELATIVE else 1.0
-        if quantity.error is not None and quantity.error > tolerance * scale:
+        if quantity.error is not None and not quantity.error <= tolerance * scale:  # a bar that is no number is none
             reached = f"{quantity.error / scale:.2g}" if scale else f"{quantity.error:.2g} {quantity.unit}"
             found.append(f"{name} to {reached}")
     return f"tolerance {tolerance:g} not reached: {', '.join(found)}" if found else ""

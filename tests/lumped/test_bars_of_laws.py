@@ -8,10 +8,12 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import pytest
 from scipy.optimize import brentq
 from scipy.special import beta
 
-from lumped import Model, Scene, laws
+from lumped import Model, Quantity, Scene, laws
+from lumped.result import UNITS, meets
 from lumped.scene_tables import LawChoice
 
 CASES = 600
@@ -158,3 +160,10 @@ def test_what_creeps_to_rest_under_its_weight_is_said_to_rest() -> None:
         depth = (scene.mass * scene.gravity / law.k) ** (1.0 / law.alpha)
         assert abs(result.history.depth[-1] / depth - 1.0) < 1e-6
         assert abs(result.energy["residual"]) < 1e-6 * result.energy["in"]
+
+
+@pytest.mark.parametrize("name", ["peak_force", "restitution"])
+def test_a_bar_that_is_no_number_meets_no_tolerance(name: str) -> None:
+    known = {each: Quantity(1.0, 1e-6, unit) for each, unit in UNITS.items()}
+    assert meets(known, 1e-3)
+    assert not meets(known | {name: Quantity(1.0, math.nan, UNITS[name])}, 1e-3)
