@@ -11,16 +11,15 @@ import json
 import os
 import signal
 from collections.abc import Generator, Iterator, Mapping
-from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import closing, contextmanager
 from functools import cache, partial
 from hashlib import sha256
 from importlib.util import find_spec
 from itertools import islice
-from multiprocessing import active_children, connection, get_context, parent_process
+from multiprocessing import connection, get_context
+from multiprocessing.process import BaseProcess
 from pathlib import Path
-from threading import Thread
 from typing import Any, TypeVar, get_type_hints
 
 from fe_contact.errors import WorkerLost
@@ -110,26 +109,47 @@ def measured(calls: Mapping[str, partial[R]], jobs: int) -> Generator[tuple[str,
                 found = call()
             yield name, found
         return
-    strangers, left = active_children(), iter(calls.items())
-    # One pool a process: a pool of several may not hear that the last one which it started has died.
-    pools = [ProcessPoolExecutor(1, get_context("spawn"), _begin) for _ in range(min(jobs, len(calls)))]
+    left, asked = iter(calls.items()), dict[Any, str]()  # the calls that are at work, by the line to their process
+    workers: list[BaseProcess] = []
     try:
         with _signals_held():  # a process that is interrupted while it starts would print how far it came
-            waiting = {pool.submit(call): (name, pool) for pool, (name, call) in zip(pools, left, strict=False)}
-        while waiting:
-            for done in wait(waiting, return_when=FIRST_COMPLETED).done:
-                name, pool = waiting.pop(done)
-                waiting |= {pool.submit(call): (following, pool) for following, call in islice(left, 1)}
-                yield name, done.result()
-    except BrokenProcessPool:
+            for name, call in islice(left, jobs):
+                worker, line = _started()
+                workers.append(worker)
+                asked[line] = name
+                line.send(call)
+        while asked:
+            ready = connection.wait(list(asked))
+            for line in [one for one in asked if one in ready]:
+                name = asked.pop(line)
+                failure, found = line.recv()
+                for following, call in islice(left, 1):
+                    asked[line] = following
+                    line.send(call)
+                if failure is not None:
+                    raise failure
+                yield name, found
+    except (EOFError, ConnectionError):
         raise WorkerLost from None
     finally:
         with _signals_held():
-            for child in active_children():
-                if child not in strangers:
-                    child.kill()
-        for pool in pools:
-            pool.shutdown(cancel_futures=True)
+            for worker in workers:
+                worker.kill()
+        for worker in workers:
+            worker.join()
+
+
+def _started() -> tuple[BaseProcess, connection.Connection]:
+    """A process that answers calls, and the line to it.
+
+    A pool of the standard library would need semaphores, which some systems refuse to a user.
+    """
+    context = get_context("spawn")
+    ours, its = context.Pipe()
+    worker = context.Process(target=_answer, args=(its,), daemon=True)
+    worker.start()
+    its.close()
+    return worker, ours
 
 
 @contextmanager
@@ -145,17 +165,22 @@ def _signals_held() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _begin() -> None:
-    """In a new process: an interrupt is its parent's to answer, and without its parent it ends."""
+def _answer(line: connection.Connection) -> None:
+    """In a new process: what calls give, or how they fail, until nobody asks any more, as without a parent.
+
+    A second thread measures, so that this one hears the line's end at once. An interrupt is the parent's to answer.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, signal.SIGTERM})
-    Thread(target=_end_with_parent, daemon=True).start()
-    one_thread.__enter__()  # for as long as this process lives
 
+    def said(done: Future[Any]) -> None:
+        failure = done.exception()
+        line.send((failure, None if failure else done.result()))
 
-def _end_with_parent() -> None:
-    parent = parent_process()
-    assert parent is not None
-    connection.wait([parent.sentinel])
-    os._exit(1)
+    measuring = ThreadPoolExecutor(1, initializer=one_thread.__enter__)  # for as long as this process lives
+    try:
+        while True:
+            measuring.submit(line.recv()).add_done_callback(said)
+    except EOFError:
+        os._exit(1)

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import subprocess
 import sys
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from functools import partial
 
 import numpy as np
 import pytest
 from skfem import MeshTri
 
 import meshes
+from fe_contact.validation.journal import measured
 from meshes import GmshMissing, MeshError, triangles
 from meshes.errors import MeshTooLarge
 from meshes.session import session
@@ -144,9 +145,9 @@ def test_a_layer_outside_its_ranges_is_named(place: int, value: float, name: str
 
 
 def test_a_worker_process_makes_the_same_mesh() -> None:
-    with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
-        made = pool.submit(meshes.half_space, 2.0, 12.0).result()
-    assert identical(made, meshes.half_space(2.0, 12.0))
+    asked = partial(meshes.half_space, 2.0, 12.0)
+    for _, made in measured({"one": asked, "another": asked}, jobs=2):
+        assert identical(made, asked())
 
 
 def test_a_reader_who_leaves_is_an_error_after_meshing_too() -> None:
