@@ -61,6 +61,7 @@ def decoded(kind: Any, content: Any, given: Sequence[Any] = ()) -> Any:
     A kind is a dataclass or a named tuple, a number, a text, an array, a tuple, a mapping whose keys are texts or
     numbers, one of those or None, or Any: plain data.
     """
+    kind = getattr(kind, "__value__", kind)  # what an alias stands for, as NDArray is one from numpy 2.5 on
     origin, parts = get_origin(kind), get_args(kind)
     if isinstance(content, dict) and content.keys() == {GIVEN}:
         return given[content[GIVEN]]
