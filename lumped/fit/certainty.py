@@ -122,12 +122,14 @@ def _slopes(problem: Problem, values: Mapping[str, float], guess: Mapping[str, f
 
 
 def _inverse(slopes: Array, scales: Array) -> tuple[Array, bool]:
-    """(J^T J)^-1 of the values, and whether the parameters can be told apart."""
+    """(J^T J)^-1 of the values, and whether the parameters can be told apart; NaN where they cannot."""
     if not scales.size:
         return np.zeros((0, 0)), True
     _, singular, axes = np.linalg.svd(slopes * scales, full_matrices=False)
+    if not singular[0] < ALIKE * singular[-1]:
+        return np.full((scales.size, scales.size), np.nan), False
     spread = axes.T / singular * scales[:, None]
-    return spread @ spread.T, bool(singular[0] < ALIKE * singular[-1])
+    return spread @ spread.T, True
 
 
 def _student(freedom: int) -> float:

@@ -60,7 +60,8 @@ class Space:
         key = self.free[name]
         if name == TOUCH:
             return key.low, key.high
-        return max(key.low, guess / REACH), min(key.high, guess * REACH)
+        inside = min(max(guess, key.low), key.high)
+        return max(key.low, inside / REACH), min(key.high, inside * REACH)
 
 
 def space_of(law: str, scene: Scene, free: Sequence[str] | None, fixed: Mapping[str, float], bounds: Bounds) -> Space:

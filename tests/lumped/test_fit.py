@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from lumped import BadInput, Fit, History, NotReached, Scene, fit, laws, simulate
+from lumped.fit import certainty
 from lumped.scene_tables import LawChoice
 from lumped.score import Curve
 
@@ -242,6 +243,20 @@ def test_a_parameter_without_effect_has_no_interval() -> None:
     assert (found.parameters["R2"].low, found.parameters["R2"].high) == (None, None)
     assert any(text.startswith("R2 does not change the force") for text in found.warnings)
     assert found.values["R1"] == pytest.approx(1.6e11 / 9.94455e10 - 1.0, rel=1e-3)
+
+
+def test_parameters_that_do_the_same_have_no_interval() -> None:
+    """Neither a number nor a warning of numpy may come from dividing by what is not told."""
+    inverse, told = certainty._inverse(np.ones((3, 2)), np.ones(2))
+    assert not told
+    assert np.isnan(inverse).all()
+
+
+def test_a_force_beyond_every_material_is_searched_within_its_range() -> None:
+    """The first guess lies as far beyond the range as a search reaches."""
+    curve = Curve(np.array([0.0, 10.0, 20.0]), np.array([0.0, 1e14, 0.0]))
+    with pytest.raises(NotReached, match=r"no search of .* converged"):
+        fit(curve, "mdr", Scene.load("steel-ball"))
 
 
 def test_bounds_hold_and_are_told() -> None:
