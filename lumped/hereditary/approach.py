@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.ending import AT_REST
-from lumped.errors import NotReached
+from lumped.errors import BadInput, NotReached
 from lumped.hereditary.march import March, Piece, Settings, Stretch
 from lumped.hereditary.motion import Motion
 from lumped.hereditary.path import Path
@@ -59,17 +59,28 @@ def follow(
     before: Path | None = None,
 ) -> March:
     """March over a span of r from a state until `over`; `first` is the length to begin with. Raises NotReached."""
+    beyond: BadInput | NotReached | None = None
 
-    def attempt(root: float, length: float, state: Array) -> Piece | None:
+    def piece(root: float, length: float, state: Array) -> Piece | None:
         motion, found = Motion.over_root(problem, settings.table, root, length), None
         if before is not None:
             force = before.value(FORCE, root + length * settings.table.nodes)
             found = motion.piece(state, problem.gravity - force)
         return found or motion.piece(state, problem.gravity - float(state[FORCE]))
 
+    def attempt(root: float, length: float, state: Array) -> Piece | None:
+        """A long piece may try depths beyond the load curve that the motion never sees: then a shorter one."""
+        nonlocal beyond
+        try:
+            return piece(root, length, state)
+        except (BadInput, NotReached) as failure:
+            beyond = failure
+            return None
+
     found = Stretch(attempt, FORCE, over).march(span, state, first, settings, largest, before)
     if found.stuck:
-        raise NotReached(f"the motion could not be followed beyond {found.path.end**2 * problem.scales.time:.6g} s")
+        where = f"the motion could not be followed beyond {found.path.end**2 * problem.scales.time:.6g} s"
+        raise beyond or NotReached(where)
     return found
 
 

@@ -19,7 +19,7 @@ from lumped.hereditary.radau import Radau
 Array = NDArray[np.float64]
 NEWTON_STEPS = 14
 # Newton's last correction, relative: what is left after it is its square, or as many times less as its square is less
-# than that of the one before.
+# than that of the one before. At rest, where accelerations are rounding, the square of this share of gravity and depth.
 CONVERGED, DIVERGED = 1e-6, 1e100
 
 
@@ -70,7 +70,10 @@ class Motion:
             if not size < DIVERGED:
                 return None
             allowed = CONVERGED**2 * math.sqrt(a @ a)
-            if size * CONVERGED <= allowed or size**3 <= allowed * before**2:
+            rests = size <= CONVERGED**2 * abs(problem.gravity) and np.all(
+                np.abs(twice @ change) <= CONVERGED**2 * np.abs(depth)
+            )
+            if rests or size * CONVERGED <= allowed or size**3 <= allowed * before**2:
                 return Piece(self._values(state, a, rise + slope * (twice @ change), answers), step)
             before = size
         return None

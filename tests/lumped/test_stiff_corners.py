@@ -67,10 +67,35 @@ def test_every_corner_ends_or_says_why_not(name: str, campaign_size: Callable[[i
             assert e == pytest.approx(scene.law.values["e"], abs=1e-6), scene
 
 
-def test_a_weight_far_above_the_impact_is_named_not_divided_by() -> None:
-    """It turns and would part within the very first piece of a rough march; the layer gives way before."""
+def test_a_weight_far_above_the_impact_is_followed_to_its_end() -> None:
+    """It turns and would part within the very first piece of a rough march, which tries depths below the layer."""
     soft = Material(Relaxation(2.29e6, (1.79e6, 2.01e6), (5.7e-3, 2.34e-2)), 0.49)
     blunt, layer = PowerProfile(2316.7, 2.615), Layer(1.524e-4, "sliding")
     scene = Scene(blunt, 0.18423, 8.179e-5, soft, target=layer, model=Model(gravity=9.81))
+    result = correspondence.of(scene).simulate(scene, 1e-4)
+    assert 0.0 < result.history.depth.max() < 0.5 * layer.thickness
+    turned_over = scene.mass * scene.gravity * result.history.depth.max()
+    assert abs(result.energy["residual"]) <= 1e-4 * turned_over
+    duration, change = result.history.time[-1], result.history.velocity[0] - result.history.velocity[-1]
+    impulse = scene.mass * (scene.gravity * duration + change)
+    assert result.quantities["impulse"].value == pytest.approx(impulse, rel=1e-4)
+
+
+def test_a_weight_at_rest_is_followed_until_any_time() -> None:
+    """Where accelerations are rounding, pieces are as long as they like: work grows with the time's logarithm."""
+    solid, layer = Material(Relaxation(6e5, (1.2e6,), (6.7e-3,)), 0.45), Layer(2e-3, "bonded")
+    scene = Scene(PowerProfile(83.0, 2.0), 0.05, 1e-3, solid, target=layer, model=Model(gravity=9.81))
+    work = []
+    for end in (1.0, 1e6, 1e12):
+        result = correspondence.of(scene).simulate(replace(scene, motion=Motion(end_time=end)), 1e-3)
+        assert result.history.force[-1] == pytest.approx(scene.mass * scene.gravity, rel=1e-6)
+        work.append(result.work["force_evaluations"])
+    assert max(work) < 10 * work[0]
+
+
+def test_a_weight_that_breaks_through_its_layer_is_named() -> None:
+    """The striker would pass its whole thickness."""
+    layer = Layer(1.524e-4, "sliding")
+    scene = Scene(PowerProfile(2316.7, 2.615), 0.18423, 1.0, Material(Relaxation(1e5), 0.49), target=layer)
     with pytest.raises(BadInput, match="below the layer's thickness"):
         correspondence.estimate(scene)
