@@ -76,6 +76,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     return Plan(placed.varied(**given), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
 
 
+@says_which_key
 def cost(scene: Scene, chosen: Plan) -> Any:
     """What an error budget with these settings takes, a :class:`fe_contact.waves.cost.Cost`; None without waves:
     seconds. Raises BodyTooFine.

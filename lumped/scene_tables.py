@@ -24,7 +24,7 @@ MODEL_KEYS: Mapping[str, Key] = {
     "gravity": Number(-1e6, 1e6, "m/s2", required=False),
 }
 MOTION_KEYS: Mapping[str, Key] = {
-    "impacts": Count(1, 1000, required=False),
+    "impacts": Count(1, 100, required=False),
     "end_time": Number(1e-15, 1e12, "s", required=False),
 }
 NAME_KEYS: Mapping[str, Key] = {"name": Text(required=False)}

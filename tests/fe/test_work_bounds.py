@@ -59,7 +59,7 @@ def test_rounds_end_where_the_next_one_takes_too_many_steps(monkeypatch: pytest.
 
 def test_a_row_of_contacts_ends_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fe_contact.impacts.MOST_STEPS", 60)
-    found = simulate(overridden("ball-bouncing", motion__impacts=1000), "fe", {"tolerance": 1e-2})
+    found = simulate(overridden("ball-bouncing", motion__impacts=100), "fe", {"tolerance": 1e-2})
     assert Grounded.MANY.value in found.message
     assert not found.converged
     assert found.contacts
