@@ -16,8 +16,8 @@ from fe_contact.numerics import RANGES, WAVES, Numerics, check_kind
 from fe_contact.scales import scales
 from lumped.members import get
 from lumped.model_ledger import Peak, model_ledger
-from lumped.result import LedgerEntry
 from lumped.scene import Scene
+from lumped.sufficiency import LedgerEntry
 
 DEFAULT_TOLERANCE = 1e-3
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-4: see `fe-contact tradeoff`

@@ -14,7 +14,6 @@ from lumped.laws.base import simulate as simulate
 from lumped.materials import Creep as Creep
 from lumped.materials import Material as Material
 from lumped.materials import Relaxation as Relaxation
-from lumped.result import LedgerEntry as LedgerEntry
 from lumped.result import Quantity as Quantity
 from lumped.result import Result as Result
 from lumped.scene import Scene as Scene
@@ -23,3 +22,4 @@ from lumped.scene_tables import Motion as Motion
 from lumped.score import Score as Score
 from lumped.score import score as score
 from lumped.shapes import Sphere as Sphere
+from lumped.sufficiency import LedgerEntry as LedgerEntry

@@ -17,9 +17,9 @@ from lumped.finite_size import FiniteSize, finite_size
 from lumped.indenter import Indenter
 from lumped.json_file import plain, write_json
 from lumped.model_ledger import Peak, ledger_at_rest
-from lumped.result import LedgerEntry, Quantity, provenance
+from lumped.result import Quantity, provenance
 from lumped.result_folder import RECORD, publish
-from lumped.sufficiency import sufficient
+from lumped.sufficiency import LedgerEntry, sufficient
 
 Array = NDArray[np.float64]
 SCHEMA = "fe-contact/indentation/1"
@@ -102,7 +102,7 @@ class Indentation:
             "deviation": self.finite_size and self.finite_size.to_dict(),
             "dimensionless": groups_at_rest(self.indenter, self.contact_radius),
             "error_budget": {cause: float(np.max(error)) for cause, error in self.budget.items()},
-            "model_ledger": [asdict(entry) for entry in self.model_ledger],
+            "model_ledger": [entry.to_json(self.tolerance) for entry in self.model_ledger],
             "work": self.work,
             "provenance": provenance(),
             "timing": self.timing,

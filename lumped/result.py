@@ -19,7 +19,7 @@ from lumped.json_file import plain, write_json
 from lumped.result_folder import RECORD, publish
 from lumped.scene import Scene
 from lumped.scene_tables import Model
-from lumped.sufficiency import sufficient
+from lumped.sufficiency import LedgerEntry, sufficient
 
 SCHEMA = "fe-contact/result/1"
 UNITS = {
@@ -44,16 +44,6 @@ class Quantity:
     value: float | None
     error: float | None
     unit: str
-
-
-@dataclass(frozen=True)
-class LedgerEntry:
-    """One thing the model leaves out: its estimated effect relative to the peak force, None where unknown."""
-
-    effect: str
-    treated: str
-    estimate: float | None
-    note: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +79,7 @@ class Result:
 
     @property
     def model_sufficient(self) -> bool:
-        """Whether no known estimate of the model ledger exceeds the tolerance."""
+        """Whether no effect that can be judged exceeds the tolerance."""
         return sufficient(self.model_ledger, self.tolerance)
 
     def to_json(self) -> dict[str, Any]:
@@ -111,7 +101,7 @@ class Result:
             "recovery": None if self.recovery is None else self.recovery.to_json(),
             "error_budget": self.error_budget,
             "error_budget_by_quantity": self.error_budget_by_quantity,
-            "model_ledger": [asdict(entry) for entry in self.model_ledger],
+            "model_ledger": [entry.to_json(self.tolerance) for entry in self.model_ledger],
             "energy": {name: self.energy.get(name) for name in ENERGY_TERMS},
             "work": self.work,
             "provenance": self.provenance,

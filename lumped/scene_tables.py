@@ -14,6 +14,7 @@ from lumped.targets import Target
 
 LEAST_MASS = 1e-21
 END_IN_CONTACT_TIMES = 50.0
+DIRECTIONS = ("unsaid", "down", "horizontal")
 STRIKER_KEYS: Mapping[str, Key] = {
     "mass": Number(0.0, 1e12, "kg"),
     "velocity": Number(1e-9, 1e5, "m/s"),
@@ -22,6 +23,7 @@ MODEL_KEYS: Mapping[str, Key] = {
     "inertia": Flag(required=False),
     "profile": Choice(("exact", "parabola"), required=False),
     "gravity": Number(-1e6, 1e6, "m/s2", required=False),
+    "direction": Choice(DIRECTIONS, required=False),
 }
 MOTION_KEYS: Mapping[str, Key] = {
     "impacts": Count(1, 100, required=False),
@@ -34,14 +36,21 @@ LAWS, TARGETS = "lumped.laws", "lumped.targets"
 
 @dataclass(frozen=True)
 class Model:
-    """The `[model]` table: inertia of deformable bodies, profile, gravity along the motion (m/s2)."""
+    """The `[model]` table: inertia of deformable bodies, profile, gravity along the motion (m/s2), where that leads.
+
+    No gravity is assumed; `direction` tells whether that leaves a weight out. Raises BadInput.
+    """
 
     inertia: bool = False
     profile: str = "exact"
     gravity: float = 0.0
+    direction: str = DIRECTIONS[0]
 
     def __post_init__(self) -> None:
         check_fields("model", self, MODEL_KEYS)
+        if self.gravity and self.direction == "horizontal":
+            reason = f"{self.gravity:g} m/s2 along a horizontal motion; accepted: 0, or model.direction = 'down'"
+            raise BadInput(Fault("model", "model.gravity", reason))
 
 
 @dataclass(frozen=True)

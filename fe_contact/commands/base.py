@@ -18,10 +18,10 @@ from fe_contact.numerics import faults
 from fe_contact.progress import Progress, clear, log_to, terminal, to_all
 from lumped.errors import BadInput, Fault, shown
 from lumped.indenter import Indenter
-from lumped.result import LedgerEntry, Result
+from lumped.result import Result
 from lumped.scene import Scene
 from lumped.scene_file import load, load_for_fit, load_indenter, resolved
-from lumped.sufficiency import worst
+from lumped.sufficiency import NO_KEY, LedgerEntry, good_to, worst
 from lumped.toml_file import overridden, parse_assignment, parsed
 
 DONE, NOT_REACHED = 0, 3
@@ -208,7 +208,7 @@ def warn(result: Judged) -> None:
         most = worst(result.model_ledger)
         complain(
             f"model too small for the tolerance: {most.effect}, {most.treated}, "
-            f"about {most.estimate:.2g} of the peak force; {most.note}"
+            f"about {most.estimate:.2g} of the peak force; {'; '.join(filter(None, (most.note, most.key or NO_KEY)))}"
         )
 
 
@@ -229,6 +229,7 @@ def summary(result: Result, where: Path) -> str:
     lines += [_contact(number, contact) for number, contact in enumerate(result.contacts, start=1)]
     if result.contacts and result.converged and result.message:
         lines.append(f"  {result.message}")
+    lines += [f"  {line}" for line in (good_to(result.model_ledger),) if line]
     return "\n".join([*lines, f"  written to {where}"])
 
 

@@ -12,6 +12,7 @@ from lumped.errors import BadInput, Fault, NotReached, nearest, shown
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
 from lumped.result_folder import publish
+from lumped.sufficiency import good_to
 
 SUMMARY = "slow indentation to given depths: indentation.csv and result.json, with error bars"
 EXACT = ("mdr", "ting", "correspondence")  # at rest all are the exact load curve, the first the half-space's alone
@@ -80,4 +81,4 @@ def _lines(found: Indentation) -> list[str]:
     if found.finite_size is not None:
         slope = found.finite_size.slope
         lines.append(f"  F/F_Hertz-1 {slope.value:.4g} +- {slope.error or 0.0:.1e} a/R")
-    return lines
+    return [*lines, f"  {good_to(found.model_ledger)}"]

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import argparse
 import json
-from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from fe_contact.progress import clear
 from lumped.errors import NotReached
 from lumped.scene import Scene
+from lumped.sufficiency import good_to
 
 if TYPE_CHECKING:  # finite elements are loaded when they are needed
     from fe_contact.plan import Plan
@@ -36,7 +36,8 @@ def execute(args: argparse.Namespace) -> int:
     chosen = plan(scene, settings(table, None, scene.source))
     takes, refused = _takes(scene, chosen)
     clear()
-    ledger = [asdict(entry) for entry in chosen.ledger]
+    tolerance = float(chosen.numerics.tolerance)
+    ledger = [entry.to_json(tolerance) for entry in chosen.ledger]
     if args.json:
         content = {"numerics": chosen.numerics.as_dict(), "model_ledger": ledger, "cost": takes and takes.as_dict()}
         print(json.dumps(content | {"refused": refused}, allow_nan=False))
@@ -48,8 +49,10 @@ def execute(args: argparse.Namespace) -> int:
         print(f"  takes {takes}")
     print("  left out, relative to the peak force:")
     for entry in chosen.ledger:
-        size = "unknown" if entry.estimate is None else f"{entry.estimate:.2g}"
-        print(f"    {entry.effect} ({entry.treated}): {size}; {entry.note}")
+        size = f"{entry.spread[0]:.2g} to {entry.spread[1]:.2g}, " if entry.spread else ""
+        size += f"{entry.estimate:.2g}, " if entry.estimate is not None else ""
+        print(f"    {entry.effect} ({entry.treated}): {size}{entry.verdict(tolerance)}")
+    print(f"  {good_to(chosen.ledger)}")
     if refused:
         base.complain(refused)
     return base.NOT_REACHED if refused else base.DONE

@@ -12,7 +12,7 @@ from lumped.csv_file import write_csv
 from lumped.json_file import plain, write_json
 from lumped.pounding_tmd.case import Case
 from lumped.pounding_tmd.result import COLUMNS
-from lumped.pounding_tmd.study import Study
+from lumped.pounding_tmd.study import SMALL, Study
 from lumped.result import provenance
 from lumped.result_folder import publish
 
@@ -60,7 +60,7 @@ def study_content(study: Study) -> dict[str, Any]:
             "energy": study.main.energy.to_dict(),
             "variants": {name: result.measures.to_dict() for name, result in study.results.items()},
             "convergence": asdict(study.convergence),
-            "model_ledger": [asdict(entry) for entry in study.ledger],
+            "model_ledger": [entry.to_json(SMALL) for entry in study.ledger],
             "provenance": provenance(),
         }
     )

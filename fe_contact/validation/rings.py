@@ -23,9 +23,9 @@ from lumped.indenter import Indenter
 from lumped.materials import Material
 from lumped.materials.networks import sls
 from lumped.paper.examples import Examples
-from lumped.result import LedgerEntry
 from lumped.shapes import cylinder
 from lumped.shapes.cylinder import Cylinder
+from lumped.sufficiency import LedgerEntry
 from lumped.targets import ring
 from lumped.targets.o_ring import ORing
 from lumped.targets.ring import Ring

@@ -57,7 +57,7 @@ def _described(curve: RingCurve) -> dict[str, Any]:
         "instantaneous_modulus": indenter.modulus(True),
         "converged": curve.found.converged,
         "verdict": asdict(verdict(curve)),
-        "model_ledger": [asdict(entry) for entry in curve.ledger],
+        "model_ledger": [entry.to_json(curve.found.tolerance) for entry in curve.ledger],
         "error_budget": {cause: float(np.max(error)) for cause, error in curve.found.budget.items()},
     }
 

@@ -26,9 +26,11 @@ from fe_contact.waves.rod_record import Run
 from fe_contact.waves.usual import witness
 from lumped.errors import BadInput, Fault
 from lumped.members import get
-from lumped.result import LedgerEntry, Result
+from lumped.model_ledger.motion import gravity
+from lumped.result import Result
 from lumped.scene import Scene
 from lumped.shapes._block import Block
+from lumped.sufficiency import LedgerEntry
 
 DEFAULT_TOLERANCE = 3e-3
 GRAVITY = 9.81
@@ -162,10 +164,10 @@ def _ledger(scene: Scene, bar: Bar) -> tuple[LedgerEntry, ...]:
     sideways = 0.0 if _block(scene).sides == "confined" else slim**2
     slow = scene.profile.hertz_impact(bar.relaxation.glassy, scene.swinging_mass, scene.velocity).force
     force = max(speed * bar.density * bar.area * scene.velocity, slow)
-    pull = 0.0 if scene.gravity else GRAVITY * (bar.density * bar.area * bar.length + bar.end_mass) / force
+    strain = scene.velocity / speed
     return (
         LedgerEntry("inertia of the striker", "included", 0.0),
         LedgerEntry("lateral inertia", "neglected", sideways, "(nu radius/length)^2, Rayleigh; but at wave fronts"),
-        LedgerEntry("finite strain", "small displacements", scene.velocity / speed, "v/c"),
-        LedgerEntry("gravity", "included" if scene.gravity else "neglected", pull, "model.gravity"),
+        LedgerEntry("finite strain", "small displacements", None, "v/c of either sign", spread=(-strain, strain)),
+        gravity(scene, scene.model, force, bar.density * bar.area * bar.length + bar.end_mass),
     )

@@ -5,25 +5,25 @@ from __future__ import annotations
 from lumped.indenter import Indenter
 from lumped.model_ledger import kinematics, material, motion
 from lumped.model_ledger.peak import Peak as Peak
-from lumped.result import LedgerEntry
 from lumped.scene import Scene
 from lumped.scene_tables import Model
+from lumped.sufficiency import LedgerEntry
 
 
 def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[LedgerEntry, ...]:
     """The ledger of a scene under `model` (default: the scene's own), with the scales of its impact."""
     resolved = model or scene.model
     if not scene.has_geometry:
-        return (motion.gravity(scene, resolved, peak),)
+        return (motion.gravity(scene, resolved, peak.force, scene.mass),)
+    height = scene.geometry.target.pressed_height(scene.geometry.shape)
     entries = [
         motion.inertia(scene, resolved, peak),
         kinematics.profile(scene.geometry.shape, resolved, peak),
-        kinematics.finite_strain(scene.geometry.target.pressed_height(scene.geometry.shape), peak),
-        kinematics.deformed_gap(scene.geometry.material.nu, peak),
+        kinematics.finite_strain(scene.geometry.material.nu, height, peak, kinematics.IN_AN_IMPACT),
         material.sideways(scene, peak),
         material.series(scene, peak),
         material.striker(scene),
-        motion.gravity(scene, resolved, peak),
+        motion.gravity(scene, resolved, peak.force, scene.mass),
         material.plasticity(scene, peak),
         material.adhesion(scene, peak),
     ]
@@ -35,7 +35,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
 def ledger_at_rest(indenter: Indenter, peak: Peak) -> tuple[LedgerEntry, ...]:
     """The same of a slow indentation at its deepest, which has neither inertia nor time."""
     shape, target, nu = indenter.shape, indenter.target, indenter.material.nu
-    entries = [kinematics.finite_strain(target.pressed_height(shape), peak)]
+    entries = [kinematics.finite_strain(nu, target.pressed_height(shape), peak)]
     if target.fixed_radius(shape) is None:
-        entries += [kinematics.profile(shape, indenter.model, peak), kinematics.deformed_gap(nu, peak)]
+        entries.append(kinematics.profile(shape, indenter.model, peak))
     return (*entries, kinematics.ends(shape, target, nu)) if shape.plane else tuple(entries)

@@ -6,8 +6,8 @@ import math
 
 from lumped.errors import FeContactError
 from lumped.model_ledger.peak import Peak
-from lumped.result import LedgerEntry
 from lumped.scene import Scene
+from lumped.sufficiency import LedgerEntry
 
 # Hertz: the first yield, below the surface, is where the peak pressure is 1.6 Y (Johnson, ISBN 978-0-521-34796-9).
 FIRST_YIELD = 1.6
@@ -39,7 +39,7 @@ def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
         if confined is None:
             return LedgerEntry(effect, treated, None, "no load curve tells it; run both of target.material.constant")
         softer *= confined
-    return LedgerEntry(effect, treated, 1.0 - softer**0.4, "bound; target.material.constant")
+    return LedgerEntry(effect, treated, 1.0 - softer**0.4, "bound", "target.material.constant")
 
 
 def _confined(scene: Scene, nu: float, depth: float) -> float | None:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from lumped.model_ledger.peak import Peak
 from lumped.radiation import Pulse
-from lumped.result import LedgerEntry
 from lumped.scene import Scene
 from lumped.scene_tables import Model
+from lumped.sufficiency import LedgerEntry
 
 GRAVITY = 9.81
+INERTIA = "model.inertia"
 
 
 def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
@@ -18,13 +19,20 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
         return LedgerEntry(effect, "included", 0.0)
     mass, geometry = scene.reduced_mass, scene.geometry
     pulse = Pulse(peak.force, peak.duration, mass, 0.5 * mass * scene.velocity**2, peak.contact_radius)
-    return LedgerEntry(effect, "neglected", *scene.target.inertia_left_out(geometry.shape, geometry.material, pulse))
+    estimate, note = scene.target.inertia_left_out(geometry.shape, geometry.material, pulse)
+    return LedgerEntry(effect, "neglected", estimate, note, INERTIA if scene.target.waves_under(geometry.shape) else "")
 
 
-def gravity(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
-    """The weight of the striker."""
+def gravity(scene: Scene, model: Model, force: float, mass: float) -> LedgerEntry:
+    """The weight of a mass, kg, which presses only where the motion leads down, over the peak force, N."""
+    effect, weight = "gravity", GRAVITY * mass / force
     if scene.target_mass is not None:
-        return LedgerEntry("gravity", "none between two free bodies", 0.0)
+        return LedgerEntry(effect, "none between two free bodies", 0.0)
     if model.gravity != 0.0:
-        return LedgerEntry("gravity", "included", 0.0)
-    return LedgerEntry("gravity", "neglected", GRAVITY * scene.mass / peak.force, "m g; model.gravity")
+        return LedgerEntry(effect, "included", 0.0)
+    if model.direction == "horizontal":
+        return LedgerEntry(effect, "across the motion", 0.0)
+    if model.direction == "down":
+        return LedgerEntry(effect, "neglected", weight, "m g", "model.gravity")
+    asked = f"model.direction: of a drop, 'down', it would be {weight:.2g}; else 'horizontal'"
+    return LedgerEntry(effect, "none assumed", None, asked)

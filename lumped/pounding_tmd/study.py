@@ -11,8 +11,7 @@ from lumped.pounding_tmd.free_vibration import simulate
 from lumped.pounding_tmd.phase import ROWS_PER_PERIOD
 from lumped.pounding_tmd.result import PtmdResult
 from lumped.pounding_tmd.system import PoundingDamper
-from lumped.result import LedgerEntry
-from lumped.sufficiency import sufficient
+from lumped.sufficiency import LedgerEntry, sufficient
 
 FINER = 3 * ROWS_PER_PERIOD // 2
 MOST_CHANGE, MOST_RESIDUAL = 1e-6, 1e-8

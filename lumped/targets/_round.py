@@ -11,8 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.key_table import check_fields
+from lumped.materials import Material
+from lumped.radiation import Pulse
 from lumped.shapes.base import Shape
-from lumped.targets.base import Target
+from lumped.targets.base import MOVES, Target, vibrations
 
 SUPPORTS = ("free", "held")
 
@@ -48,6 +50,23 @@ class Round(Target):
     def round_radius(self, shape: Shape) -> float:
         """The smaller of both."""
         return min(self.radius, super().round_radius(shape))
+
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+        """A half-space's where it is taken as one; of a free body what :func:`vibrations` leave.
+
+        Held at its middle plane, a third of its half moves with the striker.
+        """
+        whole = None if material.density is None else self.whole_mass(material.density)
+        if self.support is None or whole is None:
+            return super().inertia_left_out(shape, material, pulse)
+        if self.support == "free":
+            return vibrations(material, pulse, whole)
+        added = whole / 6.0 / pulse.mass
+        return min(added, 1.0), MOVES.format(added)
+
+    def waves_under(self, shape: Shape) -> bool:
+        """Only where it flies."""
+        return super().waves_under(shape) and self.support == "free"
 
     def matching(self, shape: Shape) -> Shape:
         """Its own profile, exact or a parabola as the striker's."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from typing import Any, ClassVar
@@ -17,6 +18,9 @@ from lumped.radiation import Pulse, radiated_share
 from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
 
+NEEDS_DENSITY = "needs target.material.density"
+NO_SPEED = "a dashpot alone has no wave speed"
+MOVES = "{:.2g} of the striker's mass moves with it"
 LOST_FORCE = 0.3  # of the peak, relatively, over the share of the energy that is lost
 
 
@@ -84,13 +88,16 @@ class Target(ABC):
         """What a contact without the body's inertia errs by in its peak force, relatively, and a note.
 
         Here as on the half-space: waves take the share w of the energy, half of it before the peak, and
-        F ~ energy^(3/5) loses 0.3 w. None where it is not known.
+        F ~ energy^(3/5) loses 0.3 w, as does nearly a line's F ~ energy^(1/2). None where it is not known.
         """
-        share = radiated_share(material, pulse)
+        share = radiated_share(material, pulse, shape.total if shape.plane else None)
         if share is not None:
-            return LOST_FORCE * share, f"radiates {share:.2g} of the kinetic energy; model.inertia"
-        missing = "needs target.material.density" if material.density is None else "a dashpot alone has no wave speed"
-        return None, missing
+            return LOST_FORCE * share, f"radiates {share:.2g} of the kinetic energy"
+        return None, NEEDS_DENSITY if material.density is None else NO_SPEED
+
+    def waves_under(self, shape: Shape) -> bool:
+        """Whether `model.inertia` can be true under a striker of this shape."""
+        return self.has_inertia and shape.fixed_radius is None
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """What is wrong with a striker of this shape that has a material as the target has, with inertia or without."""
@@ -128,3 +135,15 @@ class Target(ABC):
     def to_dict(self) -> dict[str, Any]:
         """The geometry's part of the target's table."""
         return {"shape": self.name} | {key: getattr(self, key) for key in self.keys}
+
+
+def vibrations(material: Material, pulse: Pulse, whole: float) -> tuple[float | None, str]:
+    """A free ball's own, of its whole mass, kg: v/c in order of magnitude, as what is left of them (Rayleigh 1906).
+
+    They answer the kinks with which a force t^(3/2) begins and ends: (time of a wave / contact time)^5 ~ v/c.
+    """
+    stiffness = material.young.relaxed or material.young.glassy
+    if material.density is None or not stiffness:
+        return None, NEEDS_DENSITY if material.density is None else NO_SPEED
+    share = math.sqrt(2.0 * pulse.energy / whole) / math.sqrt(stiffness / material.density)
+    return min(share, 1.0), "order of magnitude: v/c, of the ball's own vibrations"

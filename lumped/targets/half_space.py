@@ -48,6 +48,10 @@ class HalfSpace(Target):
 
         return HalfPlane(shape.line_profile, self.datum_depth or 0.0, nu)
 
+    def waves_under(self, shape: Shape) -> bool:
+        """Not in plane strain."""
+        return super().waves_under(shape) and not shape.plane
+
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """Only a whole body with inertia: else one E* of both tells all, and a target of shape sphere knows it."""
         if inertia and shape.whole_mass(1.0) is not None:

@@ -17,7 +17,7 @@ from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material
 from lumped.radiation import Pulse
 from lumped.shapes.base import Shape
-from lumped.targets.base import Target
+from lumped.targets.base import MOVES, Target
 
 KEYS: Mapping[str, Key] = {
     "thickness": Number(1e-9, 1e6, "m"),
@@ -76,7 +76,7 @@ class Layer(Target):
         added = share * material.density * area * self.thickness / pulse.mass
         if radiated is not None and radiated <= added:
             return radiated, note
-        return added, f"{added:.2g} of the striker's mass moves with it; model.inertia"
+        return added, MOVES.format(added)
 
     def check_depth(self, shape: Shape, depth: float) -> str:
         """Neither through the layer nor past the equator."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
@@ -12,9 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.errors import BadInput, Fault
 from lumped.key_table import check_fields
 from lumped.keys import Key, Number
+from lumped.materials import Material
+from lumped.radiation import Pulse
 from lumped.shapes.base import Shape
 from lumped.shapes.sphere import Sphere
-from lumped.targets.base import Target
+from lumped.targets.base import MOVES, NEEDS_DENSITY, Target
 
 KEYS: Mapping[str, Key] = {"mean_radius": Number(1e-9, 1e4, "m"), "section_radius": Number(1e-9, 1e4, "m")}
 
@@ -51,6 +54,14 @@ class ORing(Target):
     def pressed_height(self, shape: Shape) -> float:
         """The section's height, m."""
         return 2.0 * self.section_radius
+
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+        """The section's middle moves half as fast as the striker, and its sides out as fast where the volume stays."""
+        if material.density is None:
+            return None, NEEDS_DENSITY
+        mass = material.density * 2.0 * math.pi**2 * self.mean_radius * self.section_radius**2
+        added = 0.25 * (1.0 + (material.nu / (1.0 - material.nu)) ** 2) * mass / pulse.mass
+        return min(added, 1.0), MOVES.format(added)
 
     def round_radius(self, shape: Shape) -> float:
         """That of the section."""

@@ -18,7 +18,7 @@ from lumped.radiation import Pulse
 from lumped.shapes._block import Block
 from lumped.shapes._round import Round
 from lumped.shapes.base import Shape
-from lumped.targets.base import Target
+from lumped.targets.base import NEEDS_DENSITY, Target, vibrations
 
 KEYS: Mapping[str, Key] = {}
 
@@ -42,16 +42,21 @@ class Plane(Target):
         return shape.thickness if isinstance(shape, Block) else None
 
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
-        """A ball's own vibrations: v/c in order of magnitude, as what is left of them (Rayleigh 1906).
+        """What a ball's :func:`vibrations` leave; a block's own waves add their density c v to its pressure.
 
-        They answer the kinks with which a force t^(3/2) begins and ends: (time of a wave / contact time)^5 ~ v/c.
+        That is v sqrt(E A M/l), M its own mass, beside v sqrt(E A m/l) of the striker's m.
         """
-        whole = None if material.density is None else shape.whole_mass(material.density)
-        stiffness = material.young.relaxed or material.young.glassy
-        if whole is None or material.density is None or not stiffness:
-            return super().inertia_left_out(shape, material, pulse)
-        share = math.sqrt(2.0 * pulse.energy / whole) / math.sqrt(stiffness / material.density)
-        return min(share, 1.0), "order of magnitude: v/c, of the ball's own vibrations; model.inertia"
+        if material.density is None:
+            return None, NEEDS_DENSITY
+        whole = shape.whole_mass(material.density)
+        if whole is not None:
+            return vibrations(material, pulse, whole)
+        own = shape.own_mass(material.density) / pulse.mass
+        return min(math.sqrt(own), 1.0), f"waves of a block that has {own:.2g} of the striker's mass"
+
+    def waves_under(self, shape: Shape) -> bool:
+        """A block's too that is strained alike everywhere."""
+        return not isinstance(shape, Block) or shape.uniform
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is neither a block nor a sphere."""

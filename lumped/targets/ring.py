@@ -13,8 +13,11 @@ from lumped.errors import BadInput, Fault
 from lumped.key_table import check_fields
 from lumped.keys import Key, Number
 from lumped.load_curves.base import LoadCurve
+from lumped.materials import Material
+from lumped.radiation import Pulse
 from lumped.shapes.base import Shape
 from lumped.targets.base import Target
+from lumped.targets.layer import Layer
 
 # Inner radius over thickness: the waves in the annulus' answer grow with it, and with them the time, to seconds here.
 THINNEST = 1000.0
@@ -62,6 +65,10 @@ class Ring(Target):
         from lumped.load_curves.ring import Ring as Elastic
 
         return Elastic(shape.tip_radius or 0.0, self.inner_radius, self.thickness, nu)
+
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+        """A layer's, held by the outer surface."""
+        return Layer(self.thickness, "bonded").inertia_left_out(shape, material, pulse)
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is no cylinder, or does not fit in."""

@@ -80,7 +80,11 @@ class Rod(Target):
             return super().inertia_left_out(shape, material, pulse)
         sent = HERTZ_SQUARE * pulse.force**2 * pulse.duration / self.impedance(stiffness, density)
         share = sent / pulse.energy
-        return min(LOST_FORCE * share, 1.0), f"sends {share:.2g} of the kinetic energy down the rod; --method rod_waves"
+        return min(LOST_FORCE * share, 1.0), f"sends {share:.2g} of the kinetic energy down the rod"
+
+    def waves_under(self, shape: Shape) -> bool:
+        """Always."""
+        return True
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is no body of revolution."""

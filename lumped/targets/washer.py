@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
@@ -12,8 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.errors import BadInput, Fault
 from lumped.key_table import check_fields
 from lumped.keys import Choice, Key, Number
+from lumped.layer_mass import moving_share
+from lumped.materials import Material
+from lumped.radiation import Pulse
 from lumped.shapes.base import Shape
-from lumped.targets.base import Target
+from lumped.targets.base import MOVES, NEEDS_DENSITY, Target
 
 KEYS: Mapping[str, Key] = {
     "inner_radius": Number(1e-9, 1e4, "m"),
@@ -49,6 +53,16 @@ class Washer(Target):
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
         """depth - height(r); `r` from the axis."""
         return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
+
+    def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
+        """What of the washer moves with the striker, as under a line around it: a strip as wide as what is pressed."""
+        if material.density is None:
+            return None, NEEDS_DENSITY
+        radius = self.fixed_radius(shape) or 0.0
+        half, around = 0.5 * (radius - self.inner_radius), math.pi * (radius + self.inner_radius)
+        share = moving_share(material.nu, self.base, half / self.height, 0.0, plane=True)
+        added = share * material.density * 2.0 * half * around * self.height / pulse.mass
+        return min(added, 1.0), MOVES.format(added)
 
     def fixed_radius(self, shape: Shape) -> float | None:
         """Up to the rim of the punch, or to its own."""

@@ -1,0 +1,53 @@
+"""The model ledger's keys work, and what it says of a block's inertia is what finite elements find."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from fe_contact import run
+from fe_contact.plan import plan
+from lumped import FeContactError, Scene
+from lumped.data import scene_names
+from lumped.model_ledger import Peak, model_ledger
+
+HEAVY = 1000.0  # kg/m3
+PEAK = Peak(1.0, 1e-5, 1e-3, 1e-3)
+
+
+def without_inertia(name: str) -> dict[str, object] | None:
+    """The keys that give a packaged scene's bodies a density; None where it has inertia or no body."""
+    scene = Scene.load(name)
+    if scene.material is None or scene.model.inertia:
+        return None
+    alone = not scene.target.deformable
+    parts = {"target": not alone, "striker": alone or scene.striker_material is not None}
+    return {f"{part}.material.density": HEAVY for part, solid in parts.items() if solid}
+
+
+@pytest.mark.parametrize("name", [name for name in scene_names() if without_inertia(name) is not None])
+def test_a_key_for_inertia_stands_where_it_works(name: str) -> None:
+    heavy = without_inertia(name) or {}
+    (entry,) = [one for one in model_ledger(Scene.load(name, heavy), PEAK) if one.effect == "target inertia"]
+    assert entry.estimate is not None
+    try:
+        plan(Scene.load(name, heavy | {"model.inertia": True, "model.gravity": 0.0}), {})
+        works = True
+    except FeContactError as failure:
+        works = "support" not in (said := str(failure)) and "mass" in said  # a flying ball has that of its density
+    assert bool(entry.key) is works
+
+
+def test_a_blocks_own_waves_press_as_the_ledger_says(campaign_size: Callable[[int], int]) -> None:
+    """Within a factor of two, as long as the block is the lighter."""
+    rng = np.random.default_rng(9)
+    for _ in range(campaign_size(12)):
+        keys: dict[str, object] = {"striker.material.density": float(10.0 ** rng.uniform(1.5, 3.0))}
+        still = run(Scene.load("polymer-prism", keys), tolerance=1e-3)
+        moving = run(Scene.load("polymer-prism", keys | {"model.inertia": True}), tolerance=1e-2)
+        (entry,) = [one for one in still.model_ledger if one.effect == "target inertia"]
+        peaks = [one.quantities["peak_force"].value or math.nan for one in (moving, still)]
+        assert 0.5 < (peaks[0] / peaks[1] - 1.0) / (entry.estimate or math.inf) < 2.0, keys
