@@ -13,7 +13,6 @@ from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.validation import journal
 from fe_contact.validation.exponents import KEPT, PROFILES, SMALL, Profile, named
-from lumped.indentation import power_law
 from lumped.indenter import Indenter
 from lumped.load_curves.layer import Layer
 from lumped.load_curves.layer_curve import LayerPunch
@@ -23,7 +22,8 @@ from lumped.scene_tables import Model
 from lumped.shapes import punch
 from lumped.targets import layer as layers
 
-CHORD = (1 / 1.2, 1.0, 1.2)  # depths around a place, between which the exponent is taken
+AROUND = (1.15**-2, 1.15**-1, 1.0, 1.15, 1.15**2)  # depths over that of a place: two chords, one twice as long
+MIDDLE = 2
 TOLERANCE = 3e-4
 ANY = 0.3  # nu on a sliding base, where it does not count
 TRIED = (0.1, 1.0, 5.0)
@@ -33,7 +33,7 @@ QUICK_PLACES = {("bonded", 0.3): TRIED[1:2]}
 
 @dataclass(frozen=True)
 class Check:
-    """One point: `exponent` between two near depths and `factor`, with bars; the exact ones between the same depths."""
+    """One point: local `exponent` d ln F/d ln depth and `factor`, with bars; the exact ones beside."""
 
     profile: Profile
     base: str
@@ -67,31 +67,40 @@ def checks(quick: bool, where: Path, progress: Progress = silent) -> tuple[Check
 def check(profile: Profile, base: str, nu: float | None, ratio: float) -> Check:
     """One point; raises NotReached."""
     layer = Layer(1.0, ANY if nu is None else nu, base)
-    depth, force = _exact(profile, layer, ratio)
+    depth, force, exponent = _exact(profile, layer, ratio)
+    around = depth * np.array(AROUND)
     shape = punch.of(ratio) if np.isinf(profile.n) else profile.shape
     material, model = Material(Relaxation(1.0), layer.nu), Model(profile="parabola")
     scene = Indenter(shape, material, target=layers.of(1.0, base), model=model)
-    found = indent(scene, tuple(float(one) for one in depth), {"tolerance": TOLERANCE})
+    found = indent(scene, tuple(around.tolist()), {"tolerance": TOLERANCE})
     relative, level = found.force_error / found.force, found.force / found.modulus
-    row = (2.0 * ratio if np.isinf(profile.n) else profile.factor) * depth[1] ** profile.row
+    row = (2.0 * ratio if np.isinf(profile.n) else profile.factor) * depth**profile.row
     return Check(
         profile,
         base,
         nu,
         ratio,
-        exponent=power_law(depth, level, relative, profile.row)["alpha"],
-        factor=Quantity(float(level[1] / row), float(relative[1] * level[1] / row), "1"),
-        exact_exponent=power_law(depth, force, np.zeros_like(force), profile.row)["alpha"].value or np.nan,
-        exact_factor=float(force[1] / row),
+        exponent=_local(np.log(around), np.log(level), relative),
+        factor=Quantity(float(level[MIDDLE] / row), float(relative[MIDDLE] * level[MIDDLE] / row), "1"),
+        exact_exponent=exponent,
+        exact_factor=force / row,
         converged=found.converged,
     )
 
 
-def _exact(profile: Profile, layer: Layer, ratio: float) -> tuple[Array, Array]:
-    """Depths around the one with this contact radius, in thicknesses, and forces over E*, shape (3,)."""
+def _local(depth: Array, force: Array, error: Array) -> Quantity:
+    """The slope in the middle of five logarithms, by both chords, whose difference counts in the bar."""
+    slopes, errors = np.empty(2), np.empty(2)
+    for i in range(2):  # the long one, the short one
+        span = depth[-1 - i] - depth[i]
+        slopes[i], errors[i] = (force[-1 - i] - force[i]) / span, (error[i] + error[-1 - i]) / span
+    bent = (slopes[1] - slopes[0]) / 3.0
+    return Quantity(float(slopes[1] + bent), float((4.0 * errors[1] + errors[0]) / 3.0 + abs(bent)), "1")
+
+
+def _exact(profile: Profile, layer: Layer, ratio: float) -> tuple[float, float, float]:
+    """The depth with this contact radius, in thicknesses, the force there over E*, and the local exponent."""
     if np.isinf(profile.n):
-        depth = SMALL * np.array(CHORD)
-        return depth, LayerPunch(ratio, layer).stiffness * depth
-    curve = profile.on(layer)
-    depth = np.array(CHORD) * float(curve.at(ratio).depth)
-    return depth, np.asarray(curve.force(depth))
+        return SMALL, float(LayerPunch(ratio, layer).stiffness) * SMALL, 1.0
+    here = profile.on(layer).at(np.asarray(ratio))
+    return float(here.depth), float(here.force), float(here.stiffness * here.depth / here.force)
