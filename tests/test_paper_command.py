@@ -11,7 +11,7 @@ import pytest
 
 from fe_contact.cli import main
 from lumped.paper import assumptions, claims, misprints
-from lumped.paper.rules import AGREES, DIFFERS, UNKNOWN, VERDICTS
+from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNKNOWN, VERDICTS
 
 TABLES = {"paper", "assumptions", "misprints", "grid"}
 FIGURES = {f"fig{number}.{kind}" for number in (6, 7, 8, 10, 15) for kind in ("svg", "png")}
@@ -65,7 +65,8 @@ def test_the_counts_are_those_of_the_rows(written: tuple[Path, str]) -> None:
     known = content(where)["counts"]
     assert {verdict: verdicts.count(verdict) for verdict in VERDICTS}.items() <= known.items()
     assert sum(verdicts.count(verdict) for verdict in VERDICTS) == len(verdicts)
-    assert f"{known[AGREES]} agree, {known[DIFFERS]} differ, {known[UNKNOWN]} {UNKNOWN}" in text
+    judged = f"{known[AGREES]} agree, {known[DIFFERS]} differ, {known[UNDECIDED]} {UNDECIDED}"
+    assert f"{judged}, {known[UNKNOWN]} {UNKNOWN}" in text
 
 
 def test_a_row_says_printed_recomputed_and_deviation(written: tuple[Path, str]) -> None:

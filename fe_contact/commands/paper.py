@@ -48,7 +48,7 @@ def execute(args: argparse.Namespace) -> int:
 def _lines(found: Study) -> list[str]:
     """One line a claim, one an assumption, then the counts."""
     from lumped.paper.claims import counts
-    from lumped.paper.rules import AGREES, DIFFERS, UNKNOWN, UNPRINTED, VERDICTS
+    from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNKNOWN, UNPRINTED, VERDICTS
 
     lines = [f"{'claim':14s} {'quantity':54s} {'printed':26s} {'recomputed':30s} {'deviation':>9s}  verdict"]
     lines += [_line(one) for one in found.claims]
@@ -57,7 +57,8 @@ def _lines(found: Study) -> list[str]:
         lines.append(f"{one.id:17s} {one.assumption}: {one.criterion} {_shown(judged.values)}: {judged.verdict}")
     number = counts(found.claims)
     reasons = ", ".join(f"{count} {name}" for name, count in number.items() if name not in VERDICTS)
-    lines.append(f"{number[AGREES]} agree, {number[DIFFERS]} differ, {number[UNKNOWN]} {UNKNOWN} ({reasons})")
+    judged = f"{number[AGREES]} agree, {number[DIFFERS]} differ, {number[UNDECIDED]} {UNDECIDED}"
+    lines.append(f"{judged}, {number[UNKNOWN]} {UNKNOWN} ({reasons})")
     lines.append(f"{number[UNPRINTED]} numbers beside them with {UNPRINTED}")
     return lines
 

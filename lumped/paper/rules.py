@@ -13,9 +13,9 @@ from lumped.keys import Choice, Key, Number, Text
 from lumped.paper.value import Value
 from lumped.toml_file import parsed
 
-AGREES, DIFFERS, UNKNOWN = "agrees", "differs", "cannot be computed from the text"
+AGREES, DIFFERS, UNDECIDED, UNKNOWN = "agrees", "differs", "undecided", "cannot be computed from the text"
 UNPRINTED = "nothing printed"
-VERDICTS = (AGREES, DIFFERS, UNKNOWN, UNPRINTED)
+VERDICTS = (AGREES, DIFFERS, UNDECIDED, UNKNOWN, UNPRINTED)
 UNJUDGED = {"none": UNKNOWN, "unprinted": UNPRINTED}
 SEPARATOR = ";"
 
@@ -35,12 +35,17 @@ class Rule:
         return self.kind in ("digits", "relative")
 
     def verdict(self, printed: str, values: Sequence[Value]) -> str:
-        """AGREES when every value keeps the rule over the whole of its bar, else DIFFERS; or that nothing compares."""
+        """AGREES when every value keeps the rule over the whole of its bar, DIFFERS when one breaks it over all of it.
+
+        UNDECIDED between; or that nothing compares.
+        """
         if self.kind in UNJUDGED:
             return UNJUDGED[self.kind]
         margins = MARGINS[self.kind](printed, values, self.width)
-        kept = all(margin >= value.error for margin, value in zip(margins, values, strict=True))
-        return AGREES if kept else DIFFERS
+        pairs = [(margin, value.error) for margin, value in zip(margins, values, strict=True)]
+        if all(margin >= error for margin, error in pairs):
+            return AGREES
+        return DIFFERS if any(margin < -error for margin, error in pairs) else UNDECIDED
 
 
 def numbers(printed: str) -> tuple[float, ...]:
