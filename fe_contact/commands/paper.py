@@ -57,8 +57,8 @@ def _lines(found: Study) -> list[str]:
         lines.append(f"{one.id:17s} {one.assumption}: {one.criterion} {_shown(judged.values)}: {judged.verdict}")
     number = counts(found.claims)
     reasons = ", ".join(f"{count} {name}" for name, count in number.items() if name not in VERDICTS)
-    judged = f"{number[AGREES]} agree, {number[DIFFERS]} differ, {number[UNDECIDED]} {UNDECIDED}"
-    lines.append(f"{judged}, {number[UNKNOWN]} {UNKNOWN} ({reasons})")
+    sums = f"{number[AGREES]} agree, {number[DIFFERS]} differ, {number[UNDECIDED]} {UNDECIDED}"
+    lines.append(f"{sums}, {number[UNKNOWN]} {UNKNOWN} ({reasons})")
     lines.append(f"{number[UNPRINTED]} numbers beside them with {UNPRINTED}")
     return lines
 

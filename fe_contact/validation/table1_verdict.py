@@ -80,7 +80,11 @@ def _within(trial: Trial) -> Verdict:
     assert reach is not None
     if reach.throughout:
         last = f", up to {reach.last:.2g} of the {name}" if name else ""
-        return Verdict(HOLDS, f"within {100 * LIMIT:g} % at every depth tried{last}{_bonded(trial)}")
+        where = f"at every depth tried{last}"
+        if trial.row.alpha == 1.0:  # any depth gives the same answer
+            tried = ", ".join(f"{nu:g}" for nu in trial.moduli)
+            where = f"at every nu tried, {tried}; small displacements are linear here, whatever the depth"
+        return Verdict(HOLDS, f"within {100 * LIMIT:g} % {where}{_bonded(trial)}")
     held = f"within {100 * LIMIT:g} % up to a depth of {_value(reach.held):.3g} of the {name}"
     return Verdict(RANGE, f"{held}; tried up to {reach.last:.2g}")
 
