@@ -14,6 +14,7 @@ HOLDS, RANGE, WRONG = "holds", "holds within a range", "wrong, corrected"
 UNDECIDED, UNTRIED = "undecided", "not tried"
 # How far a number may lie from the printed one and still agree; a bar wider than this decides nothing.
 ALPHA, FACTOR, MODULUS = 5e-4, 1e-3, 1e-3
+LINE = 0.25 * math.pi  # D over the length l, as printed in both rows of line contact
 
 
 @dataclass(frozen=True)
@@ -109,9 +110,11 @@ def _spread(trial: Trial, wrong: list[str]) -> Verdict:
     if max(factors) <= (1.0 + LIMIT) * min(factors):
         return Verdict(UNDECIDED, "D does not depend on the datum")
     beside = f"; {', '.join(wrong)} differs too" if wrong else ""
+    inside = "among them" if min(factors) <= LINE <= max(factors) else "beyond them"
     sentence = (
-        f"no half-space answer; D depends on the datum: {min(factors):.2f} to {max(factors):.2f} l, "
-        f"alpha {min(exponents):.2f} to {max(exponents):.2f}, over the data and layers tried{beside}"
+        f"no half-space answer; D depends on the datum: {min(factors):.2f} to {max(factors):.2f} l, printed "
+        f"{LINE:.2f} l {inside}; alpha {min(exponents):.2f} to {max(exponents):.2f}, over the data and layers tried"
+        f"{beside}"
     )
     return Verdict(WRONG, sentence)
 
