@@ -132,8 +132,8 @@ def certify(
 def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[Curve, Mapping[str, Causes]]:
     """One contact of all runs, where it is ``alone`` with the fewest marches."""
     curve = partial(runs.curve, number)
-    steps = _time_steps(curve, numerics)
     surface = runs.surface(numerics)
+    steps = _time_steps(curve, numerics, isinstance(surface, FlatEnd))
     if alone and isinstance(surface, FlatEnd):
         held = _by_stiffness(runs, steps.value, surface, numerics)
         return steps.value, held | {"time_step": (steps.change, *steps.jitter)}
@@ -200,8 +200,11 @@ class _TimeSteps:
     jitter_falls: bool = False
 
 
-def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics) -> _TimeSteps:
-    """Halve the number of steps twice and extrapolate; double it twice where it is too small for that."""
+def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics, flat: bool) -> _TimeSteps:
+    """Halve the number of steps twice and extrapolate; double it twice where it is too small for that.
+
+    Under a ``flat`` end the first steps count as much as any: its area presses at once.
+    """
     order, fine = get(SCHEMES, numerics.scheme).ORDER, curve(numerics)
     assert fine is not None
     if numerics.steps < LEAST_HALVED:
@@ -216,8 +219,8 @@ def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics) -
     if half is None or quarter is None or not _end_alike(fine, half, quarter):
         return _TimeSteps(fine, None, (), numerics.steps)
     value, before = extrapolated(fine, half, order), extrapolated(half, quarter, order)
-    steps = numerics.contact_time / numerics.steps / np.asarray(fine.strike.relaxation.times)
-    orders = trusted_orders((fine, half, quarter), order, steps)
+    taken = fine.duration * np.diff(fine.x**2) if flat else np.array([numerics.contact_time / numerics.steps])
+    orders = trusted_orders((fine, half, quarter), order, (float(taken[0]), float(taken.max())))
     least = SAFETY / (2 ** orders.pop("force") - 1)
     weights = {name: SAFETY / (2**trusted - 1) / least for name, trusted in orders.items()}
     change = Change(value, before, least, weights)

@@ -21,6 +21,7 @@ from fe_contact.march import March, Strike
 
 PEAK_SHARE = 0.98  # of its peak above which a force is near it
 SHARES = np.linspace(0.0, 1.0, 601)
+EARLIEST = 4  # rows after touch that tell whether steps or shares are more crowded there
 LATE = 0.75  # of the contact: from here on path and speed count for those at separation
 DENSE = SHARES**2 * (3 - 2 * SHARES)  # shares of the contact, crowded at its ends, for peaks and norms
 
@@ -109,8 +110,11 @@ class Curve:
 
     @cached_property
     def shares(self) -> Array:
-        """Of the contact: crowded at both ends, or with the steps where gravity may have swung it for long."""
-        if self.separated or self.strike.gravity <= 0.0:
+        """Of the contact: crowded at both ends, or with the steps where these are more crowded at touch, about an early
+        peak, or where gravity may have swung it for long.
+        """
+        swings = not self.separated and self.strike.gravity > 0.0
+        if not swings and self.x[EARLIEST] ** 2 > DENSE[EARLIEST]:
             return DENSE
         count = len(self.x)
         places = np.linspace(0.0, count - 1.0, max(len(DENSE), 2 * count - 1))
@@ -154,7 +158,8 @@ class Curve:
 
     @property
     def _force_peak(self) -> tuple[float, float]:
-        if self.near_peak.stop == len(self.shares):  # the striker comes to rest there: no hill to fit
+        # under a flat end no place comes or goes, so that nothing jitters; or the striker comes to rest: no hill to fit
+        if np.ptp(self.radius_squared) == 0.0 or self.near_peak.stop == len(self.shares):
             return peak(self.dense_time, self.dense_force)
         near = self.dense_time[self.near_peak]
         return fitted_peak(float(near[0]), float(near[-1]), self.force(np.linspace(near[0], near[-1], PLACES)))

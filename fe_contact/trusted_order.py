@@ -19,24 +19,25 @@ NEARLY = 0.8  # share of the expected ratio that the durations must show: they s
 ABOUT_A_STEP = (0.4, 9.0)  # step over relaxation time: outside, its weight in the step is within 1/8 of a power of it
 
 
-def trusted_orders(curves: tuple[Curve, Curve, Curve], order: int, steps: Array) -> dict[str, int]:
+def trusted_orders(curves: tuple[Curve, Curve, Curve], order: int, steps: tuple[float, float]) -> dict[str, int]:
     """Orders of the extrapolated force and of the quantities that deserve less trust.
 
     Parameters
     ----------
     curves : with steps in the ratio 4 : 2 : 1.
     order : the scheme's own.
-    steps : (k,) shortest step over each relaxation time.
+    steps : the shortest and the longest that count, s.
     """
     force = _trusted_order(*curves, order)
     duration = min(force, _order_of_duration(*curves, order))
-    within_step, within_two = (_about_a_step(share * steps) for share in (1, 2))
+    shortest, longest = np.divide.outer(steps, curves[0].strike.relaxation.times)
+    within_step, within_two = (_about_a_step(share * shortest, share * longest) for share in (1, 2))
     if within_step:
-        force = min(force, order)
+        force = min(force, order if steps[0] == steps[1] else 1)  # one among many steps, or each of them
     if within_two:
         duration = min(duration, order)
     summed = 1 if within_step else min(force, order)
-    return {"force": force, "impulse": summed, "restitution": summed, "duration": duration}
+    return {"force": force, "impulse": summed, "restitution": summed, "peak_depth": summed, "duration": duration}
 
 
 def _trusted_order(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
@@ -56,6 +57,6 @@ def _order_of_duration(fine: Curve, half: Curve, quarter: Curve, order: int) -> 
     return order if abs(third - second) >= NEARLY * 2**order * abs(second - first) else 1
 
 
-def _about_a_step(steps: Array) -> bool:
-    """Whether some relaxation time is neither much longer nor much shorter than a step."""
-    return bool(np.any((steps > ABOUT_A_STEP[0]) & (steps < ABOUT_A_STEP[1])))
+def _about_a_step(shortest: Array, longest: Array) -> bool:
+    """Whether some relaxation time is neither much longer nor much shorter than a step; both over it, (k,)."""
+    return bool(np.any((longest > ABOUT_A_STEP[0]) & (shortest < ABOUT_A_STEP[1])))
