@@ -41,6 +41,7 @@ from lumped.members import get
 
 MARCHES = 2.5  # steps of all marches of a contact over those of the finest one: half and a quarter, and three of these
 SAFETY = 1.25
+UNORDERED = 2.5  # the same where no order is shown: the finer of two runs errs by less than twice their distance
 LEAST_ORDER = {"penalty": 1, "far_field": 2}
 MESH_ORDER = {1: 0.5, 2: 1, 3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
 MESH_ORDER_ANYWHERE = 1  # where the edge falls anywhere in an element: 1.6 is what is seen
@@ -221,6 +222,9 @@ def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics, f
     value, before = extrapolated(fine, half, order), extrapolated(half, quarter, order)
     taken = fine.duration * np.diff(fine.x**2) if flat else np.array([numerics.contact_time / numerics.steps])
     orders = trusted_orders((fine, half, quarter), order, (float(taken[0]), float(taken.max())))
+    if flat and orders["force"] == 1:  # steps as long as a relaxation show no order: the finest run stands as it is
+        jitter = Change(fine, fine.thinned(), 1.0)
+        return _TimeSteps(fine, Change(fine, half, UNORDERED), (jitter,), numerics.steps // 4, True)
     least = SAFETY / (2 ** orders.pop("force") - 1)
     weights = {name: SAFETY / (2**trusted - 1) / least for name, trusted in orders.items()}
     change = Change(value, before, least, weights)

@@ -28,6 +28,7 @@ RIM_PENALTY = 16.0  # penalty under a rim over the usual: the pressure is infini
 VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
 STEPS_AT_DEFAULT = 40  # and no fewer at any tolerance: halved twice, they still tell something
 STEPS_ORDER = 0.176  # steps grow with tolerance to this power: 60 at 1e-4
+FLAT_STEPS = 4  # as many under a flat end: its area presses at once, whatever relaxes fast, and a step is one sum
 AT_TOUCH = 1e-12  # share of the contact before which a peak is the touch itself, but for rounding
 SOONEST_PEAK = 1e-6  # share of the contact below which the time grid would lose its digits
 EARLY_PEAK = 0.28  # a force that peaks before this share of the contact needs more steps in proportion
@@ -67,7 +68,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     contact_time = size.duration or (min(held, scene.end_time) if scene.gravity > 0.0 else scene.end_time)
     peak_share = share_of_peak(size.peak_time, contact_time)
     placed = chosen.varied(
-        steps=_steps(tolerance, peak_share),
+        steps=_steps(tolerance, peak_share) * (FLAT_STEPS if _flat(scene) else 1),
         contact_radius=size.contact_radius * (SPARE if _stays(scene) else 1.0),
         contact_time=contact_time,
         peak_share=peak_share,
@@ -92,13 +93,11 @@ def share_of_peak(peak_time: float, contact_time: float) -> float:
 
 def _settings(scene: Scene, tolerance: float) -> Numerics:
     """What does not depend on how large the impact is."""
-    target, shape = scene.geometry.target, scene.geometry.shape
-    flat = target.fixed_radius(shape) is not None
     chosen = {
         **DEFAULTS,
         "tolerance": tolerance,
         "elements_per_contact": _elements(scene, tolerance),
-        "penalty": DEFAULTS["penalty"] * (RIM_PENALTY if flat else 1.0),
+        "penalty": DEFAULTS["penalty"] * (RIM_PENALTY if _flat(scene) else 1.0),
         "steps": RANGES["steps"][0],
     }
     return Numerics(**chosen, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
@@ -108,7 +107,7 @@ def _elements(scene: Scene, tolerance: float) -> float:
     """Elements along the contact radius; a dashpot asks for more, since it differentiates the mesh's error."""
     order = VISCOUS_ORDER if scene.contact_modulus.viscosity > 0 else 0.0
     fewest = FIXED_ELEMENTS if _stays(scene) else ELEMENTS
-    if not _stays(scene) and scene.geometry.target.fixed_radius(scene.geometry.shape) is None:
+    if not _stays(scene) and not _flat(scene):
         fewest *= math.pow(min(max(1e-4 / tolerance, 0.1), 1.0), LOOSER)
     finer = max(1.0, math.pow(1e-4 / tolerance, 0.25), math.pow(DEFAULT_TOLERANCE / tolerance, order))
     return round(fewest * finer, 6)
@@ -116,15 +115,19 @@ def _elements(scene: Scene, tolerance: float) -> float:
 
 def _stays(scene: Scene) -> bool:
     """Whether the mesh stays and the contact may end anywhere in it."""
-    target, shape = scene.geometry.target, scene.geometry.shape
-    return target.has_length and target.fixed_radius(shape) is None
+    return scene.geometry.target.has_length and not _flat(scene)
+
+
+def _flat(scene: Scene) -> bool:
+    """Whether a flat end presses the same area from the first touch to the last."""
+    return scene.geometry.target.fixed_radius(scene.geometry.shape) is not None
 
 
 def _steps(tolerance: float, peak_share: float) -> int:
     """Time steps per contact, a multiple of four so that the budget can halve them twice."""
     early = max(1.0, EARLY_PEAK / peak_share)
     wanted = early * STEPS_AT_DEFAULT * max(DEFAULT_TOLERANCE / tolerance, 1.0) ** STEPS_ORDER
-    return int(min(4 * math.ceil(wanted / 4), RANGES["steps"][1]))
+    return int(min(4 * math.ceil(wanted / 4), RANGES["steps"][1] / FLAT_STEPS))
 
 
 def refined(numerics: Numerics, cause: str) -> Numerics:
