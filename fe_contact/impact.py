@@ -17,6 +17,7 @@ from fe_contact.separation import time_left
 from fe_contact.steps import State, Step, Stepping
 from fe_contact.time_grid import growth, share_of_rest, step_length
 
+FAILURES = (ContactLost, ContactNotSettled, MemoryTooSmall)  # of a step that may be too long
 PREDICTIONS = 2  # of the separation: how far they lie apart tells how well its time can be read
 NOISE = 1e-4  # share of the peak force below which a contact problem may drown in the mesh's error
 AT_REST = 1e-4  # share of the velocity at touch below which a fluid has stopped the striker
@@ -63,22 +64,31 @@ class _Marcher:
         separated = False
         free_fluid = strike.relaxation.equilibrium == 0 and strike.gravity == 0
         resting = AT_REST * strike.velocity if free_fluid else 0.0
-        predicted: list[float] = []
+        predicted, unseen = list[float](), 0.0
         while states[-1].time < strike.end_time * (1 - 1e-12):
             if len(steps) > STEPS_ALLOWED * self.numerics.steps:
                 raise TooManySteps(len(steps), states[-1].time)
             left = self._time_left(steps)
             predicted.append(states[-1].time + (left or 0.0))
-            step = None if left is not None and left <= self.shortest else self._advance(states[-1], steps, left)
+            step = None
+            if left is None or left > self.shortest:
+                try:
+                    step = self._advance(states[-1], steps, left)
+                except FAILURES as failure:
+                    if not _ends(failure, steps):
+                        raise
+                    if isinstance(failure, ContactLost):
+                        left = min(left or 0.0, self.shortest)
+                    else:  # too faint to be found: its end lies as far as the trend says, or within a step's length
+                        unseen = left or steps[-1].length
             if step is None:
                 separated = states[-1].velocity < -resting
-                left = min(left or 0.0, self.shortest)
-                states += self._flight(states[-1], left) if separated else self._rest(states[-1], resting)
+                states += self._flight(states[-1], left or 0.0) if separated else self._rest(states[-1], resting)
                 break
             self.counted(1.0)
             steps.append(step)
             states.append(step.state)
-        spread = float(np.ptp(predicted[-PREDICTIONS:])) if separated else 0.0
+        spread = float(np.ptp(predicted[-PREDICTIONS:])) + unseen if separated else 0.0
         return record(self.stepper, states, steps, separated, spread)
 
     def _time_left(self, steps: Sequence[Step]) -> float | None:
@@ -91,10 +101,10 @@ class _Marcher:
         # a kink in the trend is not the end: contact ends faintly
         return None if left is None or (left <= self.shortest and not _faint(steps, FAINT)) else left
 
-    def _advance(self, state: State, steps: Sequence[Step], left: float | None) -> Step | None:
+    def _advance(self, state: State, steps: Sequence[Step], left: float | None) -> Step:
         """The next step: on the grid, shorter towards separation, and again where contact was lost in it.
 
-        None if contact does not last even for the shortest step.
+        Raises what the shortest step fails by.
         """
         numerics = self.numerics
         length = numerics.contact_time * step_length(len(steps), numerics.steps, numerics.peak_share)
@@ -106,12 +116,10 @@ class _Marcher:
         while True:
             try:
                 return self.stepper.step(state, steps, length)
-            except (ContactLost, ContactNotSettled, MemoryTooSmall) as failure:
-                if not steps or not (isinstance(failure, ContactLost) or _faint(steps, NOISE)):
-                    raise
+            except FAILURES as failure:
                 length /= 2
-                if length < self.shortest:
-                    return None
+                if length < self.shortest or not _ends(failure, steps):
+                    raise
 
     def _longest(self, last: Step) -> float:
         """What does not separate swings about its weight, which no long step would see, until it has settled."""
@@ -135,6 +143,11 @@ class _Marcher:
             raise ContactNotSettled(state.time)
         roots = np.linspace(np.sqrt(state.time), np.sqrt(strike.end_time), REST_ROWS)[1:]
         return [state._replace(time=float(root) ** 2) for root in roots]
+
+
+def _ends(failure: Exception, steps: Sequence[Step]) -> bool:
+    """Whether a step may have failed because contact ends in it."""
+    return bool(steps) and (isinstance(failure, ContactLost) or _faint(steps, NOISE))
 
 
 def _faint(steps: Sequence[Step], share: float) -> bool:
