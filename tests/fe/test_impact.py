@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,6 +26,7 @@ from fe_contact.numerics import SCHEMES, Numerics
 from fe_contact.operators import system_matrix
 from fe_contact.plan import plan
 from fe_contact.reference import strike_of
+from fe_contact.steps import State, Step
 from fe_contact.targets import half_space
 from lumped.laws import mdr
 from lumped.materials import Relaxation
@@ -204,6 +205,30 @@ def test_what_does_not_converge_raises_and_returns_nothing(
     monkeypatch.setattr(contact, "MAX_ITERATIONS", 1)
     with pytest.raises(ContactNotSettled, match="cure"):
         marched(strike, settings_of(strike))
+
+
+@pytest.mark.parametrize("failure", [ContactNotSettled(0.0), MemoryTooSmall(1.0)])
+def test_a_contact_too_faint_to_be_found_ends_within_its_bar(
+    failure: Exception, monkeypatch: pytest.MonkeyPatch, hertz_strike: Strikes, settings_of: Settings
+) -> None:
+    """As soon as steps fail below the share of the peak where they may; without that the end is found."""
+    strike = hertz_strike(SLS)
+    numerics = settings_of(strike)
+    stepper = half_space.surface(0.3, numerics).stepper(strike, numerics, True, ())
+    monkeypatch.setattr(impact, "NOISE", 0.05)
+    whole, stepped = impact.marched(stepper), stepper.step
+    mean = whole.impulse[-1] / whole.time[-1]
+
+    def failing(state: State, steps: Sequence[Step], length: float) -> Step:
+        if state.velocity < 0.0 and steps[-1].force < 0.05 * mean:  # no more than that of its peak
+            raise failure
+        return stepped(state, steps, length)
+
+    monkeypatch.setattr(type(stepper), "step", lambda _, *args: failing(*args))
+    cut = impact.marched(stepper)
+    assert cut.separated
+    assert len(cut.time) < len(whole.time)
+    assert 0.0 < abs(cut.time[-1] - whole.time[-1]) < cut.end_spread
 
 
 def test_too_small_a_memory_and_too_few_steps_are_named(
