@@ -35,7 +35,7 @@ def trusted_orders(curves: tuple[Curve, Curve, Curve], order: int, steps: tuple[
     within_step, within_two = (_about_a_step(share * shortest, share * longest) for share in (1, 2))
     if within_step:
         force = min(force, order if steps[0] == steps[1] else 1)  # one among many steps, or each of them
-    if within_two:
+    if within_two or curves[0].strike.relaxation.viscosity:  # a dashpot's end is one of velocities, which are rougher
         duration = min(duration, order)
     summed = 1 if within_step else min(force, order)
     return {"force": force, "impulse": summed, "restitution": summed, "peak_depth": summed, "duration": duration}
