@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -27,14 +28,15 @@ Array = NDArray[np.float64]
 # Errors of the rate allowed in one step, relative to the velocity at touch: the history errs far less, its end less
 # again. The first one is that asked of the result, if it is not beyond these; every next one is finer by FINER.
 COARSEST, FINEST, FINER = 1e-5, 1e-12, 1e-2
-# Whatever is asked, a contact's duration, relative, and restitution are known to this.
-END = 1e-11
+# Whatever is asked, a contact's duration, relative, and restitution are known to this; to that where marches are
+# compared, which takes two of them.
+END, END_COMPARED = 1e-11, 1e-8
 # Two marches may agree by chance.
 SAFETY = 2.0
 
 
 class Judged(NamedTuple):
-    """A march: what it says, its quantities with bars, the bar of the force, N, and how many steps it all took."""
+    """A march: what it says, its quantities with bars, the bar of the force, N, and how many steps it took."""
 
     answer: Answer
     quantities: Mapping[str, Quantity]
@@ -49,13 +51,14 @@ def bodies_of(scene: Scene) -> Bodies:
 
 def simulate(law: ForceLaw, scene: Scene, tolerance: float) -> Result:
     """The impacts of a scene to this tolerance. Raises TooManySteps."""
-    clock = Clock()
-    judge = _compared if scene.motion.impacts > 1 or law.remembers else _estimated
+    clock, compared = Clock(), scene.motion.impacts > 1 or law.remembers
+    end = END_COMPARED if compared else END
+    marched = cache(partial(_marched, law, scene))  # what is coarse in a round was fine in the one before
     step_tolerance, steps = _first(tolerance), 0
     while True:
-        judged = judge(law, scene, step_tolerance)
+        judged = _compared(marched, step_tolerance) if compared else _estimated(law, scene, step_tolerance)
         steps += judged.steps
-        if step_tolerance <= FINEST or (meets(judged.quantities, tolerance) and _ends_well(judged.quantities)):
+        if step_tolerance <= FINEST or (meets(judged.quantities, tolerance) and _ends_well(judged.quantities, end)):
             break
         step_tolerance *= FINER
     answer, quantities, force_error, _ = judged
@@ -87,20 +90,24 @@ def _estimated(law: ForceLaw, scene: Scene, step_tolerance: float) -> Judged:
     return Judged(answer, quantities, widths.force, track.motion.steps)
 
 
-def _compared(law: ForceLaw, scene: Scene, step_tolerance: float) -> Judged:
+def _compared(marched: Callable[[float], tuple[Answer, int]], step_tolerance: float) -> Judged:
     """Contacts whose bars are their distance from those of a march a hundred times less fine."""
-    finer = max(step_tolerance * FINER, FINEST)
-    tracks = [_track(law, scene, scene.motion.impacts, step) for step in (finer, finer / FINER)]
-    fine, coarse = (
-        _answer(law, scene, track, [outcome_of(track, one) for one in track.motion.contacts]) for track in tracks
-    )
-    return Judged(fine, *bars(fine, coarse, SAFETY), sum(track.motion.steps for track in tracks))
+    fine, steps = marched(max(step_tolerance * FINER, FINEST))
+    coarse, _ = marched(max(step_tolerance, FINEST / FINER))
+    return Judged(fine, *bars(fine, coarse, SAFETY), steps)
 
 
-def _ends_well(quantities: Mapping[str, Quantity]) -> bool:
-    """Whether a contact that ends is known to END there."""
+def _marched(law: ForceLaw, scene: Scene, step_tolerance: float) -> tuple[Answer, int]:
+    """What all contacts of one march say, and how many steps it took."""
+    track = _track(law, scene, scene.motion.impacts, step_tolerance)
+    outcomes = [outcome_of(track, one) for one in track.motion.contacts]
+    return _answer(law, scene, track, outcomes), track.motion.steps
+
+
+def _ends_well(quantities: Mapping[str, Quantity], known: float) -> bool:
+    """Whether the end of a contact that ends is `known`."""
     duration, restitution = quantities["duration"], quantities["restitution"]
-    return (duration.error or 0.0) <= END * (duration.value or 0.0) and (restitution.error or 0.0) <= END
+    return (duration.error or 0.0) <= known * (duration.value or 0.0) and (restitution.error or 0.0) <= known
 
 
 def _until(law: ForceLaw, scene: Scene) -> float:
