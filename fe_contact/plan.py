@@ -68,7 +68,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     contact_time = size.duration or (min(held, scene.end_time) if scene.gravity > 0.0 else scene.end_time)
     peak_share = share_of_peak(size.peak_time, contact_time)
     placed = chosen.varied(
-        steps=_steps(tolerance, peak_share) * (FLAT_STEPS if _flat(scene) else 1),
+        steps=_steps(tolerance, peak_share, FLAT_STEPS if _flat(scene) else 1),
         contact_radius=size.contact_radius * (SPARE if _stays(scene) else 1.0),
         contact_time=contact_time,
         peak_share=peak_share,
@@ -123,11 +123,11 @@ def _flat(scene: Scene) -> bool:
     return scene.geometry.target.fixed_radius(scene.geometry.shape) is not None
 
 
-def _steps(tolerance: float, peak_share: float) -> int:
-    """Time steps per contact, a multiple of four so that the budget can halve them twice."""
+def _steps(tolerance: float, peak_share: float, finer: int) -> int:
+    """Time steps per contact, so many times `finer`, a multiple of four so that the budget can halve them twice."""
     early = max(1.0, EARLY_PEAK / peak_share)
     wanted = early * STEPS_AT_DEFAULT * max(DEFAULT_TOLERANCE / tolerance, 1.0) ** STEPS_ORDER
-    return int(min(4 * math.ceil(wanted / 4), RANGES["steps"][1] / FLAT_STEPS))
+    return int(min(4 * finer * math.ceil(wanted / 4), RANGES["steps"][1]))
 
 
 def refined(numerics: Numerics, cause: str) -> Numerics:
