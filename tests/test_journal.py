@@ -137,6 +137,12 @@ def test_a_process_that_dies_is_a_named_failure() -> None:
     assert WorkerLost().exit_code == 3
 
 
+def test_an_answer_that_cannot_be_sent_is_not_waited_for() -> None:
+    with pytest.raises(WorkerLost):
+        list(measured({"a file": partial(open, os.devnull), "short": partial(abs, -1.0)}, 2))
+    assert not active_children()
+
+
 def test_a_named_failure_comes_out_of_a_process_as_it_went_in() -> None:
     faults = (Fault("scene.toml", "striker.mass", "missing"), Fault("scene.toml", "target", "missing"))
     sent = {"fe": partial(ContactNotSettled, 0.5), "input": partial(BadInput, faults)}

@@ -176,8 +176,13 @@ def _answer(line: connection.Connection) -> None:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, signal.SIGTERM})
 
     def said(done: Future[Any]) -> None:
-        failure = done.exception()
-        line.send((failure, None if failure else done.result()))
+        failure, sent = done.exception(), False
+        try:
+            line.send((failure, None if failure else done.result()))
+            sent = True
+        finally:
+            if not sent:  # nothing else would be heard, and waited for without end
+                os._exit(1)
 
     measuring = ThreadPoolExecutor(1, initializer=one_thread.__enter__)  # for as long as this process lives
     try:
