@@ -30,14 +30,22 @@ class LedgerEntry:
         """The most that is left out, as far as it is known."""
         return max(map(abs, self.spread)) if self.spread else self.estimate or 0.0
 
+    @property
+    def known(self) -> bool:
+        """Whether anything is said of its size."""
+        return self.estimate is not None or self.spread is not None
+
+    def exceeds(self, tolerance: float) -> bool:
+        """Whether it is certainly above what may be left out."""
+        return self.estimate is not None and self.estimate > tolerance
+
     def verdict(self, tolerance: float) -> str:
         """Whether the effect may be left out: within tolerance, above it, open by the scene, or unknown."""
-        if self.estimate is None and self.spread is None:
+        if not self.known:
             return f"{UNKNOWN}: {self.note}"
         if self.size <= tolerance:
             return WITHIN
-        certain = self.estimate is not None and self.estimate > tolerance
-        return f"{ABOVE}: {self.key or NO_KEY}" if certain else f"{OPEN}: {self.note}"
+        return f"{ABOVE}: {self.key or NO_KEY}" if self.exceeds(tolerance) else f"{OPEN}: {self.note}"
 
     def to_json(self, tolerance: float) -> dict[str, Any]:
         """Its fields, and its verdict at a tolerance."""
@@ -45,8 +53,8 @@ class LedgerEntry:
 
 
 def sufficient(ledger: Sequence[LedgerEntry], tolerance: float) -> bool:
-    """Whether no effect that can be judged exceeds what may be left out."""
-    return all(entry.estimate is None or entry.estimate <= tolerance for entry in ledger)
+    """Whether no effect certainly exceeds what may be left out."""
+    return not any(entry.exceeds(tolerance) for entry in ledger)
 
 
 def worst(ledger: Sequence[LedgerEntry]) -> LedgerEntry:
@@ -56,11 +64,10 @@ def worst(ledger: Sequence[LedgerEntry]) -> LedgerEntry:
 
 def good_to(ledger: Sequence[LedgerEntry]) -> str:
     """A line: how much of the force the model may miss, by what, and what is not known; empty where nothing is."""
-    judged = [entry for entry in ledger if entry.estimate is not None or entry.spread is not None]
-    if not judged:
+    if not any(entry.known for entry in ledger):
         return ""
-    most = max(judged, key=lambda entry: entry.size)
-    unknown = [entry.effect for entry in ledger if entry not in judged]
+    most = max(ledger, key=lambda entry: entry.size)
+    unknown = [entry.effect for entry in ledger if not entry.known]
     said = f"this model is good to about {most.size:.1g} of the peak force"
     said += f", for {most.effect}" if most.size else ""
     return f"{said}; unknown: {', '.join(unknown)}" if unknown else said

@@ -33,7 +33,6 @@ from lumped.shapes._block import Block
 from lumped.sufficiency import LedgerEntry
 
 DEFAULT_TOLERANCE = 3e-3
-GRAVITY = 9.81
 STEPS, MANY, MOST = 200, 1600, 12_800  # while a wave goes to the far end and back: at first, and at all
 LIGHT = 32.0  # of them in the part of the bar that is as heavy as the mass behind it
 USUAL: dict[str, Any] = {"enforcement": "exact", "scheme": "staged"}
