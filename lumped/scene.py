@@ -25,6 +25,7 @@ from lumped.scene_tables import (
     LawChoice,
     Model,
     Motion,
+    gravity_faults,
     inertia_faults,
     mass_faults,
 )
@@ -68,6 +69,7 @@ class Scene:
         target = self.target if self.has_geometry else None
         faults = inertia_faults(self.source, self.model.inertia, density, target)
         faults += mass_faults(self.source, self.mass, self.swinging_mass)
+        faults += gravity_faults(self.source, self.model)
         if self.model.inertia and self.has_geometry:
             faults += flying_faults(self.source, self.geometry, self.mass, self.target_mass)
         if faults:

@@ -38,7 +38,7 @@ LAWS, TARGETS = "lumped.laws", "lumped.targets"
 class Model:
     """The `[model]` table: inertia of deformable bodies, profile, gravity along the motion (m/s2), where that leads.
 
-    No gravity is assumed; `direction` tells whether that leaves a weight out. Raises BadInput.
+    No gravity is assumed; `direction` tells whether that leaves a weight out.
     """
 
     inertia: bool = False
@@ -48,9 +48,6 @@ class Model:
 
     def __post_init__(self) -> None:
         check_fields("model", self, MODEL_KEYS)
-        if self.gravity and self.direction == "horizontal":
-            reason = f"{self.gravity:g} m/s2 along a horizontal motion; accepted: 0, or model.direction = 'down'"
-            raise BadInput(Fault("model", "model.gravity", reason))
 
 
 @dataclass(frozen=True)
@@ -99,6 +96,14 @@ def inertia_faults(source: str, inertia: bool, density: float | None, target: Ta
         owner = "target" if target.deformable else "striker"
         faults.append(Fault(source, f"{owner}.material.density", reason))
     return faults
+
+
+def gravity_faults(source: str, model: Model) -> list[Fault]:
+    """Gravity along a motion that is said to lead across it."""
+    if not model.gravity or model.direction != "horizontal":
+        return []
+    reason = f"{model.gravity:g} m/s2 along a horizontal motion; accepted: 0, or model.direction = 'down'"
+    return [Fault(source, "model.gravity", reason)]
 
 
 def mass_faults(source: str, mass: float, swinging: float) -> list[Fault]:

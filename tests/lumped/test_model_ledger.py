@@ -115,7 +115,7 @@ def test_adhesion_gravity_and_strain_are_simple_ratios() -> None:
 
 
 def test_gravity_along_a_horizontal_motion_is_refused() -> None:
-    with pytest.raises(BadInput, match=r"model.gravity: 9.81 .* horizontal"):
+    with pytest.raises(BadInput, match=r"^ball-bouncing\.toml: model\.gravity: 9.81 .* horizontal"):
         Scene.load("ball-bouncing", {"model.direction": "horizontal"})
 
 
