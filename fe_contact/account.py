@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import pairwise
 
@@ -10,6 +10,8 @@ import numpy as np
 
 from fe_contact.march import March, Work
 from fe_contact.steps import State, Step, Stepping
+
+Energies = Mapping[str, float]
 
 
 def record(
@@ -25,8 +27,8 @@ def record(
         radius_time=np.array([step.radius_time for step in steps]),
         radius=np.array([step.radius for step in steps]),
         separated=separated,
-        photograph=partial(stepper.snapshots, steps) if stepper.accounted else tuple,
-        energy=_energy(stepper, states, steps) if stepper.accounted else {},
+        photograph=partial(stepper.snapshots, steps),
+        energy=_energy(stepper, states, steps),
         end_spread=end_spread,
         work=Work(len(steps), sum(w.contact_problems for w in works), sum(w.iterations for w in works)),
         memory=last.memory,
@@ -34,27 +36,48 @@ def record(
     )
 
 
-def _energy(stepper: Stepping, states: Sequence[State], steps: Sequence[Step]) -> dict[str, float]:
-    """Terms in J; ``contact`` is what the penalty's springs hold if the bodies have not separated.
+def balanced(terms: Energies) -> dict[str, float]:
+    """Energies, J, with what is left of the first of them, ``in``, when all others are taken from it."""
+    known = {name: value for name, value in terms.items() if name != "residual"}
+    return known | {"residual": 2 * known["in"] - sum(known.values())}
 
-    What the body still stored at touch goes in too.
+
+def onwards(later: Energies, earlier: Energies, flight_heat: float) -> dict[str, float]:
+    """The account of a contact, J, carried on from that of an ``earlier`` one over a flight."""
+    spent = {name: earlier[name] + later[name] for name in ("viscous", "radiated", "contact", "numerical")}
+    spent["viscous"] += flight_heat
+    given = earlier["in"] - earlier["out"] - earlier["stored"] + flight_heat + later["in"]
+    return balanced({**later, **spent, "in": given})
+
+
+def _energy(stepper: Stepping, states: Sequence[State], steps: Sequence[Step]) -> dict[str, float]:
+    """Terms in J, each zero where a model without inertia knows none.
+
+    ``in``: with what the body still stored at touch. ``contact``: the striker's work that does not reach the body, none
+    of it where steps are short and the penalty is stiff. ``numerical``: what scheme and mesh leave unaccounted for.
     """
-    strike, last = stepper.strike, states[-1]
-    memories = [state.memory for state in states[: len(steps) + 1]]
-    heats = [
-        stepper.dissipated(before, after, step.length)
-        for (before, after), step in zip(pairwise(memories), steps, strict=True)
-    ]
-    terms = {
-        "in": 0.5 * strike.mass * strike.velocity**2
-        + strike.mass * strike.gravity * (last.depth - strike.depth)
-        + stepper.stored(memories[0]),
-        "out": 0.5 * strike.mass * last.velocity**2,
-        "stored": stepper.stored(last.memory),
-        "viscous": sum(heats),
-        "radiated": 0.0,
-        "contact": stepper.springs(steps[-1]) if last is steps[-1].state else 0.0,
-        "numerical": 0.0,
-    }
-    terms["residual"] = 2 * terms["in"] - sum(terms.values())
-    return terms
+    strike, scheme, last = stepper.strike, stepper.scheme, states[-1]
+    taken = list(zip(pairwise(states[: len(steps) + 1]), steps, strict=True))
+    jumps = np.diff([state.velocity for state in states[: len(steps) + 1]])
+    lost = sum(stepper.lost(before.memory, after.memory, step.length) for (before, after), step in taken)
+    heats = [stepper.dissipated(before.memory, after.memory, step.length) for (before, after), step in taken]
+    stored = stepper.stored(last.memory)
+    crept = _crept(stored, heats[-1] / steps[-1].length, last.time - states[len(steps)].time)
+    return balanced(
+        {
+            "in": 0.5 * strike.mass * strike.velocity**2
+            + strike.mass * strike.gravity * (last.depth - strike.depth)
+            + stepper.stored(states[0].memory),
+            "out": 0.5 * strike.mass * last.velocity**2,
+            "stored": stored - crept,
+            "viscous": sum(heats) + crept,
+            "radiated": 0.0,
+            "contact": sum(stepper.between(before, step) for (before, _), step in taken),
+            "numerical": lost + (scheme.LEVER - 0.5) * strike.mass * float(jumps @ jumps),
+        }
+    )
+
+
+def _crept(stored: float, rate: float, time: float) -> float:
+    """Heat of a body that nothing presses over a time, s, from what it stores, J, at a rate that falls with it; J."""
+    return stored * -float(np.expm1(-rate * time / stored)) if stored > 0.0 else 0.0

@@ -48,6 +48,8 @@ MESH_ORDER_ANYWHERE = 1  # where the edge falls anywhere in an element: 1.6 is w
 LEAST_HALVED = 40  # steps below which halving them twice would leave too few to tell anything
 LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 20.0, "far_radius": 5.0}
 CAUSES = ("mesh", "penalty", "time_step", "far_field")
+OUTSIDE = ("in", "out")  # terms of the energy account that the striker knows
+LOST = ("contact", "numerical", "residual")  # terms that are zero but for errors
 FALLS = 0.7  # share of a jitter which half the step leaves, if the step is its cause
 MOST_APART = 1.5  # durations by different steps that tell of one and the same end
 ROUNDING = 1e-9  # of a solve of nearly incompressible bodies
@@ -80,6 +82,16 @@ class Budget:
     def total(self, name: str) -> float:
         """Error bar of a quantity, in its unit."""
         return sum(self.error(name, cause) for cause in CAUSES)
+
+    def energy_error(self, name: str) -> float:
+        """Error bar of a term of the energy account, J; infinite where a variation failed.
+
+        What is lost on the way to the body, or to rounding, may belong to any term within it.
+        """
+        energy = self.curve.energy
+        lost = sum(abs(energy[one]) for one in LOST)
+        own = 0.0 if name in OUTSIDE or energy[name] == 0.0 else lost
+        return own + sum(np.inf if one is None else one.energies[name] for row in self.changes.values() for one in row)
 
     def force_error(self, time: Array) -> Array:
         """Half-width of the force's error band, N."""
@@ -119,7 +131,7 @@ def certify(
     progress(message)
     runs = Runs(strike, geometry, impacts, Count(progress, message, expected))
     numerics = runs.placed(numerics, numerics.steps // 4 if numerics.steps >= LEAST_HALVED else numerics.steps)
-    followed = runs.follow(numerics, accounted=True)
+    followed = runs.follow(numerics)
     judged = [_judged(runs, number, numerics, impacts == 1) for number in range(len(followed.contacts))]
     surface = runs.surface(numerics)
     work = runs.work(surface)

@@ -47,6 +47,16 @@ class Change:
         errors = {name: self._error(name, value) for name, value in around.items()}
         return errors | {"history_l2": self.factor * self.history}
 
+    @cached_property
+    def energies(self) -> dict[str, float]:
+        """Error of every term of the energy account, J; of what the striker takes along by the velocity's."""
+        first, second = self.first.energy, self.second.energy
+        strike, factor = self.first.strike, self.factor * self.weights.get("restitution", 1.0)
+        speed = factor * self.velocity
+        errors = {name: factor * abs(value - second[name]) for name, value in first.items()}
+        out = strike.mass * speed * (abs(self.first.leaving_speed) + 0.5 * speed)
+        return errors | {"out": max(errors["out"], out)}
+
     def _error(self, name: str, around: float) -> float:
         first, second = self.first.quantities[name], self.second.quantities[name]
         if first is None or second is None:

@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from fe_contact.account import Energies, balanced
 from fe_contact.contact_radius import squared_radius
 from fe_contact.forms import Array
 from fe_contact.local_polynomial import PLACES, LocalPolynomials, fitted_peak, peak
@@ -38,7 +39,7 @@ class Reading:
 @dataclass(frozen=True)
 class Curve:
     """Mean force since touch (n,), N, depth (n,), m, at ``x`` (n,); squared radius at ``radius_x``; duration and how
-    sharply its end can be read, s.
+    sharply its end can be read, s; energies of the account, J.
     """
 
     strike: Strike
@@ -50,6 +51,7 @@ class Curve:
     radius_x: Array
     radius_squared: Array
     end_spread: float
+    energy: Energies
 
     @classmethod
     def of(cls, march: March, strike: Strike) -> Curve:
@@ -66,6 +68,7 @@ class Curve:
             radius_x=np.sqrt(shares),
             radius_squared=squares,
             end_spread=march.end_spread,
+            energy=march.energy,
         )
 
     def thinned(self) -> Curve:
@@ -185,7 +188,7 @@ def extrapolated(fine: Curve, coarse: Curve, order: int) -> Curve:
     weight = 1 / (2**order - 1)
 
     (mean, depth), _ = coarse.polynomials.at(fine.x)
-    return Curve(
+    found = Curve(
         strike=_onwards(fine.strike, coarse.strike, weight),
         duration=fine.duration + weight * (fine.duration - coarse.duration),
         separated=fine.separated,
@@ -195,7 +198,17 @@ def extrapolated(fine: Curve, coarse: Curve, order: int) -> Curve:
         radius_x=fine.radius_x,
         radius_squared=fine.radius_squared + weight * (fine.radius_squared - coarse.radius_squared_at(fine.radius_x)),
         end_spread=fine.end_spread + weight * (fine.end_spread + coarse.end_spread),
+        energy={name: value + weight * (value - coarse.energy[name]) for name, value in fine.energy.items()},
     )
+    return replace(found, energy=_by_speed(found))
+
+
+def _by_speed(curve: Curve) -> Energies:
+    """The account of an extrapolated curve: the square of a speed is that of the extrapolated speed, which is numerical
+    in so far as it is not the extrapolated square.
+    """
+    energy, out = curve.energy, 0.5 * curve.strike.mass * curve.leaving_speed**2
+    return balanced({**energy, "out": out, "numerical": energy["numerical"] + energy["out"] - out})
 
 
 def _onwards(fine: Strike, coarse: Strike, weight: float) -> Strike:

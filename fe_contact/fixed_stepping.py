@@ -37,13 +37,12 @@ class FixedStepper:
     shortest = 2e-4  # the trend bends more than on a mesh that breathes
     first_force = 0.0
 
-    def __init__(self, strike: Strike, surface: Deformable, numerics: Numerics, accounted: bool) -> None:
+    def __init__(self, strike: Strike, surface: Deformable, numerics: Numerics) -> None:
         self.strike, self.surface, self.numerics = strike, surface, numerics
         self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
         self.contact = FixedContact(strike, surface, numerics)
         self.scale, self.places, self.heights = self.contact.scale, self.contact.places, self.contact.heights
         self.body = surface.body(strike.relaxation, self.scheme, self.scale)
-        self.accounted = accounted
 
     def touch(self) -> State:
         """The striker at the surface, at rest or with what it remembers."""
@@ -135,9 +134,13 @@ class FixedStepper:
         """Heat of a step of a length, s; J."""
         return self.body.dissipated(before.body, after.body, length)
 
-    def springs(self, step: Step) -> float:
-        """What the penalty's springs hold, J."""
-        operator = self.surface.operator
-        stiffness = self.numerics.penalty * self.scale / step.radius * self.body.modulus(step.length)
-        squares = float(operator.weights @ step.solution.pressure**2)
-        return 0.5 * self.scale ** (operator.dimension - 2) * squares / stiffness
+    def lost(self, before: Any, after: Any, length: float) -> float:
+        """Of the work in a step of a length, s, what the scheme leaves unaccounted for, J."""
+        return self.body.lost(before.body, after.body, length)
+
+    def between(self, before: State, step: Step) -> float:
+        """Work of the striker in a step that does not reach the body, J: of the penalty, and at a gap that opens."""
+        operator, after = self.surface.operator, step.state
+        sunk = self.body.displacement(after.memory.body) - self.body.displacement(before.memory.body)
+        reached = self.scale ** (operator.dimension - 2) * float(operator.weights @ (step.solution.pressure * sunk))
+        return step.force * (after.depth - before.depth) - reached

@@ -27,7 +27,6 @@ class FlatStepper(OfSurface):
     """
 
     shortest = 1e-7  # the force falls straight to zero: what is left of it then is below every tolerance
-    accounted = True
 
     def __init__(self, strike: Strike, stiffness: float, radius: float, numerics: Numerics) -> None:
         self.strike, self.stiffness, self.radius, self.numerics = strike, stiffness, radius, numerics
@@ -74,6 +73,6 @@ class FlatStepper(OfSurface):
         relaxation, strain = self.strike.relaxation, memory.strain[0, 0]
         return float(relaxation.equilibrium * strain + np.array(relaxation.moduli) @ memory.branches[:, 0, 0])
 
-    def springs(self, step: Step) -> float:
-        """None: the penalty's softness is in the stiffness."""
+    def between(self, before: State, step: Step) -> float:
+        """None: all places stay in touch, and the penalty's softness is in the stiffness."""
         return 0.0

@@ -66,7 +66,8 @@ def landing(stepper: Stepping, march: March) -> Landing | Grounded:
     surface = released.after(since + flown)
     if stepper.clearance(surface, depth(flown)).min() < -OFF_CENTRE * march.depth.max():
         return Grounded.OFF_CENTRE
-    heat, faster = released.dissipated(since + flown), velocity + strike.gravity * flown
+    heat = released.dissipated(since + flown) - released.dissipated(since)
+    faster = velocity + strike.gravity * flown
     return Landing(parted + flown, depth(flown), faster, surface, heat)
 
 

@@ -32,17 +32,16 @@ def march(
     strike: Strike,
     struck: Struck,
     numerics: Numerics,
-    accounted: bool = True,
     expected: Sequence[float] | Array = (),
 ) -> March:
     """Integrate from first touch to separation, or to ``strike.end_time``.
 
-    ``accounted`` marches also tell the pressure of every step and the energies; ``expected`` contact radii, m, of
-    the first steps, known from a like march, spare a mesh that breathes the search for its scale.
+    ``expected`` contact radii, m, of the first steps, known from a like march, spare a mesh that breathes the search
+    for its scale.
 
     Raises the named failures of :mod:`fe_contact.errors` where a step does not converge.
     """
-    return marched(struck.stepper(strike, numerics, accounted, expected))
+    return marched(struck.stepper(strike, numerics, expected))
 
 
 def marched(stepper: Stepping, counted: Counted = uncounted) -> March:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
+from fe_contact.account import onwards
 from fe_contact.bodies.struck import Struck
 from fe_contact.errors import TooManySteps
 from fe_contact.flight import FAINTEST, Grounded, Landing, landing
@@ -19,11 +20,10 @@ MOST_STEPS = 10_000  # after which no further contact is followed: a budget of s
 
 @dataclass(frozen=True)
 class Contact:
-    """One contact: its strike, begun by a touch, its march, and the heat of the surface in the flight before, J."""
+    """One contact: its strike, begun by a touch, and its march, whose energies are all since the first touch."""
 
     strike: Strike
     march: March
-    flight_heat: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -33,24 +33,12 @@ class Followed:
     contacts: tuple[Contact, ...]
     grounded: Grounded | None
 
-    @property
-    def energy(self) -> Mapping[str, float]:
-        """Terms at the end of the last contact, J; what the surface loses in the flights is heat too."""
-        first, last = self.contacts[0], self.contacts[-1]
-        strike, march = first.strike, last.march
-        fallen = strike.mass * strike.gravity * float(march.depth[-1])
-        heat = sum(contact.march.energy["viscous"] + contact.flight_heat for contact in self.contacts)
-        terms = march.energy | {"in": 0.5 * strike.mass * strike.velocity**2 + fallen, "viscous": heat}
-        del terms["residual"]
-        return terms | {"residual": 2 * terms["in"] - sum(terms.values())}
-
 
 def follow(
     strike: Strike,
     struck: Struck,
     impacts: int,
     placed: Callable[[int, Strike], Numerics],
-    accounted: bool = True,
     expected: Sequence[Sequence[float] | Array] = (),
     counted: Counted = uncounted,
 ) -> Followed:
@@ -59,7 +47,7 @@ def follow(
     Parameters
     ----------
     placed : settings for the contact of a number, from 0, and its strike, which say how long it is expected to last.
-    accounted, expected : as of :func:`fe_contact.impact.march`, radii a contact.
+    expected : as of :func:`fe_contact.impact.march`, radii a contact.
     counted : told of every step.
 
     Raises the named failures of :mod:`fe_contact.errors` where a step does not converge.
@@ -67,14 +55,16 @@ def follow(
     contacts, begun, heat, steps = list[Contact](), strike, 0.0, 0
     while True:
         radii = expected[len(contacts)] if len(contacts) < len(expected) else ()
-        stepper = struck.stepper(begun, placed(len(contacts), begun), accounted, radii)
+        stepper = struck.stepper(begun, placed(len(contacts), begun), radii)
         try:
             march = marched(stepper, counted)
         except TooManySteps:
             if not contacts:
                 raise
             return Followed(tuple(contacts), Grounded.SWINGS)
-        contacts.append(Contact(begun, march, heat))
+        if contacts:
+            march = replace(march, energy=onwards(march.energy, contacts[-1].march.energy, heat))
+        contacts.append(Contact(begun, march))
         steps += march.work.steps
         if len(contacts) == impacts or not march.separated:
             return Followed(tuple(contacts), None)

@@ -11,7 +11,7 @@ from fe_contact.curve import Curve
 from fe_contact.forms import Array
 from fe_contact.impact import march
 from fe_contact.impacts import Followed, follow
-from fe_contact.march import March, Strike
+from fe_contact.march import Strike, Work
 from fe_contact.numerics import Numerics
 from fe_contact.plan import share_of_peak
 from fe_contact.progress import Counted, uncounted
@@ -44,7 +44,7 @@ class Runs:
     def __init__(self, strike: Strike, geometry: Geometry, impacts: int, counted: Counted = uncounted) -> None:
         self._counted = counted
         self._strike, self._geometry, self._impacts = strike, geometry, impacts
-        self._marches: list[March] = []
+        self._works: list[Work] = []
         self._radii: dict[int, list[Array]] = {}
         self._surfaces: dict[int, Struck] = {}
         self._curves: dict[Numerics, tuple[Curve, ...]] = {}
@@ -63,13 +63,13 @@ class Runs:
             settings = settings.varied(contact_time=found.duration, peak_share=share)
         return settings
 
-    def follow(self, settings: Numerics, accounted: bool = False) -> Followed:
+    def follow(self, settings: Numerics) -> Followed:
         """One run, its contact radii expected to be those of the first with as many steps; raises where it fails."""
         surface, expected = self.surface(settings), self._radii.get(settings.steps, [])
         placed = partial(self._placed, settings, surface)
-        followed = follow(self._strike, surface, self._impacts, placed, accounted, expected, self._counted)
+        followed = follow(self._strike, surface, self._impacts, placed, expected, self._counted)
         marches = [contact.march for contact in followed.contacts]
-        self._marches += marches
+        self._works += [one.work for one in marches]
         self._radii.setdefault(settings.steps, [one.radius for one in marches])
         self._curves[settings] = tuple(Curve.of(contact.march, contact.strike) for contact in followed.contacts)
         return followed
@@ -95,7 +95,7 @@ class Runs:
 
     def work(self, finest: Struck) -> TotalWork:
         """What all runs cost together."""
-        works = [m.work for m in self._marches]
+        works = self._works
         return TotalWork(
             degrees_of_freedom=finest.degrees_of_freedom,
             factorizations=sum(s.factorizations for s in self._surfaces.values()),
@@ -120,7 +120,7 @@ class Runs:
         slower = elastic(begun.velocity).duration / elastic(self._strike.velocity).duration
         guess = {"contact_time": min(settings.contact_time * slower, begun.end_time)}
         try:
-            pilot = march(begun, surface, settings.varied(steps=PILOT_STEPS, **guess), accounted=False)
+            pilot = march(begun, surface, settings.varied(steps=PILOT_STEPS, **guess))
         except NotReached:
             return guess
         peak_time = Curve.of(pilot, begun).quantities["peak_time"] or 0.0

@@ -20,7 +20,7 @@ IN_FLIGHT = 65  # rows of a flight
 
 def whole(first: Result, certified: Several) -> Result:
     """The result of all contacts, from that of the first."""
-    row, followed = Row(certified.row), certified.followed
+    row, followed, last = Row(certified.row), certified.followed, certified.row[-1]
     shares = {name: row.shares(name) for name in UNITS}
     quantities = row.quantities(shares)
     missed = [unmet(quantities_of(one), first.tolerance) for one in certified.row]
@@ -31,13 +31,14 @@ def whole(first: Result, certified: Several) -> Result:
     return replace(
         first,
         converged=not any(missed) and followed.grounded not in UNFOLLOWED,
-        separated=certified.row[-1].curve.separated,
+        separated=last.curve.separated,
         history=_history(row, first.tolerance),
         quantities=quantities,
         contacts=tuple(row.told(number) for number in range(len(missed))),
         error_budget={cause: value / peak for cause, value in shares["peak_force"].items()},
         error_budget_by_quantity=shares,
-        energy=followed.energy,
+        energy=last.curve.energy,
+        energy_error={name: last.energy_error(name) for name in first.energy_error},
         message="; ".join(messages),
     )
 

@@ -41,6 +41,16 @@ class Softening:
         }
         return {name: self.share * value for name, value in whole.items()}
 
+    @cached_property
+    def energies(self) -> dict[str, float]:
+        """Error of every term of the energy account, J: of all work that the force does on the way in and out.
+
+        What is given errs by the path's error under gravity alone.
+        """
+        energy, strike = self.curve.energy, self.curve.strike
+        given = abs(energy["in"] - 0.5 * strike.mass * strike.velocity**2)
+        return dict.fromkeys(energy, self.share * (energy["in"] + energy["out"])) | {"in": self.share * given}
+
     def force(self, time: Array) -> Array:
         """Error of the force at times, N: at each what it is at the peak, since the force may be shifted, too."""
         return np.full_like(time, self.errors["peak_force"])

@@ -38,7 +38,7 @@ VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
 class Stepper(OfSurface):
     """Takes steps: what stays the same through an impact is held here, what changes is passed and returned.
 
-    ``accounted``: the memory also keeps the pressure that each of its branches carries, for the energies.
+    The memory also keeps the pressure that each of its branches carries, for the energies.
     ``expected``: contact radii, m, of the first steps where a like march has told them, for as many as it did.
     """
 
@@ -50,7 +50,6 @@ class Stepper(OfSurface):
         strike: Strike,
         surface: ScaledSurface,
         numerics: Numerics,
-        accounted: bool,
         expected: Sequence[float] | Array = (),
     ) -> None:
         self.strike, self.surface, self.numerics = strike, surface, numerics
@@ -58,14 +57,13 @@ class Stepper(OfSurface):
         self.enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
         self.radii = np.linspace(0.0, MEMORY_REACH * numerics.contact_radius, MEMORY_POINTS)
         self.heights = strike.height(self.radii)
-        # a memory that keeps its pressure goes on to do so
-        self.accounted = accounted if strike.memory is None else len(strike.memory.strain) == 2
+        self.areas = area_weights(self.radii)
         self.expected = expected
         self.unit = count(surface.operator.points < 1.0)
 
     def at_rest(self) -> SurfaceMemory:
-        """Of the displacement and, where accounted, of the pressure, at the memory's radii."""
-        return SurfaceMemory.at_rest(area_weights(self.radii), self.strike.relaxation, 2 if self.accounted else 1)
+        """Of the displacement and of the pressure, at the memory's radii."""
+        return SurfaceMemory.at_rest(self.areas, self.strike.relaxation, fields=2)
 
     def standing(self) -> int:
         """The axis."""
@@ -96,10 +94,12 @@ class Stepper(OfSurface):
         """Pressures at instants: at the end of a step while the contact grows, else where it is sampled."""
         return instants.read(self, steps)
 
-    def springs(self, step: Step) -> float:
-        """What the penalty's springs hold, J."""
-        stiffness = self.numerics.penalty * step_law(self.strike.relaxation, self.scheme, step.length).now
-        return 0.5 * step.scale * float(self.surface.operator.weights @ step.solution.pressure**2) / stiffness
+    def between(self, before: State, step: Step) -> float:
+        """Work of the striker in a step that does not reach the body, J: where surfaces meet or part within it."""
+        after = step.state
+        sunk = after.memory.strain[0] - before.memory.strain[0]
+        reached = self.areas @ (self._spread(step.solution.pressure, step.scale) * sunk)
+        return float(step.force * (after.depth - before.depth) - reached)
 
     def _settle(
         self, inertia: Inertia, steps: Sequence[Step], law: StepLaw, carried: Array
@@ -166,7 +166,7 @@ class Stepper(OfSurface):
     def _strain(
         self, law: StepLaw, carried: Array, depth: float, radius: float, scale: float, pressure: Array
     ) -> Array:
-        """Surface displacement at the memory's radii after the step and, where accounted, its pressure; (f, r)."""
+        """Surface displacement at the memory's radii after the step and its pressure; (2, r)."""
         strain = np.empty_like(carried)
         touching = int(self.radii.searchsorted(radius))
         outside = self.radii[touching:] / scale
@@ -174,8 +174,12 @@ class Stepper(OfSurface):
         strain[0, :touching] = depth - self.heights[:touching]
         stress = self.surface.sample(self.surface.response(pressure), outside)
         strain[0, touching:] = (stress - carried[0, touching:]) / law.now
-        if self.accounted:
-            points = self.surface.operator.points
-            spread = np.interp(self.radii / scale, points, pressure / scale, right=0.0)
-            strain[1] = (spread - carried[1]) / law.now
+        strain[1] = (self._spread(pressure, scale) - carried[1]) / law.now
         return strain
+
+    def _spread(self, pressure: Array, scale: float) -> Array:
+        """A pressure on the unit mesh, (q,), at the memory's radii, (r,), Pa, with the same force if they see one."""
+        operator = self.surface.operator
+        spread = np.interp(self.radii / scale, operator.points, pressure / scale, right=0.0)
+        total = float(self.areas @ spread)
+        return spread * (scale * float(operator.weights @ pressure) / total) if total > 0.0 else spread

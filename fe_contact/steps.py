@@ -44,15 +44,13 @@ class Step(NamedTuple):
 class Stepping(Protocol):
     """Takes the steps of one body.
 
-    ``shortest``: time left, in expected contact times, at which separation is read off the trend; ``accounted``:
-    whether pressures and energies are kept; ``first_force`` right at touch, N: not zero where a dashpot meets an area
-    at once.
+    ``shortest``: time left, in expected contact times, at which separation is read off the trend; ``first_force``
+    right at touch, N: not zero where a dashpot meets an area at once.
     """
 
     strike: Strike
     numerics: Numerics
     scheme: ModuleType
-    accounted: bool
     shortest: float
     first_force: float
 
@@ -80,14 +78,18 @@ class Stepping(Protocol):
     def dissipated(self, before: Any, after: Any, length: float) -> float:
         """Heat of a step of a length, s; J."""
 
-    def springs(self, step: Step) -> float:
-        """What the penalty's springs hold in a step, J."""
+    def lost(self, before: Any, after: Any, length: float) -> float:
+        """Of the work on the body in a step of a length, s, what a scheme leaves unaccounted for, J."""
+
+    def between(self, before: State, step: Step) -> float:
+        """Work of the striker in a step that does not reach the body, J: its pressure stands where a gap changes."""
 
 
 class OfSurface:
     """What, of the contract of :class:`Stepping`, all do on a body whose memory is that of its surface alone."""
 
     strike: Strike
+    scheme: ModuleType
 
     def at_rest(self) -> SurfaceMemory:
         """The memory of a body that nothing has touched yet."""
@@ -109,3 +111,7 @@ class OfSurface:
     def dissipated(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
         """Heat of a step of a length, s; J."""
         return before.dissipated(after, self.strike.relaxation, length)
+
+    def lost(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
+        """Of the work in a step of a length, s, what the scheme leaves unaccounted for, J."""
+        return before.lost(after, self.strike.relaxation, self.scheme, length)

@@ -51,10 +51,10 @@ class Result:
     """What one method says of one scene.
 
     `error_budget`: relative to peak force, by cause; `error_budget_by_quantity`: the same for every quantity.
-    `model` is the model as resolved, to which every claimed error refers. Energies in J. `contacts`: start,
-    duration, velocity, restitution, peak_force, peak_time, peak_depth of each, where several were asked for;
-    duration and restitution among the quantities are the first one's. `recovery`: of the surface after separation,
-    None where it is not told.
+    `model` is the model as resolved, to which every claimed error refers. Energies, and their bars where they are told,
+    in J. `contacts`: start, duration, velocity, restitution, peak_force, peak_time, peak_depth of each, where several
+    were asked for; duration and restitution among the quantities are the first one's. `recovery`: of the surface after
+    separation, None where it is not told.
     """
 
     method: str
@@ -70,6 +70,7 @@ class Result:
     error_budget_by_quantity: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     model_ledger: tuple[LedgerEntry, ...] = ()
     energy: Mapping[str, float | None] = field(default_factory=dict)
+    energy_error: Mapping[str, float] = field(default_factory=dict)
     provenance: Mapping[str, Any] = field(default_factory=dict)
     timing: Mapping[str, Any] = field(default_factory=dict)
     work: Mapping[str, Any] = field(default_factory=dict)
@@ -103,6 +104,7 @@ class Result:
             "error_budget_by_quantity": self.error_budget_by_quantity,
             "model_ledger": [entry.to_json(self.tolerance) for entry in self.model_ledger],
             "energy": {name: self.energy.get(name) for name in ENERGY_TERMS},
+            "energy_error": self.energy_error,
             "work": self.work,
             "provenance": self.provenance,
             "timing": self.timing,

@@ -83,10 +83,6 @@ class BulkBody:
             SurfaceMemory.at_rest(unit * self.modes.shear, self.moduli.shear, fields=1),
         )
 
-    def modulus(self, length: float) -> float:
-        """Contact modulus against new strain in a step of a length, s; Pa."""
-        return self._law(length).contact_modulus
-
     def offer(self, memory: BulkMemory, length: float) -> Offer:
         """What contact meets in a step of a length, s."""
         law = self._law(length)
@@ -126,6 +122,11 @@ class BulkBody:
         """Heat of a step in both networks, J."""
         volume = before.volume.dissipated(after.volume, self.moduli.bulk, length)
         return volume + before.shear.dissipated(after.shear, self.moduli.shear, length)
+
+    def lost(self, before: BulkMemory, after: BulkMemory, length: float) -> float:
+        """Of the work in a step on both networks, what the scheme leaves unaccounted for, J."""
+        volume = before.volume.lost(after.volume, self.moduli.bulk, self.scheme, length)
+        return volume + before.shear.lost(after.shear, self.moduli.shear, self.scheme, length)
 
     def _law(self, length: float) -> BulkLaw:
         return BulkLaw(*(step_law(modulus, self.scheme, length) for modulus in self.moduli))

@@ -49,9 +49,7 @@ class FlatEnd:
         force = still.press(depth, radius).force
         return cls(force / depth, radius, still.degrees_of_freedom, still.mesh_order)
 
-    def stepper(
-        self, strike: Strike, numerics: Numerics, accounted: bool, expected: Sequence[float] | Array
-    ) -> Stepping:
+    def stepper(self, strike: Strike, numerics: Numerics, expected: Sequence[float] | Array) -> Stepping:
         """Steps in closed form."""
         return FlatStepper(strike, self.stiffness, self.radius, numerics)
 

@@ -11,14 +11,17 @@ The same recursion run on the pressure itself gives the pressure each branch car
 
 from __future__ import annotations
 
+from functools import lru_cache
 from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
 
 from fe_contact.forms import Array
+from fe_contact.schemes import galerkin
 from lumped.materials import Relaxation
 
+LAWS_KEPT = 1024  # the steps of a march: their energies are counted when it has ended
 STENCIL = np.arange(4)[:, None]
 TO_MONOMIALS = np.linalg.inv(np.vander(np.arange(4.0), increasing=True))  # of the cubic through four values
 
@@ -36,6 +39,7 @@ class StepLaw(NamedTuple):
     gain: Array
 
 
+@lru_cache(maxsize=LAWS_KEPT)
 def step_law(relaxation: Relaxation, scheme: ModuleType, step: float) -> StepLaw:
     """Numbers of one time step, s, of a scheme (see :mod:`fe_contact.schemes`); moduli in Pa."""
     ratios = step / np.asarray(relaxation.times)
@@ -100,6 +104,17 @@ class SurfaceMemory(NamedTuple):
                 + product(area, steady, steady) * step
             )
         return float(heat)
+
+    def lost(self, later: SurfaceMemory, relaxation: Relaxation, scheme: ModuleType, step: float) -> float:
+        """Work of a step's pressure less what is stored and dissipated, J.
+
+        A scheme's stress is not its average over the step, and a mesh knows reciprocity only at its nodes.
+        """
+        change = later.strain - self.strain
+        law, exact = step_law(relaxation, scheme, step), step_law(relaxation, galerkin, step)
+        taken = law.now * later.strain + self.carried(law)
+        mean = taken if scheme is galerkin else exact.now * later.strain + self.carried(exact)
+        return float(self.areas @ (taken[-1] * change[0])) - product(self.areas, change, mean)
 
 
 def interpolate(field: Array, spacing: float, radii: Array) -> Array:

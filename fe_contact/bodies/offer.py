@@ -37,9 +37,6 @@ class Half(Protocol):
     def at_rest(self) -> Any:
         """Memory of a relaxed, undeformed body."""
 
-    def modulus(self, length: float) -> float:
-        """Contact modulus against new strain in a step of a length, s; Pa."""
-
     def recalled(self, memory: Any, length: float) -> Recalled:
         """What its past makes of a step of a length, s."""
 
@@ -55,15 +52,15 @@ class Half(Protocol):
     def dissipated(self, before: Any, after: Any, length: float) -> float:
         """Heat of a step, J."""
 
+    def lost(self, before: Any, after: Any, length: float) -> float:
+        """Of the work in a step, what the scheme leaves unaccounted for, J."""
+
 
 class Body(Protocol):
     """A deformable body; its memory is its own affair, and passed in and out."""
 
     def at_rest(self) -> Any:
         """Memory of a relaxed, undeformed body."""
-
-    def modulus(self, length: float) -> float:
-        """Contact modulus against new strain in a step of a length, s; Pa."""
 
     def offer(self, memory: Any, length: float) -> Offer:
         """What contact meets in a step of a length, s."""
@@ -79,3 +76,6 @@ class Body(Protocol):
 
     def dissipated(self, before: Any, after: Any, length: float) -> float:
         """Heat of a step, J."""
+
+    def lost(self, before: Any, after: Any, length: float) -> float:
+        """Of the work in a step, what the scheme leaves unaccounted for, J."""

@@ -42,13 +42,11 @@ class ScaledSurface(Deformable):
     operator: SurfaceOperator
     breathes: bool = True
 
-    def stepper(
-        self, strike: Strike, numerics: Numerics, accounted: bool, expected: Sequence[float] | Array
-    ) -> Stepping:
+    def stepper(self, strike: Strike, numerics: Numerics, expected: Sequence[float] | Array) -> Stepping:
         """Steps on the mesh that follows the contact, or that stays."""
         if self.breathes:
-            return Stepper(strike, self, numerics, accounted, expected)
-        return super().stepper(strike, numerics, accounted, expected)
+            return Stepper(strike, self, numerics, expected)
+        return super().stepper(strike, numerics, expected)
 
     def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> SurfaceBody:
         """The body on a mesh that stays, of unit length ``scale``, m: contact modulus E*(t), Pa, and time scheme."""

@@ -94,10 +94,6 @@ class StackedBody:
         """Relaxed, undeformed bodies."""
         return tuple(half.at_rest() for half in self.halves)
 
-    def modulus(self, length: float) -> float:
-        """Contact modulus of all against new strain in a step of a length, s; Pa."""
-        return _together(half.modulus(length) for half in self.halves)
-
     def offer(self, memory: Memory, length: float) -> Offer:
         """What contact meets in a step of a length, s."""
         found = [half.recalled(own, length) for half, own in zip(self.halves, memory, strict=True)]
@@ -130,6 +126,11 @@ class StackedBody:
         """Heat of a step, J."""
         steps = zip(self.halves, before, after, strict=True)
         return sum(half.dissipated(first, then, length) for half, first, then in steps)
+
+    def lost(self, before: Memory, after: Memory, length: float) -> float:
+        """Of the work in a step, what the scheme leaves unaccounted for, J."""
+        steps = zip(self.halves, before, after, strict=True)
+        return sum(half.lost(first, then, length) for half, first, then in steps)
 
     def _pressed(self, found: Sequence[Recalled], now: float) -> PressedSurface:
         """All sides, each with its modulus over the common one."""

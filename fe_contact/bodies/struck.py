@@ -38,10 +38,8 @@ class Struck(Protocol):
     @property
     def degrees_of_freedom(self) -> int: ...
 
-    def stepper(
-        self, strike: Strike, numerics: Numerics, accounted: bool, expected: Sequence[float] | Array
-    ) -> Stepping:
-        """What takes its time steps: ``accounted`` also for the energies; ``expected`` radii, m, of a like march."""
+    def stepper(self, strike: Strike, numerics: Numerics, expected: Sequence[float] | Array) -> Stepping:
+        """What takes its time steps: ``expected`` radii, m, of a like march."""
 
     def felt(self, snapshot: Snapshot) -> tuple[Array, Array]:
         """Places on its surface, m, and the pressure there that it feels in a step, Pa, each (n,)."""
@@ -85,11 +83,9 @@ class Deformable(Condensed):
         """Distance of the quadrature points from the first touch as the striker's profile counts it, m; (q,)."""
         return unit * self.operator.points
 
-    def stepper(
-        self, strike: Strike, numerics: Numerics, accounted: bool, expected: Sequence[float] | Array
-    ) -> Stepping:
+    def stepper(self, strike: Strike, numerics: Numerics, expected: Sequence[float] | Array) -> Stepping:
         """Steps on the mesh that stays, for which no radius has to be expected."""
-        return FixedStepper(strike, self, numerics, accounted)
+        return FixedStepper(strike, self, numerics)
 
     def felt(self, snapshot: Snapshot) -> tuple[Array, Array]:
         """At the nodes, without the roughness that the shape functions do not see."""

@@ -38,10 +38,6 @@ class SurfaceBody:
         nodes = np.ones(len(self.operator.stiffness))
         return SurfaceMemory.at_rest(nodes, self.relaxation, fields=2)
 
-    def modulus(self, length: float) -> float:
-        """Contact modulus against new strain in a step of a length, s; Pa."""
-        return self._law(length).now
-
     def offer(self, memory: SurfaceMemory, length: float) -> Offer:
         """What contact meets in a step of a length, s."""
         now, past, _ = self.recalled(memory, length)
@@ -80,6 +76,10 @@ class SurfaceBody:
     def dissipated(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
         """Heat of a step, J."""
         return before.dissipated(after, self.relaxation, length)
+
+    def lost(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
+        """Of the work in a step, what the scheme leaves unaccounted for, J."""
+        return before.lost(after, self.relaxation, self.scheme, length)
 
     def _law(self, length: float) -> StepLaw:
         return step_law(self.relaxation, self.scheme, length)

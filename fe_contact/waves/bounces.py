@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from fe_contact.dynamics import ledger
@@ -30,11 +29,6 @@ class Bounces(Followed):
 
     steps: int
     factorizations: int
-
-    @property
-    def energy(self) -> Mapping[str, float]:
-        """Terms at the end of the last contact, J: one ledger runs through all contacts and flights."""
-        return self.contacts[-1].march.energy
 
 
 def follow(
