@@ -41,6 +41,7 @@ from lumped.members import get
 
 MARCHES = 2.5  # steps of all marches of a contact over those of the finest one: half and a quarter, and three of these
 SAFETY = 1.25
+UNSEEN = 2  # first steps of the coarsest run in which no order shows
 UNORDERED = 2.5  # the same where no order is shown: the finer of two runs errs by less than twice their distance
 LEAST_ORDER = {"penalty": 1, "far_field": 2}
 MESH_ORDER = {1: 0.5, 2: 1, 3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
@@ -94,9 +95,11 @@ class Budget:
         return own + sum(np.inf if one is None else one.energies[name] for row in self.changes.values() for one in row)
 
     def force_error(self, time: Array) -> Array:
-        """Half-width of the force's error band, N."""
+        """Half-width of the force's error band, N; after the last step the force falls to nothing in any way."""
+        last = self.curve.last_step if self.curve.separated else np.inf
         known = [c.force(time) for changes in self.changes.values() for c in changes if c is not None]
-        return np.sum(known, axis=0) if known else np.zeros_like(time)
+        fading = np.where(time > last, self.curve.force(np.array([last])), 0.0)
+        return np.asarray(np.sum([fading, *known], axis=0))
 
 
 @dataclass(frozen=True)
@@ -232,14 +235,15 @@ def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics, f
     if half is None or quarter is None or not _end_alike(fine, half, quarter):
         return _TimeSteps(fine, None, (), numerics.steps)
     value, before = extrapolated(fine, half, order), extrapolated(half, quarter, order)
-    taken = fine.duration * np.diff(fine.x**2) if flat else np.array([numerics.contact_time / numerics.steps])
-    orders = trusted_orders((fine, half, quarter), order, (float(taken[0]), float(taken.max())))
+    taken = fine.duration * np.diff(fine.x**2)[: numerics.steps]  # those beyond grow while a weight comes to rest
+    shortest = float(taken[0]) if flat else numerics.contact_time / numerics.steps
+    orders = trusted_orders((fine, half, quarter), order, (shortest, float(taken.max())), flat)
     if flat and orders["force"] == 1:  # steps as long as a relaxation show no order: the finest run stands as it is
         jitter = Change(fine, fine.thinned(), 1.0)
         return _TimeSteps(fine, Change(fine, half, UNORDERED), (jitter,), numerics.steps // 4, True)
     least = SAFETY / (2 ** orders.pop("force") - 1)
     weights = {name: SAFETY / (2**trusted - 1) / least for name, trusted in orders.items()}
-    change = Change(value, before, least, weights)
+    change = Change(value, before, least, weights, quarter.duration * float(quarter.x[UNSEEN]) ** 2)
     jitter, coarser = (Change(one, one.thinned(), 1.0) for one in (fine, half))
     falls = jitter.history < FALLS * coarser.history
     return _TimeSteps(value, change, (jitter,), numerics.steps // 4, falls)

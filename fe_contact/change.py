@@ -12,20 +12,22 @@ from fe_contact.curve import PEAK_SHARE, Curve, Reading
 from fe_contact.forms import Array
 
 SMOOTHING = 0.06  # share of the contact over which a pointwise change counts as the error of its neighbours
-UNRESOLVED = 1.25  # factor within a first step
+UNRESOLVED = 1.25  # factor where no order shows
 
 
 @dataclass(frozen=True)
 class Change:
     """Two curves that differ in one setting, and the factor that turns their difference into an error.
 
-    ``weights``: what that factor is to be multiplied with for quantities that deserve less trust.
+    ``weights``: what that factor is to be multiplied with for quantities that deserve less trust. ``unresolved``: time
+    up to which no order shows, s; where it is not told, the first step of the second curve.
     """
 
     first: Curve
     second: Curve
     factor: float
     weights: Mapping[str, float] = field(default_factory=dict)
+    unresolved: float | None = None
 
     @cached_property
     def errors(self) -> dict[str, float]:
@@ -66,13 +68,14 @@ class Change:
     def force(self, time: Array) -> Array:
         """Error of the force at times, N: the largest change in the neighbourhood of each.
 
-        Within a first step no order shows, and the whole change counts.
+        Where no order shows the whole change counts.
         """
         places, change = self._pointwise
         width = max(1, round(SMOOTHING * len(change)))
         padded = np.pad(change, width, mode="edge")
         around = np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1).max(axis=1)
-        resolved = time > self.second.duration * self.second.x[1] ** 2
+        first_step = self.second.duration * self.second.x[1] ** 2
+        resolved = time > (first_step if self.unresolved is None else self.unresolved)
         factor = np.where(resolved, self.factor, max(self.factor, UNRESOLVED))
         return np.asarray(factor * np.interp(time, places, around))
 

@@ -148,6 +148,11 @@ class Curve:
         """Velocity at :attr:`dense_time`, m/s."""
         return self.velocity(self.dense_time, self.dense.impulse)
 
+    @property
+    def last_step(self) -> float:
+        """When the last step ended, s: from there to separation no force is known."""
+        return self.duration * float(self.x[-2]) ** 2
+
     @cached_property
     def leaving_speed(self) -> float:
         """Speed away from the target at the end, m/s."""

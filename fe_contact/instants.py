@@ -87,7 +87,7 @@ def _stress(stepper: Stepper, before: State, step: Step, missed: Array, places: 
     law = step_law(relaxation, stepper.scheme, share * step.length)
     branches = before.memory.advanced(law, strain).branches[:, 0] + missed
     now = relaxation.equilibrium * (depth - stepper.strike.height(places)) + relaxation.viscosity * velocity
-    return np.asarray(now + interpolate(np.asarray(relaxation.moduli) @ branches, stepper.radii[1], places))
+    return np.asarray(now + interpolate(np.asarray(relaxation.moduli) @ branches, stepper.radii[-1], places))
 
 
 def _missed(stepper: Stepper, before: State, step: Step, edge: float) -> Array:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fe_contact import instants
-from fe_contact.bodies.memory import StepLaw, SurfaceMemory, area_weights, interpolate, step_law
+from fe_contact.bodies.memory import StepLaw, SurfaceMemory, area_weights, graded, interpolate, step_law
 from fe_contact.coming_radius import coming_square
 from fe_contact.contact import ContactSolution, Touching, count, moved
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
@@ -55,7 +55,7 @@ class Stepper(OfSurface):
         self.strike, self.surface, self.numerics = strike, surface, numerics
         self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
         self.enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
-        self.radii = np.linspace(0.0, MEMORY_REACH * numerics.contact_radius, MEMORY_POINTS)
+        self.radii = graded(MEMORY_REACH * numerics.contact_radius, MEMORY_POINTS)
         self.heights = strike.height(self.radii)
         self.areas = area_weights(self.radii)
         self.expected = expected
@@ -115,7 +115,7 @@ class Stepper(OfSurface):
             if radii[-1] > limit:
                 raise MemoryTooSmall(radii[-1])
             height = np.minimum(self.strike.height(radii), BEYOND * radii[-1])  # a profile may end
-            overlap = law.now * (free_depth - height) + interpolate(carried, self.radii[1], radii)
+            overlap = law.now * (free_depth - height) + interpolate(carried, limit, radii)
             problem = self.surface.problem(overlap, self.numerics.penalty, law.now * give * scale)
             solution = self.enforcement.enforce(problem, *guesses)
             iterations += solution.iterations
@@ -156,7 +156,8 @@ class Stepper(OfSurface):
     def _overlap_radius(self, law: StepLaw, carried: Array, free_depth: float) -> float:
         """About the radius up to which the striker would overlap a surface that nothing presses."""
         radii = self.radii[-1] * COARSE
-        open_ = law.now * (free_depth - self.strike.height(radii)) + interpolate(carried, self.radii[1], radii) <= 0.0
+        past = interpolate(carried, self.radii[-1], radii)
+        open_ = law.now * (free_depth - self.strike.height(radii)) + past <= 0.0
         return float(radii[int(open_.argmax()) if open_.any() else -1])
 
     def _radius_time(self, velocity: float, time: float, length: float) -> float:

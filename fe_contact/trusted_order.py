@@ -20,7 +20,9 @@ NEARLY = 0.8  # share of the expected ratio that the durations must show: they s
 ABOUT_A_STEP = (0.4, 9.0)  # step over relaxation time: outside, its weight in the step is within 1/8 of a power of it
 
 
-def trusted_orders(curves: tuple[Curve, Curve, Curve], order: int, steps: tuple[float, float]) -> dict[str, int]:
+def trusted_orders(
+    curves: tuple[Curve, Curve, Curve], order: int, steps: tuple[float, float], flat: bool
+) -> dict[str, int]:
     """Orders of the extrapolated force and of the quantities that deserve less trust.
 
     Parameters
@@ -28,13 +30,14 @@ def trusted_orders(curves: tuple[Curve, Curve, Curve], order: int, steps: tuple[
     curves : with steps in the ratio 4 : 2 : 1.
     order : the scheme's own.
     steps : the shortest and the longest that count, s.
+    flat : whether the area presses at once, so that all steps feel a relaxation, else the few that are as long.
     """
     force = _trusted_order(*curves, order)
     duration = min(force, _order_of_duration(*curves, order))
     shortest, longest = np.divide.outer(steps, curves[0].strike.relaxation.times)
     within_step, within_two = (_about_a_step(share * shortest, share * longest) for share in (1, 2))
     if within_step:
-        force = min(force, order if steps[0] == steps[1] else 1)  # one among many steps, or each of them
+        force = min(force, 1 if flat else order)
     if within_two or curves[0].strike.relaxation.viscosity:  # a dashpot's end is one of velocities, which are rougher
         duration = min(duration, order)
     summed = 1 if within_step else min(force, order)

@@ -117,13 +117,18 @@ class SurfaceMemory(NamedTuple):
         return float(self.areas @ (taken[-1] * change[0])) - product(self.areas, change, mean)
 
 
-def interpolate(field: Array, spacing: float, radii: Array) -> Array:
-    """Cubic interpolation of a field known at 0, spacing, 2 spacing, ... at radii within its reach.
+def graded(reach: float, points: int) -> Array:
+    """Radii up to a reach, m, closer towards the axis: a contact begins as a thousandth of what it becomes."""
+    return np.asarray(reach * np.linspace(0.0, 1.0, points) ** 2)
+
+
+def interpolate(field: Array, reach: float, radii: Array) -> Array:
+    """Cubic interpolation, in the root of the radius, of a field known at :func:`graded` radii, at radii up to there.
 
     A straight line between the points would roughen a pressure, which is nearly the field's second
     derivative, by more than the contact problem's own error.
     """
-    position = radii / spacing
+    position = np.sqrt(radii / reach) * (field.size - 1)
     first = position.astype(np.intp)
     first -= 1
     np.maximum(first, 0, out=first)
@@ -134,11 +139,9 @@ def interpolate(field: Array, spacing: float, radii: Array) -> Array:
 
 
 def area_weights(radii: Array) -> Array:
-    """Trapezoidal weights of an axisymmetric surface integral on equidistant radii, m^2."""
-    spacing = radii[1] - radii[0]
-    weights: Array = 2 * np.pi * spacing * radii
-    weights[-1] /= 2
-    return weights
+    """Trapezoidal weights of an axisymmetric surface integral, m^2."""
+    spacing = np.diff(radii, prepend=radii[0], append=radii[-1])
+    return np.asarray(np.pi * radii * (spacing[1:] + spacing[:-1]))
 
 
 def product(weights: Array, first: Array, second: Array) -> float:

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fe_contact.bodies.memory import SurfaceMemory, area_weights, interpolate, product, step_law
+from fe_contact.bodies.memory import SurfaceMemory, area_weights, graded, interpolate, product, step_law
 from fe_contact.schemes import backward_euler, galerkin
 from lumped.materials import Relaxation
 
@@ -146,21 +146,22 @@ def test_a_fast_branch_is_a_dashpot_and_a_slow_one_a_spring(scheme: ModuleType) 
 
 @given(SEEDS)
 def test_interpolation_reproduces_cubics_between_the_points(seed: int) -> None:
+    """Of the root of the radius, among them a cone's straight line."""
     rng = np.random.default_rng(seed)
-    spacing = float(10 ** rng.uniform(-3, 1))
-    cubic = np.polynomial.Polynomial(rng.normal(size=4) / spacing ** np.arange(4))
-    known = np.arange(12) * spacing
+    reach = float(10 ** rng.uniform(-3, 1))
+    cubic = np.polynomial.Polynomial(rng.normal(size=4) / np.sqrt(reach) ** np.arange(4))
+    known = graded(reach, 12)
     wanted = np.append(rng.uniform(0, known[-1], 30), [0.0, known[-1]])
-    found = interpolate(cubic(known), spacing, wanted)
-    np.testing.assert_allclose(found, cubic(wanted), atol=1e-11 * np.abs(cubic(known)).max())
+    found = interpolate(cubic(np.sqrt(known)), reach, wanted)
+    np.testing.assert_allclose(found, cubic(np.sqrt(wanted)), atol=1e-11 * np.abs(cubic(np.sqrt(known))).max())
 
 
 def test_interpolation_is_of_order_four() -> None:
     wanted = np.linspace(0.11, 0.93, 77)
     errors = []
     for points in (21, 41, 81):
-        known = np.linspace(0, 1, points)
-        errors.append(np.abs(interpolate(np.exp(3 * known), known[1], wanted) - np.exp(3 * wanted)).max())
+        known = graded(1.0, points)
+        errors.append(np.abs(interpolate(np.exp(3 * known), 1.0, wanted) - np.exp(3 * wanted)).max())
     assert np.log2(np.divide(errors[:-1], errors[1:])).min() > 3.5
 
 
