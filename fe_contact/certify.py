@@ -25,7 +25,7 @@ import numpy as np
 
 from fe_contact.bodies.flat_end import FlatEnd
 from fe_contact.bodies.struck import Deformable, Struck
-from fe_contact.change import Change
+from fe_contact.change import UNORDERED, Change
 from fe_contact.curve import Curve, extrapolated
 from fe_contact.forms import Array
 from fe_contact.impacts import Followed
@@ -42,7 +42,6 @@ from lumped.members import get
 MARCHES = 2.5  # steps of all marches of a contact over those of the finest one: half and a quarter, and three of these
 SAFETY = 1.25
 UNSEEN = 2  # first steps of the coarsest run in which no order shows
-UNORDERED = 2.5  # the same where no order is shown: the finer of two runs errs by less than twice their distance
 LEAST_ORDER = {"penalty": 1, "far_field": 2}
 MESH_ORDER = {1: 0.5, 2: 1, 3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
 MESH_ORDER_ANYWHERE = 1  # where the edge falls anywhere in an element: 1.6 is what is seen

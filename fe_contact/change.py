@@ -12,7 +12,7 @@ from fe_contact.curve import PEAK_SHARE, Curve, Reading
 from fe_contact.forms import Array
 
 SMOOTHING = 0.06  # share of the contact over which a pointwise change counts as the error of its neighbours
-UNRESOLVED = 1.25  # factor where no order shows
+UNORDERED = 2.5  # factor where no order shows: the finer of two runs errs by less than twice their distance
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class Change:
         around = np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1).max(axis=1)
         first_step = self.second.duration * self.second.x[1] ** 2
         resolved = time > (first_step if self.unresolved is None else self.unresolved)
-        factor = np.where(resolved, self.factor, max(self.factor, UNRESOLVED))
+        factor = np.where(resolved, self.factor, max(self.factor, UNORDERED))
         return np.asarray(factor * np.interp(time, places, around))
 
     def radius(self, time: Array) -> Array:

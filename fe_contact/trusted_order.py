@@ -2,7 +2,8 @@
 
 A relaxation about as long as a step gives the scheme's order one coefficient for longer steps and another for
 shorter ones, so that extrapolation gains no order. What adds up over the contact then keeps order one alone, and
-loses an order to any relaxation; the duration, a single instant, is unsettled by the next longer steps already.
+loses an order to any relaxation. A dashpot's force is one of velocities, and so is that of a branch which relaxes
+within two steps: its extrapolated error falls no faster than the scheme's.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ import numpy as np
 
 from fe_contact.change import Change
 from fe_contact.curve import Curve
-from fe_contact.forms import Array
 
 AS_EXPECTED = (0.8, 1.6)  # shares of the expected ratio of changes that show the order, 1.7 to 2.7 where it is two
 ABOUT = (0.6, 2.5)  # the same that show it about: extrapolation gains no order that could be relied on
@@ -35,12 +35,13 @@ def trusted_orders(
     force = _trusted_order(*curves, order)
     duration = min(force, _order_of_duration(*curves, order))
     shortest, longest = np.divide.outer(steps, curves[0].strike.relaxation.times)
-    within_step, within_two = (_about_a_step(share * shortest, share * longest) for share in (1, 2))
-    if within_step:
-        force = min(force, 1 if flat else order)
-    if within_two or curves[0].strike.relaxation.viscosity:  # a dashpot's end is one of velocities, which are rougher
-        duration = min(duration, order)
-    summed = 1 if within_step else min(force, order)
+    within_step = bool(np.any((longest > ABOUT_A_STEP[0]) & (shortest < ABOUT_A_STEP[1])))
+    dashpot = curves[0].strike.relaxation.viscosity > 0.0 or bool(np.any(2.0 * longest > ABOUT_A_STEP[0]))
+    if dashpot:  # or a branch that acts as one: a force of velocities, which are rougher
+        force, duration = min(force, order), min(duration, order)
+    if within_step and flat:
+        force = 1
+    summed = 1 if within_step or dashpot else min(force, order)
     return {"force": force, "impulse": summed, "restitution": summed, "peak_depth": summed, "duration": duration}
 
 
@@ -62,8 +63,3 @@ def _order_of_duration(fine: Curve, half: Curve, quarter: Curve, order: int) -> 
     if first is None or second is None or third is None or abs(third - second) <= ASYMPTOTIC * first:
         return order + 1
     return order if abs(third - second) >= NEARLY * 2**order * abs(second - first) else 1
-
-
-def _about_a_step(shortest: Array, longest: Array) -> bool:
-    """Whether some relaxation time is neither much longer nor much shorter than a step; both over it, (k,)."""
-    return bool(np.any((longest > ABOUT_A_STEP[0]) & (shortest < ABOUT_A_STEP[1])))

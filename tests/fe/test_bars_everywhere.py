@@ -93,8 +93,8 @@ def profile(random: np.random.Generator) -> Scene:
 
 
 def flat(random: np.random.Generator) -> Scene:
-    """A block, a plate or a punch."""
-    scene = Scene.load(str(random.choice(["polymer-prism", "polymer-plate", "polymer-punch"])))
+    """A block or a punch."""
+    scene = Scene.load(str(random.choice(["polymer-prism", "polymer-punch"])))
     return softened(random, replace(scene, velocity=decades(random, -3, -1)))
 
 
