@@ -13,7 +13,26 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sparse
 
+from lumped.errors import BadInput, Fault
+from lumped.indenter import Indenter
+from lumped.scene import Scene
+
 Array = npt.NDArray[np.float64]
+LARGEST_NU = 0.4999  # of a material: elements of every order are tried so far by `fe-contact stability`
+# The same of a bulk modulus beside its shear: beyond, the ratio of both, 1/(1 - 2 nu), takes the digits of a solve.
+LAST_NU = 0.5 - 1e-9
+
+
+def check_compressible(scene: Scene | Indenter, largest: float = LARGEST_NU) -> None:
+    """Raise BadInput for a material whose volume is too stiff beside its shape for elements that know displacements."""
+    faults = [
+        Fault(scene.source, f"{part}.material.nu", f"{material.nu:.10g}: finite elements take it above -1 and up to "
+              f"{largest:.10g}; cure: such a nu, or --method ting, mdr, correspondence, which take 0.5 too")
+        for part, material in scene.geometry.yielding
+        if material.nu > largest
+    ]  # fmt: skip
+    if faults:
+        raise BadInput(faults)
 
 
 def isotropic(young: float, poisson: float) -> Array:

@@ -14,7 +14,7 @@ import numpy as np
 from fe_contact.certify import LEAST_HALVED_SETTING, LEAST_ORDER, MESH_ORDER, SAFETY
 from fe_contact.errors import says_which_key
 from fe_contact.expected_contacts import expected
-from fe_contact.forms import Array
+from fe_contact.forms import LAST_NU, Array, check_compressible
 from fe_contact.numerics import RANGES, TARGETS, Numerics, check_kind
 from fe_contact.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, RIM_PENALTY, SETTING, refined
 from fe_contact.pressing import Still
@@ -68,6 +68,8 @@ def indent(
     modulus, asked = indenter.modulus(instant), len(indenter.checked(depths))
     depth = _accompanied(np.array(depths))
     elastic, numerics = indenter.elastic(instant), settings(given, indenter.shape)
+    check_compressible(indenter)
+    check_compressible(elastic, LAST_NU)
     pinned = set(given) - {"tolerance"}
     radii = expected(elastic, depth, numerics)
     for attempt in range(ROUNDS + 1):

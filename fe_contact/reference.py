@@ -12,6 +12,7 @@ import numpy as np
 from fe_contact.bodies.chosen import struck
 from fe_contact.certify import CAUSES, Budget, Certified, Several, certify
 from fe_contact.errors import MemoryTooSmall, says_which_key
+from fe_contact.forms import check_compressible
 from fe_contact.march import Strike
 from fe_contact.numerics import RANGES, TARGETS, Numerics
 from fe_contact.plan import SETTING, Plan, plan, refined
@@ -112,6 +113,7 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
 def check_target(scene: Scene) -> None:
     """Raise BadInput for a target which no impact is marched on, and for waves, which are marched elsewhere."""
     geometry = scene.geometry
+    check_compressible(scene)
     if scene.model.inertia:
         reason = "true: this command is without waves in this version; accepted: false, or fe-contact run"
         raise BadInput(Fault(scene.source, "model.inertia", reason))

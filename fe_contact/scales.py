@@ -14,6 +14,7 @@ import numpy as np
 
 from fe_contact.bodies.flat_end import FlatEnd
 from fe_contact.bulk_scales import half_space_stiffness, with_constant_nu
+from fe_contact.forms import check_compressible
 from fe_contact.numerics import TARGETS, Numerics
 from fe_contact.pressing import Still
 from lumped.answered import Answered
@@ -40,10 +41,12 @@ def scales(scene: Scene, numerics: Numerics) -> mdr.ImpactScales:
     geometry = scene.geometry
     if isinstance(geometry.target, HalfSpace) and geometry.shape.fixed_radius is None and not geometry.shape.plane:
         return mdr.estimate(scene, SPRINGS)
-    coarse = numerics.varied(**COARSE)
+    coarse, curve = numerics.varied(**COARSE), has_curve(scene)
+    if not (curve and geometry.surface_remembers):
+        check_compressible(scene)
     if not geometry.surface_remembers:
         scene = with_constant_nu(scene, partial(_stiffness, scene, coarse))
-    if not has_curve(scene):
+    if not curve:
         scene = Answered.by(scene, _answer(scene, coarse))
     return correspondence.estimate(scene)
 

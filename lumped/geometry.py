@@ -28,6 +28,12 @@ class Geometry:
         return self.striker_material if self.target.deformable else self.material
 
     @property
+    def yielding(self) -> list[tuple[str, Material]]:
+        """The bodies that have a material, by the table that gives it."""
+        found = [("striker", self.striking), ("target", self.material if self.target.deformable else None)]
+        return [(part, material) for part, material in found if material is not None]
+
+    @property
     def surface_remembers(self) -> bool:
         """Whether elastic bodies and E*(t) tell all: of a body with lengths, where nu stays or strain is uniform."""
         materials = [self.material] if self.striker_material is None else [self.material, self.striker_material]

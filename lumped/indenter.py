@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault, addressed
+from lumped.geometry import Geometry
 from lumped.keys import Number
 from lumped.materials import Material
 from lumped.pair import check_striker_material, contact_modulus, places, tables
@@ -54,6 +55,11 @@ class Indenter:
         return load_indenter(source, overrides)[0]
 
     @property
+    def geometry(self) -> Geometry:
+        """What is pressed into what."""
+        return Geometry(self.shape, self.target, self.material, self.striker_material)
+
+    @property
     def profile(self) -> Shape:
         """The striker's shape as `model.profile` resolves it."""
         return self.shape.resolved(self.model.profile)
@@ -69,7 +75,8 @@ class Indenter:
 
     def modulus(self, instant: bool) -> float:
         """E* against a slow or, `instant`, a sudden indentation, Pa. Raises BadInput where there is none."""
-        contact = contact_modulus(self.shape, self.material, self.striker_material)
+        with self.addressed():
+            contact = contact_modulus(self.shape, self.material, self.striker_material)
         if instant and contact.viscosity > 0.0:
             raise self._refused("has a dashpot in parallel: infinitely stiff at once; accepted: leave out --instant")
         if not instant and contact.relaxed == 0.0:

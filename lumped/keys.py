@@ -26,25 +26,24 @@ class Key(Protocol):
 
 @dataclass(frozen=True)
 class Number:
-    """A real number in `[low, high]`, or between them when `excluded`. Truth values are no numbers."""
+    """A real number in `[low, high]`, or in `(low, high]` when `above`. Truth values are no numbers."""
 
     low: float
     high: float
     unit: str = ""
     required: bool = True
-    excluded: bool = False
+    above: bool = False
 
     @property
     def accepted(self) -> str:
-        ends = ", ends excluded" if self.excluded else ""
-        return f"a number from {self.low:g} to {self.high:g} {self.unit}".rstrip() + ends
+        low = f"above {self.low:g} and up" if self.above else f"from {self.low:g}"
+        return f"a number {low} to {self.high:g} {self.unit}".rstrip()
 
     def read(self, value: object) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise ValueError
         # Compared before conversion: an integer beyond 1e308 has no float.
-        inside = self.low < value < self.high if self.excluded else self.low <= value <= self.high
-        if not inside:
+        if not self.low <= value <= self.high or (self.above and value == self.low):
             raise ValueError
         return float(value)
 

@@ -16,6 +16,7 @@ from scipy.special import ive
 # static fields by finite elements, within a tenth down to contacts a tenth as wide as the layer is thick.
 THICK, BONDED, SLIDING = 0.43, 0.2, 0.9
 FAR = 300.0  # beyond it nothing of 1/cosh is left
+NARROW = 1e-3  # below it x^2 is lost beside one, and digits with it
 
 
 def moving_share(nu: float, base: str, breadth: float, way: float, plane: bool) -> float:
@@ -44,11 +45,13 @@ def _squeezed(nu: float, breadth: float, plane: bool) -> float:
     """A film held below, squeezed out by its pressure: h^2/(3 G) lap p = p/M - 1/h, p(a) = 0, M confined modulus.
 
     So l^2 = h^2 M/(3 G) and the mean of u_r is (l/h) I_1(r/l)/I_0(a/l); the profile, a parabola, has 6/5 of its square.
-    In plane strain (l/h) sinh(x/l)/cosh(a/l).
+    In plane strain (l/h) sinh(x/l)/cosh(a/l). Much narrower than l, as all are once incompressible: r/(2 h), x/h.
     """
-    length2 = 2.0 * (1.0 - nu) / (1.0 - 2.0 * nu) / 3.0
-    x = breadth / math.sqrt(length2)
+    x = breadth * math.sqrt(1.5 * (1.0 - 2.0 * nu) / (1.0 - nu))
+    if x < NARROW:
+        return (0.4 if plane else 0.15) * breadth**2
+    length2 = (breadth / x) ** 2
     if plane:
-        return 0.6 * length2 * (math.tanh(x) / x - 1.0 / math.cosh(min(x, FAR)) ** 2) if x > 0.0 else 0.0
+        return 0.6 * length2 * (math.tanh(x) / x - 1.0 / math.cosh(min(x, FAR)) ** 2)
     zero, one, two = (float(ive(order, x)) for order in range(3))
     return 1.2 * length2 * (one**2 - zero * two) / zero**2

@@ -75,7 +75,9 @@ class Scene:
         if faults:
             raise BadInput(faults)
         if self.shape is not None:
-            reason = absurd_depth(self.shape, self.contact_modulus, self.swinging_mass, self.velocity)
+            with self.addressed():
+                modulus = self.contact_modulus
+            reason = absurd_depth(self.shape, modulus, self.swinging_mass, self.velocity)
             if reason:
                 raise BadInput(Fault(self.source, "striker.velocity", reason))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any, ClassVar
@@ -14,7 +15,6 @@ from lumped.key_table import placed, read_table, unknown_key
 from lumped.keys import Key
 from lumped.materials import Material
 from lumped.materials.material import KEYS as MATERIAL_KEYS
-from lumped.materials.material import bulk_fault
 from lumped.members import Member
 from lumped.scene_tables import NAME_KEYS
 
@@ -74,15 +74,9 @@ class TableReader:
         if len(self.faults) > known:
             return None
         common = {key: values.pop(key) for key in MATERIAL_KEYS if key in values}
-        return self._built(path, values.pop("law"), values, common)
-
-    def _built(self, path: str, law: ModuleType, values: Table, common: Table) -> Material | None:
-        """The material of a network's checked values."""
+        law: ModuleType = values.pop("law")
         young = self.made(path, law.of, placed(values, self.folder), "material", "samples", "prony fit")
         if young is None:
             return None
-        message = bulk_fault(common.get("constant", "poisson"), common.get("bulk_modulus"), young.relaxed)
-        if message:
-            self.faults.append(Fault(self.source, f"{path}.bulk_modulus", message))
-            return None
-        return Material(young, **common)
+        material: Material | None = self.made(path, partial(Material, young), common, "material")
+        return material

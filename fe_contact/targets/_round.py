@@ -56,11 +56,9 @@ class _Body:
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """Both bodies at rest; ``radii``, m: where their undeformed surfaces overlap. A striker with a material is free."""
-    shape = indenter.shape
-    geometry = Geometry(shape, indenter.target, indenter.material, indenter.striker_material)
-    refinement = LINE_REFINEMENT if shape.plane else SPHERE_REFINEMENT
+    refinement = LINE_REFINEMENT if indenter.shape.plane else SPHERE_REFINEMENT
     ends = (float(radii.min()), float(radii.max()))
-    bodies = _together(geometry, ends, refinement * numerics.elements_per_contact, numerics.order)
+    bodies = _together(indenter.geometry, ends, refinement * numerics.elements_per_contact, numerics.order)
     moduli = [side.relaxation.relaxed for side in bodies.sides]
     common = 1.0 / sum(1.0 / modulus for modulus in moduli)
     return BodyStill(

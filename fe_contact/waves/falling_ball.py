@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from fe_contact.forms import check_compressible
 from fe_contact.numerics import RANGES
 from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
@@ -31,6 +32,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
 
 def flying(scene: Scene, given: Mapping[str, Any], scales: ImpactScales, radius: float) -> Plan:
     """What ``given`` leaves open for an impact of these scales on bodies that end with a ball of this radius, m."""
+    check_compressible(scene)
     low, high = RANGES["far_radius"]
     return placed(scene, given, scales, min(max(2.0 * radius / scales.contact_radius, low), high))
 

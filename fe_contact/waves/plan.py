@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from fe_contact.far_field.absorbing import wave_speeds
+from fe_contact.forms import check_compressible
 from fe_contact.numerics import RANGES
 from fe_contact.plan import SOONEST_PEAK, Plan
 from fe_contact.waves.numerics import WaveNumerics
@@ -48,6 +49,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
 
     Raises NotReached where even the row of springs does not come to an end.
     """
+    check_compressible(scene)
     scales = mdr.estimate(scene, SPRINGS)
     longest = _slowest(scene, scales.restitution) * contact_time(scene, scales)
     return placed(scene, given, scales, _far_radius(scene, scales.contact_radius, longest))

@@ -13,7 +13,7 @@ from lumped.keys import Choice, Key, Number
 from lumped.materials.relaxation import Relaxation
 
 KEYS: Mapping[str, Key] = {
-    "nu": Number(-1.0, 0.5, excluded=True),
+    "nu": Number(-1.0, 0.5, above=True),
     "density": Number(1e-3, 1e6, "kg/m3", required=False),
     "constant": Choice(("poisson", "bulk"), required=False),
     "bulk_modulus": Number(1e-3, 1e16, "Pa", required=False),
@@ -41,16 +41,19 @@ class Material:
 
     def __post_init__(self) -> None:
         check_fields("material", self, KEYS)
-        message = bulk_fault(self.constant, self.bulk_modulus, self.young.relaxed)
+        message = self._bulk_fault()
         if message:
             raise BadInput(Fault("material", "bulk_modulus", message))
+        if self.constant == "bulk" and math.isinf(self.bulk):
+            reason = "0.5: no finite bulk modulus E_inf/(3(1-2 nu)) to keep; accepted: below 0.5, or constant = 'poisson'"
+            raise BadInput(Fault("material", "nu", reason))
 
     @property
     def bulk(self) -> float:
-        """The constant bulk modulus K, Pa (for `constant = "bulk"`)."""
+        """The constant bulk modulus K (for `constant = "bulk"`), Pa; infinite where nu = 0.5 keeps the volume."""
         if self.bulk_modulus is not None:
             return self.bulk_modulus
-        return self.young.relaxed / (3.0 * (1.0 - 2.0 * self.nu))
+        return math.inf if self.nu == 0.5 else self.young.relaxed / (3.0 * (1.0 - 2.0 * self.nu))
 
     @property
     def shear(self) -> Relaxation:
@@ -68,10 +71,13 @@ class Material:
         return _bulk_uniaxial_modulus(self.shear, self.bulk) if self.constant == "bulk" else self.young
 
     def confined_modulus(self) -> Relaxation:
-        """Stress over strain where nothing moves sideways, K + 4G/3, Pa."""
+        """Stress over strain where nothing moves sideways, K + 4G/3, Pa. Raises BadInput where it is infinite."""
         if self.constant == "bulk":
             shear = self.shear.scaled(4.0 / 3.0)
             return replace(shear, equilibrium=shear.equilibrium + self.bulk)
+        if self.nu == 0.5:
+            reason = "0.5: held sideways, an incompressible body does not yield at all; accepted: below 0.5"
+            raise BadInput(Fault("material", "nu", reason))
         return self.young.scaled((1.0 - self.nu) / ((1.0 + self.nu) * (1.0 - 2.0 * self.nu)))
 
     def elastic(self, instant: bool) -> Material:
@@ -95,6 +101,15 @@ class Material:
         known = {name: getattr(self, name) for name in KEYS}
         return table | {name: value for name, value in known.items() if value is not None}
 
+    def _bulk_fault(self) -> str:
+        """Why this bulk modulus cannot stand with this network; empty when it can."""
+        if self.bulk_modulus is None:
+            missing = self.constant == "bulk" and self.young.relaxed == 0.0
+            return "missing: a fluid with constant = 'bulk' needs it" if missing else ""
+        if self.constant != "bulk":
+            return "only with constant = 'bulk'; for constant = 'poisson' it follows from the network and nu"
+        return "only for a fluid: a solid has K = E_inf/(3(1-2 nu))" if self.young.relaxed > 0.0 else ""
+
 
 def _fit_keys(young: Relaxation) -> dict[str, Any]:
     """What a fitted series says of its fit, in the keys of a Prony series."""
@@ -104,17 +119,6 @@ def _fit_keys(young: Relaxation) -> dict[str, Any]:
     bounds = {"fit_error_before": fidelity.before, "fit_error_after": fidelity.after}
     known = {name: bound for name, bound in bounds.items() if math.isfinite(bound)}
     return {"fit_window": list(fidelity.window), "fit_error": fidelity.inside} | known
-
-
-def bulk_fault(constant: str, bulk_modulus: float | None, relaxed: float) -> str:
-    """Why this bulk modulus cannot stand with this network; empty when it can."""
-    if bulk_modulus is None:
-        return "missing: a fluid with constant = 'bulk' needs it" if constant == "bulk" and relaxed == 0.0 else ""
-    if constant != "bulk":
-        return "only with constant = 'bulk'; for constant = 'poisson' it follows from the network and nu"
-    if relaxed > 0.0:
-        return "only for a fluid: a solid has K = E_inf/(3(1-2 nu))"
-    return ""
 
 
 def _bulk_contact_modulus(shear: Relaxation, bulk: float) -> Relaxation:

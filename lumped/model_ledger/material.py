@@ -28,8 +28,8 @@ def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
     """
     effect, material = "constant nu against constant bulk modulus", scene.geometry.material
     treated = "constant nu" if material.constant == "poisson" else "constant bulk modulus"
-    if material.young.is_elastic:
-        return LedgerEntry(effect, treated, 0.0, "elastic: the same")
+    if material.young.is_elastic or math.isinf(material.bulk):
+        return LedgerEntry(effect, treated, 0.0, "elastic or incompressible: the same")
     if material.young.viscosity > 0.0 or material.young.relaxed == 0.0:
         return LedgerEntry(effect, treated, None, "no bound for a fluid or a dashpot in parallel")
     shear, bulk = material.young.glassy / (2.0 * (1.0 + material.nu)), material.bulk

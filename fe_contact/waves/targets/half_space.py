@@ -16,7 +16,6 @@ from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.plan import plan as plan
 from fe_contact.waves.refining import cost_of, refined_to_tolerance
 from lumped.errors import BadInput, Fault
-from lumped.materials import Material
 from lumped.radiation import shear_speed
 from lumped.result import Result
 from lumped.scene import Scene
@@ -53,7 +52,7 @@ def check(scene: Scene) -> None:
 
 def too_fast(scene: Scene) -> list[Fault]:
     """Nearer to the speed of shear waves than small displacements reach."""
-    speeds = [speed for _, material in yielding(scene) if (speed := shear_speed(material)) is not None]
+    speeds = [speed for _, material in scene.geometry.yielding if (speed := shear_speed(material)) is not None]
     speed = min(speeds, default=math.inf)
     if scene.velocity < FASTEST * speed:
         return []
@@ -66,13 +65,6 @@ def changing(scene: Scene) -> list[Fault]:
     reason = '"bulk" changes nu in time, which no far field follows in this version; accepted: "poisson"'
     return [
         Fault(scene.source, f"{part}.material.constant", reason)
-        for part, material in yielding(scene)
+        for part, material in scene.geometry.yielding
         if material.constant == "bulk" and not material.young.is_elastic
     ]
-
-
-def yielding(scene: Scene) -> list[tuple[str, Material]]:
-    """The bodies that have a material, by the table that gives it."""
-    geometry = scene.geometry
-    found = [("striker", geometry.striking), ("target", geometry.material if geometry.target.deformable else None)]
-    return [(part, material) for part, material in found if material is not None]

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from fe_contact.forms import check_compressible
 from fe_contact.numerics import RANGES
 from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
@@ -45,6 +46,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     Raises NotReached where even that does not come to an end, BadInput for a contact beyond its load curve.
     """
     check(scene)
+    check_compressible(scene)
     size = scales(scene, WaveNumerics(**DEFAULTS, **ROUGH))
     return placed(scene, given, size, _far_radius(scene, size), SPARE, _stiffness(scene, size))
 
