@@ -27,7 +27,7 @@ def check_compressible(scene: Scene | Indenter, largest: float = LARGEST_NU) -> 
     """Raise BadInput for a material whose volume is too stiff beside its shape for elements that know displacements."""
     faults = [
         Fault(scene.source, f"{part}.material.nu", f"{material.nu:.10g}: finite elements take it above -1 and up to "
-              f"{largest:.10g}; cure: such a nu, or --method ting, mdr, correspondence, which take 0.5 too")
+              f"{largest:.10g}; cure: such a nu, or --method ting where the body has a load curve, which takes 0.5")
         for part, material in scene.geometry.yielding
         if material.nu > largest
     ]  # fmt: skip

@@ -36,8 +36,8 @@ class Number:
 
     @property
     def accepted(self) -> str:
-        low = f"above {self.low:g} and up" if self.above else f"from {self.low:g}"
-        return f"a number {low} to {self.high:g} {self.unit}".rstrip()
+        end = f", {self.low:g} excluded" if self.above else ""
+        return f"a number from {self.low:g} to {self.high:g} {self.unit}".rstrip() + end
 
     def read(self, value: object) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)):

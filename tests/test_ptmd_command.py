@@ -165,7 +165,7 @@ BAD: list[tuple[str, object, str]] = [
     ("ring.memory", "short", "ring.memory"),
     ("ring.exponent", 1.5, "ring.exponent"),
     ("ring.material.law", "rubber", "ring.material.law"),
-    ("ring.material.nu", 0.5, "ring.material.nu"),
+    ("ring.material.nu", 0.51, "ring.material.nu"),
     ("ring.material.bulk_modulus", 1e9, "ring.material.bulk_modulus"),
     ("motion.displacement", 0.0, "motion.displacement"),
     ("motion.displacement", None, "motion.displacement"),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from fe_contact.progress import clear
-from lumped.errors import NotReached
+from lumped.errors import FeContactError, NotReached
 from lumped.scene import Scene
 from lumped.sufficiency import good_to
 
@@ -26,7 +26,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Print settings, ledger and, with waves, what it takes; 0, or 3 where that is refused."""
+    """Print settings, ledger, what waves take, and why finite elements refuse the scene; 3 where that is too much."""
     from fe_contact.methods import settings
     from fe_contact.plan import plan
 
@@ -40,8 +40,8 @@ def execute(args: argparse.Namespace) -> int:
     ledger = [entry.to_json(tolerance) for entry in chosen.ledger]
     if args.json:
         content = {"numerics": chosen.numerics.as_dict(), "model_ledger": ledger, "cost": takes and takes.as_dict()}
-        print(json.dumps(content | {"refused": refused}, allow_nan=False))
-        return base.NOT_REACHED if refused else base.DONE
+        print(json.dumps(content | {"refused": refused and str(refused)}, allow_nan=False))
+        return _code(refused)
     print(f"{scene.name}")
     for key, value in chosen.numerics.as_dict().items():
         print(f"  {key:21s} {value if not isinstance(value, float) else format(value, '.6g')}")
@@ -54,18 +54,26 @@ def execute(args: argparse.Namespace) -> int:
         print(f"    {entry.effect} ({entry.treated}): {size}{entry.verdict(tolerance)}")
     print(f"  {good_to(chosen.ledger)}")
     if refused:
-        base.complain(refused)
-    return base.NOT_REACHED if refused else base.DONE
+        base.complain(str(refused))
+    return _code(refused)
 
 
-def _takes(scene: Scene, chosen: Plan) -> tuple[Cost | None, str | None]:
-    """What waves take, None without them, and why that is refused, None where it is not."""
+def _takes(scene: Scene, chosen: Plan) -> tuple[Cost | None, FeContactError | None]:
+    """What waves take, None without them, and why finite elements refuse the scene, None where they do not."""
     from fe_contact.plan import cost
+    from fe_contact.reference import check_target
 
     try:
+        if not scene.model.inertia:
+            check_target(scene)
         takes = cost(scene, chosen)
         if takes is not None:
             takes.check()
-    except NotReached as failure:
-        return None, str(failure)
+    except FeContactError as failure:
+        return None, failure
     return takes, None
+
+
+def _code(refused: FeContactError | None) -> int:
+    """A plan that only laws can follow is one too."""
+    return base.NOT_REACHED if isinstance(refused, NotReached) else base.DONE

@@ -45,7 +45,7 @@ class Material:
         if message:
             raise BadInput(Fault("material", "bulk_modulus", message))
         if self.constant == "bulk" and math.isinf(self.bulk):
-            reason = "0.5: no finite bulk modulus E_inf/(3(1-2 nu)) to keep; accepted: below 0.5, or constant = 'poisson'"
+            reason = "0.5: no finite bulk modulus E_inf/(3(1-2 nu)) to hold; accepted: below 0.5, or 'poisson'"
             raise BadInput(Fault("material", "nu", reason))
 
     @property

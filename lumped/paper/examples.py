@@ -15,8 +15,7 @@ from lumped.toml_file import overridden, parsed
 
 LENGTH, MASS, VELOCITY = Number(1e-9, 1e4, "m"), Number(1e-9, 1e12, "kg"), Number(1e-9, 1e5, "m/s")
 MODULUS, TIME, DENSITY = Number(1.0, 1e15, "Pa"), Number(1e-15, 1e12, "s"), Number(1e-3, 1e6, "kg/m3")
-RATIO, FORCE, NU = Number(1e-9, 1e9), Number(1e-15, 1e15, "N"), Number(-0.99, 0.4999)
-LINE_NU = Number(-0.99, 0.5)  # of the ring's law only 1 - nu^2 is used
+RATIO, FORCE, NU = Number(1e-9, 1e9), Number(1e-15, 1e15, "N"), Number(-0.99, 0.5)
 STIFFNESS, DAMPING = Number(1e-9, 1e18, "N/m"), Number(1e-15, 1e15, "N s/m")
 KEYS: Mapping[str, Mapping[str, Key]] = {
     "steel": {
@@ -36,8 +35,8 @@ KEYS: Mapping[str, Mapping[str, Key]] = {
         "sides": Numbers(LENGTH), "strength": Numbers(MODULUS),
     },
     "ring": {
-        "E0": MODULUS, "R1": RATIO, "R2": TIME, "rod_diameter": LENGTH, "width": LENGTH, "nu": LINE_NU,
-        "nus": Numbers(LINE_NU), "thickness": Numbers(LENGTH), "density": Numbers(DENSITY),
+        "E0": MODULUS, "R1": RATIO, "R2": TIME, "rod_diameter": LENGTH, "width": LENGTH, "nu": NU,
+        "nus": Numbers(NU), "thickness": Numbers(LENGTH), "density": Numbers(DENSITY),
     },
     "ptmd": {
         "m1": MASS, "m2": MASS, "k1": STIFFNESS, "k2": STIFFNESS, "c1": DAMPING, "c2": DAMPING, "gap": LENGTH,

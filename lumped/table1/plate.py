@@ -8,6 +8,7 @@ from typing import ClassVar
 
 from lumped.indenter import Indenter
 from lumped.keys import Key, Number
+from lumped.materials import Material, Relaxation
 from lumped.shapes import plate
 from lumped.table1.base import Elastic, Row, pressed
 from lumped.targets import plane
@@ -43,9 +44,9 @@ class Plate(Row):
         return self.thickness
 
     def modulus(self, *bodies: Elastic) -> float:
-        """The confined modulus, Pa."""
+        """The confined modulus, Pa. Raises BadInput where it is infinite."""
         (young, nu), *_ = bodies
-        return young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+        return Material(Relaxation(young), nu).confined_modulus().relaxed
 
     def scene(self, *bodies: Elastic) -> Indenter:
         """Confined sides."""
