@@ -10,7 +10,8 @@ from typing import Any
 import pytest
 
 from fe_contact.cli import main
-from lumped.paper import assumptions, claims, misprints
+from lumped.model_ledger import material as yielding
+from lumped.paper import Examples, assumptions, claims, misprints, recompute
 from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNKNOWN, VERDICTS
 
 TABLES = {"paper", "assumptions", "misprints", "grid"}
@@ -118,3 +119,44 @@ def test_a_fit_that_has_no_answer_is_a_named_failure(tmp_path: Path, capsys: pyt
     assert main(["paper", "--set", "steel.measured_peak=50", "--out", str(out)]) == 3
     assert "above the elastic peak" in capsys.readouterr().err
     assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("assumption", "scene", "method", "effect", "key"),
+    [
+        ("steel.strain", "steel-ball-sls", "correspondence", "finite strain", {}),
+        ("steel.yield", "steel-ball", "hertz", "plasticity", {"target.material.yield_strength": "3e8"}),
+        ("steel.inertia", "steel-ball", "hertz", "target inertia", {"target.material.density": "7850"}),
+    ],
+)
+def test_run_and_paper_judge_one_sphere_by_one_ruler(
+    assumption: str, scene: str, method: str, effect: str, key: dict[str, str], tmp_path: Path
+) -> None:
+    """The packaged ball is the paper's; waves are of one body where steel is as stiff as the equivalent one."""
+    given = [f"--set={name}={value}" for name, value in {"model.profile": "parabola", **key}.items()]
+    options = ["--quiet", f"--method={method}", "--tolerance=1e-6", f"--out={tmp_path}"]
+    assert main(["run", scene, *options, *given]) in (0, 3)
+    ledger = json.loads((tmp_path / "result.json").read_text(encoding="utf-8"))["model_ledger"]
+    (entry,) = [one for one in ledger if one["effect"] == effect]
+    (judged,) = [one for one in assumptions.load() if one.id == assumption]
+    same = Examples.load({"steel.young": 9.94455e10})
+    values = [value.value for value in assumptions.judge(judged, same).values]
+    if entry["spread"]:
+        assert values == pytest.approx([0.0, max(map(abs, entry["spread"]))], rel=1e-5)
+    else:
+        assert values[0] == pytest.approx(entry["estimate"], rel=1e-5)
+    allowed = judged.holds_below
+    assert allowed == judged.fails_above, "no dead band, as for a tolerance"
+
+
+def test_one_constant_says_when_steel_yields(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Doubled in the model ledger, it is doubled in the paper too."""
+
+    def judged(strengths: list[float]) -> list[float]:
+        values = recompute.get("assumptions.steel_yield")(Examples.load({"steel.yield_strength": strengths}))
+        return [value.value for value in values]
+
+    before = judged([3e8, 2e9])
+    monkeypatch.setattr(yielding, "FIRST_YIELD", 2.0 * yielding.FIRST_YIELD)
+    assert judged([1.5e8, 1e9]) == pytest.approx(before, rel=1e-12)
+    assert judged([3e8, 2e9]) != pytest.approx(before, rel=1e-3)

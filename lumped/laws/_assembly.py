@@ -142,7 +142,7 @@ def assemble(
         numerics=numerics,
         error_budget={"integration": force_error / peak},
         error_budget_by_quantity={"integration": _relative(quantities)},
-        model_ledger=model_ledger(scene, _peak(quantities, history), resolved),
+        model_ledger=model_ledger(scene, Peak.of(quantities, history), resolved),
         energy=answer.energy,
         provenance=provenance(),
         timing=clock.read(),
@@ -150,13 +150,6 @@ def assemble(
         message="; ".join(part for part in (answer.message, missed) if part),
         contacts=answer.contacts,
     )
-
-
-def _peak(quantities: Mapping[str, Quantity], history: History) -> Peak:
-    """The scales for the ledger: where contact does not end, the pulse lasts twice as long as to its peak."""
-    number = {name: quantity.value or 0.0 for name, quantity in quantities.items()}
-    duration = number["duration"] or 2.0 * number["peak_time"]
-    return Peak(number["peak_force"], number["peak_depth"], float(history.contact_radius.max()), duration)
 
 
 def _relative(quantities: Mapping[str, Quantity]) -> dict[str, float]:

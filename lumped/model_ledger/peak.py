@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+
+from lumped.history import History
+from lumped.result import Quantity
 
 
 @dataclass(frozen=True)
@@ -13,6 +17,13 @@ class Peak:
     depth: float
     contact_radius: float
     duration: float
+
+    @classmethod
+    def of(cls, quantities: Mapping[str, Quantity], history: History) -> Peak:
+        """Of an impact; where its contact does not end, the pulse lasts twice as long as to its peak."""
+        number = {name: quantity.value or 0.0 for name, quantity in quantities.items()}
+        duration = number["duration"] or 2.0 * number["peak_time"]
+        return cls(number["peak_force"], number["peak_depth"], float(history.contact_radius.max()), duration)
 
     @property
     def steepness(self) -> float:

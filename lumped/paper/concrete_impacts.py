@@ -5,18 +5,15 @@ from __future__ import annotations
 from functools import cache
 
 from lumped.laws import correspondence
-from lumped.load_curves.hertz import Hertz
 from lumped.materials import Material
 from lumped.materials.networks import sls
 from lumped.paper.examples import Concrete
 from lumped.paper.plateau import PlateauCut, plateau_cut
-from lumped.paper.struck_bar import StruckBar
-from lumped.paper.value import Value, read
+from lumped.paper.value import read
 from lumped.result import Result
 from lumped.scene import Scene
 from lumped.scene_tables import Model
 from lumped.shapes import Sphere
-from lumped.targets.rod import Rod
 
 TOLERANCE = 1e-6
 # The fit takes the printed moduli as contact moduli, so Poisson's ratio plays no part.
@@ -40,12 +37,3 @@ def cut_at_measured_peak(concrete: Concrete) -> PlateauCut:
     """
     impact = proposed(concrete, min(concrete.radii), max(concrete.velocities))
     return plateau_cut(impact.history, read(impact, "peak_force").value / (1.0 + concrete.peak_error))
-
-
-@cache
-def on_bar(concrete: Concrete, radius: float, side: float, velocity: float) -> tuple[Value, Value, Value]:
-    """Peak force, N, duration, s, restitution of the elastic striker on a long bar of square section, side in m."""
-    stiffness = concrete.E2 * float(Hertz(radius).force(1.0))
-    pole = Rod(area=side**2, length=1.0, end="absorbing")
-    impedance = pole.impedance(concrete.E2, concrete.density)
-    return StruckBar(concrete.mass, velocity, stiffness, impedance).impact()

@@ -27,7 +27,6 @@ from lumped.paper.plateau import plateau_cut
 from lumped.paper.ring_impact import impact
 from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNJUDGED, UNKNOWN, UNPRINTED, Rule, half_unit
 from lumped.paper.steel_impacts import R1_of_peak, damped_of_peak, elastic_of_peak, solid
-from lumped.paper.struck_bar import StruckBar
 from lumped.result import Result
 
 AUDIT_IDS = {"A": 2, "B": 2, "C": 1, "D": 19, "E": 15, "F": 5, "G": 6, "H": 14}
@@ -90,8 +89,6 @@ AUDIT = {
     "pounding_damper.pounding_against_plain": "17.32 0.23",
     "pounding_damper.largest_accelerations": "18.12 18.12 22.26",
     "pounding_damper.contacts": "54 9.66 65.5 35.7",
-    "assumptions.steel_radiation": "0.00658 0.0104",
-    "assumptions.concrete_bars": "187.7 1.40 0.655 239.9 1.04 0.560 215.1 1.35 0.845 286.6 0.99 0.794",
     "misprints.momentum": "-3.16 4.84 1.0 17.0 17.0",
     "misprints.energy_loss": "24.576 6.144",
     "misprints.kelvin_restitution": "0.2527 0.5503 0.9020",
@@ -197,8 +194,7 @@ def test_every_misprint_of_the_audit_is_there() -> None:
 def test_every_recomputation_is_used_and_every_used_one_is_there() -> None:
     users: list[Any] = [*claims.load(), *misprints.load(), *assumptions.load()]
     used = {one.recompute for one in users} - {""}
-    assert used <= set(recompute.available())
-    assert set(recompute.available()) - used == {"assumptions.concrete_bars"}
+    assert used == set(recompute.available())
 
 
 def test_a_claim_that_is_compared_has_a_recomputation_and_one_that_is_not_says_why() -> None:
@@ -342,11 +338,30 @@ def test_assumptions_of_the_examples(examples: Examples) -> None:
     assert judged[OPEN] == {"ring.loss"}
 
 
-def test_the_steel_yields_as_the_audit_says(examples: Examples) -> None:
+def test_the_steel_yields_as_the_audit_says() -> None:
     """p0 = 3.30 GPa at the elastic peak: elastic only for Y above 2.06 GPa."""
-    loads = recompute.get("assumptions.steel_yield")(examples)
-    for load, strength in zip(loads, examples.steel.yield_strength, strict=True):
-        assert load.value * strength == pytest.approx(2.06e9, rel=2e-3)
+    ends = Examples.load({"steel.yield_strength": [2.056e9, 2.064e9]})
+    soft, hard = recompute.get("assumptions.steel_yield")(ends)
+    assert (soft.value > 0.0, hard.value) == (True, 0.0)
+
+
+def test_the_steel_radiates_the_share_of_the_audit(examples: Examples) -> None:
+    """Of its energy 0.00658 and 0.0104; a peak loses three tenths of that, F ~ energy^(3/5) and half of it before."""
+    elastic, proposed = recompute.get("assumptions.steel_inertia")(examples)
+    assert [elastic.value / 0.3, proposed.value / 0.3] == pytest.approx([0.00658, 0.0104], rel=6e-3)
+
+
+def test_the_pole_loses_what_its_exact_waves_take(examples: Examples) -> None:
+    """The ledger's estimate against the peak of the impact by rod_waves: within half as much again."""
+    concrete, losses = examples.concrete, []
+    for side in concrete.sides:
+        for radius in concrete.radii:
+            still = number(proposed(concrete, radius, 1.5), "peak_force")
+            pole = {"striker.radius": radius, "target.area": side**2}
+            scene = Scene.load("concrete-pole", pole)
+            losses.append(1.0 - number(laws.get("rod_waves").of(scene).simulate(scene, 1e-6), "peak_force") / still)
+    estimates = [value.value for value in recompute.get("assumptions.concrete_inertia")(examples)]
+    assert all(1.0 / 1.5 < estimate / loss < 1.5 for estimate, loss in zip(estimates, losses, strict=True))
 
 
 @given(st.floats(0.05, 0.95))
@@ -368,21 +383,6 @@ def test_a_plateau_above_the_peak_is_refused() -> None:
     time, still = np.linspace(0.0, 1.0, 11), np.zeros(11)
     with pytest.raises(BadInput, match="accepted: between"):
         plateau_cut(History(time, still, still, time * (1.0 - time), still, still), 1.0)
-
-
-def test_a_stiff_bar_is_a_wall_and_a_soft_one_takes_what_its_impedance_says() -> None:
-    striker = StruckBar(57.0, 1.5, 4e9, 1e12)
-    peak, duration, e = striker.impact()
-    depth = (1.25 * striker.mass * striker.velocity**2 / striker.k) ** 0.4
-    assert peak.value == pytest.approx(striker.k * depth**1.5, rel=1e-5)
-    assert duration.value == pytest.approx(2.943275 * depth / striker.velocity, rel=1e-5)
-    assert e.value == pytest.approx(1.0, abs=1e-5)
-    # first order: the bar takes int F^2/Z dt, which for a force depth^(3/2) is a Beta function
-    impedance = 1e9
-    integral = depth / striker.velocity * 0.4 * 2.0 * math.gamma(1.6) * math.gamma(0.5) / math.gamma(2.1)
-    taken = peak.value**2 * integral / impedance / (0.5 * striker.mass * striker.velocity**2)
-    lost = 1.0 - replace(striker, impedance=impedance).impact()[2].value ** 2
-    assert lost == pytest.approx(taken, rel=5.0 * taken)
 
 
 def test_the_ring_without_damping_is_a_linear_spring(examples: Examples) -> None:

@@ -134,9 +134,14 @@ def test_the_law_reports_what_its_solution_says() -> None:
 
 
 def test_the_pole_takes_what_the_audit_says() -> None:
-    # audit 4b: peak 187.7 kN, 1.40 ms, e = 0.655 for R = 0.1 m, and 239.9, 1.04, 0.560 for R = 0.5 m
-    for radius, peak, duration, e in ((0.1, 187.7e3, 1.40e-3, 0.655), (0.5, 239.9e3, 1.04e-3, 0.560)):
-        result = run(Scene.load("concrete-pole", {"striker.radius": radius}))
+    # audit 4b: peak 187.7 kN, 1.40 ms, e = 0.655 for R = 0.1 m, and 239.9, 1.04, 0.560 for R = 0.5 m; on 0.4 m square
+    for side, radius, peak, duration, e in (
+        (0.25, 0.1, 187.7e3, 1.40e-3, 0.655),
+        (0.25, 0.5, 239.9e3, 1.04e-3, 0.560),
+        (0.4, 0.1, 215.1e3, 1.35e-3, 0.845),
+        (0.4, 0.5, 286.6e3, 0.99e-3, 0.794),
+    ):
+        result = run(Scene.load("concrete-pole", {"striker.radius": radius, "target.area": side**2}))
         assert value(result, "peak_force") == pytest.approx(peak, abs=60.0)
         assert value(result, "duration") == pytest.approx(duration, abs=6e-6)
         assert value(result, "restitution") == pytest.approx(e, abs=6e-4)
