@@ -18,18 +18,16 @@ from lumped.indenter import Indenter
 from lumped.scene import Scene
 
 Array = npt.NDArray[np.float64]
-LARGEST_NU = 0.4999  # of a material: elements of every order are tried so far by `fe-contact stability`
-# The same of a bulk modulus beside its shear: beyond, the ratio of both, 1/(1 - 2 nu), takes the digits of a solve.
-LAST_NU = 0.5 - 1e-9
+LARGEST_NU = 0.4999  # elements of every order are tried so far by `fe-contact stability`
 
 
-def check_compressible(scene: Scene | Indenter, largest: float = LARGEST_NU) -> None:
-    """Raise BadInput for a material whose volume is too stiff beside its shape for elements that know displacements."""
+def check_compressible(scene: Scene | Indenter) -> None:
+    """Raise BadInput for a nu with which volume is too stiff beside shape for elements that know displacements."""
     faults = [
         Fault(scene.source, f"{part}.material.nu", f"{material.nu:.10g}: finite elements take it above -1 and up to "
-              f"{largest:.10g}; cure: such a nu, or --method ting where the body has a load curve, which takes 0.5")
+              f"{LARGEST_NU}; cure: such a nu, or --method ting where the body has a load curve, which takes 0.5")
         for part, material in scene.geometry.yielding
-        if material.nu > largest
+        if material.nu > LARGEST_NU
     ]  # fmt: skip
     if faults:
         raise BadInput(faults)

@@ -14,19 +14,21 @@ import numpy as np
 from fe_contact.certify import LEAST_HALVED_SETTING, LEAST_ORDER, MESH_ORDER, SAFETY
 from fe_contact.errors import says_which_key
 from fe_contact.expected_contacts import expected
-from fe_contact.forms import LAST_NU, Array, check_compressible
+from fe_contact.forms import Array, check_compressible
 from fe_contact.numerics import RANGES, TARGETS, Numerics, check_kind
 from fe_contact.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, RIM_PENALTY, SETTING, refined
 from fe_contact.pressing import Still
 from fe_contact.progress import Progress, silent
 from fe_contact.threads import one_thread
 from lumped.clock import Clock
+from lumped.errors import BadInput, Fault
 from lumped.indentation import Indentation
 from lumped.indenter import Indenter
 from lumped.members import get
 from lumped.shapes import Shape
 
 CAUSES = ("mesh", "penalty", "far_field")
+LAST_NU = 0.5 - 1e-9  # solves lose their digits as 1/(1 - 2 nu): no answer from 1e-12 on, right ones still at 1e-10
 ROUNDING = 1e-9  # relative, of a solve of nearly incompressible bodies: where nothing else errs
 ROUNDS = 5  # refinements before giving up
 FEWEST = 12  # depths that tell an error bar
@@ -69,7 +71,7 @@ def indent(
     depth = _accompanied(np.array(depths))
     elastic, numerics = indenter.elastic(instant), settings(given, indenter.shape)
     check_compressible(indenter)
-    check_compressible(elastic, LAST_NU)
+    _check_digits(elastic)
     pinned = set(given) - {"tolerance"}
     radii = expected(elastic, depth, numerics)
     for attempt in range(ROUNDS + 1):
@@ -98,6 +100,18 @@ def indent(
         timing=clock.read(),
         work=base.work,
     )
+
+
+def _check_digits(elastic: Indenter) -> None:
+    """Raise BadInput for a fluid whose volume, pressed at once, leaves a solve no digits of its shape."""
+    faults = [
+        Fault(elastic.source, f"{part}.material.bulk_modulus", f"as stiff beside the shear as nu = {material.nu:.12g}; "
+              f"accepted by finite elements: up to nu = {LAST_NU:.10g}; cure: a lower one")
+        for part, material in elastic.geometry.yielding
+        if material.nu > LAST_NU
+    ]  # fmt: skip
+    if faults:
+        raise BadInput(faults)
 
 
 def _accompanied(depth: Array) -> Array:
