@@ -166,7 +166,7 @@ def test_bonded_blocks_go_from_young_to_confined(trials: Mapping[str, Trial]) ->
 
 def test_a_bonded_block_of_rubber_stiffens_with_its_shape_factor_squared() -> None:
     """Thin, nu -> 1/2: E (1 + 2 S^2), S = radius/(2 thickness), within some per cent (Gent and Lindley 1959)."""
-    body = Elastic(1.0, 0.49999)
+    body = Elastic(1.0, 0.4999)
     block = blocks_module._pressed(body, 5.0)
     assert value(block.modulus) == pytest.approx(1.0 + 2.0 * 2.5**2, rel=0.08)
 
