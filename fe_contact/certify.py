@@ -1,8 +1,8 @@
 """The error budget: the impact again with one setting varied at a time, by finite elements alone.
 
-Time steps in the ratio 1 : 2 : 4 give a value (extrapolated from the two finest) and its change from the
-pair before. Mesh and penalty are varied on the coarsest of them, where a march is cheapest: what they change does
-not depend on the step. The far field of a mesh that breathes with the contact takes no march, unless further contacts
+Time steps in the ratio 1 : 2 : 4 give a value (extrapolated from the two finest) and its change from the pair before.
+Mesh and penalty are varied on the coarsest of them, where a march is cheapest: what they change does not depend on the
+step. The far field of an elastic body on a mesh that breathes with the contact takes no march, unless further contacts
 follow, each of which is judged like the first from the same runs. A change between settings in the ratio 1 : 2 bounds
 the error by
 
@@ -184,7 +184,8 @@ def _by_stiffness(runs: Runs, value: Curve, end: FlatEnd, numerics: Numerics) ->
 def _far_field(
     runs: Runs, value: Curve, cheap: Numerics, mesh: Numerics, number: int, alone: bool
 ) -> Change | Softening | None:
-    """By one press of either surface where they breathe with one contact; else by a march more, on the varied mesh.
+    """By one press of either surface where an elastic one breathes with one contact; else by a march more, on the
+    varied mesh: what a surface remembers beside a small contact, the far field lifts by more than its share there.
 
     Bodies that end have none.
     """
@@ -193,7 +194,7 @@ def _far_field(
     surface, other = runs.surface(cheap), runs.surface(far)
     if other is surface:
         return Softening(value, 0.0)
-    if alone and surface.breathes:
+    if alone and surface.breathes and value.strike.relaxation.is_elastic:
         assert isinstance(surface, Deformable)
         assert isinstance(other, Deformable)
         return Softening(value, _factor(order, farther) * compliance_change(surface, other))

@@ -3,12 +3,14 @@
 A relaxation about as long as a step gives the scheme's order one coefficient for longer steps and another for
 shorter ones, so that extrapolation gains no order. What adds up over the contact then keeps order one alone, and
 loses an order to any relaxation. A dashpot's force is one of velocities, and so is that of a branch which relaxes
-within two steps: its extrapolated error falls no faster than the scheme's.
+within two steps: its extrapolated error falls no faster than the scheme's, and what adds up loses as much of an order
+as such forces have in all that presses.
 """
 
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from fe_contact.change import Change
 from fe_contact.curve import Curve
@@ -22,7 +24,7 @@ ABOUT_A_STEP = (0.4, 9.0)  # step over relaxation time: outside, its weight in t
 
 def trusted_orders(
     curves: tuple[Curve, Curve, Curve], order: int, steps: tuple[float, float], flat: bool
-) -> dict[str, int]:
+) -> dict[str, float]:
     """Orders of the extrapolated force and of the quantities that deserve less trust.
 
     Parameters
@@ -36,12 +38,12 @@ def trusted_orders(
     duration = min(force, _order_of_duration(*curves, order))
     shortest, longest = np.divide.outer(steps, curves[0].strike.relaxation.times)
     within_step = bool(np.any((longest > ABOUT_A_STEP[0]) & (shortest < ABOUT_A_STEP[1])))
-    dashpot = curves[0].strike.relaxation.viscosity > 0.0 or bool(np.any(2.0 * longest > ABOUT_A_STEP[0]))
-    if dashpot:  # or a branch that acts as one: a force of velocities, which are rougher
+    damped = _damped(curves[0], 2.0 * longest > ABOUT_A_STEP[0])
+    if damped > 0.0:
         force, duration = min(force, order), min(duration, order)
     if within_step and flat:
         force = 1
-    summed = 1 if within_step or dashpot else min(force, order)
+    summed = 1 if within_step else min(force, order - damped)
     return {"force": force, "impulse": summed, "restitution": summed, "peak_depth": summed, "duration": duration}
 
 
@@ -63,3 +65,12 @@ def _order_of_duration(fine: Curve, half: Curve, quarter: Curve, order: int) -> 
     if first is None or second is None or third is None or abs(third - second) <= ASYMPTOTIC * first:
         return order + 1
     return order if abs(third - second) >= NEARLY * 2**order * abs(second - first) else 1
+
+
+def _damped(curve: Curve, fast: npt.NDArray[np.bool_]) -> float:
+    """Share of the force that dashpots carry, those of ``fast`` branches (k,) too, over all, each over the contact."""
+    relaxation = curve.strike.relaxation
+    moduli, times = np.array(relaxation.moduli), np.array(relaxation.times)
+    viscous = relaxation.viscosity + float(moduli[fast] @ times[fast])
+    elastic = (relaxation.equilibrium + float(moduli[~fast].sum())) * curve.duration
+    return viscous / (viscous + elastic) if viscous > 0.0 else 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import runpy
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -169,3 +170,23 @@ def test_every_folder_of_source_is_a_package() -> None:
     """A folder without __init__.py imports all the same, but neither mypy nor a walk over members sees it."""
     bare = {name(path.parent) for path in sources(*PACKAGES) if not (path.parent / "__init__.py").exists()}
     assert not bare
+
+
+ERROR_PATH = ("certify", "change", "trusted_order")
+
+
+def test_the_manual_tells_every_constant_on_the_way_to_a_bar_as_the_code_has_it() -> None:
+    script = runpy.run_path(str(ROOT / "tests" / "constants.py"))
+    assert script["table"]() in script["PAGE"].read_text(encoding="utf-8"), "cure: python tests/constants.py --write"
+    for module in ERROR_PATH:
+        tree = ast.parse((ROOT / "fe_contact" / f"{module}.py").read_text(encoding="utf-8"))
+        numbers = {target.id for node in tree.body if isinstance(node, ast.Assign) for target in named(node)}
+        told = {one.name for one in script["TABLE"] if one.module == f"fe_contact.{module}"}
+        assert numbers == told, module
+
+
+def named(node: ast.Assign) -> Iterator[ast.Name]:
+    """Constants of numbers alone."""
+    constants = [part.value for part in ast.walk(node.value) if isinstance(part, ast.Constant)]
+    if any(isinstance(value, float | int) for value in constants):
+        yield from (target for target in node.targets if isinstance(target, ast.Name) and target.id.isupper())

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from skfem import Basis, ElementTriP4, FacetBasis
 
 import meshes
+from fe_contact.certify import certify
 from fe_contact.enforcement import corrected
 from fe_contact.far_field.half_plane import flamant
 from fe_contact.far_field.static import boussinesq, robin
 from fe_contact.forms import isotropic
 from fe_contact.march import Strike
 from fe_contact.numerics import Numerics
+from fe_contact.plan import plan
+from fe_contact.reference import strike_of
 from fe_contact.targets import half_space
+from lumped import Relaxation, Scene
 from lumped.load_curves import Hertz
 from lumped.shapes import Parabola
 
@@ -150,3 +155,20 @@ def test_a_line_force_is_carried_and_obeys_hooke(nu: float) -> None:
         stress = law @ np.array([xx, zz, 0.0, zx + xz])
         for direction, wanted in (([1.0, 0.0], stress[[0, 3]]), ([0.0, 1.0], stress[[3, 1]])):
             np.testing.assert_allclose(flamant(place, np.array(direction), nu, 7.0)[1], wanted, rtol=1e-3, atol=2e-5)
+
+
+@pytest.mark.parametrize("shape", ["polymer-sphere", "polymer-cone"])
+@pytest.mark.parametrize("damping", [0.0, 0.3, 2.0])
+def test_the_far_fields_share_of_a_bar_covers_what_a_larger_mesh_changes(shape: str, damping: float) -> None:
+    """A dashpot remembers the surface beside a small contact, which a near far field lifts by more than its share."""
+    scene = Scene.load(shape)
+    material = replace(scene.geometry.material, young=Relaxation(1e6))
+    contact = replace(scene, material=material).elastic_contact_time
+    scene = replace(scene, material=replace(material, young=Relaxation(1e6, viscosity=1e6 * contact * damping)))
+    planned = plan(scene, {"tolerance": 1e-3}).numerics.varied(steps=60, far_radius=10.0)
+    near, far = (
+        certify(strike_of(scene), scene.geometry, planned.varied(far_radius=radius)) for radius in (10.0, 40.0)
+    )
+    for name in ("peak_force", "peak_depth", "duration"):
+        change = abs((near.curve.quantities[name] or 0.0) - (far.curve.quantities[name] or 0.0))
+        assert change <= near.error(name, "far_field"), name

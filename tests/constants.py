@@ -1,0 +1,159 @@
+"""Constants on the way to an error bar: what each one is, and, where it is measured, what it covers.
+
+`python tests/constants.py` prints the table of fe_contact/manual/error_bars.md (`--write` puts it there).
+`python tests/constants.py --measure N` solves N seeded impacts of every kind of tests/fe/test_bars_everywhere.py with
+each measured constant as it is and weaker, and prints what lies outside its bar.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import sys
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+PAGE = Path(__file__).parents[1] / "fe_contact" / "manual" / "error_bars.md"
+BEGIN = "| constant | value | kind | why |\n|---|---|---|---|\n"
+KINDS, TOLERANCES = ("ball", "profile", "flat", "layer", "early_end"), (1e-1, 1e-2, 1e-3)
+SEED = 1123
+
+DERIVED, MEASURED, WORK = "derived", "measured", "no bar depends on it"
+
+
+class Constant(NamedTuple):
+    """A constant by module and name; ``weaker``: the value that `--measure` tries beside it."""
+
+    module: str
+    name: str
+    kind: str
+    why: str
+    weaker: Any = None
+
+
+CERTIFY, ORDERS = "fe_contact.certify", "fe_contact.trusted_order"
+TABLE = (
+    Constant(CERTIFY, "SAFETY", DERIVED, "Roache's for three grids, doi:10.1115/1.2910291"),
+    Constant(CERTIFY, "LEAST_ORDER", DERIVED, "a penalty errs as its inverse, a far field as the inverse square"),
+    Constant(
+        CERTIFY,
+        "MESH_ORDER",
+        DERIVED,
+        "the least of what elements promise at an edge that follows the contact; order one is half trusted: it locks",
+    ),
+    Constant(CERTIFY, "MESH_ORDER_ANYWHERE", DERIVED, "pressure's root at an edge within an element: 3/2, one trusted"),
+    Constant(CERTIFY, "LEAST_HALVED", MEASURED, "fewer steps are doubled instead of halved", 10),
+    Constant(CERTIFY, "LEAST_HALVED_SETTING", MEASURED, "coarser settings are doubled instead of halved"),
+    Constant(CERTIFY, "UNSEEN", MEASURED, "first steps of the coarsest run in which no order shows", 0),
+    Constant(CERTIFY, "FALLS", MEASURED, "jitter that half the step leaves by less than this is the step's", 1e9),
+    Constant(CERTIFY, "MOST_APART", MEASURED, "durations that tell of one and the same end", 1e9),
+    Constant(CERTIFY, "ROUNDING", MEASURED, "of a solve of nearly incompressible bodies", 0.0),
+    Constant(CERTIFY, "MARCHES", WORK, "what a budget costs"),
+    Constant("fe_contact.change", "UNORDERED", DERIVED, "SAFETY times two: an order of 0.6 is supposed", 1.25),
+    Constant("fe_contact.change", "SMOOTHING", MEASURED, "a change that crosses zero is that of its neighbours", 0.0),
+    Constant(ORDERS, "AS_EXPECTED", MEASURED, "ratio of changes over the expected one that shows the order", (0, 1e9)),
+    Constant(ORDERS, "ABOUT", MEASURED, "the same that shows it about", (0.0, 1e9)),
+    Constant(ORDERS, "ASYMPTOTIC", MEASURED, "error of the duration with the fewest steps where orders count", 1e9),
+    Constant(ORDERS, "NEARLY", MEASURED, "share of the expected ratio that durations must show", 0.0),
+    Constant(
+        ORDERS,
+        "ABOUT_A_STEP",
+        DERIVED,
+        "step over relaxation time; outside, the branch's weight is within 1/8 of a power of the step",
+        (1e300, 1e301),
+    ),
+    Constant("fe_contact.curve", "PEAK_SHARE", MEASURED, "a peak is judged by all forces above this share", 1.0),
+    Constant("fe_contact.curve", "LATE", MEASURED, "path and speed from here on count for those at the end", 1.0),
+    Constant("fe_contact.curve", "EARLIEST", WORK, "rows that tell where a curve is read"),
+    Constant("fe_contact.impact", "PREDICTIONS", MEASURED, "their spread is that of the end", 1),
+    Constant("fe_contact.impact", "NOISE", MEASURED, "share of the peak below which contact may be lost in the mesh"),
+    Constant("fe_contact.impact", "FAINT", MEASURED, "share of the peak below which a kink may be the end"),
+    Constant("fe_contact.impact", "SETTLED", MEASURED, "of the tolerance: what still swings of a weight at rest"),
+    Constant("fe_contact.impact", "LONGEST", MEASURED, "mean steps that a weight which swings may be stepped over"),
+    Constant("fe_contact.impact", "AT_REST", MEASURED, "share of the velocity at which a fluid has stopped a striker"),
+    Constant("fe_contact.impact", "REST_ROWS", WORK, "rows of a striker at rest"),
+    Constant("fe_contact.impact", "STEPS_ALLOWED", WORK, "after which a march gives up"),
+    Constant("fe_contact.waves.certify", "ORDER", DERIVED, "contact that begins point by point has order one"),
+    Constant("fe_contact.waves.reading", "SAFETY", DERIVED, "as above"),
+    Constant("fe_contact.waves.reading", "TRUSTED", DERIVED, "two of the five orders between rows"),
+    Constant("lumped.laws._hereditary", "SAFETY", MEASURED, "of two integrations with more and with fewer nodes"),
+    Constant("lumped.laws._hereditary", "LOCAL_SHARE", WORK, "what a piece may err"),
+    Constant("lumped.laws._assembly", "ROUNDING", DERIVED, "of sums of some thousand terms"),
+    Constant("lumped.laws._assembly", "LEAST_SHARE", MEASURED, "two integrations may agree in a number by chance"),
+    Constant("lumped.collide.half_widths", "SAFETY", MEASURED, "of first-order estimates told at some points"),
+)
+
+
+def table() -> str:
+    """The table of all constants, with the values that the code has, as Markdown."""
+    return BEGIN + "".join(_row(one) for one in TABLE)
+
+
+def _row(one: Constant) -> str:
+    place = f"`{one.module.removeprefix('fe_contact.')}.{one.name}`"
+    return f"| {place} | {value(one)!r} | {one.kind} | {one.why} |\n"
+
+
+def value(one: Constant) -> Any:
+    """What the code has."""
+    return getattr(importlib.import_module(one.module), one.name)
+
+
+def write() -> None:
+    """Put the table into the page, in the place of the one that is there."""
+    page = PAGE.read_text()
+    before, rest = page.split(BEGIN)
+    after = rest.lstrip().split("\n\n", 1)[1] if "\n\n" in rest else ""
+    PAGE.write_text(before + table() + ("\n" + after if after else ""))
+
+
+def measure(count: int) -> None:
+    """Print, for each constant with a weaker value, the worst error over its bar and the cases outside, both ways."""
+    sys.path.insert(0, str(Path(__file__).parent / "fe"))
+    everywhere = importlib.import_module("test_bars_everywhere")
+    random = np.random.default_rng(SEED)
+    cases = [(everywhere.KINDS[kind](random), tol) for _ in range(count) for kind in KINDS for tol in TOLERANCES]
+    said("as it is", _outside(everywhere, cases))
+    for one in TABLE:
+        if one.weaker is not None:
+            kept = value(one)
+            for module in [m for name, m in sys.modules.items() if name.startswith(("fe_contact", "lumped"))]:
+                if getattr(module, one.name, None) is kept:
+                    setattr(module, one.name, one.weaker)
+            said(f"{one.module}.{one.name} = {one.weaker!r}", _outside(everywhere, cases))
+            for module in [m for name, m in sys.modules.items() if name.startswith(("fe_contact", "lumped"))]:
+                if getattr(module, one.name, None) is one.weaker:
+                    setattr(module, one.name, kept)
+
+
+def _outside(everywhere: Any, cases: list[Any]) -> list[float]:
+    """Largest error over bar of every case that converges."""
+    found = [everywhere.judged(scene, tolerance) for scene, tolerance in cases]
+    return [max(e / one.bars[n] for n, e in one.errors.items()) for one in found if one is not None and one.converged]
+
+
+def said(what: str, ratios: list[float]) -> None:
+    """One line on the terminal."""
+    over = sum(not ratio <= 1.0 for ratio in ratios)
+    sys.stdout.write(f"{what}: {over} of {len(ratios)} outside, worst error over bar {max(ratios):.2f}\n")
+    sys.stdout.flush()
+
+
+def main() -> None:
+    """The command."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--write", action="store_true", help="put the table into the manual's page")
+    parser.add_argument("--measure", type=int, metavar="N", help="solve N impacts of every kind and tolerance")
+    asked = parser.parse_args()
+    if asked.write:
+        write()
+    elif asked.measure:
+        measure(asked.measure)
+    else:
+        sys.stdout.write(table())
+
+
+if __name__ == "__main__":
+    main()
