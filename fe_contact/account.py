@@ -80,4 +80,4 @@ def _energy(stepper: Stepping, states: Sequence[State], steps: Sequence[Step]) -
 
 def _crept(stored: float, rate: float, time: float) -> float:
     """Heat of a body that nothing presses over a time, s, from what it stores, J, at a rate that falls with it; J."""
-    return stored * -float(np.expm1(-rate * time / stored)) if stored > 0.0 else 0.0
+    return stored * -float(np.expm1(-max(rate, 0.0) * time / stored)) if stored > 0.0 else 0.0

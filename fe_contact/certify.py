@@ -191,13 +191,16 @@ def _far_field(
     """
     order = LEAST_ORDER["far_field"]
     far, farther = _other(cheap, "far_radius")
-    surface, other = runs.surface(cheap), runs.surface(far)
-    if other is surface:
-        return Softening(value, 0.0)
-    if alone and surface.breathes and value.strike.relaxation.is_elastic:
-        assert isinstance(surface, Deformable)
-        assert isinstance(other, Deformable)
-        return Softening(value, _factor(order, farther) * compliance_change(surface, other))
+    surface = runs.surface(cheap)
+    pressed = alone and surface.breathes and value.strike.relaxation.is_elastic
+    if pressed or not surface.breathes:
+        other = runs.surface(far)
+        if other is surface:
+            return Softening(value, 0.0)
+        if pressed:
+            assert isinstance(surface, Deformable)
+            assert isinstance(other, Deformable)
+            return Softening(value, _factor(order, farther) * compliance_change(surface, other))
     before, after = runs.curve(number, mesh), runs.curve(number, mesh.varied(far_radius=far.far_radius))
     return _change(before, after, order, farther)
 

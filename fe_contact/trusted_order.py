@@ -3,8 +3,8 @@
 A relaxation about as long as a step gives the scheme's order one coefficient for longer steps and another for
 shorter ones, so that extrapolation gains no order. What adds up over the contact then keeps order one alone, and
 loses an order to any relaxation. A dashpot's force is one of velocities, and so is that of a branch which relaxes
-within two steps: its extrapolated error falls no faster than the scheme's, and what adds up loses as much of an order
-as such forces have in all that presses.
+within two steps: its extrapolated error falls no faster than the scheme's. All forces lose as much of an order as
+such ones have in all that presses, and so does what adds up.
 """
 
 from __future__ import annotations
@@ -34,15 +34,14 @@ def trusted_orders(
     steps : the shortest and the longest that count, s.
     flat : whether the area presses at once, so that all steps feel a relaxation, else the few that are as long.
     """
-    force = _trusted_order(*curves, order)
+    force: float = _trusted_order(*curves, order)
     duration = min(force, _order_of_duration(*curves, order))
     shortest, longest = np.divide.outer(steps, curves[0].strike.relaxation.times)
     within_step = bool(np.any((longest > ABOUT_A_STEP[0]) & (shortest < ABOUT_A_STEP[1])))
     damped = _damped(curves[0], 2.0 * longest > ABOUT_A_STEP[0])
-    if damped > 0.0:
-        force, duration = min(force, order), min(duration, order)
-    if within_step and flat:
-        force = 1
+    force, duration = min(force, order + 1 - damped), min(duration, order + 1 - damped)
+    if within_step:
+        force = 1 if flat else min(force, order)
     summed = 1 if within_step else min(force, order - damped)
     return {"force": force, "impulse": summed, "restitution": summed, "peak_depth": summed, "duration": duration}
 
