@@ -12,6 +12,7 @@ from fe_contact.curve import PEAK_SHARE, Curve, Reading
 from fe_contact.forms import Array
 
 SMOOTHING = 0.06  # share of the contact over which a pointwise change counts as the error of its neighbours
+FIRST_ORDER = 1.25  # factor where order one is all that shows
 UNORDERED = 2.5  # factor where no order shows: the finer of two runs errs by less than twice their distance
 
 
@@ -68,7 +69,7 @@ class Change:
     def force(self, time: Array) -> Array:
         """Error of the force at times, N: the largest change in the neighbourhood of each.
 
-        Where no order shows the whole change counts.
+        While no order shows the whole change counts, and twice that within the first step of all.
         """
         places, change = self._pointwise
         width = max(1, round(SMOOTHING * len(change)))
@@ -76,7 +77,8 @@ class Change:
         around = np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1).max(axis=1)
         first_step = self.second.duration * self.second.x[1] ** 2
         resolved = time > (first_step if self.unresolved is None else self.unresolved)
-        factor = np.where(resolved, self.factor, max(self.factor, UNORDERED))
+        factor = np.where(resolved, self.factor, max(self.factor, FIRST_ORDER))
+        factor[time <= self.first.duration * self.first.x[1] ** 2] = max(self.factor, UNORDERED)
         return np.asarray(factor * np.interp(time, places, around))
 
     def radius(self, time: Array) -> Array:

@@ -51,6 +51,7 @@ TABLE = (
     Constant(CERTIFY, "MOST_APART", MEASURED, "durations that tell of one and the same end", 1e9),
     Constant(CERTIFY, "ROUNDING", MEASURED, "of a solve of nearly incompressible bodies", 0.0),
     Constant(CERTIFY, "MARCHES", WORK, "what a budget costs"),
+    Constant("fe_contact.change", "FIRST_ORDER", DERIVED, "SAFETY over 2^1 - 1"),
     Constant("fe_contact.change", "UNORDERED", DERIVED, "SAFETY times two: an order of 0.6 is supposed", 1.25),
     Constant("fe_contact.change", "SMOOTHING", MEASURED, "a change that crosses zero is that of its neighbours", 0.0),
     Constant(ORDERS, "AS_EXPECTED", MEASURED, "ratio of changes over the expected one that shows the order", (0, 1e9)),
