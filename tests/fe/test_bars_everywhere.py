@@ -1,4 +1,4 @@
-"""Bars of every kind of scene at every tolerance, against the exact law: none too small, the median not too wide.
+"""Bars of every kind of scene at every tolerance, against the exact law: none too small.
 
 Draws are wide open: relaxation from 1e-6 to 1e6 contact times, branches up to 1e6 times the relaxed modulus, fluids,
 dashpots, Poisson's ratios from -0.99 to 0.4999, layers of 0.01 to 20 contact radii, weights, early ends. What ends with
@@ -27,7 +27,6 @@ CASES = 10  # of a kind at a tolerance
 TOLERANCES = (1e-1, 3e-2, 1e-2, 1e-3, 1e-4)
 FINEST = 1e-5  # on half-spaces
 CONVERGE = 0.95
-WIDEST = 10.0  # median of bar over error
 EXACT = 1e-7
 ROUNDING = 1e-9  # of a value
 LEAST_BAND = 1e-6  # of the peak: what the exact law's own rows may err by
@@ -171,7 +170,7 @@ def compared(found: Result, exact: Result) -> tuple[dict[str, float], dict[str, 
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_no_bar_is_too_small_and_the_median_is_not_too_wide(
+def test_no_bar_is_too_small_and_nearly_all_converge(
     kind: str, campaign_size: Callable[[int], int], capsys: pytest.CaptureFixture[str]
 ) -> None:
     missed, lines, everything = [], [], list[Outcome]()
@@ -188,10 +187,6 @@ def test_no_bar_is_too_small_and_the_median_is_not_too_wide(
     with capsys.disabled():
         sys.stdout.write("\n".join(["", *lines, ""]))
     assert not missed
-    by_quantity = {name: ratios(everything, name) for name in QUANTITIES}
-    if len(everything) < CASES:  # too few for a median of each
-        by_quantity = {"all": [ratio for found in by_quantity.values() for ratio in found]}
-    assert all(np.median(found) <= WIDEST for found in by_quantity.values())
     assert np.mean([one.converged for one in everything]) >= CONVERGE
 
 
