@@ -7,6 +7,6 @@ from skfem import MeshTri2
 from meshes.sphere import sphere
 
 
-def cylinder(elements: float, smallest: float, contact: float) -> MeshTri2:
+def cylinder(elements: float, smallest: float, contact: float, order: int) -> MeshTri2:
     """Curved triangles of the half disc ``x >= 0`` of radius 1 about (0, -1); see :func:`meshes.sphere.sphere`."""
-    return sphere(elements, smallest, contact)
+    return sphere(elements, smallest, contact, order)

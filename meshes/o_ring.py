@@ -10,7 +10,7 @@ from meshes.session import session
 from meshes.triangles import Outline, triangulated
 
 
-def o_ring(elements: float, smallest: float, contact: float, mean_radius: float) -> MeshTri2:
+def o_ring(elements: float, smallest: float, contact: float, mean_radius: float, order: int) -> MeshTri2:
     """Curved triangles of the half disc ``z >= -1`` of radius 1 about (mean_radius, -1).
 
     Parameters
@@ -19,6 +19,7 @@ def o_ring(elements: float, smallest: float, contact: float, mean_radius: float)
     smallest : the smallest contact to resolve so, over the largest, 1e-6 to 1.
     contact : angle of the largest contact from its middle, 1e-9 to 1.4 rad.
     mean_radius : of the ring over the section's, 1 to 1e9.
+    order : of the elements on this mesh, 1 to 4: the lower, the smaller those in the bulk.
 
     Returns
     -------
@@ -31,7 +32,7 @@ def o_ring(elements: float, smallest: float, contact: float, mean_radius: float)
     n = elements_checked("a contact", elements, 1.0, 200.0)
     mean_radius = checked("mean radius over the section's", mean_radius, 1.0, 1e9)
     low = checked("smallest contact over the largest", smallest, 1e-6, 1.0)
-    size = sizes(n, low, checked("angle of the largest contact", contact, 1e-9, 1.4))
+    size = sizes(n, low, checked("angle of the largest contact", contact, 1e-9, 1.4), order)
     with session("o_ring") as gmsh:
         geometry = gmsh.model.geo
         left, top, right, centre = (geometry.addPoint(x, y, 0) for x, y in ((-1, -1), (0, 0), (1, -1), (0, -1)))

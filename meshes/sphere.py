@@ -10,7 +10,7 @@ from meshes.session import session
 from meshes.triangles import Outline, triangulated
 
 
-def sphere(elements: float, smallest: float, contact: float) -> MeshTri2:
+def sphere(elements: float, smallest: float, contact: float, order: int) -> MeshTri2:
     """Curved triangles of the half disc ``x >= 0`` of radius 1 about (0, -1), its middle plane a line of nodes.
 
     Parameters
@@ -18,6 +18,7 @@ def sphere(elements: float, smallest: float, contact: float) -> MeshTri2:
     elements : along a contact's half-width, 1 to 200.
     smallest : the smallest contact to resolve so, over the largest, 1e-6 to 1.
     contact : angle of the largest contact from its middle, 1e-9 to 1.4 rad.
+    order : of the elements on this mesh, 1 to 4: the lower, the smaller those in the bulk.
 
     Returns
     -------
@@ -29,7 +30,7 @@ def sphere(elements: float, smallest: float, contact: float) -> MeshTri2:
     """
     n = elements_checked("a contact", elements, 1.0, 200.0)
     low = checked("smallest contact over the largest", smallest, 1e-6, 1.0)
-    size = sizes(n, low, checked("angle of the largest contact", contact, 1e-9, 1.4))
+    size = sizes(n, low, checked("angle of the largest contact", contact, 1e-9, 1.4), order)
     with session("sphere") as gmsh:
         geometry = gmsh.model.geo
         corners = ((0, 0), (1, -1), (0, -2), (0, -1))

@@ -113,6 +113,6 @@ def _surface(
 @kept
 def _body(elements: float, order: int, smallest: float, contact: float, mean_radius: float) -> ElasticBody:
     """In units of the section's radius, points and ``contact`` in rad from its top."""
-    basis = basis_on(made(meshes.o_ring, elements, smallest, contact, mean_radius), order)
+    basis = basis_on(made(meshes.o_ring, elements, smallest, contact, mean_radius, order), order)
     fixed = held(basis, along=(), across=("base",))
     return ElasticBody(basis, partial(axisymmetric, basis), fixed, crown(basis, contact, mean_radius))

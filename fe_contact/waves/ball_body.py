@@ -96,7 +96,7 @@ class Ball:
 @kept
 def unit_ball(poisson: float, elements: float, order: int, contact: float, masses: str) -> UnitBall:
     """Mesh and assemble; made once for all steps and penalties."""
-    basis = basis_on(made(meshes.sphere, elements, SMALLEST, contact), order)
+    basis = basis_on(made(meshes.sphere, elements, SMALLEST, contact, order), order)
     surface = crown(basis, contact, 0.0)
     free = np.setdiff1d(np.arange(2 * basis.N), 2 * basis.get_dofs("axis").flatten())
     inertia = get(MASSES, masses).of(mass(basis), vector_dofs(basis.element_dofs), 2 * basis.N, 2 * surface.dofs + 1)

@@ -13,7 +13,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from fe_contact.certify import SAFETY, Budget, Causes, Several
+from fe_contact.certify import LEAST_HALVED_SETTING, SAFETY, Budget, Causes, Several
 from fe_contact.change import Change
 from fe_contact.curve import Curve
 from fe_contact.forms import Array
@@ -30,7 +30,7 @@ from lumped.scene import Scene
 
 VARIED = {"mesh": "elements_per_contact", "penalty": "penalty", "far_field": "far_radius"}
 ORDER = {"mesh": 1, "penalty": 1, "time_step": 1, "far_field": 2}
-LEAST = {"elements_per_contact": 1.0, "penalty": 1.0, "far_radius": 2.0}
+LEAST_NODES = 24.0  # along the contact radius: on fewer, half of them err as much by chance, or are as large in the bulk
 
 
 class Runs:
@@ -118,26 +118,33 @@ def _judged(runs: Runs, number: int, numerics: WaveNumerics) -> Mapping[str, Cau
     """What the settings change of one contact."""
     contact = runs.follow(numerics).contacts[number]
     cheap, changed = numerics.varied(steps=runs.cheap), partial(_changed, partial(runs.curve, number))
-    mesh = _halved(cheap, "mesh")
+    mesh, half = _other(cheap, "mesh"), numerics.varied(steps=numerics.steps // 2)
+    coarse = min(cheap, mesh, key=lambda settings: settings.elements_per_contact)  # of what is far, coarse is fine
     return {
         "mesh": (changed(cheap, mesh, "mesh"), reading(contact.march, contact.strike, numerics)),
-        "penalty": (changed(cheap, _halved(cheap, "penalty"), "penalty"),),
-        "time_step": (changed(numerics, numerics.varied(steps=numerics.steps // 2), "time_step"),),
-        "far_field": (changed(mesh, _halved(mesh, "far_field"), "far_field"),),  # of what is far, coarse is fine
+        "penalty": (changed(cheap, _other(cheap, "penalty"), "penalty"),),
+        "time_step": (changed(numerics, half, "time_step"),),
+        "far_field": (changed(coarse, _other(coarse, "far_field"), "far_field"),),
     }
 
 
-def _halved(settings: WaveNumerics, cause: str) -> WaveNumerics:
+def _other(settings: WaveNumerics, cause: str) -> WaveNumerics:
+    """A setting halved; doubled where it is too coarse for half of it to tell anything."""
     key = VARIED[cause]
-    return settings.varied(**{key: max(getattr(settings, key) / 2, LEAST[key])})
+    value, least = getattr(settings, key), LEAST_HALVED_SETTING[key]
+    if cause == "mesh":
+        least = LEAST_NODES / settings.order
+    return settings.varied(**{key: value / 2 if value >= least else max(2 * value, least)})
 
 
 def _changed(
     curve: Callable[[WaveNumerics], Curve | None], first: WaveNumerics, second: WaveNumerics, cause: str
 ) -> Change | None:
     """Change between settings in the ratio 1 : 2, as an error of the first; None where either failed."""
-    one, other = curve(first), curve(second)
-    return None if one is None or other is None else Moved(one, other, SAFETY / (2 ** ORDER[cause] - 1))
+    one, other, order = curve(first), curve(second), ORDER[cause]
+    finer = cause in VARIED and getattr(second, VARIED[cause]) > getattr(first, VARIED[cause])
+    factor = SAFETY * (2**order if finer else 1) / (2**order - 1)
+    return None if one is None or other is None else Moved(one, other, factor)
 
 
 class Moved(Change):

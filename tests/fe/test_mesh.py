@@ -210,8 +210,8 @@ RANDOM: dict[str, Callable[[np.random.Generator], tuple[object, ...]]] = {
     "layer_for_waves": lambda random: powers(random, ELEMENTS, SHARE, (1e-3, 1e6), (1e-3, 1e8), FINER),
     "layer_under_rim": lambda random: powers(random, ELEMENTS, (1e-3, 1e6), (1e-3, 1e8)),
     "ring": lambda random: powers(random, ELEMENTS, SHARE, (1e-3, 1e6), (1.2, 1e6)),
-    "sphere": lambda random: powers(random, ELEMENTS, SHARE, (1e-6, 1.4)),
-    "o_ring": lambda random: powers(random, ELEMENTS, SHARE, (1e-6, 1.4), (1, 1e9)),
+    "sphere": lambda random: (*powers(random, ELEMENTS, SHARE, (1e-6, 1.4)), int(random.integers(1, 5))),
+    "o_ring": lambda random: (*powers(random, ELEMENTS, SHARE, (1e-6, 1.4), (1, 1e9)), int(random.integers(1, 5))),
     "prism": lambda random: (*powers(random, (0.5, 200), (1e-4, 1e4)), bool(random.random() < 0.5)),
     "washer": washer_of,
 }
