@@ -94,10 +94,15 @@ class Budget:
         return own + sum(np.inf if one is None else one.energies[name] for row in self.changes.values() for one in row)
 
     def force_error(self, time: Array) -> Array:
-        """Half-width of the force's error band, N; after the last step the force falls to nothing in any way."""
+        """Half-width of the force's error band, N; the whole of the largest force where a variation failed.
+
+        After the last step the force falls to nothing in any way.
+        """
         last = self.curve.last_step if self.curve.separated else np.inf
-        known = [c.force(time) for changes in self.changes.values() for c in changes if c is not None]
         fading = np.where(time > last, self.curve.force(np.array([last])), 0.0)
+        changes = [change for causes in self.changes.values() for change in causes]
+        unknown = np.full_like(time, self.curve.dense_force.max())
+        known = [unknown if change is None else change.force(time) for change in changes]
         return np.asarray(np.sum([fading, *known], axis=0))
 
 
@@ -247,8 +252,8 @@ def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics, f
     least = SAFETY / (2 ** orders.pop("force") - 1)
     weights = {name: SAFETY / (2**trusted - 1) / least for name, trusted in orders.items()}
     change = Change(value, before, least, weights, quarter.duration * float(quarter.x[UNSEEN]) ** 2)
-    jitter, coarser = (Change(one, one.thinned(), 1.0) for one in (fine, half))
-    falls = jitter.history < FALLS * coarser.history
+    jitter, finer, coarser = (Change(one, one.thinned(), 1.0) for one in (value, fine, half))  # its own is the largest
+    falls = finer.history < FALLS * coarser.history
     return _TimeSteps(value, change, (jitter,), numerics.steps // 4, falls)
 
 

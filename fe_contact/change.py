@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from fe_contact.curve import PEAK_SHARE, Curve, Reading
 from fe_contact.forms import Array
@@ -69,7 +70,8 @@ class Change:
     def force(self, time: Array) -> Array:
         """Error of the force at times, N: the largest change in the neighbourhood of each.
 
-        While no order shows the whole change counts, and twice that within the first step of all.
+        While no order shows the whole change counts, and twice that within the first step of all; where the path turns,
+        and with it, of a viscous contact, the force's slope at once, the order is one.
         """
         places, change = self._pointwise
         width = max(1, round(SMOOTHING * len(change)))
@@ -77,9 +79,21 @@ class Change:
         around = np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1).max(axis=1)
         first_step = self.second.duration * self.second.x[1] ** 2
         resolved = time > (first_step if self.unresolved is None else self.unresolved)
-        factor = np.where(resolved, self.factor, max(self.factor, FIRST_ORDER))
+        whole = ~resolved | self._about_turn(time)
+        factor = np.where(whole, max(self.factor, FIRST_ORDER), self.factor)
         factor[time <= self.first.duration * self.first.x[1] ** 2] = max(self.factor, UNORDERED)
         return np.asarray(factor * np.interp(time, places, around))
+
+    def _about_turn(self, time: Array) -> npt.NDArray[np.bool_]:
+        """Which times lie in the step of the second curve in which a viscous contact turns, or in the ones beside it.
+
+        No step but the one whose change is told with its ``unresolved`` time tells of that.
+        """
+        if self.unresolved is None or self.second.strike.relaxation.is_elastic:
+            return np.zeros(len(time), dtype=bool)
+        top, last = int(self.second.depth.argmax()), len(self.second.x) - 1
+        begin, end = self.second.duration * self.second.x[[max(top - 2, 0), min(top + 2, last)]] ** 2
+        return (time >= begin) & (time <= end)
 
     def radius(self, time: Array) -> Array:
         """How much the contact radius changes at times, m."""
