@@ -9,7 +9,9 @@ the error by
     SAFETY / (2^order - 1) x change ,
 
 with the lowest order that theory or the scheme promises, not the higher one that is usually seen (Roache's
-grid convergence index, doi:10.1115/1.2910291). Extrapolation leaves the order after the scheme's own, if the
+grid convergence index, doi:10.1115/1.2910291). Elements of order one promise none: where a material is nearly
+incompressible they lock, and two meshes of them err alike by far more than they differ. Elements of order two on the
+same mesh err by less than half as much, so that twice the distance between both bounds the error. Extrapolation leaves the order after the scheme's own, if the
 three step lengths show that order; where they do not, order one is all that is trusted. What extrapolation does not
 cure, the jitter of a viscous contact's force, shows when every other step is left out of one march. It counts with
 the steps where it falls with them, as at the touch of a dashpot; else mesh and rounding leave it.
@@ -43,7 +45,9 @@ MARCHES = 2.5  # steps of all marches of a contact over those of the finest one:
 SAFETY = 1.25
 UNSEEN = 2  # first steps of the coarsest run in which no order shows
 LEAST_ORDER = {"penalty": 1, "far_field": 2}
-MESH_ORDER = {1: 0.5, 2: 1, 3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
+MESH_ORDER = {2: 1, 3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
+WITNESS = 2  # order of the elements that tell of those of order one
+WITNESS_ELEMENTS = 4.0  # of them along the contact radius, at least
 MESH_ORDER_ANYWHERE = 1  # where the edge falls anywhere in an element: 1.6 is what is seen
 LEAST_HALVED = 40  # steps below which halving them twice would leave too few to tell anything
 LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 20.0, "far_radius": 5.0}
@@ -159,14 +163,13 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[C
         return steps.value, held | {"time_step": (steps.change, *steps.jitter)}
     cheap = numerics.varied(steps=steps.cheap)
     base = curve(cheap)
-    mesh, finer_mesh = _other(cheap, "elements_per_contact")
-    penalty, stiffer = _other(cheap, "penalty")
-    order = MESH_ORDER[numerics.order] if surface.breathes else MESH_ORDER_ANYWHERE
+    mesh, by_mesh = other_mesh(cheap) if surface.breathes else other_mesh(cheap, MESH_ORDER_ANYWHERE)
+    penalty, stiffer = other_setting(cheap, "penalty")
     swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long
     by_steps = swings or steps.jitter_falls
     changes: dict[str, Causes] = {
-        "mesh": (_change(base, curve(mesh), order, finer_mesh), *(() if by_steps else steps.jitter)),
-        "penalty": (_change(base, curve(penalty), LEAST_ORDER["penalty"], stiffer),),
+        "mesh": (_change(base, curve(mesh), by_mesh), *(() if by_steps else steps.jitter)),
+        "penalty": (_change(base, curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
         "time_step": (steps.change, *(steps.jitter if by_steps else ())),
         "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
     }
@@ -175,13 +178,15 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[C
 
 def _by_stiffness(runs: Runs, value: Curve, end: FlatEnd, numerics: Numerics) -> dict[str, Causes]:
     """What the other causes change of the one stiffness under a flat end, without a march."""
-    orders = {"mesh": min(MESH_ORDER[numerics.order], end.mesh_order)} | LEAST_ORDER
+    others = {"mesh": other_mesh(numerics, end.mesh_order)}
+    for cause, order in LEAST_ORDER.items():
+        settings, finer = other_setting(numerics, SETTING[cause])
+        others[cause] = settings, factor(order, finer)
     found: dict[str, Causes] = {}
-    for cause, order in orders.items():
-        settings, finer = _other(numerics, SETTING[cause])
+    for cause, (settings, trusted) in others.items():
         other = runs.surface(settings)
         assert isinstance(other, FlatEnd)
-        share = _factor(order, finer) * abs(other.stiffness / end.stiffness - 1.0)
+        share = trusted * abs(other.stiffness / end.stiffness - 1.0)
         found[cause] = (Softening(value, share + ROUNDING),)
     return found
 
@@ -195,7 +200,7 @@ def _far_field(
     Bodies that end have none.
     """
     order = LEAST_ORDER["far_field"]
-    far, farther = _other(cheap, "far_radius")
+    far, farther = other_setting(cheap, "far_radius")
     surface = runs.surface(cheap)
     pressed = alone and surface.breathes and value.strike.relaxation.is_elastic
     if pressed or not surface.breathes:
@@ -205,9 +210,9 @@ def _far_field(
         if pressed:
             assert isinstance(surface, Deformable)
             assert isinstance(other, Deformable)
-            return Softening(value, _factor(order, farther) * compliance_change(surface, other))
+            return Softening(value, factor(order, farther) * compliance_change(surface, other))
     before, after = runs.curve(number, mesh), runs.curve(number, mesh.varied(far_radius=far.far_radius))
-    return _change(before, after, order, farther)
+    return _change(before, after, factor(order, farther))
 
 
 @dataclass(frozen=True)
@@ -268,18 +273,27 @@ def _error(change: Change | Softening | None, name: str) -> float:
     return np.inf if change is None else change.errors[name]
 
 
-def _change(first: Curve | None, second: Curve | None, order: float, finer: bool = False) -> Change | None:
-    """Change between settings in the ratio 1 : 2; ``finer`` if it is the second that is the better one."""
-    return None if first is None or second is None else Change(first, second, _factor(order, finer))
+def _change(first: Curve | None, second: Curve | None, trusted: float) -> Change | None:
+    """Change between settings, ``trusted`` so many times as the error of the first."""
+    return None if first is None or second is None else Change(first, second, trusted)
 
 
-def _factor(order: float, finer: bool) -> float:
+def factor(order: float, finer: bool) -> float:
     """Error over change, by the module's formula; of the first setting, ``finer`` if the second is the better one."""
     return SAFETY * (2**order if finer else 1) / (2**order - 1)
 
 
-def _other(numerics: Numerics, key: str) -> tuple[Numerics, bool]:
+def other_setting(numerics: Numerics, key: str) -> tuple[Numerics, bool]:
     """One setting halved; doubled, and True, where it is too coarse for half of it to tell anything."""
     value = getattr(numerics, key)
     finer = value < LEAST_HALVED_SETTING[key]
     return numerics.varied(**{key: value * 2 if finer else value / 2}), finer
+
+
+def other_mesh(numerics: Numerics, most: float = np.inf) -> tuple[Numerics, float]:
+    """Settings of the mesh that tells of this one, and error over change, by an order of ``most`` at most."""
+    if numerics.order < WITNESS:
+        elements = max(numerics.elements_per_contact, WITNESS_ELEMENTS)
+        return numerics.varied(order=WITNESS, elements_per_contact=elements), UNORDERED
+    other, finer = other_setting(numerics, "elements_per_contact")
+    return other, factor(min(MESH_ORDER[numerics.order], most), finer)

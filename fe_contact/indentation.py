@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from fe_contact.certify import LEAST_HALVED_SETTING, LEAST_ORDER, MESH_ORDER, SAFETY
+from fe_contact.certify import LEAST_ORDER, factor, other_mesh, other_setting
 from fe_contact.errors import says_which_key
 from fe_contact.expected_contacts import expected
 from fe_contact.forms import Array, check_compressible
@@ -152,33 +152,24 @@ def _budget(base: Pressing, run: Callable[[Numerics], Pressing], numerics: Numer
     The far field is varied on the other mesh, which as a rule is the cheaper one, unless the body ends before; the
     penalty costs no mesh.
     """
-    other = _other(numerics, "mesh")
+    other, by_mesh = other_mesh(numerics, base.mesh_order)
+    far, farther = other_setting(other, "far_radius")
+    penalty, stiffer = other_setting(numerics, "penalty")
     on_other = run(other)
-    farther = on_other if on_other.ends else run(_other(other, "far_field"))
+    on_far = on_other if on_other.ends else run(far)
     return {
-        "mesh": _error(numerics, "mesh", base, on_other),
-        "penalty": _error(numerics, "penalty", base, run(_other(numerics, "penalty"))),
-        "far_field": _error(numerics, "far_field", on_other, farther),
+        "mesh": _error(by_mesh, base, on_other),
+        "penalty": _error(factor(LEAST_ORDER["penalty"], stiffer), base, run(penalty)),
+        "far_field": _error(factor(LEAST_ORDER["far_field"], farther), on_other, on_far),
     }
 
 
-def _other(numerics: Numerics, cause: str) -> Numerics:
-    """The setting behind a cause halved, or doubled where it is coarse."""
-    key = SETTING[cause]
-    value = getattr(numerics, key)
-    return numerics.varied(**{key: 2.0 * value if value < LEAST_HALVED_SETTING[key] else 0.5 * value})
-
-
-def _error(numerics: Numerics, cause: str, first: Pressing, second: Pressing) -> Array:
-    """Error by a cause from what its other setting changes, (n,).
+def _error(trusted: float, first: Pressing, second: Pressing) -> Array:
+    """Error by a cause: what its other setting changes, ``trusted`` so many times, (n,).
 
     A body without a length of its own answers alike at every depth, so the largest change speaks for all.
     """
-    key = SETTING[cause]
-    order = min(MESH_ORDER[numerics.order], first.mesh_order) if cause == "mesh" else LEAST_ORDER[cause]
-    finer = getattr(numerics, key) < LEAST_HALVED_SETTING[key]
-    change = np.abs(second.force / first.force - 1.0).max()
-    return np.full_like(first.force, SAFETY * (2**order if finer else 1) / (2**order - 1) * change)
+    return np.full_like(first.force, trusted * np.abs(second.force / first.force - 1.0).max())
 
 
 def _refined(numerics: Numerics, budget: Mapping[str, Array], pinned: set[str]) -> Numerics:

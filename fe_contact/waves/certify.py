@@ -2,7 +2,7 @@
 
 Mesh, penalty and time step are trusted with order one only: contact that begins and ends point by point leaves a
 chatter which no order describes. The change between settings in the ratio 1 : 2 then bounds the error of the better one
-by SAFETY times itself. The far field errs as the square of its distance, as without inertia: half as far, an echo comes
+by 1.25 times itself. The far field errs as the square of its distance, as without inertia: half as far, an echo comes
 back within the contact.
 """
 
@@ -13,7 +13,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from fe_contact.certify import LEAST_HALVED_SETTING, SAFETY, Budget, Causes, Several
+from fe_contact.certify import UNORDERED, WITNESS, Budget, Causes, Several, factor, other_setting
 from fe_contact.change import Change
 from fe_contact.curve import Curve
 from fe_contact.forms import Array
@@ -28,7 +28,6 @@ from fe_contact.waves.steps import graded
 from lumped.errors import NotReached
 from lumped.scene import Scene
 
-VARIED = {"mesh": "elements_per_contact", "penalty": "penalty", "far_field": "far_radius"}
 ORDER = {"mesh": 1, "penalty": 1, "time_step": 1, "far_field": 2}
 LEAST_NODES = 24.0  # along the contact radius: on fewer, half of them err as much by chance, or are as large in the bulk
 
@@ -101,7 +100,7 @@ def _lengths(march: March, settings: WaveNumerics) -> int:
 
 
 def certify(runs: Runs, numerics: WaveNumerics) -> Several:
-    """March with ``numerics`` and with each setting halved; raises where the march itself fails.
+    """March with ``numerics`` and with each setting varied; raises where the march itself fails.
 
     The budget is that of the first contact, those of the ``later`` ones, judged from the same runs, stand in it.
     """
@@ -118,33 +117,39 @@ def _judged(runs: Runs, number: int, numerics: WaveNumerics) -> Mapping[str, Cau
     """What the settings change of one contact."""
     contact = runs.follow(numerics).contacts[number]
     cheap, changed = numerics.varied(steps=runs.cheap), partial(_changed, partial(runs.curve, number))
-    mesh, half = _other(cheap, "mesh"), numerics.varied(steps=numerics.steps // 2)
-    coarse = min(cheap, mesh, key=lambda settings: settings.elements_per_contact)  # of what is far, coarse is fine
+    (mesh, by_mesh), half = _other_mesh(cheap), numerics.varied(steps=numerics.steps // 2)
+    penalty, stiffer = other_setting(cheap, "penalty")
+    coarse = min(cheap, mesh, key=_nodes)  # of what is far, coarse is fine
+    far, farther = other_setting(coarse, "far_radius")
     return {
-        "mesh": (changed(cheap, mesh, "mesh"), reading(contact.march, contact.strike, numerics)),
-        "penalty": (changed(cheap, _other(cheap, "penalty"), "penalty"),),
-        "time_step": (changed(numerics, half, "time_step"),),
-        "far_field": (changed(coarse, _other(coarse, "far_field"), "far_field"),),
+        "mesh": (changed(cheap, mesh, by_mesh), reading(contact.march, contact.strike, numerics)),
+        "penalty": (changed(cheap, penalty, factor(ORDER["penalty"], stiffer)),),
+        "time_step": (changed(numerics, half, factor(ORDER["time_step"], False)),),
+        "far_field": (changed(coarse, far, factor(ORDER["far_field"], farther)),),
     }
 
 
-def _other(settings: WaveNumerics, cause: str) -> WaveNumerics:
-    """A setting halved; doubled where it is too coarse for half of it to tell anything."""
-    key = VARIED[cause]
-    value, least = getattr(settings, key), LEAST_HALVED_SETTING[key]
-    if cause == "mesh":
-        least = LEAST_NODES / settings.order
-    return settings.varied(**{key: value / 2 if value >= least else max(2 * value, least)})
+def _other_mesh(settings: WaveNumerics) -> tuple[WaveNumerics, float]:
+    """Settings of the mesh that tell of this one, half as fine or at least twice, and error over change."""
+    if settings.order < WITNESS:
+        elements = max(settings.elements_per_contact, LEAST_NODES / WITNESS)
+        return settings.varied(order=WITNESS, elements_per_contact=elements), UNORDERED
+    elements, finer = settings.elements_per_contact, _nodes(settings) < LEAST_NODES
+    other = max(2 * elements, LEAST_NODES / settings.order) if finer else elements / 2
+    return settings.varied(elements_per_contact=other), factor(ORDER["mesh"], finer)
+
+
+def _nodes(settings: WaveNumerics) -> float:
+    """Along the contact radius."""
+    return settings.elements_per_contact * settings.order
 
 
 def _changed(
-    curve: Callable[[WaveNumerics], Curve | None], first: WaveNumerics, second: WaveNumerics, cause: str
+    curve: Callable[[WaveNumerics], Curve | None], first: WaveNumerics, second: WaveNumerics, trusted: float
 ) -> Change | None:
-    """Change between settings in the ratio 1 : 2, as an error of the first; None where either failed."""
-    one, other, order = curve(first), curve(second), ORDER[cause]
-    finer = cause in VARIED and getattr(second, VARIED[cause]) > getattr(first, VARIED[cause])
-    factor = SAFETY * (2**order if finer else 1) / (2**order - 1)
-    return None if one is None or other is None else Moved(one, other, factor)
+    """Change between settings, ``trusted`` so many times as the error of the first; None where either failed."""
+    one, other = curve(first), curve(second)
+    return None if one is None or other is None else Moved(one, other, trusted)
 
 
 class Moved(Change):
