@@ -85,7 +85,7 @@ class Change:
         return np.asarray(factor * np.interp(time, places, around))
 
     def _about_turn(self, time: Array) -> npt.NDArray[np.bool_]:
-        """Which times lie in the step of the second curve in which a viscous contact turns, or in the ones beside it.
+        """Which times lie within two steps of the second curve from where a viscous contact turns.
 
         No step but the one whose change is told with its ``unresolved`` time tells of that.
         """

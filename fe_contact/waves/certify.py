@@ -29,7 +29,8 @@ from lumped.errors import NotReached
 from lumped.scene import Scene
 
 ORDER = {"mesh": 1, "penalty": 1, "time_step": 1, "far_field": 2}
-LEAST_NODES = 24.0  # along the contact radius: on fewer, half of them err as much by chance, or are as large in the bulk
+# along the contact radius: half of fewer may err alike by chance, and are hardly larger in the bulk
+LEAST_NODES = 24.0
 
 
 class Runs:
