@@ -9,12 +9,14 @@ the error by
     SAFETY / (2^order - 1) x change ,
 
 with the lowest order that theory or the scheme promises, not the higher one that is usually seen (Roache's
-grid convergence index, doi:10.1115/1.2910291). Elements of order one promise none: where a material is nearly
-incompressible they lock, and two meshes of them err alike by far more than they differ. Elements of order two on the
-same mesh err by less than half as much, so that twice the distance between both bounds the error. Extrapolation leaves the order after the scheme's own, if the
-three step lengths show that order; where they do not, order one is all that is trusted. What extrapolation does not
-cure, the jitter of a viscous contact's force, shows when every other step is left out of one march. It counts with
-the steps where it falls with them, as at the touch of a dashpot; else mesh and rounding leave it.
+grid convergence index, doi:10.1115/1.2910291). Elements of order one and two promise none: where a material is nearly
+incompressible they lock, and two meshes of them err alike by far more than they differ. Elements of twice the order on
+the same mesh err by less than half as much, so that twice the distance between both bounds the error.
+
+Extrapolation leaves the order after the scheme's own, if the three step lengths show that order; where they do not,
+order one is all that is trusted. What extrapolation does not cure but make larger, the jitter of a viscous contact's
+force, shows when every other step is left out. It counts with the steps where it falls with them, as at the touch of a
+dashpot; else mesh and rounding leave it.
 """
 
 from __future__ import annotations
@@ -45,12 +47,13 @@ MARCHES = 2.5  # steps of all marches of a contact over those of the finest one:
 SAFETY = 1.25
 UNSEEN = 2  # first steps of the coarsest run in which no order shows
 LEAST_ORDER = {"penalty": 1, "far_field": 2}
-MESH_ORDER = {2: 1, 3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
-WITNESS = 2  # order of the elements that tell of those of order one
+MESH_ORDER = {3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
+WITNESS = 2  # times the order have the elements that tell of those which lock
 WITNESS_ELEMENTS = 4.0  # of them along the contact radius, at least
 MESH_ORDER_ANYWHERE = 1  # where the edge falls anywhere in an element: 1.6 is what is seen
 LEAST_HALVED = 40  # steps below which halving them twice would leave too few to tell anything
-LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 20.0, "far_radius": 5.0}
+# half of less tells nothing: a corrected penalty below a hundred errs to either side in turn
+LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 200.0, "far_radius": 5.0}
 CAUSES = ("mesh", "penalty", "time_step", "far_field")
 OUTSIDE = ("in", "out")  # terms of the energy account that the striker knows
 LOST = ("contact", "numerical", "residual")  # terms that are zero but for errors
@@ -202,7 +205,7 @@ def _far_field(
     order = LEAST_ORDER["far_field"]
     far, farther = other_setting(cheap, "far_radius")
     surface = runs.surface(cheap)
-    pressed = alone and surface.breathes and value.strike.relaxation.is_elastic
+    pressed = alone and surface.breathes and value.strike.relaxation.is_elastic and not farther
     if pressed or not surface.breathes:
         other = runs.surface(far)
         if other is surface:
@@ -292,8 +295,8 @@ def other_setting(numerics: Numerics, key: str) -> tuple[Numerics, bool]:
 
 def other_mesh(numerics: Numerics, most: float = np.inf) -> tuple[Numerics, float]:
     """Settings of the mesh that tells of this one, and error over change, by an order of ``most`` at most."""
-    if numerics.order < WITNESS:
+    if numerics.order not in MESH_ORDER:
         elements = max(numerics.elements_per_contact, WITNESS_ELEMENTS)
-        return numerics.varied(order=WITNESS, elements_per_contact=elements), UNORDERED
+        return numerics.varied(order=WITNESS * numerics.order, elements_per_contact=elements), UNORDERED
     other, finer = other_setting(numerics, "elements_per_contact")
     return other, factor(min(MESH_ORDER[numerics.order], most), finer)

@@ -13,7 +13,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from fe_contact.certify import UNORDERED, WITNESS, Budget, Causes, Several, factor, other_setting
+from fe_contact.certify import MESH_ORDER, UNORDERED, WITNESS, Budget, Causes, Several, factor, other_setting
 from fe_contact.change import Change
 from fe_contact.curve import Curve
 from fe_contact.forms import Array
@@ -132,9 +132,10 @@ def _judged(runs: Runs, number: int, numerics: WaveNumerics) -> Mapping[str, Cau
 
 def _other_mesh(settings: WaveNumerics) -> tuple[WaveNumerics, float]:
     """Settings of the mesh that tell of this one, half as fine or at least twice, and error over change."""
-    if settings.order < WITNESS:
-        elements = max(settings.elements_per_contact, LEAST_NODES / WITNESS)
-        return settings.varied(order=WITNESS, elements_per_contact=elements), UNORDERED
+    if settings.order not in MESH_ORDER:
+        order = WITNESS * settings.order
+        elements = max(settings.elements_per_contact, LEAST_NODES / order)
+        return settings.varied(order=order, elements_per_contact=elements), UNORDERED
     elements, finer = settings.elements_per_contact, _nodes(settings) < LEAST_NODES
     other = max(2 * elements, LEAST_NODES / settings.order) if finer else elements / 2
     return settings.varied(elements_per_contact=other), factor(ORDER["mesh"], finer)
