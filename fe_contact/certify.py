@@ -22,8 +22,9 @@ dashpot; else mesh and rounding leave it.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -62,6 +63,8 @@ MOST_APART = 1.5  # durations by different steps that tell of one and the same e
 ROUNDING = 1e-9  # of a solve of nearly incompressible bodies
 
 Causes = tuple[Change | Softening | None, ...]  # what one setting changes, None: unknown
+
+AnyNumerics = TypeVar("AnyNumerics", bound=Numerics)
 
 
 @dataclass(frozen=True)
@@ -286,11 +289,12 @@ def factor(order: float, finer: bool) -> float:
     return SAFETY * (2**order if finer else 1) / (2**order - 1)
 
 
-def other_setting(numerics: Numerics, key: str) -> tuple[Numerics, bool]:
+def other_setting(numerics: AnyNumerics, key: str) -> tuple[AnyNumerics, bool]:
     """One setting halved; doubled, and True, where it is too coarse for half of it to tell anything."""
     value = getattr(numerics, key)
     finer = value < LEAST_HALVED_SETTING[key]
-    return numerics.varied(**{key: value * 2 if finer else value / 2}), finer
+    changed: Any = {key: value * 2 if finer else value / 2}
+    return replace(numerics, **changed), finer
 
 
 def other_mesh(numerics: Numerics, most: float = np.inf) -> tuple[Numerics, float]:

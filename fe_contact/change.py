@@ -93,7 +93,7 @@ class Change:
             return np.zeros(len(time), dtype=bool)
         top, last = int(self.second.depth.argmax()), len(self.second.x) - 1
         begin, end = self.second.duration * self.second.x[[max(top - 2, 0), min(top + 2, last)]] ** 2
-        return (time >= begin) & (time <= end)
+        return np.asarray((time >= begin) & (time <= end))
 
     def radius(self, time: Array) -> Array:
         """How much the contact radius changes at times, m."""

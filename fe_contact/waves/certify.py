@@ -13,8 +13,8 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from fe_contact.certify import MESH_ORDER, UNORDERED, WITNESS, Budget, Causes, Several, factor, other_setting
-from fe_contact.change import Change
+from fe_contact.certify import MESH_ORDER, WITNESS, Budget, Causes, Several, factor, other_setting
+from fe_contact.change import UNORDERED, Change
 from fe_contact.curve import Curve
 from fe_contact.forms import Array
 from fe_contact.march import March, Strike
