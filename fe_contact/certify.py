@@ -170,12 +170,15 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[C
     cheap = numerics.varied(steps=steps.cheap)
     base = curve(cheap)
     mesh, by_mesh = other_mesh(cheap) if surface.breathes else other_mesh(cheap, MESH_ORDER_ANYWHERE)
-    penalty, stiffer = other_setting(cheap, "penalty")
+    # a soft penalty is the softer the shorter the step, in which a dashpot is stiff
+    soft = numerics.penalty < LEAST_HALVED_SETTING["penalty"]
+    pressed = numerics.varied(steps=max(numerics.steps, steps.cheap)) if soft else cheap
+    penalty, stiffer = other_setting(pressed, "penalty")
     swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long
     by_steps = swings or steps.jitter_falls
     changes: dict[str, Causes] = {
         "mesh": (_change(base, curve(mesh), by_mesh), *(() if by_steps else steps.jitter)),
-        "penalty": (_change(base, curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
+        "penalty": (_change(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
         "time_step": (steps.change, *(steps.jitter if by_steps else ())),
         "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
     }
@@ -290,10 +293,10 @@ def factor(order: float, finer: bool) -> float:
 
 
 def other_setting(numerics: AnyNumerics, key: str) -> tuple[AnyNumerics, bool]:
-    """One setting halved; doubled, and True, where it is too coarse for half of it to tell anything."""
-    value = getattr(numerics, key)
-    finer = value < LEAST_HALVED_SETTING[key]
-    changed: Any = {key: value * 2 if finer else value / 2}
+    """One setting halved; where half of it would tell nothing, at least doubled, until it would, and True."""
+    value, least = getattr(numerics, key), LEAST_HALVED_SETTING[key]
+    finer = value < least
+    changed: Any = {key: max(2 * value, least) if finer else value / 2}
     return replace(numerics, **changed), finer
 
 
