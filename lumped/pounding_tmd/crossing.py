@@ -24,6 +24,10 @@ class Row(Protocol):
     @property
     def length(self) -> float: ...
 
+    @property
+    def resolution(self) -> float:
+        """Offsets closer than this, s, have one value."""
+
     def value(self, offset: float) -> float: ...
 
     def slope(self, offset: float) -> float: ...
@@ -52,11 +56,11 @@ def first_fall(rows: Sequence[Row], begun: Sequence[bool]) -> tuple[float, int] 
 def _from_above(row: Row) -> float | None:
     """Offset of the first fall of a level that starts above zero. Rows are so close that it turns but once."""
     if row.value(row.length) <= 0.0:
-        return _root(row.value, 0.0, row.length)
+        return _root(row, row.value, 0.0, row.length)
     if not row.slope(0.0) < 0.0 < row.slope(row.length):
         return None
-    lowest = _root(lambda offset: -row.slope(offset), 0.0, row.length)
-    return _root(row.value, 0.0, lowest) if row.value(lowest) < 0.0 else None
+    lowest = _root(row, lambda offset: -row.slope(offset), 0.0, row.length)
+    return _root(row, row.value, 0.0, lowest) if row.value(lowest) < 0.0 else None
 
 
 def _from_zero(row: Row) -> float | None:
@@ -67,15 +71,18 @@ def _from_zero(row: Row) -> float | None:
     offset = row.length
     for _ in range(NEAREST):
         if row.value(offset) > 0.0:
-            return None if offset == row.length else _root(row.value, offset, 2.0 * offset)
+            return None if offset == row.length else _root(row, row.value, offset, 2.0 * offset)
         offset *= 0.5
     return 0.0
 
 
-def _root(function: Callable[[float], float], low: float, high: float) -> float:
+def _root(row: Row, function: Callable[[float], float], low: float, high: float) -> float:
     """Where a function falls through zero that is above it at `low` and not at `high`, as far as rounding lets it."""
     from scipy.optimize import brentq
 
     if function(low) <= 0.0:
         return low
-    return high if function(high) >= 0.0 else float(brentq(function, low, high, xtol=1e-300, rtol=1e-14))
+    if function(high) >= 0.0:
+        return high
+    # Below the resolution a function is a staircase, on which the search would halve without end.
+    return float(brentq(function, low, high, xtol=max(row.resolution, 1e-300), rtol=1e-14))

@@ -73,11 +73,35 @@ class Equations:
         exponent = self.system.ring.exponent
         return np.asarray(exponent * np.maximum(self.depth(index, y), 0.0) ** (exponent - 1.0) * approach)
 
+    def moving(self, stages: Stages, y: Array) -> Array:
+        """The state, then the speeds of the surfaces of both sides, (size + 2, ...); without a ring the state alone.
+
+        The rates are linear in these, and the integrands quadratic, for any exponent. Where a surface goes with the
+        damper, and not linearly, its place is that of the damper: an integrated one drifts off, and would keep a force
+        after the damper has gone.
+        """
+        if self.surface is None:
+            return y
+        found = np.concatenate([y, [self.speed(index, stage, y) for index, stage in enumerate(stages)]])
+        for index in self.driven(stages):
+            found[self.side(index).start] = self.place(index, y)
+        return found
+
+    def driven(self, stages: Stages) -> list[int]:
+        """The sides whose surfaces go with the damper, and not linearly: else a motion is linear."""
+        going = (Stage.PRESSED, Stage.FOLLOWED)
+        return [] if self.linear else [index for index, stage in enumerate(stages) if stage in going]
+
     def side_force(self, index: int, stage: Stage, y: Array) -> Array:
         """Force of a side if nothing were cut off, N, positive in compression."""
         if self.surface is None:
             return np.zeros_like(y[0])
-        return self.surface.force(self._surface_state(index, stage, y), self.speed(index, stage, y))
+        return self._pressed(index, self.moving(tuple(stage if i == index else Stage.HELD for i in range(2)), y))
+
+    def _pressed(self, index: int, moving: Array) -> Array:
+        if self.surface is None:
+            return np.zeros_like(moving[0])
+        return self.surface.force(moving[self.side(index)], moving[self.size + index])
 
     def force_at_touch(self, index: int, y: Array) -> float:
         """Force of a held side that the damper just meets, N: there the depth is zero, whatever rounding left of it."""
@@ -85,64 +109,63 @@ class Equations:
             return 0.0
         return float(self.surface.force(y[self.side(index)], self.speed(index, Stage.PRESSED, y)))
 
-    def _surface_state(self, index: int, stage: Stage, y: Array) -> Array:
-        """State of the surface of a side; where it goes with the damper, and not linearly, its place is that of the
-        damper: an integrated one drifts off, and would keep a force after the damper has gone.
-        """
-        state = y[self.side(index)]
-        if self.linear or stage not in (Stage.PRESSED, Stage.FOLLOWED):
-            return state
-        return np.concatenate([self.place(index, y)[None], state[1:]])
-
-    def force(self, stages: Stages, y: Array) -> Array:
+    def force(self, stages: Stages, moving: Array) -> Array:
         """f of "(33)", N: positive at x2 - x1 > gap, where it pushes the damper back and the structure along."""
         pressed = [index for index, stage in enumerate(stages) if stage is Stage.PRESSED]
-        forces = (SIDES[index] * self.side_force(index, Stage.PRESSED, y) for index in pressed)
-        return np.asarray(sum(forces, start=np.zeros_like(y[0])))
+        forces = (SIDES[index] * self._pressed(index, moving) for index in pressed)
+        return np.asarray(sum(forces, start=np.zeros_like(moving[0])))
 
-    def accelerations(self, stages: Stages, y: Array) -> tuple[Array, Array | None]:
+    def accelerations(self, stages: Stages, moving: Array) -> tuple[Array, Array | None]:
         """Of the structure and of the damper, m/s2, "(34)"."""
         one, two = self.system.structure, self.system.damper
-        own = one.stiffness * y[0] + one.damping * y[1]
+        own = one.stiffness * moving[0] + one.damping * moving[1]
         if two is None:
             return -own / one.mass, None
-        link = two.stiffness * (y[2] - y[0]) + two.damping * (y[3] - y[1]) + self.force(stages, y)
+        apart, closing = moving[2] - moving[0], moving[3] - moving[1]
+        link = two.stiffness * apart + two.damping * closing + self.force(stages, moving)
         return (link - own) / one.mass, -link / two.mass
 
-    def rates(self, stages: Stages, y: Array) -> Array:
-        """dy/dt, shape of `y`."""
-        first, second = self.accelerations(stages, y)
-        rows = [y[1], first] if second is None else [y[1], first, y[3], second]
+    def rates(self, stages: Stages, moving: Array) -> Array:
+        """dy/dt, shape (size, ...), of what `moving` gives."""
+        first, second = self.accelerations(stages, moving)
+        rows = [moving[1], first] if second is None else [moving[1], first, moving[3], second]
         bodies = np.array(rows)
         if self.surface is None:
             return bodies
-        speeds = (self.speed(index, stage, y) for index, stage in enumerate(stages))
-        surfaces = (self.surface.rate(y[self.side(index)], speed) for index, speed in enumerate(speeds))
+        sides = range(len(SIDES))
+        surfaces = (self.surface.rate(moving[self.side(index)], moving[self.size + index]) for index in sides)
         return np.concatenate([bodies, *surfaces])
 
-    def integrands(self, stages: Stages, y: Array) -> Array:
+    def integrands(self, stages: Stages, moving: Array) -> Array:
         """x1^2, a1^2, and the powers lost in both dashpots and the ring, and of the tension cut off: (6, ...)."""
         one, two = self.system.structure, self.system.damper
-        rows = [y[0] ** 2, self.accelerations(stages, y)[0] ** 2, one.damping * y[1] ** 2]
-        rows.append(two.damping * (y[3] - y[1]) ** 2 if two else np.zeros_like(y[0]))
-        return np.array([*rows, *self._ring_powers(stages, y)])
+        rows = [moving[0] ** 2, self.accelerations(stages, moving)[0] ** 2, one.damping * moving[1] ** 2]
+        rows.append(two.damping * (moving[3] - moving[1]) ** 2 if two else np.zeros_like(moving[0]))
+        return np.array([*rows, *self._ring_powers(stages, moving)])
 
-    def _ring_powers(self, stages: Stages, y: Array) -> tuple[Array, Array]:
+    def _ring_powers(self, stages: Stages, moving: Array) -> tuple[Array, Array]:
         """Power lost in the ring, and power that the tension cut off puts into it, W.
 
         Where the law has no energy of its own (exponent other than 1), lost is what it takes and does not give back.
         """
-        lost, cut = np.zeros_like(y[0]), np.zeros_like(y[0])
+        lost, cut = np.zeros_like(moving[0]), np.zeros_like(moving[0])
         if self.surface is None:
             return lost, cut
         if not self.linear:
-            return self.force(stages, y) * (y[3] - y[1]), cut
+            return self.force(stages, moving) * (moving[3] - moving[1]), cut
         for index, stage in enumerate(stages):
-            speed = self.speed(index, stage, y)
-            lost = lost + self.surface.lost(y[self.side(index)], speed)
+            speed = moving[self.size + index]
+            lost = lost + self.surface.lost(moving[self.side(index)], speed)
             if stage is Stage.FOLLOWED:
-                cut = cut + self.side_force(index, stage, y) * speed
+                cut = cut + self._pressed(index, moving) * speed
         return lost, cut
+
+    def linear_forms(self, stages: Stages) -> tuple[Array, Array]:
+        """Rates and integrands of `moving` as a matrix (size, n) and as quadratic forms (6, n, n), by polarization."""
+        unit = np.eye(self.size + (len(SIDES) if self.surface else 0))
+        alone = self.integrands(stages, unit)
+        pairs = self.integrands(stages, unit[:, :, None] + unit[:, None, :])
+        return self.rates(stages, unit), np.asarray(0.5 * (pairs - alone[:, :, None] - alone[:, None, :]))
 
     def kinetic(self, y: Array) -> float:
         """Kinetic energy of both masses, J; `y` has the shape (size,)."""

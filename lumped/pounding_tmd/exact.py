@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, log2
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,17 +34,20 @@ class Flow:
     spacing: float
 
     @cached_property
+    def _linear(self) -> tuple[Array, Array]:
+        moving = self.equations.moving(self.stages, np.eye(self.equations.size))
+        rates, integrands = self.equations.linear_forms(self.stages)
+        return rates @ moving, moving.T @ integrands @ moving
+
+    @property
     def matrix(self) -> Array:
         """Shape (size, size)."""
-        return self.equations.rates(self.stages, np.eye(self.equations.size))
+        return self._linear[0]
 
-    @cached_property
+    @property
     def forms(self) -> Array:
-        """The integrands as quadratic forms, shape (6, size, size), by polarization."""
-        unit = np.eye(self.equations.size)
-        alone = self.equations.integrands(self.stages, unit)
-        pairs = self.equations.integrands(self.stages, unit[:, :, None] + unit[:, None, :])
-        return np.asarray(0.5 * (pairs - alone[:, :, None] - alone[:, None, :]))
+        """The integrands as quadratic forms, shape (6, size, size)."""
+        return self._linear[1]
 
     @cached_property
     def switches(self) -> tuple[Switch, ...]:
@@ -136,6 +140,7 @@ class LevelRow:
     level: int
     state: Array
     length: float
+    resolution: ClassVar[float] = 0.0
 
     def value(self, offset: float) -> float:
         """The level."""

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +14,7 @@ from lumped.errors import NotReached
 from lumped.pounding_tmd.crossing import first_fall, suspect
 from lumped.pounding_tmd.equations import Equations, Stages
 from lumped.pounding_tmd.phase import Follow, Phase, fastest
+from lumped.pounding_tmd.surface import Stage
 from lumped.pounding_tmd.switches import Switch, switches
 from lumped.pounding_tmd.system import Start
 
@@ -23,33 +26,77 @@ NEAR = 1e-4  # of the longest step: a slope is a difference over it
 BEGUN = 1e-9  # of the change in a step: where time is long beside a step, a switch lies no nearer to zero
 
 
+@dataclass(frozen=True)
+class Rates:
+    """The rates of a state and of the integrals beside it while both sides do this: products with known matrices."""
+
+    equations: Equations
+    stages: Stages
+
+    @cached_property
+    def _driven(self) -> list[int]:
+        return self.equations.driven(self.stages)
+
+    @cached_property
+    def _forms(self) -> tuple[Array, Array]:
+        """Rates and integrands of what `_moving` gives."""
+        matrix, forms = self.equations.linear_forms(self.stages)
+        return (matrix, forms) if self._driven else (matrix @ self._followed, self._followed.T @ forms @ self._followed)
+
+    @cached_property
+    def _followed(self) -> Array:
+        """The linear part of `Equations.moving`, shape (size + 2, size)."""
+        stages = tuple(Stage.HELD if index in self._driven else stage for index, stage in enumerate(self.stages))
+        return self.equations.moving(stages, np.eye(self.equations.size))
+
+    def _moving(self, y: Array) -> Array:
+        """As `Equations.moving`, and where all is linear the state itself."""
+        if not self._driven:
+            return y
+        found = self._followed @ y
+        for index in self._driven:
+            found[self.equations.side(index).start] = self.equations.place(index, y)
+            found[self.equations.size + index] = self.equations.speed(index, self.stages[index], y)
+        return found
+
+    def of(self, y: Array) -> Array:
+        """dy/dt, shape (size,)."""
+        return np.asarray(self._forms[0] @ self._moving(y))
+
+    def __call__(self, _: float, y: Array) -> Array:
+        """Of a state followed by its integrals, shape (size + 6,)."""
+        matrix, forms = self._forms
+        moving = self._moving(y[: matrix.shape[0]])
+        return np.concatenate([matrix @ moving, forms @ moving @ moving])
+
+
 def route(equations: Equations, start: Start, spacing: float, end_time: float) -> Follow:
-    """How a phase is followed, in steps no longer than `spacing`, s."""
-    scales = _scales(equations, start)
+    """How a phase is followed, in steps no longer than `spacing`, s; longer ones where nothing presses the ring."""
+    scales, known = _scales(equations, start), dict[Stages, Rates]()
+    ringless = Equations(replace(equations.system, ring=None))
+    flying = spacing * fastest(equations, start) / fastest(ringless, start)
 
     def next_phase(stages: Stages, state: Array, time: float) -> tuple[Phase, Switch | None]:
-        return _follow(equations, stages, state, (time, end_time), spacing, scales)
+        rates = known.setdefault(stages, Rates(equations, stages))
+        longest = spacing if Stage.PRESSED in stages else flying
+        return _follow(rates, state, (time, end_time), longest, scales)
 
     return next_phase
 
 
 def _follow(
-    equations: Equations, stages: Stages, state: Array, span: tuple[float, float], spacing: float, scales: Array
+    rates: Rates, state: Array, span: tuple[float, float], spacing: float, scales: Array
 ) -> tuple[Phase, Switch | None]:
     """One phase, and the switch that ends it; None at the end of the span. The integrals are states too."""
     from scipy import integrate
 
-    size, known = equations.size, switches(equations, stages)
-
-    def rate(_: float, y: Array) -> Array:
-        return np.concatenate([equations.rates(stages, y[:size]), equations.integrands(stages, y[:size])])
-
+    size, known = rates.equations.size, switches(rates.equations, rates.stages)
     stepper: Any = integrate.DOP853  # its stubs know only their own array shapes
     solver = stepper(
-        rate, span[0], np.concatenate([state, np.zeros(INTEGRALS)]), span[1],
+        rates, span[0], np.concatenate([state, np.zeros(INTEGRALS)]), span[1],
         rtol=RTOL, atol=ATOL * scales, max_step=spacing,
     )  # fmt: skip
-    levels = [Level(switch.level, lambda y: equations.rates(stages, y), NEAR * spacing) for switch in known]
+    levels = [Level(switch.level, rates.of, NEAR * spacing) for switch in known]
     times, states, pieces, switch = [span[0]], [solver.y], [], None
     before = _asked(levels, state, solver.f[:size])
     while solver.status == "running" and switch is None:
@@ -66,7 +113,7 @@ def _follow(
             times.append(end)
             states.append(pieces[-1](end) if switch else solver.y)
         before = after
-    return _phase(stages, np.array(times), np.column_stack(states), pieces, size), switch
+    return _phase(rates.stages, np.array(times), np.column_stack(states), pieces, size), switch
 
 
 class Level(NamedTuple):
@@ -88,6 +135,11 @@ class LevelRow(NamedTuple):
     level: Level
     piece: Any
     length: float
+
+    @property
+    def resolution(self) -> float:
+        """The interpolant is asked for times, s, not for offsets."""
+        return float(np.spacing(self.piece.t))
 
     def value(self, offset: float) -> float:
         """The level."""

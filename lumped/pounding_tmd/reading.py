@@ -24,7 +24,7 @@ def motion(track: Track) -> Motion:
     damped, ringed = equations.system.damper is not None, equations.surface is not None
 
     def second(phase: Phase, states: Array) -> Array:
-        found = equations.accelerations(phase.stages, states)[1]
+        found = _accelerations(equations, phase, states)[1]
         return np.full(phase.times.size, np.nan) if found is None else found
 
     deepest = np.max([equations.depth(side, y) for side in range(len(SIDES))], axis=0) if ringed else absent * 0.0
@@ -32,13 +32,18 @@ def motion(track: Track) -> Motion:
         time=track.times,
         x1=y[0],
         v1=y[1],
-        a1=track.rows(lambda phase, states: equations.accelerations(phase.stages, states)[0]),
+        a1=track.rows(lambda phase, states: _accelerations(equations, phase, states)[0]),
         x2=y[2] if damped else absent,
         v2=y[3] if damped else absent,
         a2=track.rows(second),
-        force=track.rows(lambda phase, states: equations.force(phase.stages, states)),
+        force=track.rows(lambda phase, states: equations.force(phase.stages, equations.moving(phase.stages, states))),
         depth=np.maximum(deepest, 0.0) if ringed else np.zeros(track.times.size),
     )
+
+
+def _accelerations(equations: Equations, phase: Phase, states: Array) -> tuple[Array, Array | None]:
+    """Of both bodies in states of a phase, (size, ...), m/s2."""
+    return equations.accelerations(phase.stages, equations.moving(phase.stages, states))
 
 
 def contacts(track: Track) -> tuple[Contact, ...]:
@@ -120,7 +125,7 @@ def measures(track: Track, found: tuple[Contact, ...], window: float) -> Measure
     later = [contact for contact in found if contact.start > 0.0 and contact.end is not None]
     return Measures(
         window=span,
-        max_acceleration=track.highest(lambda phase, y: np.abs(equations.accelerations(phase.stages, y)[0])),
+        max_acceleration=track.highest(lambda phase, y: np.abs(_accelerations(equations, phase, y)[0])),
         rms_acceleration=float(np.sqrt(squares[ACCELERATION])),
         rms_displacement=float(np.sqrt(squares[DISPLACEMENT])),
         t50=track.last_above(0.5 * release) if release else None,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,34 +37,46 @@ class Surface:
         """Numbers in the state of a side."""
         return 1 + len(self.stiffness.moduli)
 
+    @cached_property
+    def springs(self) -> Array:
+        """What the springs carry, N, per unit of the state, shape (1 + n,)."""
+        return np.array([self.stiffness.equilibrium, *self.stiffness.moduli])
+
+    @cached_property
+    def creep(self) -> Array:
+        """The speed dq/dt at which the force stays what it is, zero, per unit of the state, shape (1 + n,)."""
+        if self.stiffness.viscosity:
+            return -self.springs / self.stiffness.viscosity
+        slips = np.divide(self.stiffness.moduli, self.stiffness.times)
+        return np.append(0.0, slips) / self.stiffness.glassy
+
     def rate(self, state: Array, speed: Array) -> Array:
         """dq/dt = speed, dz_k/dt = dq/dt - z_k/tau_k."""
         return np.concatenate([speed[None], speed - self._slip(state)])
 
     def force(self, state: Array, speed: Array) -> Array:
         """E_inf q + sum E_k z_k + eta dq/dt, N."""
-        return np.asarray(self._springs(state) + self.stiffness.viscosity * speed)
+        return np.asarray(_sum(self.springs, state) + self.stiffness.viscosity * speed)
 
     def recovery(self, state: Array) -> Array:
-        """The speed dq/dt at which the force stays what it is, zero."""
-        if self.stiffness.viscosity:
-            return -self._springs(state) / self.stiffness.viscosity
-        return np.tensordot(self.stiffness.moduli, self._slip(state), 1) / self.stiffness.glassy
+        """The speed dq/dt of a surface that nothing touches."""
+        return _sum(self.creep, state)
 
     def stored(self, state: Array) -> float:
         """Energy of the springs, for exponent 1, J."""
-        weights = np.array([self.stiffness.equilibrium, *self.stiffness.moduli])
-        return float(0.5 * weights @ state**2)
+        return float(0.5 * self.springs @ state**2)
 
     def lost(self, state: Array, speed: Array) -> Array:
         """Power spent in the dashpots, sum E_k z_k^2/tau_k + eta (dq/dt)^2, for exponent 1, W."""
-        spent = np.tensordot(self.stiffness.moduli, state[1:] * self._slip(state), 1)
+        spent = _sum(self.springs[1:], state[1:] * self._slip(state))
         return np.asarray(spent + self.stiffness.viscosity * speed**2)
-
-    def _springs(self, state: Array) -> Array:
-        return np.tensordot([self.stiffness.equilibrium, *self.stiffness.moduli], state, 1)
 
     def _slip(self, state: Array) -> Array:
         """z_k/tau_k: the rate of each dashpot, shape (n, ...)."""
         times = np.array(self.stiffness.times).reshape(-1, *[1] * (state.ndim - 1))
         return np.asarray(state[1:] / times)
+
+
+def _sum(weights: Array, values: Array) -> Array:
+    """Of values (n, ...) with weights (n,)."""
+    return np.asarray(np.einsum("k,k...->...", weights, values))

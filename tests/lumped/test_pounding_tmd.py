@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections import Counter, defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -20,10 +21,13 @@ from lumped.materials.networks import sls
 from lumped.pounding_tmd import Memory, Oscillator, PoundingDamper, PtmdResult, Ring, Start, simulate
 from lumped.pounding_tmd import exact as exact_route
 from lumped.pounding_tmd.crossing import first_fall
-from lumped.pounding_tmd.equations import Equations
+from lumped.pounding_tmd.equations import Equations, Stages
 from lumped.pounding_tmd.exact import Flow
 from lumped.pounding_tmd.exponential import exponential
+from lumped.pounding_tmd.integrated import Rates
 from lumped.pounding_tmd.march import most_rows
+from lumped.pounding_tmd.phase import ROWS_PER_PERIOD
+from lumped.pounding_tmd.surface import Stage
 
 POLE, DAMPER = Oscillator(20.0, 7248.9, 7.615), Oscillator(1.67, 592.9, 0.6312)
 SOLID = sls.of(E0=0.6e6, R1=0.5, R2=0.01)
@@ -363,13 +367,14 @@ def test_rounding_decides_no_graze(
     found = grazes(start, gaps, route, exponent)
     assert found == pytest.approx(np.repeat(found[:: len(gaps)], len(gaps)), rel=1e-6)
     assert all(0.96 < share < 1.0 for share in found)
-    generator, rates = np.random.default_rng(12), Equations.rates
+    generator, rates, levels = np.random.default_rng(12), Rates.__call__, Rates.of
 
     def other_digits(values: Any) -> Any:
         return values * (1.0 + 1e-15 * generator.standard_normal(values.shape))
 
     monkeypatch.setattr(exact_route, "exponential", lambda matrices: other_digits(exponential(matrices)))
-    monkeypatch.setattr(Equations, "rates", lambda *given: other_digits(rates(*given)))
+    monkeypatch.setattr(Rates, "__call__", lambda *given: other_digits(rates(*given)))
+    monkeypatch.setattr(Rates, "of", lambda *given: other_digits(levels(*given)))
     assert grazes(start, gaps, route, exponent) == pytest.approx(found, rel=1e-6)
 
 
@@ -381,6 +386,7 @@ class Parabola:
     steepness: float
     back: float
     rounding: float
+    resolution: ClassVar[float] = 0.0
 
     def value(self, offset: float) -> float:
         noise = self.rounding * np.sin(1e9 * offset + 4.0)  # below zero where it should start at it
@@ -442,6 +448,39 @@ def test_the_rows_do_not_decide_what_is_found(paper: PtmdResult) -> None:
     again = simulate(paper.system, BOTH, rows_per_period=40)
     for name, value in again.measures.to_dict().items():
         assert value == pytest.approx(paper.measures.to_dict()[name], rel=1e-9)
+
+
+# what a motion costs
+
+EXPONENTS = (1.05, 1.35, 1.5, 2.0, 2.5)
+PER_ROW = 16  # evaluations of a step of order 8 and its interpolant
+
+
+def test_any_exponent_costs_about_what_hertz_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The equations are formed once for each kind of phase, and flight takes steps of the bodies, not of the ring."""
+    formed, asked = Counter[float](), Counter[tuple[float, bool]]()
+    forms, rates, end = Equations.linear_forms, Rates.__call__, 2.0
+    kinds = defaultdict[float, set[Stages]](set)
+
+    def form(equations: Equations, stages: Stages) -> Any:
+        formed[equations.system.ring.exponent] += 1
+        return forms(equations, stages)
+
+    def ask(each: Rates, time: float, y: Any) -> Any:
+        exponent = each.equations.system.ring.exponent
+        kinds[exponent].add(each.stages)
+        asked[exponent, Stage.PRESSED in each.stages] += 1
+        return rates(each, time, y)
+
+    monkeypatch.setattr(Equations, "linear_forms", form)
+    monkeypatch.setattr(Rates, "__call__", ask)
+    for exponent in EXPONENTS:
+        ring = replace(lining(), coefficient=LENGTH * GAP ** (1.0 - exponent), exponent=exponent)
+        simulate(with_ring(ring), BOTH, end)
+        assert formed[exponent] == len(kinds[exponent])
+        period = 1.0 / 3.479
+        assert asked[exponent, False] < 1.5 * PER_ROW * ROWS_PER_PERIOD * end / period
+    assert max(asked[each, True] for each in EXPONENTS) < 2.0 * asked[1.5, True]
 
 
 # memory between contacts
