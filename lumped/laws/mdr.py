@@ -24,10 +24,11 @@ from lumped.spring_row.nest import Level, Nest, limit, predicted_turn
 Array = NDArray[np.float64]
 # Of the fields of Instant the force, and those which are seen: depth, velocity, force, edge.
 FORCE, SEEN = 4, [1, 2, 4, 5]
-# Limits of two marches err by the fourth power of the steps: over the fourth root of the tolerance, so many steps of
-# the first of three marches suffice mostly.
-INTERVALS, FEWEST, MOST = 1.1, 8, 90
-MOST_PARTS = 64
+# Steps of the first march's approach, whatever the tolerance: a tighter one begins with the marches of a looser one and
+# goes on from there, so it never costs less. With eight, three marches bring 1e-3 mostly. Where they lie a march of more
+# elements says: one of eight would make them uneven, and many finer ones needed.
+INTERVALS, ELEMENTS = 8, 16
+MOST_PARTS = 512  # 4096 steps, which err by rounding
 # Rows through which the polynomials of a rebound run that goes on beyond the end.
 ROWS_BEYOND = 6
 # Did limits of two err by h^2 alone, that of three would err by a third of what it differs from the first. A force that
@@ -61,9 +62,8 @@ class SpringRow:
         """One impact, the steps cut until every bar is within the tolerance. Raises NotReached."""
         clock = Clock()
         problem = problem_of(scene)
-        intervals = min(max(FEWEST, round(INTERVALS * tolerance**-0.25)), MOST)
-        track, stop = coarse_beyond(problem, scene.end_time, intervals)
-        nest = Nest.around(problem, stop, track, pace_of(problem, stop, intervals), intervals)
+        track, stop = coarse_beyond(problem, scene.end_time, ELEMENTS)
+        nest = Nest.around(problem, stop, track, pace_of(problem, stop, ELEMENTS), INTERVALS)
         if stop > scene.end_time:
             nest = replace(nest, cut=scene.end_time)
         nest, level, before = nest.begun(track.approach[-1].time)

@@ -60,14 +60,17 @@ class Nest:
 
     @classmethod
     def around(cls, problem: Problem, end_time: float, track: Track, pace: Adaptive, intervals: int) -> Nest:
-        """The grid of a coarse march, of at least `intervals`, denser where the rebound needs it. Raises NotReached."""
+        """The grid of a coarse march at this pace, denser where the rebound needs it. Raises NotReached.
+
+        It has `intervals` where the march has the steps that its pace has elements, else more or fewer in proportion.
+        """
         if track.end is End.REST:
             end_time = track.approach[-1].time
-        weights = np.ones(len(track.approach) - 1)
+        weights = np.full(len(track.approach) - 1, intervals / pace.elements)
         back = track.rebound
         for i in range(2, len(back)):
             share = pace.error(back[i - 2], back[i - 1], back[i])
-            weights[-i] = max(1.0, share ** (1.0 / 3.0))
+            weights[-i] *= max(1.0, share ** (1.0 / 3.0))
         return cls(problem, end_time, Grid.of(track.approach, weights, intervals), track.end is End.REST)
 
     def begun(self, turn: float) -> tuple[Nest, Level, float]:
