@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -18,28 +19,34 @@ from fe_contact.numerics import RANGES, TARGETS, Numerics
 from fe_contact.plan import SETTING, Plan, plan, refined
 from fe_contact.progress import Progress, silent
 from fe_contact.recovery import indentation_left, recovers
+from fe_contact.runs import operations
 from fe_contact.several import whole
 from fe_contact.told import history, quantities_of, shares_of
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.members import get
-from lumped.result import UNITS, Result, meets, provenance, unmet
+from lumped.result import UNITS, Quantity, Result, meets, provenance, unmet
 from lumped.scene import Scene
 
 CURE = "cure: a larger tolerance, or fewer numerics of your own"
 ROUNDS = 4  # refinements before giving up
 MOST_STEPS = 20_000  # of all marches of a round, about half a minute; the next one may take twice as many
+MOST_OPERATIONS = 2e12  # of a round, some eighty seconds at the 2.6e10 a second that large contact problems reach
 DOMINANT = 0.5  # causes above this share of the largest one, or of the tolerance, are refined together
 
 
 @dataclass(frozen=True)
 class Solved:
-    """A certified impact with the plan it began from and the settings it ended with; CPU and wall time, s."""
+    """A certified impact with the plan it began from and the settings it ended with; CPU and wall time, s.
+
+    ``refused``: why no finer settings were tried that may have met the tolerance; empty where none was refused.
+    """
 
     plan: Plan
     numerics: Numerics
     certified: Certified
     cpu: float
     wall: float
+    refused: str = ""
 
 
 class Answer(Protocol):
@@ -59,6 +66,9 @@ class Answer(Protocol):
 
     @property
     def wall(self) -> float: ...
+
+    @property
+    def refused(self) -> str: ...
 
 
 def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
@@ -81,12 +91,13 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     """
     check_target(scene)
     cpu, wall = time.process_time(), time.perf_counter()
+    progress("what to expect of the contact")
     chosen = plan(scene, given)
     if scene.motion.impacts > 1 and not struck(scene.geometry, chosen.numerics).recovers:
         scene.check_single("fe, on what remembers by its bulk or by two surfaces,")
     strike = strike_of(scene)
     numerics = finer = chosen.numerics
-    certified, outgrown = None, None
+    certified, outgrown, refused = None, None, ""
     for _ in range(ROUNDS + 1):
         try:
             certified = certify(strike, scene.geometry, finer, scene.motion.impacts, progress)
@@ -100,14 +111,31 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
                 raise
             break  # finer settings lose their way: what is known stands, with its bars
         better = refined_for(certified, numerics, chosen)
-        if better is None or 2 * certified.work.steps > MOST_STEPS:
+        refused = "" if better is None else _too_dear(certified, numerics, better)
+        if better is None or refused:
             break
         finer = better
     if certified is None:
         raise outgrown or MemoryTooSmall(numerics.contact_radius)
     for curve in (budget.curve for budget in certified.row):
         scene.check_sunk(curve.quantities["peak_depth"] or 0.0, float(np.sqrt(curve.radius_squared.max())))
-    return Solved(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall)
+    return Solved(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall, refused)
+
+
+def _too_dear(certified: Certified, numerics: Numerics, finer: Numerics) -> str:
+    """Why a round of finer settings is not to be afforded, from what the last one took; empty where it is.
+
+    Steps count in proportion, and the nodes in the contact zone, which are as many as the elements, by their cube.
+    """
+    longer = finer.steps / numerics.steps
+    steps = longer * certified.work.steps
+    if steps > MOST_STEPS:
+        return f"finer settings take about {steps:.0f} steps: accepted up to {MOST_STEPS}"
+    wider = finer.elements_per_contact / numerics.elements_per_contact
+    work = longer * wider**3 * operations(certified.work, certified.surface)
+    if work > MOST_OPERATIONS:
+        return f"finer settings take about {work:.2g} operations: accepted up to {MOST_OPERATIONS:.0e}"
+    return ""
 
 
 def check_target(scene: Scene) -> None:
@@ -190,6 +218,18 @@ def _first(scene: Scene, solved: Answer) -> Result:
         provenance=provenance(),
         timing={"cpu_s": solved.cpu, "wall_s": solved.wall},
         work=asdict(certified.work),
-        message="" if converged else f"{unmet(quantities, tolerance)}; {CURE}",
+        message="" if converged else "; ".join(_unmet(solved, quantities)),
         recovery=indentation_left(certified) if recovers(scene, curve) and len(certified.row) == 1 else None,
     )
+
+
+def _unmet(solved: Answer, quantities: Mapping[str, Quantity]) -> list[str]:
+    """What bars exceed the tolerance, what kept them from being refined, the tolerance that is met, and the cure."""
+    tolerance = solved.numerics.tolerance
+    shares = sum(np.nan_to_num(shares_of(solved.certified, cause, tolerance), nan=np.inf) for cause in CAUSES)
+    largest = tolerance * float(np.max(shares))
+    said = [unmet(quantities, tolerance), solved.refused]
+    if math.isfinite(largest):
+        met = 10.0 ** (math.ceil(10.0 * math.log10(largest)) / 10.0)  # rounded up
+        said.append(f"a tolerance of {met:.2g} is met")
+    return [part for part in said if part] + [CURE]

@@ -15,13 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from fe_contact.bodies.struck import Deformable
 from fe_contact.certify import Certified, certify
 from fe_contact.forms import Array
 from fe_contact.numerics import Numerics
 from fe_contact.progress import Progress
 from fe_contact.reference import check_target, strike_of
-from fe_contact.runs import TotalWork
+from fe_contact.runs import operations
 from fe_contact.targets import half_space
 from fe_contact.validation import journal
 from fe_contact.validation.design import defaults, variations
@@ -73,17 +72,6 @@ def tradeoff(scene: Scene, given: Mapping[str, Any], quick: bool, where: Path, p
     return (*(replace(first, cpu=min(first.cpu, *(one.cpu for one in again))) for first, *again in rounds), *others)
 
 
-def operations(work: TotalWork, surface: Deformable) -> float:
-    """Leading terms of the arithmetic behind the counted work, with the sizes of the finest mesh.
-
-    N unknowns in the plane cost N^(3/2) a factorisation and N log2 N a back-substitution (George 1973,
-    doi:10.1137/0710032); n surface unknowns and q quadrature points n^2 q + n^3/3 a Newton iteration.
-    """
-    unknowns, (points, zone) = float(work.degrees_of_freedom), surface.operator.trace.shape
-    condensation = work.factorizations * unknowns**1.5 + work.solves * unknowns * np.log2(unknowns)
-    return float(condensation + work.iterations * (zone**2 * points + zone**3 / 3))
-
-
 def _fe(scene: Scene, numerics: Numerics, default_for: float | None, count: int, exact: Exact) -> Point:
     """A choice of settings, measured for the so-manieth time."""
     truth = exact()
@@ -96,7 +84,6 @@ def _fe(scene: Scene, numerics: Numerics, default_for: float | None, count: int,
     errors = _errors(truth, curve.quantities, curve.dense_time, curve.dense_force)
     bars = [certified.total("history_l2"), certified.total("restitution") if "restitution" in errors else 0.0]
     bars += [certified.total(name) / abs(curve.quantities[name] or np.inf) for name in ("peak_force", "duration")]
-    assert isinstance(certified.surface, Deformable)
     work = asdict(certified.work) | {"operations": operations(certified.work, certified.surface)}
     return Point("fe", settings, cpu, errors, max(bars), work, default_for)
 

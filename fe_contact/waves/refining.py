@@ -46,6 +46,7 @@ class Solved:
     certified: Budget
     cpu: float
     wall: float
+    refused: str = ""
 
 
 def refined_to_tolerance(

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import Any
 
 import numpy as np
 import pytest
 
 from fe_contact import cli, operators, reference
+from fe_contact.bodies.chosen import struck
+from fe_contact.certify import certify
 from fe_contact.dynamics import march
 from fe_contact.errors import BodyTooFine, TooManySteps, WavesTooDear
 from fe_contact.flight import Grounded
 from fe_contact.methods import simulate
 from fe_contact.numerics import WAVES
+from fe_contact.runs import operations
 from fe_contact.waves import cost, doubling
 from fe_contact.waves.certify import Runs
 from lumped import Scene
 from lumped.members import get
+from lumped.result import meets
 from lumped.scene_file import load
 
 COARSE = {"tolerance": 3e-2, "elements_per_contact": 3.0, "steps": 64, "order": 2}
@@ -55,6 +60,56 @@ def test_rounds_end_where_the_next_one_takes_too_many_steps(monkeypatch: pytest.
     assert not found.converged
     assert found.quantities["peak_force"].error is not None
     assert found.numerics["elements_per_contact"] == 2.0
+
+
+@pytest.mark.parametrize(("bound", "what"), [("MOST_STEPS", "steps"), ("MOST_OPERATIONS", "operations")])
+def test_what_keeps_bars_from_the_tolerance_is_said_and_what_is_reached(
+    bound: str, what: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reference, bound, 100)
+    given = {"tolerance": 1e-6, "elements_per_contact": 2.0, "steps": 40, "order": 2}
+    found = simulate(Scene.load("polymer-layer"), "fe", given)
+    assert not found.converged
+    refused = rf"not reached: .*; finer settings take about \S+ {what}: accepted up to .*; cure: "
+    assert re.search(refused, found.message)
+    met = re.search(r"a tolerance of (\S+) is met", found.message)
+    assert met is not None
+    assert meets(found.quantities, 1.01 * float(met[1]))
+    assert not meets(found.quantities, 0.7 * float(met[1]))
+
+
+def test_finer_rounds_stay_within_the_work_that_was_predicted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The operations counted of a round are those predicted from the one before, within a factor of two."""
+    scene, counted, most = Scene.load("polymer-layer"), list[float](), 4e10
+
+    def certified(*given: Any) -> Any:
+        found = certify(*given)
+        counted.append(operations(found.work, found.surface))
+        return found
+
+    monkeypatch.setattr("fe_contact.reference.certify", certified)
+    monkeypatch.setattr(reference, "MOST_OPERATIONS", most)
+    found = simulate(scene, "fe", {"tolerance": 1e-4})
+    predicted = re.search(r"about (\S+) operations: accepted up to", found.message)
+    assert predicted is not None
+    assert float(predicted[1]) > most
+    first, second = counted
+    assert 0.5 < second / (2.0 * 1.5**3 * first) < 2.0
+
+
+def test_a_word_is_said_before_and_while_bodies_are_meshed(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, told, built = Scene.load("polymer-layer"), list[str](), list[int]()
+
+    def body(*given: Any) -> Any:
+        built.append(len(told))
+        return struck(*given)
+
+    monkeypatch.setattr("fe_contact.runs.struck", body)
+    monkeypatch.setattr(reference, "ROUNDS", 0)
+    given = {"elements_per_contact": 2.0, "steps": 16, "order": 1}
+    reference.solve(scene, given, lambda message, *_: told.append(message))
+    assert built[0] >= 2  # what is expected, and the march that is begun
+    assert np.all(np.diff(built) > 0)
 
 
 def test_a_row_of_contacts_ends_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
