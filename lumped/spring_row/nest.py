@@ -27,13 +27,14 @@ NEARLY = 1e-3
 class Level:
     """One march, or a limit of several.
 
-    The fields of Instant over the steps of approach and rebound, shape (6, n), whole ones past an end by time; how and
-    when, s, it ended; steps marched for it; energies at the end, J: that of the motion, (2,) as work of gravity and
-    left, spent in dashpots, held in springs.
+    The fields of Instant over the steps of approach and rebound, shape (6, n), whole ones past an end by time where
+    the edge goes on past it; those at the end, (6,); how and when, s, it ended; steps marched for it; energies at the
+    end, J: that of the motion, (2,) as work of gravity and left, spent in dashpots, held in springs.
     """
 
     approach: Array
     rebound: Array
+    stop: Array
     end: End
     last: float
     steps: int
@@ -113,7 +114,8 @@ class Nest:
         motion = [mass * self.problem.gravity * last.depth, 0.5 * mass * last.velocity**2]
         energies = np.array([*motion, ended.spent, ended.held])
         end = End.REST if self.rests else track.end
-        return Level(_columns(track.approach), _columns(outward), end, last.time, steps, energies)
+        stop = np.array(last, dtype=float)
+        return Level(_columns(track.approach), _columns(outward), stop, end, last.time, steps, energies)
 
     def _ended(self, times: list[float], cut: float) -> Track:
         """The march of these steps to where the history ends."""
@@ -134,23 +136,32 @@ def limit(coarse: Level, fine: Level, order: int) -> Level:
         raise NotReached("finer and coarser steps of the spring row end differently")
     gain = 1.0 / (2.0**order - 1.0)
     one, finer = coarse.rebound, fine.rebound
+    stop = fine.stop + gain * (fine.stop - coarse.stop)
     if bool(one.size) != bool(finer.size):
         raise NotReached("finer and coarser steps of the spring row turn on either side of the end time")
     if finer.size and fine.end is End.TIME:
         one, finer = _whole(one, finer)
+        if finer[0, -1] <= fine.last:
+            one, finer = _cut(_stopped(coarse), _stopped(fine))
     elif finer.size and fine.end is not End.SEPARATED:
         one, finer = _cut(one, finer)
     energies = fine.energies + gain * (fine.energies - coarse.energies)
     approach = _limit(coarse.approach, fine.approach, gain)
     back = _limit(one, finer, gain)
     last = fine.last if fine.end is End.TIME else float((back if back.size else approach)[0, -1])
-    return Level(approach, back, fine.end, last, fine.steps, energies)
+    return Level(approach, back, stop, fine.end, last, fine.steps, energies)
 
 
 def _whole(coarse: Array, fine: Array) -> tuple[Array, Array]:
     """Two rebounds of whole steps, as far as both go."""
     both = min(coarse.shape[1] - 1, (fine.shape[1] - 1) // 2)
     return coarse[:, : both + 1], fine[:, : 2 * both + 1]
+
+
+def _stopped(level: Level) -> Array:
+    """A rebound up to its end by time, within a step: where the edge comes to rest before, no whole one leads past."""
+    back = level.rebound
+    return np.column_stack([back[:, back[0] < level.last], level.stop])
 
 
 def _cut(coarse: Array, fine: Array) -> tuple[Array, Array]:
