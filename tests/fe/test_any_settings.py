@@ -1,7 +1,7 @@
 """Any settings that the keys accept, in any company: values within their bars alone and the force within its band.
 
-Against the hereditary law, of which no finite element and no step of the suite's march knows. Not all of these converge:
-a bar has to be true before it is small.
+Against the hereditary law, of which no finite element and no step of the suite's march knows. Not all of these
+converge: a bar has to be true before it is small.
 """
 
 from __future__ import annotations
@@ -122,7 +122,12 @@ FOUND: dict[str, tuple[str, float | None, Relaxation, dict[str, Any]]] = {
         Relaxation(1.008e6, viscosity=1916.0),
         {"tolerance": 0.1, "penalty": 30.0, "far_radius": 4.0, "enforcement": "augmented"},
     ),
-    "locking": ("polymer-cone", 0.4999, Relaxation(1e6), {"tolerance": 0.1, "order": 1, "elements_per_contact": 4.0, "steps": 40}),
+    "locking": (
+        "polymer-cone",
+        0.4999,
+        Relaxation(1e6),
+        {"tolerance": 0.1, "order": 1, "elements_per_contact": 4.0, "steps": 40},
+    ),
     "locking of order two": (
         "polymer-sphere",
         0.4999,
