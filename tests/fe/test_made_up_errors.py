@@ -1,0 +1,163 @@
+"""Curves with errors made up: how they fall with the step is known, and so is the truth that the bars have to cover."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.special import beta, betainc
+
+from fe_contact.certify import CAUSES, Budget, Causes, _time_steps
+from fe_contact.change import Change
+from fe_contact.curve import Curve
+from fe_contact.forms import Array
+from fe_contact.march import Strike
+from fe_contact.numerics import Numerics
+from lumped.materials import Relaxation
+
+STEPS, CASES = 160, 40
+RULED = ("peak_force", "peak_depth", "impulse", "restitution")
+STRIKE = Strike(lambda r: r**2, 1.0, 0.3, 0.0, Relaxation(1.0), 10.0)
+
+Falls = Callable[[float], float]  # an error by how many times longer than the finest run's the steps are
+Settings = Callable[..., Numerics]
+
+
+def made_up(steps: int, off: Callable[[Array], Any], late: float = 0.0) -> Curve:
+    """The force [4 t (1 - t)]^(3/2): mean force and depth ``off`` by a share at every instant, the end by a share."""
+    x = np.linspace(0.0, 1.0, steps + 1)
+    share = x**2
+    impulse = 8.0 * beta(2.5, 2.5) * betainc(2.5, 2.5, share)
+    mean = np.divide(impulse, share, out=np.zeros_like(share), where=share > 0.0)
+    return Curve(
+        strike=STRIKE,
+        duration=1.0 + late,
+        separated=True,
+        x=x,
+        mean_force=mean * (1.0 + off(share)),
+        depth=share * (0.3 - 0.2945 * share) * (1.0 + off(share)),  # as fast as the impulse has it, at both ends
+        radius_x=x,
+        radius_squared=share * (1.0 - share) + 1e-3,
+        end_spread=0.0,
+    )
+
+
+TRUTH = made_up(STEPS, np.zeros_like)
+
+
+@pytest.fixture
+def settings(hertz_strike: Callable[..., Strike], settings_of: Settings) -> Numerics:
+    return settings_of(hertz_strike(), steps=STEPS).varied(contact_time=1.0)
+
+
+def judged(
+    settings: Numerics, error: Falls, phase: float, late: Falls = lambda _: 0.0, relaxation: Relaxation | None = None
+) -> Budget:
+    """Three runs with such errors, extrapolated and judged as the time steps of an impact are.
+
+    Of ever another ``phase`` along the contact, so that no quantity is right by chance in every case. Under a flat
+    end where a ``relaxation`` is given.
+    """
+    strike = STRIKE if relaxation is None else replace(STRIKE, relaxation=relaxation)
+
+    def run(numerics: Numerics) -> Curve:
+        longer = STEPS / numerics.steps
+        found = made_up(
+            numerics.steps,
+            lambda share: error(longer) * share * (1.5 + np.cos(2.0 * share + phase)),
+            late(longer),
+        )
+        return replace(found, strike=strike)
+
+    steps = _time_steps(run, settings, flat=relaxation is not None)
+    changes: dict[str, Causes] = {cause: () for cause in CAUSES}
+    nothing: Any = None
+    return Budget(steps.value, nothing, changes | {"time_step": (steps.change, *steps.jitter)}, nothing)
+
+
+def over(found: Budget, *names: str) -> dict[str, float]:
+    """Errors over bars."""
+    values, true = found.curve.quantities, TRUTH.quantities
+    return {name: abs(values[name] - true[name]) / found.total(name) for name in names}
+
+
+def sizes(seed: int) -> list[tuple[float, float]]:
+    """Errors of the finest run, of either sign, and phases."""
+    rng = np.random.default_rng(seed)
+    return [(float(rng.choice([-1, 1]) * 10 ** rng.uniform(-4, -2)), float(rng.uniform(0, 6))) for _ in range(CASES)]
+
+
+@pytest.mark.parametrize("steps", [STEPS, 16])
+def test_errors_that_halve_with_the_step_are_covered(settings: Numerics, steps: int) -> None:
+    """Extrapolation by order two gains little on them: half of the scheme's order is missing."""
+    for size, phase in sizes(1):
+        found = over(judged(settings.varied(steps=steps), lambda longer: size * longer, phase), *RULED)
+        assert max(found.values()) <= 1.0, (size, phase, found)
+
+
+def test_errors_of_the_schemes_order_and_the_next_are_covered_and_the_bars_are_tight(settings: Numerics) -> None:
+    """Tighter where the order shows clearly, which the next one may spoil."""
+    for (size, phase), share in zip(sizes(2), np.linspace(0.0, 1.5, CASES), strict=True):
+        found = over(judged(settings, lambda longer: size * (longer**2 + share * longer**3), phase), *RULED)
+        assert max(found.values()) <= 1.0, (size, phase, found)
+        if share > 0.1:
+            assert found["peak_force"] > (0.5 if share < 0.3 else 0.25), (share, phase, found)
+            assert min(found["impulse"], found["restitution"]) > 0.25, (size, phase, found)
+
+
+def test_two_finest_runs_that_agree_by_chance_are_not_believed(settings: Numerics) -> None:
+    """Where one order cancels the other in them, the third run shows it, by a change of another size."""
+    for (size, phase), cancelled in zip(sizes(3), np.linspace(0.9, 1.3, CASES), strict=True):
+        found = over(judged(settings, lambda longer: size * (3.0 * longer - cancelled * longer**2), phase), *RULED)
+        assert max(found.values()) <= 1.0, (size, cancelled, found)
+
+
+@pytest.mark.parametrize("order", [0.6, 1.0, 1.5, 2.0])
+def test_a_relaxation_as_long_as_the_steps_under_a_flat_end_is_covered_whatever_order_it_leaves(
+    settings: Numerics, order: float
+) -> None:
+    as_long = Relaxation(1.0, (1.0,), (1.0 / STEPS,))
+    for size, phase in sizes(7):
+        found = over(judged(settings, lambda longer: size * longer**order, phase, relaxation=as_long), *RULED)
+        assert max(found.values()) <= 1.0, (size, phase, found)
+
+
+def test_ends_that_move_in_proportion_to_the_step_are_covered_though_the_force_knows_nothing_of_it(
+    settings: Numerics,
+) -> None:
+    for (size, phase), late in zip(sizes(4), np.geomspace(6e-3, 0.05, CASES), strict=True):
+        found = judged(settings, lambda longer: 0.1 * size * longer**2, phase, lambda longer: late * longer)
+        assert over(found, "duration")["duration"] <= 1.0, late
+
+
+def test_ends_that_move_as_the_force_does_have_tight_bars(settings: Numerics) -> None:
+    for (size, phase), late in zip(sizes(5), np.geomspace(6e-4, 2e-3, CASES), strict=True):
+        found = judged(
+            settings,
+            lambda longer: 0.1 * size * (longer**2 + 0.2 * longer**3),
+            phase,
+            lambda longer: late * (longer**2 + 0.2 * longer**3),
+        )
+        assert 0.25 < over(found, "duration")["duration"] <= 1.0, late
+
+
+def wave(size: float, period: float, phase: float) -> Callable[[Array], Array]:
+    """A share that swings along the contact."""
+    return lambda share: size * np.cos(2.0 * np.pi * (share / period) + phase)
+
+
+def test_two_curves_that_cross_just_where_a_quantity_is_read_make_neither_of_them_right() -> None:
+    """The second errs four times as much as the first, a little earlier or later: they cross, wherever that is."""
+    rng = np.random.default_rng(6)
+    missed = dict.fromkeys((*RULED, "peak_time"), 0)
+    for _ in range(CASES):
+        period, size, phase, shift = rng.uniform(0.08, 0.12), 10 ** rng.uniform(-5, -4), *rng.uniform(0.0, 2 * np.pi, 2)
+        fine = made_up(STEPS, wave(size, period, phase))
+        change = Change(fine, made_up(STEPS, wave(4.0 * size, period, shift)), 1.25 / 3.0)
+        for name in missed:
+            assert abs(fine.quantities[name] - TRUTH.quantities[name]) <= change.errors[name], (name, phase, shift)
+        times = np.linspace(0.0, 1.0, 500)
+        assert np.all(np.abs(fine.force(times) - TRUTH.force(times)) <= change.force(times) + 1e-6), (phase, shift)

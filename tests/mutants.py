@@ -1,0 +1,448 @@
+"""How many small falsifications of the numerical core the tests notice. A script, not a test.
+
+    python tests/mutants.py [--seed N] [--count 150] [--jobs 2] [--budget 60] [--only PATTERN ...] [--work FOLDER]
+
+Draws mutants of the syntax trees of the ``CORE``, every file alike: a number ten times larger or smaller, an order one
+more or less, a comparison turned round, a condition held, largest for smallest, a sum for a difference, a factor left
+out, an answer a tenth. Each is written to a copy of the checkout, never to the checkout, and meets the tests that call
+the mutated function, the fastest first, up to ``--budget`` seconds of processor time. Prints what every mutant met, the
+share killed, and the survivors; one that does no harm stands with its reason in ``HARMLESS`` and is not drawn.
+
+Which test calls what is found by running every test file once, and kept in the folder ``--work``; so are the
+answers, so that a run that was broken off goes on where it stood. A test file or a source that changes is asked again.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import copy
+import hashlib
+import json
+import os
+import random
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import defaultdict
+from collections.abc import Callable, Generator, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from fnmatch import fnmatch
+from functools import cached_property
+from pathlib import Path
+from queue import SimpleQueue
+from types import CodeType, FrameType
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGES = ("lumped", "meshes", "fe_contact")
+CORE = (
+    *(
+        f"fe_contact/{name}.py"
+        for name in (
+            "certify", "change", "trusted_order", "curve", "impact", "impacts", "time_grid", "separation", "contact",
+            "contact_radius", "runs", "plan", "reference", "stepping", "fixed_stepping", "fixed_contact",
+            "flat_stepping", "indentation", "pressing", "softening", "flight", "local_polynomial", "coming_radius",
+            "striker", "opening", "line_search", "account",
+        )
+    ),
+    "fe_contact/waves/*.py", "fe_contact/far_field/*.py", "fe_contact/enforcement/*.py", "fe_contact/schemes/*.py",
+    "fe_contact/bodies/*.py", "lumped/hereditary/*.py", "lumped/collide/*.py", "lumped/spring_row/*.py",
+    "lumped/table1/*.py", "lumped/rod_waves/*.py", "lumped/laws/_hereditary*.py", "lumped/laws/mdr.py",
+    "lumped/laws/correspondence.py", "lumped/history.py",
+)  # fmt: skip
+TESTS = ("tests/fe/test_*.py", "tests/lumped/test_*.py", "tests/test_table1.py", "tests/test_stability*.py")
+LONGEST = 6.0  # s of processor time: a slower test is not asked
+FEW = 8  # integers up to here are orders and numbers of things, larger ones are bounds
+SILENT = ("progress", "count", "counted", "warn", "lru_cache")  # calls whose arguments no answer depends on
+
+# Mutants that do no harm, by file and function or constant ("" for all of them): only work or words depend on it.
+HARMLESS: dict[tuple[str, str], str] = {}
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """One change of one file: the how-manyth, in which function or constant, on which line, and what."""
+
+    file: str
+    number: int
+    scope: str
+    line: int
+    change: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.file}:{self.line} {self.scope}: {self.change}"
+
+    @cached_property
+    def text(self) -> str:
+        """The file with the change."""
+        tree, number = ast.parse((ROOT / self.file).read_text(encoding="utf-8")), 0
+        for parent, field, child, index, _ in places(tree):
+            for kind in KINDS:
+                for other, _ in kind(child):
+                    if number == self.number:
+                        _put(parent, field, index, other)
+                        return ast.unparse(ast.fix_missing_locations(tree))
+                    number += 1
+        raise AssertionError(self.name)
+
+
+# --- what is changed -------------------------------------------------------------------------------------------------
+
+TURNED: dict[type[ast.cmpop], type[ast.cmpop]] = {
+    ast.Lt: ast.GtE, ast.LtE: ast.Gt, ast.Gt: ast.LtE, ast.GtE: ast.Lt, ast.Eq: ast.NotEq, ast.NotEq: ast.Eq,
+}  # fmt: skip
+SWAPPED = {"min": "max", "max": "min", "minimum": "maximum", "maximum": "minimum", "argmin": "argmax"}
+
+
+def numbers(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
+    """A number ten times larger, ten times smaller; an order one more, one less; a larger integer twice, half."""
+    if not isinstance(node, ast.Constant) or type(node.value) not in (int, float):
+        return
+    if isinstance(node.value, int):
+        few = abs(node.value) <= FEW
+        others: list[float] = [node.value + 1, node.value - 1] if few else [2 * node.value, node.value // 2]
+    else:
+        others = [10.0 * node.value, 0.1 * node.value] if node.value else [0.1]
+    for other in others:
+        yield ast.Constant(other), f"{node.value} -> {other:g}"
+
+
+def comparisons(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
+    """Turned round."""
+    if isinstance(node, ast.Compare) and type(node.ops[0]) in TURNED:
+        turned = copy.deepcopy(node)
+        turned.ops[0] = TURNED[type(node.ops[0])]()
+        yield turned, f"{ast.unparse(node)} -> {ast.unparse(turned)}"
+
+
+def conditions(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
+    """Held true, held false."""
+    if isinstance(node, ast.If | ast.IfExp):
+        for held in (True, False):
+            other = copy.deepcopy(node)
+            other.test = ast.Constant(held)
+            yield other, f"if {ast.unparse(node.test)} -> {held}"
+
+
+def joints(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
+    """``and`` for ``or``, largest for smallest, and back."""
+    if isinstance(node, ast.BoolOp):
+        other: ast.AST = ast.BoolOp(ast.Or() if isinstance(node.op, ast.And) else ast.And(), node.values)
+        yield other, f"{ast.unparse(node)} -> {ast.unparse(other)}"
+    if isinstance(node, ast.Call):
+        name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+        if name in SWAPPED:
+            call = copy.deepcopy(node)
+            if isinstance(call.func, ast.Attribute):
+                call.func.attr = SWAPPED[name]
+            elif isinstance(call.func, ast.Name):
+                call.func.id = SWAPPED[name]
+            yield call, f"{ast.unparse(node)} -> {ast.unparse(call)}"
+
+
+def sums(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
+    """A difference for a sum, and back; a factor or divisor left out."""
+    if not isinstance(node, ast.BinOp) or isinstance(node.left, ast.Constant) and isinstance(node.left.value, str):
+        return
+    others: list[ast.expr] = []
+    if isinstance(node.op, ast.Add | ast.Sub):
+        others = [ast.BinOp(node.left, ast.Sub() if isinstance(node.op, ast.Add) else ast.Add(), node.right)]
+    elif isinstance(node.op, ast.Mult):
+        others = [node.left, node.right]
+    elif isinstance(node.op, ast.Div):
+        others = [node.left]
+    for other in others:
+        yield other, f"{ast.unparse(node)} -> {ast.unparse(other)}"
+
+
+def answers(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
+    """A function that returns numbers returns a tenth of them."""
+    if isinstance(node, ast.FunctionDef) and node.returns and ast.unparse(node.returns) in ("float", "Array"):
+        last = node.body[-1]
+        if isinstance(last, ast.Return) and last.value is not None:
+            other = copy.deepcopy(node)
+            other.body[-1] = ast.Return(ast.BinOp(ast.Constant(0.1), ast.Mult(), last.value))
+            yield other, f"a tenth of {node.name}"
+
+
+KINDS: tuple[Callable[[ast.AST], Iterator[tuple[ast.AST, str]]], ...] = (
+    numbers, comparisons, conditions, joints, sums, answers,
+)  # fmt: skip
+
+
+def places(node: ast.AST, scope: str = "") -> Iterator[tuple[ast.AST, str, Any, int | None, str]]:
+    """Parent, field and index of everything whose change could change an answer, and the scope it stands in."""
+    for name, value in ast.iter_fields(node):
+        if name in ("annotation", "returns", "decorator_list", "slice", "ctx", "type_params", "bases"):
+            continue
+        if isinstance(node, ast.Dict) and name == "keys":
+            continue
+        for index, child in enumerate(value if isinstance(value, list) else [value]):
+            if not isinstance(child, ast.AST) or _wordless(child):
+                continue
+            inner = _scope(child, scope)
+            yield node, name, child, index if isinstance(value, list) else None, inner
+            yield from places(child, inner)
+
+
+def _wordless(node: ast.AST) -> bool:
+    """Raised failures, imports, texts, declarations and calls that only tell how far things are."""
+    if isinstance(node, ast.Call):
+        called = getattr(node.func, "attr", getattr(node.func, "id", ""))
+        return any(word in called.lower() for word in SILENT)
+    if isinstance(node, ast.If):
+        return getattr(node.test, "id", "") == "TYPE_CHECKING"
+    return isinstance(node, ast.Raise | ast.Assert | ast.Import | ast.ImportFrom | ast.JoinedStr)
+
+
+def _scope(node: ast.AST, outer: str) -> str:
+    """Dotted name of the function or class it is, or of a constant of a module or class."""
+    if isinstance(node, ast.FunctionDef | ast.ClassDef):
+        return f"{outer}.{node.name}".lstrip(".")
+    if isinstance(node, ast.Assign | ast.AnnAssign) and (not outer or outer.rpartition(".")[2][:1].isupper()):
+        target = node.targets[0] if isinstance(node, ast.Assign) else node.target
+        return f"{outer}.{ast.unparse(target).strip('()')}".lstrip(".") if not outer.isupper() else outer
+    return outer
+
+
+def mutants_of(file: str) -> list[Mutant]:
+    """All of one file but the harmless."""
+    tree, found = ast.parse((ROOT / file).read_text(encoding="utf-8")), list[Mutant]()
+    for _, _, child, _, scope in places(tree):
+        for kind in KINDS:
+            for _, change in kind(child):
+                found.append(Mutant(file, len(found), scope, child.lineno, re.sub(r"\s+", " ", change)))
+    return [mutant for mutant in found if not any((file, at) in HARMLESS for at in ("", mutant.scope))]
+
+
+def _put(parent: ast.AST, field: str, index: int | None, child: ast.AST) -> None:
+    if index is None:
+        setattr(parent, field, child)
+    else:
+        getattr(parent, field)[index] = child
+
+
+def drawn(files: list[str], seed: int, count: int) -> list[Mutant]:
+    """So many mutants, every file alike."""
+    rng = random.Random(seed)
+    left = {file: mutants_of(file) for file in files}
+    chosen: list[Mutant] = []
+    while len(chosen) < count and any(left.values()):
+        for file in rng.sample(files, len(files)):
+            if left[file]:
+                chosen.append(left[file].pop(rng.randrange(len(left[file]))))
+    return chosen[:count]
+
+
+# --- which tests call what: this file as a plugin of pytest ----------------------------------------------------------
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, Any, Any]:
+    """Notes functions called by a test and its processor time."""
+    seen: dict[int, CodeType] = {}
+
+    def called(frame: FrameType, event: str, arg: object) -> None:
+        seen[id(frame.f_code)] = frame.f_code
+
+    def stop(*_: object) -> None:
+        pytest.fail("too slow")
+
+    signal.signal(signal.SIGVTALRM, stop)
+    signal.setitimer(signal.ITIMER_VIRTUAL, LONGEST)
+    began = time.process_time()
+    sys.settrace(called)
+    try:
+        return (yield)
+    finally:
+        sys.settrace(None)
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+        taken = time.process_time() - began
+        functions = {_function(code) for code in seen.values()} - {""}
+        line = json.dumps({"test": item.nodeid, "time": taken, "functions": sorted(functions)})
+        with Path(os.environ["MUTANTS_CALLS"]).open("a", encoding="utf-8") as file:
+            file.write(line + "\n")
+
+
+def _function(code: CodeType) -> str:
+    path = Path(code.co_filename)
+    if not path.is_relative_to(ROOT) or path.relative_to(ROOT).parts[0] not in PACKAGES:
+        return ""
+    return f"{path.relative_to(ROOT)}:{code.co_qualname.partition('.<locals>')[0]}"
+
+
+def calls(work: Path, jobs: int) -> list[dict[str, Any]]:
+    """Every test with its time and the functions it calls; those of a test file that was asked before are kept."""
+    files = [path for pattern in TESTS for path in sorted(ROOT.glob(pattern))]
+
+    def asked(path: Path) -> list[dict[str, Any]]:
+        kept = work / f"{path.stem}-{hashlib.sha256(path.read_bytes()).hexdigest()[:12]}.jsonl"
+        if not kept.exists():
+            fresh = kept.with_suffix(".part")
+            fresh.write_text("", encoding="utf-8")
+            environment = _environment(ROOT) | {"MUTANTS_CALLS": str(fresh)}
+            environment["PYTHONPATH"] += f"{os.pathsep}{ROOT / 'tests'}"
+            subprocess.run(
+                [*PYTEST, "-p", "mutants", str(path)], cwd=ROOT, env=environment, capture_output=True, check=False
+            )
+            fresh.rename(kept)
+            sys.stderr.write(f"asked {path.name}\n")
+        return [json.loads(line) for line in kept.read_text(encoding="utf-8").splitlines()]
+
+    with ThreadPoolExecutor(jobs) as pool:
+        return [test for tests in pool.map(asked, files) for test in tests if test["time"] < 0.95 * LONGEST]
+
+
+def users(scope: str, file: str) -> set[str]:
+    """Functions that change with a scope: itself, or those that name a constant, by way of others too."""
+    found, names, done = {f"{file}:{scope}"}, {scope.rpartition(".")[2]}, set[str]()
+    while names:
+        name = names.pop()
+        done.add(name)
+        for other in sources():
+            for at in _named(other).get(name, ()):
+                found.add(f"{other}:{at}")
+                if at and at.rpartition(".")[2].isupper() and at not in done:
+                    names.add(at.rpartition(".")[2])
+        names -= done
+    return found
+
+
+def _named(file: str, known: dict[str, dict[str, set[str]]] = {}) -> dict[str, set[str]]:  # noqa: B006 - a memory
+    """Of a source: which scopes name what."""
+    if file not in known:
+        uses: dict[str, set[str]] = defaultdict(set)
+        for _, _, child, _, scope in places(ast.parse((ROOT / file).read_text(encoding="utf-8"))):
+            if isinstance(child, ast.Name):
+                uses[child.id].add(scope)
+            elif isinstance(child, ast.Attribute):
+                uses[child.attr].add(scope)
+        known[file] = uses
+    return known[file]
+
+
+def sources() -> list[str]:
+    return [str(path.relative_to(ROOT)) for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py"))]
+
+
+# --- what a mutant meets ---------------------------------------------------------------------------------------------
+
+PYTEST = (sys.executable, "-m", "pytest", "-q", "-n0", "-p", "no:cacheprovider", "--no-header")
+
+
+def _environment(root: Path) -> dict[str, str]:
+    quiet = {"OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+    return {**os.environ, **quiet, "PYTHONPATH": str(root)}
+
+
+def met(mutant: Mutant, tests: list[dict[str, Any]], budget: float, copied: Path) -> str:
+    """What becomes of it: the test that fails, "timeout", "survived", or "no test calls it"."""
+    chosen, spent = [], 0.0
+    scope = users(mutant.scope, mutant.file)
+    for test in sorted(tests, key=lambda test: test["time"]):
+        if spent + test["time"] <= budget and not scope.isdisjoint(test["functions"]):
+            chosen.append(test["test"])
+            spent += test["time"]
+    if not chosen:
+        return "no test calls it"
+    target, pristine = copied / mutant.file, ROOT / mutant.file
+    target.write_text(mutant.text, encoding="utf-8")
+    most = int(3.0 * spent + 20.0)  # s of processor time; one that hangs is noticed
+
+    def bounded() -> None:
+        resource.setrlimit(resource.RLIMIT_CPU, (most, most))
+
+    try:
+        ended = subprocess.run(
+            [*PYTEST, "-x", *chosen], cwd=copied, env=_environment(copied), capture_output=True, text=True, check=False,
+            preexec_fn=bounded,
+        )  # fmt: skip
+    finally:
+        shutil.copyfile(pristine, target)
+    if ended.returncode == 0:
+        return f"survived {len(chosen)} tests"
+    failed = re.search(r"^(?:FAILED|ERROR) (\S+)", ended.stdout, re.MULTILINE)
+    return f"killed by {failed[1]}" if failed else "killed by timeout" if ended.returncode < 0 else "killed at import"
+
+
+def answered(mutants: list[Mutant], tests: list[dict[str, Any]], budget: float, jobs: int, work: Path) -> dict[str, str]:
+    """What every mutant meets, by name; answers at hand are kept but those of survivors, whom new tests may kill."""
+    kept = work / "answers.json"
+    known: dict[str, str] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
+    free: SimpleQueue[Path] = SimpleQueue()
+    roots = [Path(tempfile.mkdtemp(prefix="mutant-")) for _ in range(jobs)]
+    for root in roots:
+        for part in (*PACKAGES, "tests", "data", "pyproject.toml"):
+            source = ROOT / part
+            _copy(source, root / part)
+        free.put(root)
+
+    def one(mutant: Mutant) -> tuple[str, str]:
+        key = f"{mutant.name} {hashlib.sha256(mutant.text.encode()).hexdigest()[:12]}"
+        if "killed" not in known.get(key, ""):
+            root = free.get()
+            try:
+                known[key] = met(mutant, tests, budget, root)
+            finally:
+                free.put(root)
+            kept.write_text(json.dumps(known, indent=1), encoding="utf-8")
+            sys.stdout.write(f"{mutant.name}\n    {known[key]}\n")
+            sys.stdout.flush()
+        return mutant.name, known[key]
+
+    try:
+        with ThreadPoolExecutor(jobs) as pool:
+            return dict(pool.map(one, mutants))
+    finally:
+        for root in roots:
+            shutil.rmtree(root)
+
+
+def _copy(source: Path, target: Path) -> None:
+    if source.is_dir():
+        shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
+    else:
+        shutil.copyfile(source, target)
+
+
+def told(answers: dict[str, str]) -> Iterable[str]:
+    """The share killed, by file and of all, and who survived."""
+    files: dict[str, list[bool]] = defaultdict(list)
+    for name, answer in answers.items():
+        files[name.partition(":")[0]].append("killed" in answer)
+    yield from (f"{sum(killed):4d} of {len(killed):3d}  {file}" for file, killed in sorted(files.items()))
+    yield from (f"{answer}: {name}" for name, answer in answers.items() if "killed" not in answer)
+    yield from (f"not drawn: {file} {scope}: {reason}" for (file, scope), reason in HARMLESS.items())
+    killed = sum("killed" in answer for answer in answers.values())
+    yield f"{killed} of {len(answers)} killed: {killed / max(len(answers), 1):.0%}"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--count", type=int, default=150)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--budget", type=float, default=60.0, help="s of processor time for one mutant")
+    parser.add_argument("--only", nargs="+", default=["*"], help="patterns of files, or FILE:SCOPE")
+    parser.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "fe-contact-mutants")
+    given = parser.parse_args()
+    given.work.mkdir(exist_ok=True)
+    files = [file for file in sources() if any(fnmatch(file, pattern) for pattern in CORE)]
+    files = [file for file in files if any(fnmatch(file, pattern.partition(":")[0]) for pattern in given.only)]
+    chosen = drawn(files, given.seed, given.count)
+    answers = answered(chosen, calls(given.work, given.jobs), given.budget, given.jobs, given.work)
+    sys.stdout.write("\n".join(told(answers)) + "\n")
+
+
+if __name__ == "__main__":
+    main()
