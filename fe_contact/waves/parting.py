@@ -27,5 +27,6 @@ def parting(time: Array, force: Array, exponent: float) -> tuple[float, float] |
     straight = -float(start / slope)
     ends = [float(zero.real) for zero in np.roots(np.polyfit(x, root, 2)) if zero.imag == 0.0]
     curved = min(ends, key=lambda end: abs(end - straight), default=straight)
-    apart = min(abs(curved - straight), 1.0) if ends else 1.0
-    return float(time[last]) + step * min(max(curved, SOONEST), 1.0), step * apart
+    end = min(max(curved, SOONEST), 1.0)
+    apart = min(abs(curved - straight) + abs(curved - end), 1.0) if ends else 1.0
+    return float(time[last]) + step * end, step * apart

@@ -322,3 +322,34 @@ def test_the_edge_lies_where_the_pressure_returns_to_zero() -> None:
     assert edge(-1, -2, -3, -4) == 0
     assert edge(1, 1, 1, 1) == np.inf
     assert edge(-1, 2, -2, -3) == pytest.approx(0.7), "a hole at the axis does not hide the edge"
+
+
+@pytest.mark.parametrize("failing", [0, 1])
+def test_one_solve_of_two_that_fails_fails_the_correction(failing: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A multiplier that no contact left would be taken for the softness of the penalty."""
+    calls: list[ContactSolution] = []
+
+    def fails_once(problem: ContactProblem, touching: np.ndarray) -> ContactSolution:
+        calls.append(replace(solve(problem, touching), converged=len(calls) != failing))
+        return calls[-1]
+
+    monkeypatch.setattr(corrected, "solve", fails_once)
+    problem = random_problem(3)
+    assert not corrected.enforce(problem, np.ones(len(problem.overlap), bool)).converged
+
+
+@pytest.mark.parametrize("name", available(ENFORCEMENTS))
+@given(SEEDS)
+def test_a_larger_overlap_of_the_same_form_presses_as_much_harder(name: str, seed: int) -> None:
+    """No threshold decides what touches: contact without adhesion has no size of its own, at any number of metres."""
+    rng, enforce = np.random.default_rng(seed), get(ENFORCEMENTS, name).enforce
+    unknowns, points = (int(n) for n in np.sort(rng.integers(1, 10, 2))[::-1])
+    chain = np.diag(rng.uniform(1, 3, unknowns)) - 0.4 * (np.eye(unknowns, k=1) + np.eye(unknowns, k=-1))
+    surface = PressedSurface(chain, np.eye(unknowns)[:points], rng.uniform(0.5, 2, points))
+    problem = ContactProblem(surface, rng.uniform(-1, 1, points), 1e3)
+    start = np.ones(points, bool)
+    one = enforce(problem, start).pressure
+    for size in (1e-9, 1e9):
+        pressed = enforce(replace(problem, overlap=size * problem.overlap), start)
+        assert pressed.converged
+        np.testing.assert_allclose(pressed.pressure / size, one, atol=1e-9 * np.abs(one).max())

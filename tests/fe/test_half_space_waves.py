@@ -111,6 +111,26 @@ def test_the_end_of_contact_is_read_within_a_step_though_its_tail_is_faint(expon
     assert max(off) < 0.06  # of a step, the twentieth within which no end follows a step
 
 
+@pytest.mark.parametrize("fading", [0.0, 0.3, 1.0, 3.0, 12.0])
+@pytest.mark.parametrize("chatter", [0.0, 0.01])
+def test_how_well_an_end_is_read_covers_smooth_forces_and_is_about_what_chatter_leaves(
+    fading: float, chatter: float
+) -> None:
+    """Of each smooth one; of chatter, whose last steps know nothing of the next, in the median."""
+    rng, found = np.random.default_rng(6), list[tuple[float, float]]()
+    for steps in rng.uniform(100.0, 700.0, 200):
+        time = np.arange(math.ceil(steps) + 1) / steps
+        force = time * np.maximum(1.0 - time, 0.0) ** 1.5 * np.exp(-fading * time)
+        read = parting(time, force * (1.0 + chatter * rng.normal(size=time.size)), 1.5)
+        assert read is not None
+        found.append((abs(read[0] - 1.0), read[1]))
+    off, spread = np.array(found).T
+    if chatter:
+        assert 0.3 * np.median(off) < np.median(spread) < 10.0 * np.median(off)
+    else:
+        assert np.all(off <= spread + 1e-12)
+
+
 def test_too_few_steps_tell_no_end() -> None:
     time = np.arange(8.0)
     assert parting(time, np.array([0.0, 1.0, 2.0, 3.0, 2.0, 1.0, 0.5, 0.0]), 1.5) is None
