@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from lumped import Result, Scene, laws, simulate
 from lumped.ending import End
+from lumped.laws import _hereditary
 from lumped.laws._assembly import Answer
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
@@ -254,3 +256,26 @@ def test_the_first_row_is_the_touch(law: str, case: str, impact: Callable[..., S
     scene = impact(**CASES[case])
     history = simulate(laws.get(law).of(scene), scene, 1e-3).history
     assert (history.time[0], history.depth[0], history.velocity[0]) == (0.0, 0.0, scene.velocity)
+
+
+@pytest.mark.parametrize("law", [laws.ting, laws.correspondence], ids=["ting", "correspondence"])
+@pytest.mark.parametrize("case", ["sls", "slow sls", "three terms", "kelvin-voigt", "all at once", "deep"])
+def test_the_bars_cover_the_poorer_of_the_two_integrations_too(
+    law: ModuleType, case: str, impact: Callable[..., Scene]
+) -> None:
+    """At a corner more nodes are no better than few: what is told with more has the bar of both."""
+    scene = impact(**CASES[case])
+    found, truth = simulate(law.of(scene), scene, 1e-3), simulate(law.of(scene), scene, 1e-10)
+    problem = _hereditary.problem_of(scene)
+    settings = _hereditary.Settings(found.numerics["rtol"], _hereditary.FEW)
+    poorer = _hereditary.answer_of(
+        scene, problem, law.solve(problem, scene.end_time / scene.elastic_contact_time, settings)
+    )
+    for name, value in poorer.values.items():
+        bar, true = found.quantities[name].error, truth.quantities[name].value
+        assert (value is None) == (true is None)
+        if value is not None and true is not None and bar is not None:
+            assert abs(value - true) <= bar, name
+    times = found.history.time
+    off = np.abs(poorer.columns.force(times) - found.history.force).max()
+    assert off <= found.history.force_error.max()
