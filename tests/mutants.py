@@ -1,6 +1,6 @@
 """How many small falsifications of the numerical core the tests notice. A script, not a test.
 
-    python tests/mutants.py [--seed N] [--count 150] [--jobs 2] [--budget 60] [--only PATTERN ...] [--work FOLDER]
+    python tests/mutants.py [--seed N] [--count 150] [--jobs 2] [--budget 60] [--only PATTERN ...] [--tests PATTERN ...] [--work FOLDER]
 
 Draws mutants of the syntax trees of the ``CORE``, every file alike: a number ten times larger or smaller, an order one
 more or less, a comparison turned round, a condition held, largest for smallest, a sum for a difference, a factor left
@@ -281,9 +281,9 @@ def _function(code: CodeType) -> str:
     return f"{path.relative_to(ROOT)}:{code.co_qualname.partition('.<locals>')[0]}"
 
 
-def calls(work: Path, jobs: int) -> list[dict[str, Any]]:
+def calls(work: Path, jobs: int, patterns: Iterable[str]) -> list[dict[str, Any]]:
     """Every test with its time and the functions it calls; those of a test file that was asked before are kept."""
-    files = [path for pattern in TESTS for path in sorted(ROOT.glob(pattern))]
+    files = [path for pattern in patterns for path in sorted(ROOT.glob(pattern))]
 
     def asked(path: Path) -> list[dict[str, Any]]:
         kept = work / f"{path.stem}-{hashlib.sha256(path.read_bytes()).hexdigest()[:12]}.jsonl"
@@ -433,14 +433,15 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=150)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--budget", type=float, default=60.0, help="s of processor time for one mutant")
-    parser.add_argument("--only", nargs="+", default=["*"], help="patterns of files, or FILE:SCOPE")
+    parser.add_argument("--only", nargs="+", default=["*"], help="patterns of files to mutate")
+    parser.add_argument("--tests", nargs="+", default=TESTS, help="patterns of files that are asked")
     parser.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "fe-contact-mutants")
     given = parser.parse_args()
     given.work.mkdir(exist_ok=True)
     files = [file for file in sources() if any(fnmatch(file, pattern) for pattern in CORE)]
-    files = [file for file in files if any(fnmatch(file, pattern.partition(":")[0]) for pattern in given.only)]
+    files = [file for file in files if any(fnmatch(file, pattern) for pattern in given.only)]
     chosen = drawn(files, given.seed, given.count)
-    answers = answered(chosen, calls(given.work, given.jobs), given.budget, given.jobs, given.work)
+    answers = answered(chosen, calls(given.work, given.jobs, given.tests), given.budget, given.jobs, given.work)
     sys.stdout.write("\n".join(told(answers)) + "\n")
 
 

@@ -13,7 +13,7 @@ from scipy.sparse.linalg import spsolve
 
 import fe_contact
 import lumped
-from fe_contact import contact, impact
+from fe_contact import contact, impact, stepping
 from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.certify import certify
 from fe_contact.contact import ContactSolution
@@ -491,3 +491,23 @@ def test_every_enforcement_that_is_exact_in_the_limit_tells_the_same_impact(name
     for key in ("peak_force", "peak_depth", "duration", "restitution"):
         first, second = one.quantities[key], other.quantities[key]
         assert abs((first.value or 0.0) - (second.value or 0.0)) < (first.error or 0.0) + (second.error or 0.0), key
+
+
+@pytest.mark.parametrize("viscosity", [0.0, 0.5, 5.0])
+def test_an_end_read_early_lies_within_its_spread_of_the_end_read_late(
+    viscosity: float, hertz_strike: Strikes, settings_of: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same steps, followed to where contact has all but ended, and to where it is still seen to end."""
+    strike = hertz_strike(Relaxation(1.0, viscosity=viscosity))
+    numerics = settings_of(strike, steps=60)
+
+    def end(shortest: float) -> tuple[float, float]:
+        monkeypatch.setattr(stepping.Stepper, "shortest", shortest)
+        found = marched(strike, numerics)
+        return float(found.time[-1]), found.end_spread
+
+    late, _ = end(1e-5)
+    for shortest in (3e-4, 1e-3, 2.5e-3):
+        early, spread = end(shortest)
+        assert abs(early - late) <= spread
+        assert spread < 1e-3 * late

@@ -12,7 +12,7 @@ from scipy.special import beta, betainc
 
 from fe_contact.certify import CAUSES, Budget, Causes, _time_steps
 from fe_contact.change import Change
-from fe_contact.curve import Curve
+from fe_contact.curve import Curve, extrapolated
 from fe_contact.forms import Array
 from fe_contact.march import Strike
 from fe_contact.numerics import Numerics
@@ -161,3 +161,20 @@ def test_two_curves_that_cross_just_where_a_quantity_is_read_make_neither_of_the
             assert abs(fine.quantities[name] - TRUTH.quantities[name]) <= change.errors[name], (name, phase, shift)
         times = np.linspace(0.0, 1.0, 500)
         assert np.all(np.abs(fine.force(times) - TRUTH.force(times)) <= change.force(times) + 1e-6), (phase, shift)
+
+
+def test_ends_that_are_read_badly_are_known_no_better() -> None:
+    """By any scheme's order, from any two runs: each end lies anywhere within what it was said to be read to."""
+    rng, used = np.random.default_rng(8), 0.0
+    for _ in range(100):
+        read = 10 ** rng.uniform(-6.0, -2.0, 2)
+        ends = [
+            replace(made_up(steps, np.zeros_like, late=float(rng.choice([-1.0, 1.0]) * spread)), end_spread=float(spread))
+            for steps, spread in zip((40, 20), read, strict=True)
+        ]
+        found = extrapolated(ends[0], ends[1], int(rng.integers(1, 4)))
+        nothing: Any = None
+        bar = Budget(found, nothing, dict.fromkeys(CAUSES, ()), nothing).total("duration")
+        used = max(used, abs(found.duration - 1.0) / bar)
+        assert abs(found.duration - 1.0) <= bar * (1.0 + 1e-9)
+    assert used > 0.99, "nor any worse"
