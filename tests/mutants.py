@@ -34,7 +34,7 @@ from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from fnmatch import fnmatch
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from queue import SimpleQueue
 from types import CodeType, FrameType
@@ -180,10 +180,10 @@ KINDS: tuple[Callable[[ast.AST], Iterator[tuple[ast.AST, str]]], ...] = (
 )  # fmt: skip
 
 
-def places(node: ast.AST, scope: str = "") -> Iterator[tuple[ast.AST, str, Any, int | None, str]]:
-    """Parent, field and index of everything whose change could change an answer, and the scope it stands in."""
+def places(node: ast.AST, scope: str = "", index_too: bool = False) -> Iterator[tuple[ast.AST, str, Any, Any, str]]:
+    """Parent, field, child and index of all whose change could change an answer, and the scope it stands in."""
     for name, value in ast.iter_fields(node):
-        if name in ("annotation", "returns", "decorator_list", "slice", "ctx", "type_params", "bases"):
+        if name in ("annotation", "returns", "decorator_list", "bases") or (name == "slice" and not index_too):
             continue
         if isinstance(node, ast.Dict) and name == "keys":
             continue
@@ -192,7 +192,7 @@ def places(node: ast.AST, scope: str = "") -> Iterator[tuple[ast.AST, str, Any, 
                 continue
             inner = _scope(child, scope)
             yield node, name, child, index if isinstance(value, list) else None, inner
-            yield from places(child, inner)
+            yield from places(child, inner, index_too)
 
 
 def _wordless(node: ast.AST) -> bool:
@@ -304,34 +304,37 @@ def calls(work: Path, jobs: int, patterns: Iterable[str]) -> list[dict[str, Any]
 
 
 def users(scope: str, file: str) -> set[str]:
-    """Functions that change with a scope: itself, or those that name a constant, by way of others too."""
-    found, names, done = {f"{file}:{scope}"}, {scope.rpartition(".")[2]}, set[str]()
-    while names:
-        name = names.pop()
-        done.add(name)
+    """Functions that change with a scope: itself, or those that name a constant, by way of other constants too."""
+    found, left, done = {f"{file}:{scope}"}, [(file, scope)], set[tuple[str, str]]()
+    while left:
+        home, constant = left.pop()
+        done.add((home, constant))
         for other in sources():
-            for at in _named(other).get(name, ()):
+            for at in _named(other, home).get(constant.rpartition(".")[2], ()):
                 found.add(f"{other}:{at}")
-                if at and at.rpartition(".")[2].isupper() and at not in done:
-                    names.add(at.rpartition(".")[2])
-        names -= done
+                if at.rpartition(".")[2].isupper() and (other, at) not in done:
+                    left.append((other, at))
     return found
 
 
-def _named(file: str, known: dict[str, dict[str, set[str]]] = {}) -> dict[str, set[str]]:  # noqa: B006 - a memory
-    """Of a source: which scopes name what."""
-    if file not in known:
-        uses: dict[str, set[str]] = defaultdict(set)
-        for _, _, child, _, scope in places(ast.parse((ROOT / file).read_text(encoding="utf-8"))):
-            if isinstance(child, ast.Name):
-                uses[child.id].add(scope)
-            elif isinstance(child, ast.Attribute):
-                uses[child.attr].add(scope)
-        known[file] = uses
-    return known[file]
+@cache
+def _named(file: str, home: str) -> dict[str, set[str]]:
+    """Which scopes of a source name what of another one: by name where it is imported from there, else by its owner."""
+    tree, uses = ast.parse((ROOT / file).read_text(encoding="utf-8")), defaultdict[str, set[str]](set)
+    module = home.removesuffix(".py").replace("/", ".").removesuffix(".__init__")
+    froms = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module == module]
+    imported = {alias.name for node in froms for alias in node.names}
+    for _, _, child, _, scope in places(tree, index_too=True):
+        if isinstance(child, ast.Name) and (file == home or child.id in imported):
+            uses[child.id].add(scope)
+        elif isinstance(child, ast.Attribute):
+            uses[child.attr].add(scope)
+    return uses
 
 
+@cache
 def sources() -> list[str]:
+    """Every file of the packages."""
     return [str(path.relative_to(ROOT)) for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py"))]
 
 
@@ -348,7 +351,9 @@ def _environment(root: Path) -> dict[str, str]:
 def met(mutant: Mutant, tests: list[dict[str, Any]], budget: float, copied: Path) -> str:
     """What becomes of it: the test that fails, "timeout", "survived", or "no test calls it"."""
     chosen, spent = [], 0.0
-    scope = users(mutant.scope, mutant.file)
+    scope = {f"{mutant.file}:{mutant.scope}"}
+    if not any(scope & set(test["functions"]) for test in tests):
+        scope = users(mutant.scope, mutant.file)
     for test in sorted(tests, key=lambda test: test["time"]):
         if spent + test["time"] <= budget and not scope.isdisjoint(test["functions"]):
             chosen.append(test["test"])

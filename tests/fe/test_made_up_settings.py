@@ -1,0 +1,132 @@
+"""Settings that err as theory says, made up: their entries in the budget cover that, alone, and by not much more."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.special import beta, betainc
+
+from fe_contact import certify
+from fe_contact.certify import Budget
+from fe_contact.curve import Curve
+from fe_contact.march import March, Strike, Work
+from fe_contact.numerics import Numerics
+from fe_contact.plan import SETTING
+from fe_contact.waves import certify as waves
+from fe_contact.waves.numerics import WaveNumerics
+from lumped.materials import Relaxation
+
+QUANTITIES = ("peak_force", "peak_depth", "impulse", "restitution")
+STRIKE = Strike(lambda r: r**2, 1.0, 0.3, 0.0, Relaxation(1.0), 10.0)
+STEPS, ERROR = 160, 1e-3
+# By element order: linear ones that lock gain little; the edge, where the pressure is a root, limits the others.
+FALLS_WITH_ELEMENTS = {1: 0.5, 2: 1.0, 3: 1.0, 4: 2.0}
+
+Settings = Callable[..., Numerics]
+
+
+def march(steps: int, error: float) -> March:
+    """A force about [4 t (1 - t)]^(3/2), off by a share of its mean since touch, as is the depth."""
+    time = np.linspace(0.0, 1.0, steps + 1) ** 2
+    off = 1.0 + error * time * (1.5 + np.cos(2.0 * time))
+    return March(
+        time=time,
+        depth=time * (0.3 - 0.2945 * time) * off,
+        impulse=8.0 * beta(2.5, 2.5) * betainc(2.5, 2.5, time) * off,
+        radius_time=time[1:-1],
+        radius=np.sqrt(time[1:-1] * (1.0 - time[1:-1])),
+        separated=True,
+        photograph=tuple,
+        energy={},
+        first_force=0.0,
+        end_spread=0.0,
+        work=Work(),
+    )
+
+
+def off(found: Curve) -> dict[str, float]:
+    true = Curve.of(march(STEPS, 0.0), STRIKE).quantities
+    return {name: abs(found.quantities[name] - true[name]) for name in QUANTITIES}
+
+
+def marched(cause: str, power: float, base: Numerics) -> Callable[[Any], March]:
+    """What settings answer of which one errs, as a power of it, and all others are perfect."""
+    key = SETTING[cause]
+    return lambda settings: march(settings.steps, ERROR * (getattr(base, key) / getattr(settings, key)) ** power)
+
+
+@pytest.fixture
+def settings(hertz_strike: Callable[..., Strike], settings_of: Settings) -> Numerics:
+    return settings_of(hertz_strike(), steps=STEPS)
+
+
+CASES = [
+    *(("mesh", power, order, True) for order, power in FALLS_WITH_ELEMENTS.items()),
+    ("mesh", 1.0, 4, False),  # the edge anywhere in an element
+    ("penalty", 1.0, 4, True),
+    ("far_field", 2.0, 4, True),
+]
+
+
+@pytest.mark.parametrize(("cause", "power", "order", "breathes"), CASES)
+@pytest.mark.parametrize("coarse", [False, True])
+def test_an_entry_covers_its_own_setting(
+    cause: str, power: float, order: int, breathes: bool, coarse: bool, settings: Numerics
+) -> None:
+    """Of few elements, a soft penalty, a near boundary the finer neighbour tells, else the coarser one."""
+    few = {"elements_per_contact": 1.5, "penalty": 10.0, "far_radius": 3.0}
+    base = settings.varied(order=order, **(few if coarse else {}))
+    answer = marched(cause, power, base)
+    runs: Any = SimpleNamespace(
+        curve=lambda number, given: Curve.of(answer(given), STRIKE),
+        surface=lambda given: SimpleNamespace(breathes=breathes),
+    )
+    curve, changes = certify._judged(runs, 0, base, alone=False)
+    nothing: Any = None
+    found, errors = Budget(curve, nothing, changes, nothing), off(curve)
+    for name in QUANTITIES:
+        assert errors[name] <= found.error(name, cause), name
+        assert found.error(name, cause) < 3.0 * errors[name], name
+        assert all(found.error(name, other) < 0.2 * errors[name] for other in certify.CAUSES if other != cause), name
+
+
+@pytest.mark.parametrize(("cause", "power"), [("mesh", 1.0), ("penalty", 1.0), ("time_step", 1.0), ("far_field", 2.0)])
+def test_an_entry_covers_its_own_setting_where_there_are_waves(cause: str, power: float, settings: Numerics) -> None:
+    """Contact that begins and ends point by point leaves half of an error where there is half of a setting."""
+    fine = {"elements_per_contact": 12.0, "steps": 640, "tolerance": 1e-4}
+    base = WaveNumerics(**{**settings.as_dict(), **fine}, rho=0.5, mass="consistent")
+    answer = marched(cause, power, base)
+
+    def curve(number: int, given: WaveNumerics) -> Curve:
+        return Curve.of(answer(given), STRIKE)
+
+    contact = SimpleNamespace(march=answer(base), strike=STRIKE)
+    runs: Any = SimpleNamespace(
+        curve=curve, cheap=320, follow=lambda given: SimpleNamespace(contacts=[contact]), work=lambda: None
+    )
+    found = waves.certify(runs, base)
+    errors = off(curve(0, base))
+    for name in QUANTITIES:
+        assert errors[name] <= found.error(name, cause), name
+        assert found.error(name, cause) < 3.0 * errors[name], name
+
+
+def test_chatter_at_the_end_moves_the_end_and_not_the_speed_after_it() -> None:
+    """Two marches of one motion, which part a hundredth of the contact apart: what has parted presses no more."""
+    early, by = march(STEPS, 0.0), 0.01
+    away = -float(STRIKE.velocity - early.impulse[-1])
+    later = replace(
+        early,
+        time=np.append(early.time, 1.0 + by),
+        impulse=np.append(early.impulse, early.impulse[-1]),
+        depth=np.append(early.depth, early.depth[-1] + by * away),
+    )
+    change = waves.Moved(Curve.of(early, STRIKE), Curve.of(later, STRIKE), 1.25)
+    assert change.errors["duration"] >= by
+    assert change.errors["impulse"] < 0.1 * by * float(early.impulse[-1])
+    assert change.errors["restitution"] < 0.1 * by
