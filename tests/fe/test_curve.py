@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fe_contact.contact_radius import seen_from_both_sides
+from fe_contact.impact import STEPS_ALLOWED
 from fe_contact.local_polynomial import PLACES, LocalPolynomials, fitted_peak, peak
-from fe_contact.time_grid import share_of_rest
+from fe_contact.time_grid import share_of_rest, step_length
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -54,23 +55,40 @@ def test_what_is_seen_from_both_sides_is_a_parabola_where_the_samples_are_one() 
 
 
 @pytest.mark.parametrize("corner", [5.1, 5.5, 5.8])
-def test_a_corner_between_two_samples_is_found_where_a_line_would_cut_it(corner: float) -> None:
+@pytest.mark.parametrize("apart", [1.0, 0.01])
+def test_a_corner_between_two_samples_is_found_where_a_line_would_cut_it(corner: float, apart: float) -> None:
     x = np.arange(12.0)
 
     def bent(x: np.ndarray) -> np.ndarray:
         return np.where(x < corner, 4.0 - 0.01 * x**2, 4.0 - 0.01 * corner**2 - 0.8 * (x - corner))
 
-    places, values = seen_from_both_sides(x, bent(x))
+    places, values = seen_from_both_sides(apart * x, bent(x))
+    places = places / apart
     beside = (places >= 5.0) & (places <= 6.0)
+    assert np.diff(places[beside]).max() < 0.2, "the corner is looked for all along"
     error = np.abs(values - bent(places))[beside].max()
     cut = np.abs(np.interp(corner, x, bent(x)) - bent(np.array([corner]))[0])
     assert error < 0.05 * cut
 
 
-@pytest.mark.parametrize("steps", [12, 48])
+@pytest.mark.parametrize("steps", [12, 48, 480])
 def test_the_time_left_falls_to_a_thousandth_in_as_many_steps_as_the_grading_has(steps: int) -> None:
     left, taken = 0.02, 0
     while left > 1e-3:
         left *= 1 - share_of_rest(left, steps)
         taken += 1
-    assert taken <= steps * np.sqrt(0.02 / 3) + 3
+    graded = steps * (np.sqrt(0.02 / 3) - np.sqrt(1e-3 / 3))
+    assert 0.8 * graded <= taken <= steps * np.sqrt(0.02 / 3) + 3
+
+
+@pytest.mark.parametrize("steps", [8, 40, 8192])
+def test_no_step_reaches_the_end_that_is_only_expected(steps: int) -> None:
+    assert max(share_of_rest(left, steps) for left in np.geomspace(1e-12, 1.0, 200)) < 1.0
+
+
+@pytest.mark.parametrize("steps", [40, 400])
+def test_a_contact_fifty_times_as_long_as_expected_is_followed_to_its_end(steps: int) -> None:
+    time, done = 0.0, 0
+    while time < 50.0:
+        time, done = time + step_length(done, steps, 0.5), done + 1
+    assert done < min(4, STEPS_ALLOWED) * steps
