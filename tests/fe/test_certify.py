@@ -18,6 +18,7 @@ from fe_contact.enforcement import corrected
 from fe_contact.numerics import Numerics
 from fe_contact.plan import SETTING, plan, refined
 from fe_contact.reference import result_of, strike_of
+from fe_contact.softening import Softening
 from fe_contact.targets import half_space
 from lumped import laws, load_curves
 from lumped.laws import mdr
@@ -206,3 +207,23 @@ def test_pinned_settings_are_kept_and_the_rest_is_refined(scene_of: Scenes) -> N
     assert "tolerance 0.0001 not reached" in result.message
     widest = max(result.quantities[name].error / abs(result.quantities[name].value) for name in RULED_RELATIVE)
     assert widest > 1e-4, "converged is what the bars say"
+
+
+@pytest.mark.parametrize("material", MATERIALS)
+@pytest.mark.parametrize("share", [-0.02, 0.02])
+def test_a_body_too_soft_or_too_stiff_errs_by_no_more_than_is_said_of_it(
+    material: str, share: float, scene_of: Scenes
+) -> None:
+    """By the exact law, of all moduli as much larger: within the bars, and these within what is of use."""
+    known = MATERIALS[material]
+    moduli = {key: (1.0 + share) * np.array(known[key]) for key in ("E", "E_inf", "eta") if key in known}
+    scene, other = scene_of(known), scene_of(known | {key: value.tolist() for key, value in moduli.items()})
+    before, after = (lumped.simulate(laws.ting.of(one), one, 1e-7) for one in (scene, other))
+    curve = certified(scene).curve
+    said = Softening(curve, abs(share))
+    for name in (*RULED, "peak_time"):
+        off = abs(after.quantities[name].value - before.quantities[name].value)
+        assert off <= said.errors[name], name
+        assert name not in ("peak_force", "duration") or said.errors[name] < 10.0 * off, name
+    times = np.linspace(0.0, curve.duration, 200)
+    assert np.all(np.abs(after.history.force_at(times) - before.history.force_at(times)) <= said.force(times))
