@@ -1,6 +1,6 @@
 """How many small falsifications of the numerical core the tests notice. A script, not a test.
 
-    python tests/mutants.py [--seed N] [--count 150] [--jobs 2] [--budget 60] [--only PATTERN ...] [--tests PATTERN ...] [--work FOLDER]
+    python tests/mutants.py [--seed N] [--count 150] [--jobs 2] [--budget 60] [--only PATTERN ...] [--work FOLDER]
 
 Draws mutants of the syntax trees of the ``CORE``, every file alike: a number ten times larger or smaller, an order one
 more or less, a comparison turned round, a condition held, largest for smallest, a sum for a difference, a factor left
@@ -171,7 +171,7 @@ def joints(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
 
 def sums(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
     """A difference for a sum, and back; a factor or divisor left out."""
-    if not isinstance(node, ast.BinOp) or isinstance(node.left, ast.Constant) and isinstance(node.left.value, str):
+    if not isinstance(node, ast.BinOp):
         return
     others: list[ast.expr] = []
     if isinstance(node.op, ast.Add | ast.Sub):
@@ -329,10 +329,11 @@ def users(scope: str, file: str) -> set[str]:
         home, constant = left.pop()
         done.add((home, constant))
         for other in sources():
-            for at in _named(other, home).get(constant.rpartition(".")[2], ()):
-                found.add(f"{other}:{at}")
-                if at.rpartition(".")[2].isupper() and (other, at) not in done:
-                    left.append((other, at))
+            for name in re.findall(r"\w+", constant.rpartition(".")[2]):
+                for at in _named(other, home)[name]:
+                    found.add(f"{other}:{at}")
+                    if at.rpartition(".")[2].isupper() and (other, at) not in done:
+                        left.append((other, at))
     return found
 
 
@@ -363,8 +364,7 @@ PYTEST = (sys.executable, "-m", "pytest", "-q", "-n0", "-p", "no:cacheprovider",
 
 
 def _environment(root: Path) -> dict[str, str]:
-    quiet = {"OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
-    return {**os.environ, **quiet, "PYTHONPATH": str(root)}
+    return {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(root)}
 
 
 def met(mutant: Mutant, tests: list[dict[str, Any]], budget: float, copied: Path) -> str:
@@ -392,14 +392,16 @@ def met(mutant: Mutant, tests: list[dict[str, Any]], budget: float, copied: Path
             preexec_fn=bounded,
         )  # fmt: skip
     finally:
-        shutil.copyfile(pristine, target)
+        shutil.copy2(pristine, target)  # with its time: else Python would go on with what it compiled
     if ended.returncode == 0:
         return f"survived {len(chosen)} tests"
     failed = re.search(r"^(?:FAILED|ERROR) (\S+)", ended.stdout, re.MULTILINE)
     return f"killed by {failed[1]}" if failed else "killed by timeout" if ended.returncode < 0 else "killed at import"
 
 
-def answered(mutants: list[Mutant], tests: list[dict[str, Any]], budget: float, jobs: int, work: Path) -> dict[str, str]:
+def answered(
+    mutants: list[Mutant], tests: list[dict[str, Any]], budget: float, jobs: int, work: Path
+) -> dict[str, str]:
     """What every mutant meets, by name; answers at hand are kept but those of survivors, whom new tests may kill."""
     kept = work / "answers.json"
     known: dict[str, str] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}

@@ -293,7 +293,7 @@ def test_two_cylinders_vary_both_materials() -> None:
 @pytest.mark.parametrize("off", [-0.005, 0.002, 0.03])
 @pytest.mark.parametrize("row", [punch.EXAMPLE, sphere.EXAMPLE, prism.EXAMPLE], ids=lambda row: row.name)
 def test_a_modulus_that_is_not_the_rows_is_never_said_to_hold(row: Row, off: float) -> None:
-    """E* by finite elements that no row explains, at one Poisson's ratio of several; the same within the bar is fine."""
+    """E* by finite elements that no row explains, at one Poisson's ratio of several."""
     found = made_up(row)
     nu = RATIOS[1]
     odd = Quantity((1.0 + off) * value(found.moduli[nu]), 1e-5 * value(found.moduli[nu]), "Pa")
