@@ -86,6 +86,10 @@ def test_densified_rows_interpolate_to_the_tolerance(tolerance: float) -> None:
     assert error < tolerance * force(rows).max()
 
 
+def test_even_a_straight_line_has_the_fewest_rows_there_are() -> None:
+    assert densified([0.0, 1.0], lambda t: t, 1e-2).size >= 201, "what the contract promises of a history"
+
+
 def test_densified_ends_at_a_step() -> None:
     rows = densified([0.0, 1.0], lambda t: (t > 0.3) * 1.0, 1e-9)
     assert rows.size < 400
