@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fe_contact.contact_radius import seen_from_both_sides
 from fe_contact.impact import STEPS_ALLOWED
 from fe_contact.local_polynomial import PLACES, LocalPolynomials, fitted_peak, peak
+from fe_contact.separation import time_left
 from fe_contact.time_grid import share_of_rest, step_length
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -79,6 +80,21 @@ def test_the_time_left_falls_to_a_thousandth_in_as_many_steps_as_the_grading_has
         taken += 1
     graded = steps * (np.sqrt(0.02 / 3) - np.sqrt(1e-3 / 3))
     assert 0.8 * graded <= taken <= steps * np.sqrt(0.02 / 3) + 3
+
+
+@given(SEEDS)
+def test_an_end_is_read_exactly_from_a_response_that_falls_along_a_parabola(seed: int) -> None:
+    """Which bends a little, either way, from unequal steps, at any size of either; asked a little later."""
+    rng = np.random.default_rng(seed)
+    size, unit, end = 10 ** rng.uniform(-9.0, 9.0, 3)
+    left = unit * np.sort(rng.uniform(0.1, 1.0, 3))[::-1]
+    responses = size * left * (1.0 + rng.uniform(-0.3, 0.3) * left / unit)
+    assume(left[0] - left[1] > 0.02 * unit and left[1] - left[2] > 0.02 * unit)
+    assume(end < 1e3 * unit)  # the digits that a difference of times still has
+    asked = float(left[2]) * rng.uniform(0.1, 1.0)
+    found = time_left((end - left).tolist(), responses.tolist(), end - asked)
+    assert found == pytest.approx(asked, rel=1e-6, abs=1e-9 * unit)
+    assert time_left((end - left).tolist(), responses[::-1].tolist(), end - asked) is None, "it does not fall"
 
 
 @pytest.mark.parametrize("steps", [8, 40, 8192])
