@@ -78,6 +78,15 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/certify.py", "ROUNDING", ""): "below what any result is asked for",
     ("fe_contact/trusted_order.py", "ASYMPTOTIC", "0.01 -> 0.001"): "a wider bar of the duration, never a narrower one",
     ("fe_contact/trusted_order.py", "_trusted_order", "1.0 ->"): "a factor of both changes that are compared",
+    ("fe_contact/impact.py", "FAINT", "0.001 -> 0.0001"): "an end followed further: more steps",
+    ("fe_contact/runs.py", "Runs._piloted", "1.0 -> "): "modulus and mass of two durations that are divided",
+    ("fe_contact/flat_stepping.py", "FlatStepper.step", "length * self.scheme"): "when a radius was, of one only",
+    ("fe_contact/softening.py", "Softening.errors", "0.0 -> 0.1"): "of quantities that there are not",
+    ("fe_contact/reference.py", "refined_for", "if value >="): "what is refined together, of what is too coarse: work",
+    ("fe_contact/reference.py", "DOMINANT", ""): "what is refined together, of what is too coarse: work",
+    ("fe_contact/waves/dent.py", "MOST", ""): "the most iterations, of which six suffice",
+    ("fe_contact/waves/falling_ball.py", "plan", "0.0 -> 0.1"): "of a ball without a radius",
+    ("lumped/collide/contact.py", "contact", "tolerance **"): "the first step to be tried",
 }
 
 
