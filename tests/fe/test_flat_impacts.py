@@ -10,6 +10,9 @@ import numpy as np
 import pytest
 
 import fe_contact
+from fe_contact.flat_stepping import FlatStepper
+from fe_contact.march import Strike
+from fe_contact.numerics import Numerics
 from fe_contact.reference import solve
 from lumped import BadInput, Material, Model, Relaxation, Result, Scene, laws, simulate
 from lumped.scene import Motion
@@ -19,6 +22,8 @@ from lumped.targets import HalfSpace
 from lumped.targets.layer import Layer
 from lumped.targets.plane import Plane
 from lumped.targets.washer import Washer
+
+Strikes, Settings = Callable[..., Strike], Callable[..., Numerics]
 
 TOLERANCE, MASS, YOUNG = 1e-3, 0.02, 1e6
 IMPACTS = 30
@@ -156,3 +161,18 @@ def test_a_punch_whose_dashpot_answers_most_at_the_touch_settles_on_its_weight(p
     assert found.numerics["steps"] <= 160, "a force that falls from the touch on has no rise to resolve"
     for name, value in exact.items():
         assert abs(found.quantities[name].value - value) <= found.quantities[name].error
+
+
+@pytest.mark.parametrize("viscosity", [0.0, 3.0])
+def test_the_force_at_a_touch_is_that_of_a_first_step_without_length(
+    viscosity: float, hertz_strike: Strikes, settings_of: Settings
+) -> None:
+    """On a body that nothing has touched, and on one still pressed in, where springs and branches press at once."""
+    strike = hertz_strike(Relaxation(0.4, (1.5, 0.7), (0.3, 5.0), viscosity))
+    numerics, stiffness = settings_of(strike), 2.5
+    first = FlatStepper(strike, stiffness, 1.0, numerics)
+    pressed = first.step(first.touch(), [], 0.5)
+    again = replace(strike, depth=pressed.state.depth, velocity=0.3, memory=pressed.state.memory)
+    for stepper in (first, FlatStepper(again, stiffness, 1.0, numerics)):
+        assert stepper.step(stepper.touch(), [], 1e-9).force == pytest.approx(stepper.first_force, abs=1e-7)
+    assert FlatStepper(again, stiffness, 1.0, numerics).first_force > 0.0
