@@ -24,9 +24,9 @@ from lumped.spring_row.nest import Level, Nest, limit, predicted_turn
 Array = NDArray[np.float64]
 # Of the fields of Instant the force, and those which are seen: depth, velocity, force, edge.
 FORCE, SEEN = 4, [1, 2, 4, 5]
-# Steps of the first march's approach, whatever the tolerance: a tighter one begins with the marches of a looser one and
-# goes on from there, so it never costs less. With eight, three marches bring 1e-3 mostly. Where they lie a march of more
-# elements says: one of eight would make them uneven, and many finer ones needed.
+# Steps of the first march's approach, whatever the tolerance: a tighter one begins with the marches of a looser one
+# and goes on from there, so it never costs less. With eight, three marches bring 1e-3 mostly. Where they lie a march of
+# more elements says: one of eight would make them uneven, and many finer ones needed.
 INTERVALS, ELEMENTS = 8, 16
 MOST_PARTS = 512  # 4096 steps, which err by rounding
 # Rows through which the polynomials of a rebound run that goes on beyond the end.
