@@ -46,9 +46,9 @@ def operations(work: TotalWork, finest: Struck) -> float:
     doi:10.1137/0710032); n surface unknowns and q quadrature points n^2 q + n^3/3 a Newton iteration.
     """
     unknowns = float(work.degrees_of_freedom)
-    inside = float(work.factorizations * unknowns**1.5 + work.solves * unknowns * math.log2(unknowns))
+    inside = work.factorizations * unknowns**1.5 + work.solves * unknowns * math.log2(unknowns)
     points, zone = finest.operator.trace.shape if isinstance(finest, Deformable) else (0, 0)
-    return inside + work.iterations * (zone**2 * points + zone**3 / 3)
+    return float(inside + work.iterations * (zone**2 * points + zone**3 / 3))
 
 
 class Runs:
