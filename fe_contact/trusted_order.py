@@ -5,6 +5,9 @@ shorter ones, so that extrapolation gains no order. What adds up over the contac
 loses an order to any relaxation. A dashpot's force is one of velocities, and so is that of a branch which relaxes
 within two steps: its extrapolated error falls no faster than the scheme's. All forces lose as much of an order as
 such ones have in all that presses, and so does what adds up.
+
+The force of a viscous contact has a kink where its edge turns, anywhere in a step: that leaves an error of order two
+with a coefficient of its own for every length of step. What a scheme of order one gains by extrapolation is lost in it.
 """
 
 from __future__ import annotations
@@ -35,6 +38,8 @@ def trusted_orders(
     flat : whether the area presses at once, so that all steps feel a relaxation, else the few that are as long.
     """
     force: float = _trusted_order(*curves, order)
+    if order == 1 and not flat and not curves[0].strike.relaxation.is_elastic:
+        force = order
     duration = min(force, _order_of_duration(*curves, order))
     shortest, longest = np.divide.outer(steps, curves[0].strike.relaxation.times)
     within_step = bool(np.any((longest > ABOUT_A_STEP[0]) & (shortest < ABOUT_A_STEP[1])))

@@ -16,6 +16,7 @@ from fe_contact.cli import main
 from fe_contact.curve import Curve
 from fe_contact.dynamics.march import Motion, march
 from fe_contact.methods import simulate
+from fe_contact.numerics import RANGES
 from fe_contact.reference import strike_of
 from fe_contact.waves import half_space_body
 from fe_contact.waves.flying_ball import on_ball, on_half_space, on_plane
@@ -251,6 +252,38 @@ def test_bars_hold_the_answer_of_settings_for_a_quarter_of_the_tolerance(
         for name in WHOLE:
             known = result.quantities[name]
             assert abs(known.value - finer[name]) <= known.error, (name, scene)
+
+
+COARSE: list[dict[str, Any]] = [
+    {"order": 1, "elements_per_contact": 4.0},
+    {"order": 1, "elements_per_contact": 8.0, "penalty": 30.0},
+    {"order": 2, "elements_per_contact": 1.0},
+    {"order": 3, "elements_per_contact": 2.0},
+    {"order": 2, "penalty": 1.0, "elements_per_contact": 4.0},
+]
+STEPS, FINER = 80, 2e-3
+
+
+@pytest.mark.parametrize("target", [PLANE, HALF_SPACE])
+def test_bars_hold_whatever_the_elements(target: dict[str, Any], campaign_size: Callable[[int], int]) -> None:
+    """A ball in flight is stiff by its bulk too: against elements of the usual order, at a smaller tolerance."""
+    rng = np.random.default_rng(23)
+    for number in range(campaign_size(30)):
+        scene, given = random_scene(rng, target), COARSE[number % len(COARSE)]
+        found = simulate(scene, "fe", given | {"tolerance": 0.1, "steps": STEPS})
+        finer = curve_of(scene, tolerance=FINER).quantities
+        for name in WHOLE:
+            known = found.quantities[name]
+            assert abs(known.value - finer[name]) <= known.error, (name, scene, given)
+
+
+@pytest.mark.parametrize("key", ["elements_per_contact", "penalty", "far_radius"])
+def test_a_setting_at_the_end_of_its_range_is_varied_all_the_same(key: str) -> None:
+    """A change from a setting to itself would be a bar of zero."""
+    scene = ball(1.0, HALF_SPACE)
+    cause = {"elements_per_contact": "mesh", "far_radius": "far_field"}.get(key, key)
+    found = simulate(scene, "fe", {"steps": 40, "tolerance": 0.1, key: RANGES[key][0]})
+    assert found.error_budget[cause] > 0.0
 
 
 @pytest.mark.parametrize(
