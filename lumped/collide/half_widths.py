@@ -38,8 +38,8 @@ class HalfWidths(NamedTuple):
     impulse: float
 
 
-def half_widths(track: Track, bodies: Bodies, exit_rule: str, outcome: Outcome) -> HalfWidths:
-    """Of the first contact of a track, whose law remembers nothing of its path but turns."""
+def half_widths(track: Track, bodies: Bodies, exit_rule: str, outcome: Outcome, impulse: float) -> HalfWidths:
+    """Of the first contact of a track, whose law remembers nothing of its path but turns, and of its impulse, N s."""
     one = track.motion.contacts[0]
     found = deviations(track, bodies, one)
     rest = AT_REST if one.end is End.REST else 0.0
@@ -48,6 +48,7 @@ def half_widths(track: Track, bodies: Bodies, exit_rule: str, outcome: Outcome) 
     peak, peak_time = _peak(found, outcome.peak_time)
     duration, rate = _end(track, bodies, exit_rule, found[-1])
     restitution = rate / bodies.velocity + rounding
+    passed = bodies.mass * (bodies.velocity * restitution + abs(bodies.gravity) * duration)
     return HalfWidths(
         force=SAFETY * max(float(np.abs(part.lacking_force).max()) for part in found) + of_force * highest,
         history_l2=SAFETY * _l2(found) + of_force,
@@ -56,7 +57,7 @@ def half_widths(track: Track, bodies: Bodies, exit_rule: str, outcome: Outcome) 
         peak_depth=SAFETY * _deepest(found) + rounding * one.deepest,
         duration=duration,
         restitution=restitution,
-        impulse=bodies.mass * (bodies.velocity * restitution + abs(bodies.gravity) * duration),
+        impulse=passed + rounding * abs(impulse),
     )
 
 

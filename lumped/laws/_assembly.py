@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
@@ -22,10 +23,12 @@ Array = NDArray[np.float64]
 ROUNDING = 1e-12
 # A peak is flat: its time is known to the root of what its height is known to.
 ROUNDING_OF = {"peak_time": 1e-8}
+# Where two integrations are compared for the time of a peak: first up to so many rows on either side, at so many
+# places; and again as far as that leaves it, while this is a smaller share.
+ROWS_AROUND, PLACES, SHRUNK = 2, 17, 0.9
 FINEST_ROWS = 1e-9
 # Two integrations may agree in one quantity by chance: its bar is at least this share of the history's (L2).
 LEAST_SHARE = 0.1
-SHARE_OF_HISTORY = {"peak_time": 3.0}
 
 
 class Columns(Protocol):
@@ -99,10 +102,36 @@ def bars(fine: Answer, coarse: Answer, safety: float) -> tuple[dict[str, Quantit
         other, error = coarse.values[name], None
         if value is not None:
             scale = 1.0 if name == "restitution" else abs(value)
-            least = SHARE_OF_HISTORY.get(name, LEAST_SHARE) * l2 + fine.rounding + ROUNDING_OF.get(name, 0.0)
-            error = safety * max(abs(value - (other or 0.0)), least * scale)
+            least = LEAST_SHARE * l2 + fine.rounding + ROUNDING_OF.get(name, 0.0)
+            apart = max(abs(value - (other or 0.0)), least * scale)
+            error = safety * max(apart, _shift(fine, coarse, value) if name == "peak_time" else 0.0)
         quantities[name] = Quantity(value, error, UNITS[name])
-    return {name: quantities[name] for name in UNITS}, safety * worst
+    peak = fine.values["peak_force"] or 0.0
+    return {name: quantities[name] for name in UNITS}, safety * (worst + fine.rounding * peak)
+
+
+def _shift(fine: Answer, coarse: Answer, peak_time: float) -> float:
+    """By how much the peak may lie elsewhere, s: where the force falls short of it by less than what the two differ by
+    changes between here and there.
+
+    At most the whole contact; nothing at touch, and at an end.
+    """
+    times = np.unique(fine.times)
+    i, whole = int(np.searchsorted(times, peak_time)), float(times[-1])
+    low, high = times[max(i - ROWS_AROUND, 0)], times[min(i + ROWS_AROUND, times.size - 1)]
+    if not low < peak_time < high:
+        return 0.0
+    places = np.linspace(low, high, PLACES)
+    fit = np.polynomial.polynomial.polyfit((places - peak_time) / whole, fine.columns.force(places), 2)
+    bent = -2.0 * float(fit[2]) / whole**2
+    if bent <= 0.0:
+        return whole
+    reach, shift = whole, float(high - low)
+    while shift < SHRUNK * reach:
+        reach = shift
+        places = np.clip(np.linspace(peak_time - reach, peak_time + reach, PLACES), 0.0, whole)
+        shift = math.sqrt(2.0 * float(np.ptp(fine.columns.force(places) - coarse.columns.force(places))) / bent)
+    return min(shift, whole)
 
 
 def assemble(

@@ -33,6 +33,8 @@ COARSEST, FINEST, FINER = 1e-5, 1e-12, 1e-2
 END, END_COMPARED = 1e-11, 1e-8
 # Two marches may agree by chance.
 SAFETY = 2.0
+# Peaks of several contacts that differ by less, relatively, are one height: rounding makes more of a long march.
+EQUAL = 1e-9
 
 
 class Judged(NamedTuple):
@@ -81,7 +83,8 @@ def _estimated(law: ForceLaw, scene: Scene, step_tolerance: float) -> Judged:
     """One contact, whose bars are what its march still lacks, estimated from its defect."""
     track = _track(law, scene, 1, step_tolerance)
     said = outcome_of(track, track.motion.contacts[0])
-    answer, widths = _answer(law, scene, track, [said]), half_widths(track, bodies_of(scene), law.exit, said)
+    answer = _answer(law, scene, track, [said])
+    widths = half_widths(track, bodies_of(scene), law.exit, said, answer.values["impulse"] or 0.0)
     values = {**answer.values, "history_l2": 0.0}
     quantities = {
         name: Quantity(values[name], None if values[name] is None else getattr(widths, name), unit)
@@ -162,7 +165,9 @@ class _Columns(NamedTuple):
 
 
 def _values(scene: Scene, moved: Motion, outcomes: Sequence[Outcome], until: float) -> Mapping[str, float | None]:
-    highest = max(outcomes, key=lambda outcome: outcome.peak_force)
+    # of peaks as high as one another, but for rounding, the first
+    most = max(outcome.peak_force for outcome in outcomes)
+    highest = next(outcome for outcome in outcomes if outcome.peak_force >= (1.0 - EQUAL) * most)
     last = moved.contacts[-1]
     return {
         "peak_force": highest.peak_force,

@@ -19,7 +19,7 @@ from lumped.laws._assembly import Answer, assemble, bars, impulse_of
 from lumped.laws._half_space import check_geometry
 from lumped.result import Result
 from lumped.rod_waves.flat import FlatImpact
-from lumped.rod_waves.tipped import Scales, TippedImpact
+from lumped.rod_waves.tipped import LONGEST, Scales, TippedImpact
 from lumped.rod_waves.waves import Waves
 from lumped.scene import Scene
 from lumped.targets.rod import Rod
@@ -28,6 +28,9 @@ Array = NDArray[np.float64]
 KEYS: Mapping[str, Key] = {}
 COARSEST, FINEST, FINER = 1e-6, 1e-12, 1e-3  # of the tolerance, asked of every step
 COARSER = 1e2  # where what is left of the error shows
+# The longest steps of the coarser answer over those of the finer: where no tolerance binds both would take the same
+# steps, and differ by nothing.
+LONGER = 2.0
 SAFETY = 2.0
 PLACES = 400  # in the history, where peaks are looked for
 
@@ -42,7 +45,7 @@ class RodWaves:
         """One impact to this tolerance. Raises NotReached."""
         clock, rtol = Clock(), max(min(FINER * tolerance, COARSEST), FINEST)
         fine = _answer(scene, rtol)
-        coarse = fine if scene.profile.fixed_radius else _answer(scene, rtol * COARSER)
+        coarse = fine if scene.profile.fixed_radius else _answer(scene, rtol * COARSER, LONGER * LONGEST)
         quantities, force_error = bars(fine, coarse, SAFETY)
         integration: dict[str, Any] = {"rtol": rtol} if coarse is not fine else {"series": "exact"}
         work, model = {"echoes": int(fine.times.size // PLACES) - 1}, scene.model
@@ -62,9 +65,9 @@ def of(scene: Scene) -> RodWaves:
     return RodWaves()
 
 
-def _answer(scene: Scene, rtol: float) -> Answer:
-    """One integration of the scene; of a flat end the series, whatever ``rtol``."""
-    impact = _impact(scene, rtol)
+def _answer(scene: Scene, rtol: float, longest: float = LONGEST) -> Answer:
+    """One integration of the scene; of a flat end the series, whatever ``rtol`` and the ``longest`` step."""
+    impact = _impact(scene, rtol, longest)
     _, end, separated = impact.pieces
     breaks = np.append(impact.starts, end)
     rows = np.unique(np.concatenate([np.linspace(*ends, PLACES + 1) for ends in pairwise(breaks)]))
@@ -84,7 +87,7 @@ def _answer(scene: Scene, rtol: float) -> Answer:
     return Answer(rows, columns, values, ending, energy, "" if separated else ending.value)
 
 
-def _impact(scene: Scene, rtol: float) -> FlatImpact | TippedImpact:
+def _impact(scene: Scene, rtol: float, longest: float) -> FlatImpact | TippedImpact:
     waves = Waves.of(scene)
     shape, mass, velocity, until = scene.profile, scene.reduced_mass, scene.velocity, scene.end_time
     if shape.fixed_radius is not None:
@@ -100,6 +103,7 @@ def _impact(scene: Scene, rtol: float) -> FlatImpact | TippedImpact:
         until=until,
         scales=Scales(scales.depth, scales.duration),
         rtol=rtol,
+        longest=longest,
     )
 
 

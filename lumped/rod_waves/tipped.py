@@ -20,6 +20,7 @@ from lumped.rod_waves.waves import Waves
 
 Array = NDArray[np.float64]
 MOST_ECHOES = 100
+LONGEST, FIRST = 0.25, 4e-3  # steps, as `longest` says, and the first one over that
 ABSOLUTE = 1e-2  # over the relative tolerance, in units of the elastic impact
 STRIKER, SPEED, END = range(3)
 
@@ -36,7 +37,8 @@ class Scales:
 class TippedImpact:
     """One impact: ``force`` over the dent's depth, N and m; mass, kg; velocity, m/s; gravity along the motion, m/s2.
 
-    Followed until ``until``, s, each step to ``rtol``.
+    Followed until ``until``, s, each step to ``rtol``, and no longer than a share ``longest`` of the elastic impact and
+    of the time between two echoes.
     """
 
     waves: Waves
@@ -47,6 +49,7 @@ class TippedImpact:
     until: float
     scales: Scales
     rtol: float
+    longest: float = LONGEST
 
     @cached_property
     def pieces(self) -> tuple[tuple[Any, ...], float, bool]:
@@ -56,6 +59,7 @@ class TippedImpact:
         """
         from scipy.integrate import solve_ivp
 
+        longest = self.longest * min(self.scales.time, self.waves.delay)
         state, found, begin = np.array([0.0, self.velocity, 0.0]), list[Any](), 0.0
         tolerances = self.rtol * ABSOLUTE * np.array([self.scales.depth, self.velocity, self.scales.depth])
 
@@ -66,10 +70,10 @@ class TippedImpact:
         while len(found) <= MOST_ECHOES:
             end = min(begin + self.waves.delay, self.until)
             rates = self._rates(found, begin)
-            first = 1e-3 * min(self.scales.time, end - begin)
+            first = min(FIRST * longest, end - begin)
             solved = solve_ivp(
                 rates, (begin, end), state, "DOP853", events=parted, rtol=self.rtol, atol=tolerances,
-                dense_output=True, first_step=first,
+                dense_output=True, first_step=first, max_step=longest,
             )  # fmt: skip
             if solved.status < 0 or solved.sol is None:
                 raise NotReached(f"rod: {solved.message}; accepted: a looser tolerance")

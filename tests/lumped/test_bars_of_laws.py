@@ -12,7 +12,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import beta
 
-from lumped import Model, Quantity, Scene, laws
+from lumped import Model, Motion, Quantity, Scene, laws
 from lumped.result import UNITS, meets
 from lumped.scene_tables import LawChoice
 
@@ -167,3 +167,24 @@ def test_a_bar_that_is_no_number_meets_no_tolerance(name: str) -> None:
     known = {each: Quantity(1.0, 1e-6, unit) for each, unit in UNITS.items()}
     assert meets(known, 1e-3)
     assert not meets(known | {name: Quantity(1.0, math.nan, UNITS[name])}, 1e-3)
+
+
+def test_of_equal_peaks_the_first_counts() -> None:
+    """Nothing is lost between two contacts: rounding must not choose."""
+    scene = Scene(
+        None, 1340.4655985577324, 0.0018841237089712447, law=LawChoice("linear_spring", {"k": 23243414.404893115}),
+        model=Model(gravity=18.56783683228212), motion=Motion(impacts=2, end_time=0.7018650897773285),
+    )  # fmt: skip
+    for tolerance in (1e-2, 1e-4, 1e-9):
+        found = laws.linear_spring.of(scene).simulate(scene, tolerance).quantities
+        assert 2.0 * found["peak_time"].value == pytest.approx(found["duration"].value, rel=1e-6)
+
+
+def test_an_impulse_cut_off_is_known_to_rounding_and_no_better(uncovered: Callable[..., dict[str, float]]) -> None:
+    values = {"k": 32144.44417825987, "A": 0.003044490798786051, "exit": "force"}
+    scene = Scene(
+        None, 210.18069387660137, 0.006025968373558844, law=LawChoice("kuwabara_kono", values),
+        model=Model(gravity=0.8128138033340154),
+    )  # fmt: skip
+    law = laws.get("kuwabara_kono").of(scene)
+    assert not uncovered(law.simulate(scene, 0.1), law.simulate(scene, 1e-9))

@@ -64,3 +64,29 @@ def test_every_bar_covers(
         assert not uncovered(found, exact), scene
         assert force_over_bars(found, exact) <= 1.0, scene
     assert np.mean(converged) >= 0.95
+
+
+def test_a_looser_tolerance_never_takes_more_steps() -> None:
+    rng = np.random.default_rng(43)
+    for _ in range(5):
+        target = {"shape": "half_space", "material": material(rng)}
+        scene = Scene.from_dict({"name": "row", "striker": striker(rng), "target": target})
+        steps = [simulate(laws.mdr.of(scene), scene, 10.0**-power).work["steps"] for power in range(1, 7)]
+        assert steps == sorted(steps), scene
+
+
+def test_an_edge_at_rest_before_the_end_is_followed_to_it(uncovered: Callable[..., dict[str, float]]) -> None:
+    """Its weight holds it: no whole step of the rebound leads past the end, and nothing may be read beyond the last."""
+    stiff = {"law": "prony", "E_inf": 3736956.2539848974, "E": [51579672165.44953], "tau": [3.448556051893759e-05]}
+    profile = {"shape": "power", "coefficient": 1652908924909.687, "exponent": 5.296514328496658}
+    scene = Scene.from_dict(
+        {
+            "name": "held",
+            "striker": profile | {"mass": 0.5087043173736171, "velocity": 0.004822098829175621},
+            "target": {"shape": "half_space", "material": stiff | {"nu": 0.4999}},
+            "model": {"gravity": 0.008115824784660967, "profile": "parabola"},
+            "motion": {"end_time": 0.005310696524236301},
+        }
+    )
+    found, exact = simulate(laws.mdr.of(scene), scene, 1e-3), simulate(laws.ting.of(scene), scene, EXACT)
+    assert not uncovered(found, exact)
