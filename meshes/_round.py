@@ -10,8 +10,7 @@ from meshes._sizes import beyond, checked, distance, larger, smaller
 # of elements of order one, of which one lies along the contact's half-width; those of another are so many times larger
 GROWTH = 1.25  # growth of the element size per unit distance from the contact
 LARGEST = 0.95  # element size over radius
-LARGEST_GROWTH = 1.0  # steeper gradings leave gmsh too little room for well-shaped triangles
-COARSEST = 1.0  # element size over radius, whatever is asked
+LARGEST_GROWTH, COARSEST = 0.6, 0.5  # of both, whatever is asked
 ZONE = 1.1  # the surface is fine up to this multiple of the largest contact
 SMALLEST = 1e-12  # element size over radius, below which rounding takes its digits
 

@@ -17,7 +17,7 @@ from meshes.triangles import Outline, triangulated
 EDGE_REFINEMENT = 24.0  # element size inside the contact over element size at its edge
 GROWTH = 2.0  # growth of the element size per unit distance, for one element per contact radius
 ZONE = 1.1  # where contacts may end anywhere the surface is fine up to this radius
-WAVE_GROWTH = 2.0  # the same where waves are resolved on their way, for one element along the radius
+WAVE_GROWTH, LARGEST_WAVE_GROWTH = 2.0, 0.3  # of the element size per unit distance, for one element along the radius
 LARGEST_GROWTH = 1.5  # steeper gradings leave gmsh too little room for well-shaped triangles
 
 
@@ -76,7 +76,7 @@ def half_space_for_waves(elements_per_radius: float, smallest: float, far_radius
     far = checked("far_radius", far_radius, 2.0, 1e6)
     at_surface = elements * checked("refinement of the surface", finer, 1.0, 16.0)
     within = smaller(larger("x", repr(low)), repr(ZONE))
-    growth = min(WAVE_GROWTH / elements, LARGEST_GROWTH)
+    growth = min(WAVE_GROWTH / elements, LARGEST_WAVE_GROWTH)
     return _quarter(f"{within}/{at_surface!r}+{growth!r}*(Fabs(y)+{beyond('x', ZONE)})", ZONE, far)
 
 

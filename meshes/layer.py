@@ -16,7 +16,7 @@ GROWTH = 4.0  # growth of the element size per unit distance from the contact, f
 LARGEST_GROWTH = 1.0  # steeper gradings leave gmsh too little room for well-shaped triangles
 LARGEST = 7.0  # element size over thickness, for one element along the radius
 COARSEST = 1.0  # element size over thickness, whatever is asked
-WAVE_GROWTH = 2.0  # the same growth where waves are resolved on their way
+WAVE_GROWTH, LARGEST_WAVE_GROWTH = 2.0, 0.3  # the same growths where waves are resolved on their way
 LARGEST_WAVE = 4.0  # the same size over thickness there
 WITHIN = 2.0  # from this many thicknesses on, the surface is as fine as there: the pressure ends within one of them
 ZONE = 1.1  # the surface is fine up to this radius
@@ -58,7 +58,7 @@ def layer_for_waves(
     """
     _check(elements_per_radius, smallest, thickness, width)
     at_surface = elements_per_radius * checked("refinement of the surface", finer, 1.0, 16.0)
-    growth = min(WAVE_GROWTH / elements_per_radius, LARGEST_GROWTH)
+    growth = min(WAVE_GROWTH / elements_per_radius, LARGEST_WAVE_GROWTH)
     largest = min(LARGEST_WAVE / elements_per_radius, COARSEST)
     return _rectangle(_sizes(at_surface, smallest, thickness, growth, largest), ZONE, thickness, width)
 

@@ -118,7 +118,7 @@ def _judged(runs: Runs, number: int, numerics: WaveNumerics) -> Mapping[str, Cau
     """What the settings change of one contact."""
     contact = runs.follow(numerics).contacts[number]
     cheap, changed = numerics.varied(steps=runs.cheap), partial(_changed, partial(runs.curve, number))
-    (mesh, by_mesh), half = _other_mesh(cheap), numerics.varied(steps=numerics.steps // 2)
+    (mesh, by_mesh), half = other_mesh(cheap), numerics.varied(steps=numerics.steps // 2)
     penalty, stiffer = other_setting(cheap, "penalty")
     coarse = min(cheap, mesh, key=_nodes)  # of what is far, coarse is fine
     far, farther = other_setting(coarse, "far_radius")
@@ -130,7 +130,7 @@ def _judged(runs: Runs, number: int, numerics: WaveNumerics) -> Mapping[str, Cau
     }
 
 
-def _other_mesh(settings: WaveNumerics) -> tuple[WaveNumerics, float]:
+def other_mesh(settings: WaveNumerics) -> tuple[WaveNumerics, float]:
     """Settings of the mesh that tell of this one, half as fine or at least twice, and error over change."""
     if settings.order not in MESH_ORDER:
         order = WITNESS * settings.order

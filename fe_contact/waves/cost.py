@@ -19,6 +19,7 @@ STEP = 300  # unknowns whose share of a step takes as long as all the rest of it
 SECONDS = 1.5e-6  # of one core a unit of work: 1.1 to 1.7 of them were measured over all kinds of bodies
 BYTES, AT_LEAST = 8e3, 150e6  # an unknown, and at all, as measured
 MARCHES = 2.5  # that a budget takes beside the finest one, at most, in units of that
+JUDGED = 0.5  # the same of one with half the steps
 FLIGHT = 1.5  # a contact and the flight that follows, in contacts
 MANY = 12  # contacts that are expected at most: few bodies come back so often
 MOST_BYTES = 2e9
@@ -33,12 +34,15 @@ class Cost:
     work: float
 
     @classmethod
-    def of(cls, unknowns: int, numerics: Numerics, impacts: int) -> Cost:
-        """Of a budget with these settings; nearly every contact asked for is expected to come."""
+    def of(cls, unknowns: int, numerics: Numerics, impacts: int, finer: int = 0) -> Cost:
+        """Of a budget with these settings; nearly every contact asked for is expected to come.
+
+        ``finer``: unknowns of the mesh that judges one which is too coarse to be halved.
+        """
         octaves = len(graded(numerics)[1])
         row = 1.0 if impacts == 1 else FLIGHT * min(impacts, MANY)
         steps = math.ceil(row * numerics.steps * (1.0 + EARLY_PEAK * octaves))
-        return cls(unknowns, steps, MARCHES * (unknowns + STEP) * steps)
+        return cls(max(unknowns, finer), steps, (MARCHES * (unknowns + STEP) + JUDGED * finer) * steps)
 
     @property
     def all_steps(self) -> float:

@@ -21,7 +21,7 @@ from fe_contact.plan import SETTING, Plan
 from fe_contact.progress import Count, Progress
 from fe_contact.reference import result_of, strike_of
 from fe_contact.told import quantities_of, shares_of
-from fe_contact.waves.certify import ORDER, Runs, certify
+from fe_contact.waves.certify import ORDER, Runs, certify, other_mesh
 from fe_contact.waves.cost import Cost
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
@@ -89,7 +89,8 @@ def refined_to_tolerance(
 
 def cost_of(scene: Scene, numerics: WaveNumerics, moving: Callable[[Scene, WaveNumerics], Moving]) -> Cost:
     """What one error budget costs with these settings. Raises BodyTooFine."""
-    return Cost.of(moving(scene, numerics).body.size, numerics, scene.motion.impacts)
+    own, judging = (moving(scene, one).body.size for one in (numerics, other_mesh(numerics)[0]))
+    return Cost.of(own, numerics, scene.motion.impacts, judging if judging > own else 0)
 
 
 def refined(certified: Budget, numerics: WaveNumerics, pinned: frozenset[str]) -> WaveNumerics:
