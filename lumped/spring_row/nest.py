@@ -64,9 +64,10 @@ class Nest:
         """The grid of a coarse march at this pace, denser where the rebound needs it. Raises NotReached.
 
         It has `intervals` where the march has the steps that its pace has elements, else more or fewer in proportion.
+        What comes to rest keeps the march's own: fewer would swing about it.
         """
         if track.end is End.REST:
-            end_time = track.approach[-1].time
+            end_time, intervals = track.approach[-1].time, pace.elements
         weights = np.full(len(track.approach) - 1, intervals / pace.elements)
         back = track.rebound
         for i in range(2, len(back)):

@@ -42,6 +42,7 @@ def made_up(steps: int, off: Callable[[Array], Any], late: float = 0.0) -> Curve
         radius_x=x,
         radius_squared=(share * (1.0 - share) + 1e-3) * (1.0 + off(share)),
         end_spread=0.0,
+        energy=dict.fromkeys(("in", "out", "stored", "viscous", "contact", "numerical", "residual"), 0.0),
     )
 
 
