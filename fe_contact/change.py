@@ -9,9 +9,10 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from fe_contact.curve import PEAK_SHARE, Curve, Reading
+from fe_contact.curve import Curve, Reading
 from fe_contact.forms import Array
 
+DEEP = 0.995  # of the largest depth, above which it is near: further away what only comes later would count as an error
 SMOOTHING = 0.06  # share of the contact over which a pointwise change counts as the error of its neighbours
 FIRST_ORDER = 1.25  # factor where order one is all that shows
 UNORDERED = 2.5  # factor where no order shows: the finer of two runs errs by less than twice their distance
@@ -43,7 +44,7 @@ class Change:
         around = {
             "peak_force": float(self._force_change[first.near_peak].max()),
             "peak_time": self._peak_time,
-            "peak_depth": float(depth[first.dense.depth > PEAK_SHARE * first.dense.depth.max()].max()),
+            "peak_depth": float(depth[first.dense.depth > DEEP * first.dense.depth.max()].max()),
             "duration": float(depth[first.late :].max()) / speed if speed > 0.0 else np.inf,
             "impulse": self.impulse,
             "restitution": self.velocity / first.strike.velocity,

@@ -47,7 +47,7 @@ def trusted_orders(
     force, duration = min(force, order + 1 - damped), min(duration, order + 1 - damped)
     if within_step:
         force = 1 if flat else min(force, order)
-    summed = 1 if within_step else min(force, order - damped)
+    summed = 1 if within_step else force if curves[0].strike.relaxation.is_elastic else min(force, order - damped)
     return {"force": force, "impulse": summed, "restitution": summed, "peak_depth": summed, "duration": duration}
 
 

@@ -55,6 +55,7 @@ TABLE = (
     Constant(CERTIFY, "MARCHES", WORK, "what a budget costs"),
     Constant("fe_contact.change", "FIRST_ORDER", DERIVED, "SAFETY over 2^1 - 1"),
     Constant("fe_contact.change", "UNORDERED", DERIVED, "SAFETY times two: an order of 0.6 is supposed", 1.25),
+    Constant("fe_contact.change", "DEEP", MEASURED, "the largest depth is judged by all depths above this share", 1.0),
     Constant("fe_contact.change", "SMOOTHING", MEASURED, "a change that crosses zero is that of its neighbours", 0.0),
     Constant(ORDERS, "AS_EXPECTED", MEASURED, "ratio of changes over the expected one that shows the order", (0, 1e9)),
     Constant(ORDERS, "ABOUT", MEASURED, "the same that shows it about", (0.0, 1e9)),
