@@ -113,8 +113,14 @@ class Change:
     @cached_property
     def velocity(self) -> float:
         """Largest change of the velocity late in the contact, compared at equal shares of it, m/s."""
+        return abs(self.signed_velocity)
+
+    @cached_property
+    def signed_velocity(self) -> float:
+        """The same with its sign."""
         second = self.second.velocity(self.second.duration * self.first.shares, self._alike.impulse)
-        return float(np.abs(self.first.dense_velocity - second)[self.first.late :].max())
+        late = (self.first.dense_velocity - second)[self.first.late :]
+        return float(late[np.abs(late).argmax()])
 
     @cached_property
     def impulse(self) -> float:

@@ -54,9 +54,11 @@ def trusted_orders(
 def _trusted_order(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
     """Order left after extrapolation: one more than the scheme's if three step lengths show the scheme's own.
 
-    The velocity is asked, since the force of a viscous contact may jitter by more than the steps change it.
+    The velocity is asked, since the force of a viscous contact may jitter by more than the steps change it. Where two
+    orders cancel each other its changes may differ in sign.
     """
-    seen = Change(half, quarter, 1.0).velocity / max(Change(fine, half, 1.0).velocity, np.finfo(float).tiny)
+    least = Change(fine, half, 1.0).signed_velocity or np.finfo(float).tiny
+    seen = Change(half, quarter, 1.0).signed_velocity / least
     share = seen / 2**order
     if AS_EXPECTED[0] <= share <= AS_EXPECTED[1]:
         return order + 1
