@@ -40,7 +40,7 @@ from fe_contact.plan import SETTING
 from fe_contact.progress import Count, Progress, silent
 from fe_contact.runs import Runs, TotalWork
 from fe_contact.softening import Softening, compliance_change
-from fe_contact.trusted_order import trusted_orders
+from fe_contact.trusted_order import trust
 from lumped.geometry import Geometry
 from lumped.members import get
 
@@ -52,6 +52,9 @@ MESH_ORDER = {3: 1, 4: 2}  # by element order: the edge allows three in the forc
 WITNESS = 2  # times the order have the elements that tell of those which lock
 WITNESS_ELEMENTS = 4.0  # of them along the contact radius, at least
 MESH_ORDER_ANYWHERE = 1  # where the edge falls anywhere in an element: 1.6 is what is seen
+# of the steps' change in the share that branches about as fast as a step carry, by quantity, and of the force
+KEPT = {"peak_depth": 0.4, "duration": 0.4, "impulse": 1.5, "restitution": 1.5}
+KEPT_OF_FORCE = 0.1
 LEAST_HALVED = 40  # steps below which halving them twice would leave too few to tell anything
 # half of less tells nothing: a corrected penalty below a hundred errs to either side in turn
 LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 200.0, "far_radius": 5.0}
@@ -166,7 +169,7 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[C
     steps = _time_steps(curve, numerics, isinstance(surface, FlatEnd))
     if alone and isinstance(surface, FlatEnd):
         held = _by_stiffness(runs, steps.value, surface, numerics)
-        return steps.value, held | {"time_step": (steps.change, *steps.jitter)}
+        return steps.value, held | {"time_step": (*steps.changes, *steps.jitter)}
     cheap = numerics.varied(steps=steps.cheap)
     base = curve(cheap)
     mesh, by_mesh = other_mesh(cheap) if surface.breathes else other_mesh(cheap, MESH_ORDER_ANYWHERE)
@@ -179,7 +182,7 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[C
     changes: dict[str, Causes] = {
         "mesh": (_change(base, curve(mesh), by_mesh), *(() if by_steps else steps.jitter)),
         "penalty": (_change(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
-        "time_step": (steps.change, *(steps.jitter if by_steps else ())),
+        "time_step": (*steps.changes, *(steps.jitter if by_steps else ())),
         "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
     }
     return steps.value, changes
@@ -226,13 +229,13 @@ def _far_field(
 
 @dataclass(frozen=True)
 class _TimeSteps:
-    """What the variation of the step length yields: value, its change, jitter, steps for other variations.
+    """What the variation of the step length yields: value, what changes it, jitter, steps for other variations.
 
     ``jitter_falls``: with the step, which then is its cause.
     """
 
     value: Curve
-    change: Change | None
+    changes: Causes
     jitter: tuple[Change, ...]
     cheap: int
     jitter_falls: bool = False
@@ -249,26 +252,30 @@ def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics, f
         double = curve(numerics.varied(steps=2 * numerics.steps))
         fourfold = curve(numerics.varied(steps=4 * numerics.steps))
         if double is None or fourfold is None or not _end_alike(fourfold, double):
-            return _TimeSteps(fine, None, (), 4 * numerics.steps)
+            return _TimeSteps(fine, (None,), (), 4 * numerics.steps)
         best, before = extrapolated(fourfold, double, order), extrapolated(double, fine, order)
-        return _TimeSteps(fine, Change(fine, best, SAFETY), (Change(best, before, SAFETY),), 4 * numerics.steps, True)
+        jitter = Change(best, before, SAFETY)
+        return _TimeSteps(fine, (Change(fine, best, SAFETY),), (jitter,), 4 * numerics.steps, True)
     half = curve(numerics.varied(steps=numerics.steps // 2))
     quarter = curve(numerics.varied(steps=numerics.steps // 4))
     if half is None or quarter is None or not _end_alike(fine, half, quarter):
-        return _TimeSteps(fine, None, (), numerics.steps)
+        return _TimeSteps(fine, (None,), (), numerics.steps)
     value, before = extrapolated(fine, half, order), extrapolated(half, quarter, order)
     taken = fine.duration * np.diff(fine.x**2)[: numerics.steps]  # those beyond grow while a weight comes to rest
     shortest = float(taken[0]) if flat else numerics.contact_time / numerics.steps
-    orders = trusted_orders((fine, half, quarter), order, (shortest, float(taken.max())), flat)
-    if flat and orders["force"] == 1:  # steps as long as a relaxation show no order: the finest run stands as it is
+    trusted = trust((fine, half, quarter), order, (shortest, float(taken.max())), flat)
+    if flat and trusted.orders["force"] == 1:  # steps as long as a relaxation show no order: the finest run stands
         jitter = Change(fine, fine.thinned(), 1.0)
-        return _TimeSteps(fine, Change(fine, half, UNORDERED), (jitter,), numerics.steps // 4, True)
-    least = SAFETY / (2 ** orders.pop("force") - 1)
-    weights = {name: SAFETY / (2**trusted - 1) / least for name, trusted in orders.items()}
+        return _TimeSteps(fine, (Change(fine, half, UNORDERED),), (jitter,), numerics.steps // 4, True)
+    least = SAFETY / (2 ** trusted.orders["force"] - 1)
+    weights = {name: SAFETY / (2**one - 1) / least for name, one in trusted.orders.items()}
     change = Change(value, before, least, weights, quarter.duration * float(quarter.x[UNSEEN]) ** 2)
+    shares = {name: share / KEPT_OF_FORCE for name, share in KEPT.items()}
+    kept = Change(fine, half, KEPT_OF_FORCE * trusted.kept, shares)
     jitter, finer, coarser = (Change(one, one.thinned(), 1.0) for one in (value, fine, half))  # its own is the largest
     falls = finer.history < FALLS * coarser.history
-    return _TimeSteps(value, change, (jitter,), numerics.steps // 4, falls)
+    changes = (change, kept) if trusted.kept else (change,)
+    return _TimeSteps(value, changes, (jitter,), numerics.steps // 4, falls)
 
 
 def _end_alike(*curves: Curve) -> bool:

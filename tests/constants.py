@@ -49,6 +49,8 @@ TABLE = (
     Constant(CERTIFY, "LEAST_HALVED", MEASURED, "fewer steps are doubled instead of halved", 10),
     Constant(CERTIFY, "LEAST_HALVED_SETTING", MEASURED, "coarser settings are doubled instead of halved"),
     Constant(CERTIFY, "UNSEEN", MEASURED, "first steps of the coarsest run in which no order shows", 0),
+    Constant(CERTIFY, "KEPT", MEASURED, "left of the steps' change by branches as fast as a step, in their share", {}),
+    Constant(CERTIFY, "KEPT_OF_FORCE", MEASURED, "the same of the force", 0.0),
     Constant(CERTIFY, "FALLS", MEASURED, "jitter that half the step leaves by less than this is the step's", 1e9),
     Constant(CERTIFY, "MOST_APART", MEASURED, "durations that tell of one and the same end", 1e9),
     Constant(CERTIFY, "ROUNDING", MEASURED, "of a solve of nearly incompressible bodies", 0.0),
