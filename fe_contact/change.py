@@ -12,7 +12,7 @@ import numpy.typing as npt
 from fe_contact.curve import Curve, Reading
 from fe_contact.forms import Array
 
-DEEP = 0.995  # of the largest depth, above which it is near: further away what only comes later would count as an error
+DEEP = 0.998  # of the largest depth, above which it is near: further away what only comes later would count as an error
 SMOOTHING = 0.06  # share of the contact over which a pointwise change counts as the error of its neighbours
 FIRST_ORDER = 1.25  # factor where order one is all that shows
 UNORDERED = 2.5  # factor where no order shows: the finer of two runs errs by less than twice their distance
