@@ -50,7 +50,7 @@ def read(found: Motion, scene: Scene, elements: int, separated: bool) -> Reading
         rows = with_fronts(rows, fronts, SPOILED)
     elif separated:
         end = _undented(rows)
-    rows = _ended(rows, end) if separated else stopped(rows, scene.end_time)
+    rows = _ended(rows, end, scene.gravity) if separated else stopped(rows, scene.end_time)
     highest = _highest(rows) if jumping else peak(rows[TIME], rows[FORCE])
     time, _, velocity, _, _ = rows[:, -1]
     quantities = {
@@ -96,10 +96,12 @@ def stopped(rows: Array, end: float) -> Array:
     return np.hstack([kept, np.array([[np.interp(end, rows[TIME], row)] for row in rows])])
 
 
-def _ended(rows: Array, end: float) -> Array:
-    """Rows up to the end of contact, s, where nothing presses any more; the last one lies beyond it."""
+def _ended(rows: Array, end: float, gravity: float) -> Array:
+    """Rows up to the end of contact, s, where nothing but gravity moves any more; the last one lies beyond it."""
     last = rows[:, -1].copy()
-    last[DEPTH] -= (last[TIME] - end) * last[VELOCITY]
+    beyond = last[TIME] - end
+    last[DEPTH] -= beyond * (last[VELOCITY] - 0.5 * beyond * gravity)
+    last[VELOCITY] -= beyond * gravity
     last[[TIME, FORCE, DENT]] = end, 0.0, 0.0
     kept = rows[:, :-1][:, rows[TIME, :-1] <= end]
     return np.hstack([kept, last[:, None]])

@@ -131,10 +131,10 @@ class _Columns:
 
 
 def _peak(impact: FlatImpact | TippedImpact, breaks: Array) -> tuple[float, float]:
-    """Time and height of the greatest force: between two echoes it is smooth, at one it may jump."""
+    """Time and height of the greatest force: between two echoes it is smooth, at one it may jump, up or down."""
     found = []
     for begin, end in pairwise(breaks):
-        rows = np.linspace(begin, end, PLACES + 1)[:-1]
+        rows = np.linspace(begin, np.nextafter(end, begin), PLACES + 1)
         found.append(highest(lambda t: impact.columns(t)[2], rows))
         found.append((float(rows[0]), float(impact.columns(rows[:1])[2, 0])))
     return max(found, key=lambda place: place[1])
