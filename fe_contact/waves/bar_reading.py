@@ -68,7 +68,7 @@ def read(found: Motion, total: float, scene: Scene, pause: float, echo: int | No
         "impulse": float(np.interp(rows[TIME, -1], found.time, impulses)),
         "history_l2": 0.0,
     }
-    return Reading(rows, separated, quantities), contacts
+    return Reading(rows, total, separated, quantities), contacts
 
 
 def clustered(contacts: tuple[tuple[float, float], ...], pause: float) -> list[tuple[float, float]]:

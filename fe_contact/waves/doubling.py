@@ -37,7 +37,9 @@ def certified(
     for attempt in range(ROUNDS + 1):
         assert isinstance(numerics, WaveNumerics)
         progress(f"{numerics.steps} steps of waves along a line")
-        found = Bars(marched(numerics), {cause: marched(settings) for cause, settings in varied(numerics).items()})
+        others = varied(numerics)
+        quarter = marched(varied(others["time_step"])["time_step"])
+        found = Bars(marched(numerics), {cause: marched(settings) for cause, settings in others.items()}, quarter)
         runs |= dict.fromkeys(found.runs)
         stuck = "steps" in chosen.pinned or attempt == ROUNDS or 2 * numerics.steps > most_steps
         twice = _work(2 * found.fine.steps, 2 * found.fine.unknowns)

@@ -26,9 +26,12 @@ Contacts = tuple[Mapping[str, float | None], ...]
 
 @dataclass(frozen=True, eq=False)
 class Reading:
-    """``rows`` (5, n): time, s, never decreasing; depth, m; velocity, m/s; force, N; dent, m. Did contact end?"""
+    """``rows`` (5, n): time, s, never decreasing; depth, m; velocity, m/s, of a ``mass``, kg; force, N; dent, m. Did
+    contact end?
+    """
 
     rows: Array
+    mass: float
     separated: bool
     quantities: Mapping[str, float | None]
 
@@ -62,7 +65,7 @@ def read(found: Motion, scene: Scene, elements: int, separated: bool) -> Reading
         "impulse": float(scene.reduced_mass * (scene.velocity - velocity + scene.gravity * time)),
         "history_l2": 0.0,
     }
-    return Reading(rows, separated, quantities)
+    return Reading(rows, scene.reduced_mass, separated, quantities)
 
 
 def _row(sample: Sample) -> tuple[float, ...]:

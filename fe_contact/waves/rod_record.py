@@ -1,4 +1,4 @@
-"""The record of an impact on a rod, its bars by the same impact with half the steps."""
+"""The record of an impact on a rod, its bars by the same impact with half the steps and with a quarter of them."""
 
 from __future__ import annotations
 
@@ -23,6 +23,9 @@ from lumped.scene import Scene
 
 ROUNDING = 1e-9  # relative, of what adds up over the steps
 COMPARED = 2001  # places along the contact at which two histories are compared
+# Where no order shows, in place of SAFETY: Oberkampf and Roy, Verification and Validation in Scientific Computing,
+# table 8.1 (ISBN 978-0-521-11360-1), after Roache.
+UNSHOWN = 3.0
 LATE = 0.75  # of the contact, from where on motion counts for that at the end
 BEHIND = 0.002  # of the contact, that a front has to arrive before its end
 AWAY = 0.02  # share of the contact within which a change counts as the error of its neighbours
@@ -41,21 +44,37 @@ class Run:
 
 @dataclass(frozen=True, eq=False)
 class Bars:
-    """A march and the same with one cause of error varied, by cause; half the steps are among them."""
+    """A march and the same with one cause of error varied, by cause, half the steps among them; a ``quarter`` of them."""
 
     fine: Run
     others: Mapping[str, Run]
+    quarter: Run
 
     @property
     def runs(self) -> list[Run]:
         """All marches."""
-        return [self.fine, *self.others.values()]
+        return [self.fine, *self.others.values(), self.quarter]
+
+    @property
+    def safety(self) -> float:
+        """Times a change: of several contacts no order shows, as touches fall anywhere in a step."""
+        return SAFETY if self._alone else UNSHOWN
+
+    @property
+    def _alone(self) -> bool:
+        """Whether there was one contact only."""
+        return len(self.fine.contacts) < 2
 
     @cached_property
     def by_cause(self) -> dict[str, dict[str, Quantity]]:
         """The quantities with the bars of each cause."""
-        alone = len(self.fine.contacts) < 2
-        return {cause: bars(self.fine.reading, other.reading, alone) for cause, other in self.others.items()}
+        fine, found = self.fine.reading, {}
+        for cause, other in self.others.items():
+            least = _nearby(fine, other.reading) if self._alone else {}
+            if cause == "time_step":
+                least = _halved(other.reading, self.quarter.reading) | least
+            found[cause] = bars(fine, other.reading, least, self.safety)
+        return found
 
     @property
     def quantities(self) -> dict[str, Quantity]:
@@ -74,22 +93,42 @@ class Bars:
         return {n: nothing | {c: own[n].error or 0.0 for c, own in self.by_cause.items()} for n in UNITS}
 
 
-def bars(fine: Reading, coarse: Reading, alone: bool) -> dict[str, Quantity]:
-    """Quantities with SAFETY times what twice the steps change as bars: order one, as at the fronts.
+def bars(fine: Reading, coarse: Reading, least: Mapping[str, float], safety: float) -> dict[str, Quantity]:
+    """Quantities with ``safety`` times what twice the steps change as bars: order one, as at the fronts.
 
-    Of a contact ``alone`` the largest change nearby counts: at one instant two histories may cross.
+    At the ``least`` so much changes: at one instant two histories may cross, and by chance two steps may agree. A norm
+    does not cross zero.
     """
-    found, nearby = {}, _nearby(fine, coarse) if alone else {}
+    found, changed = {}, _changes(fine, coarse)
     for name, unit in UNITS.items():
-        value, other = fine.quantities[name], coarse.quantities[name]
-        error = None
+        value, error = fine.quantities[name], None
         if name == "history_l2":
             error = SAFETY * _distance(fine, coarse)
         elif value is not None:
-            error = np.inf if other is None else SAFETY * max(abs(value - other), nearby.get(name, 0.0))
+            error = safety * max(changed[name], least.get(name, 0.0))
             error += ROUNDING * (1.0 if name in RULED_ABSOLUTE else abs(value))
         found[name] = Quantity(value, error, unit)
     return found
+
+
+def _changes(fine: Reading, coarse: Reading) -> dict[str, float]:
+    """How far two marches are apart, by quantity that the fine one has, infinite where the coarse one has it not.
+
+    The impulse has the striker's momentum and its weight to answer for: both count, as by chance they may cancel.
+    """
+    found = {}
+    for name, value in fine.quantities.items():
+        other = coarse.quantities[name]
+        if value is not None:
+            found[name] = np.inf if other is None else abs(value - other)
+    turned = fine.mass * float(fine.rows[VELOCITY, -1] - coarse.rows[VELOCITY, -1])
+    pressed = (fine.quantities["impulse"] or 0.0) - (coarse.quantities["impulse"] or 0.0)
+    return found | {"impulse": abs(turned) + abs(pressed + turned)}
+
+
+def _halved(coarse: Reading, coarser: Reading) -> dict[str, float]:
+    """At least half of what doubling the steps before changed, by quantity that both have: order one."""
+    return {name: 0.5 * change for name, change in _changes(coarse, coarser).items() if np.isfinite(change)}
 
 
 def _nearby(fine: Reading, coarse: Reading) -> dict[str, float]:
@@ -100,12 +139,11 @@ def _nearby(fine: Reading, coarse: Reading) -> dict[str, float]:
     depth, speed = (np.interp(both[TIME], fine.rows[TIME], fine.rows[row]) for row in (DEPTH, VELOCITY))
     late, deep = both[TIME] > _lately(fine), depth > PEAK_SHARE * depth.max()
     slower = float(np.abs(speed - both[VELOCITY])[late].max(initial=0.0))
-    turned = abs(float(fine.rows[VELOCITY, 0] - fine.rows[VELOCITY, -1])) or np.inf
     return {
         "peak_force": float(change[force > PEAK_SHARE * force.max()].max()),
         "peak_depth": float(np.abs(depth - both[DEPTH])[deep].max(initial=0.0)) + _between_rows(fine),
         "restitution": slower / start,
-        "impulse": slower / turned * abs(fine.quantities["impulse"] or 0.0),
+        "impulse": fine.mass * slower,
     }
 
 
@@ -140,6 +178,22 @@ def _compared(fine: Reading, coarse: Reading) -> tuple[Array, Array]:
     return force, np.abs(force - coarse.force_at(places))
 
 
+def _largest(fine: Reading, coarse: Reading) -> Array:
+    """The largest change of the force about each of the places, N, at the last one also of what follows.
+
+    Between two rows of either both forces are straight lines: their ends tell, however little a jump is displaced.
+    """
+    end = fine.rows[TIME, -1]
+    knots = np.union1d(fine.rows[TIME], coarse.rows[TIME])
+    begun = np.flatnonzero(np.diff(knots) > 2.0 * ROUNDING * end)
+    inside = ROUNDING * end * np.array([[1.0], [-1.0]])
+    times = (np.stack([knots[begun], knots[begun + 1]]) + inside).ravel()
+    found = np.zeros(COMPARED)
+    place = np.minimum(np.round(times / end * (COMPARED - 1)).astype(np.intp), COMPARED - 1)
+    np.maximum.at(found, place, np.abs(fine.force_at(times) - coarse.force_at(times)))
+    return found
+
+
 def _places(fine: Reading) -> Array:
     """Times up to just before the end of contact, s, where a force may jump to zero."""
     return np.linspace(0.0, fine.rows[TIME, -1] * (1.0 - ROUNDING), COMPARED)
@@ -159,7 +213,7 @@ def result_of(
         scene=scene,
         model=scene.model,
         tolerance=numerics.tolerance,
-        history=history(scene, fine.reading, found.others["time_step"].reading),
+        history=history(scene, found),
         quantities=quantities,
         numerics=numerics.as_dict(),
         error_budget={cause: value / peak for cause, value in budget["peak_force"].items()},
@@ -178,17 +232,19 @@ def result_of(
     )
 
 
-def history(scene: Scene, fine: Reading, coarse: Reading) -> History:
-    """The rows, at least as many as a history has, with the force's error band: the largest change around a time."""
+def history(scene: Scene, found: Bars) -> History:
+    """The rows, at least as many as a history has, with the force's error band: the largest change around a time, or
+    half of what doubling the steps before changed there.
+    """
+    fine, coarse, coarser = (one.reading for one in (found.fine, found.others["time_step"], found.quarter))
     rows = fine.rows
     if rows.shape[1] < LEAST_ROWS:
         between = np.linspace(rows[TIME, 0], rows[TIME, -1], LEAST_ROWS)[1:-1]
         more = np.array([np.interp(between, rows[TIME], row) for row in rows])
         rows = np.hstack([rows, more])[:, np.argsort(np.append(rows[TIME], between), kind="stable")]
-    _, change = _compared(fine, coarse)
-    width = int(AWAY * COMPARED)
+    width, change = int(AWAY * COMPARED), np.maximum(_largest(fine, coarse), 0.5 * _largest(coarse, coarser))
     around = np.lib.stride_tricks.sliding_window_view(np.pad(change, width, mode="edge"), 2 * width + 1).max(axis=1)
-    error = SAFETY * np.interp(rows[TIME], _places(fine), around)
+    error = found.safety * np.interp(rows[TIME], _places(fine), around)
     flat, curve = scene.profile.fixed_radius, scene.profile.load_curve
     radius = np.full(rows.shape[1], flat) if flat is not None else curve.contact_radius(rows[DENT])
     return History(rows[TIME], rows[DEPTH], rows[VELOCITY], rows[FORCE], np.asarray(radius), error)

@@ -70,9 +70,10 @@ def _answer(scene: Scene, rtol: float, longest: float = LONGEST) -> Answer:
     impact = _impact(scene, rtol, longest)
     _, end, separated = impact.pieces
     breaks = np.append(impact.starts, end)
-    rows = np.unique(np.concatenate([np.linspace(*ends, PLACES + 1) for ends in pairwise(breaks)]))
+    between = [np.union1d(np.linspace(*ends, PLACES + 1), impact.steps(*ends)) for ends in pairwise(breaks)]
+    rows = np.unique(np.concatenate(between))
     depth, velocity, _, _ = impact.columns(rows)
-    peak_time, peak_force = _peak(impact, breaks)
+    peak_time, peak_force = _peak(impact, between)
     ending = End.SEPARATED if separated else End.TIME
     values = {
         "peak_force": peak_force,
@@ -130,11 +131,11 @@ class _Columns:
         return np.asarray(self(times)[2])
 
 
-def _peak(impact: FlatImpact | TippedImpact, breaks: Array) -> tuple[float, float]:
-    """Time and height of the greatest force: between two echoes it is smooth, at one it may jump, up or down."""
+def _peak(impact: FlatImpact | TippedImpact, between: list[Array]) -> tuple[float, float]:
+    """Time and height of the greatest force: ``between`` two echoes it is smooth, at one it may jump, up or down."""
     found = []
-    for begin, end in pairwise(breaks):
-        rows = np.linspace(begin, np.nextafter(end, begin), PLACES + 1)
+    for places in between:
+        rows = np.append(places[:-1], np.nextafter(places[-1], places[0]))
         found.append(highest(lambda t: impact.columns(t)[2], rows))
         found.append((float(rows[0]), float(impact.columns(rows[:1])[2, 0])))
     return max(found, key=lambda place: place[1])

@@ -25,6 +25,7 @@ from lumped.rod_waves.waves import Waves
 Array = NDArray[np.float64]
 MOST_ECHOES = 400
 PLACES = 65  # in a piece, where its greatest force and its zeros are looked for
+FADING = np.linspace(0.0, 30.0, 601)[1:]  # m/Z until what is left of a front is rounding, and so many places in it
 NOTHING = Polynomial([0.0])
 
 
@@ -96,6 +97,10 @@ class FlatImpact:
         """Times at which echoes arrive, from touch on, s."""
         pieces, end, _ = self.pieces
         return self.waves.arrivals(len(pieces), end)
+
+    def steps(self, begin: float, end: float) -> Array:
+        """Times between two others, s, as many as the forces between them need: they fade within m/Z."""
+        return np.asarray(begin + self.unit * FADING[FADING < (end - begin) / self.unit])
 
     def columns(self, times: Array) -> Array:
         """Depth, velocity, force, and what leaves, f', at times (n,): SI, shape (4, n). At an echo what follows it."""

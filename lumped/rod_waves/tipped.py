@@ -109,6 +109,11 @@ class TippedImpact:
         pieces, end, _ = self.pieces
         return self.waves.arrivals(len(pieces), end)
 
+    def steps(self, begin: float, end: float) -> Array:
+        """Times between two others, s, from one of which to the next the motion is a polynomial."""
+        ends = np.concatenate([piece.ts for piece in self.pieces[0]])
+        return np.asarray(ends[(ends > begin) & (ends < end)])
+
     def columns(self, times: Array) -> Array:
         """Depth, velocity, force, and what leaves, f', at times (n,): SI, shape (4, n)."""
         striker, speed, end = self._states(times)
