@@ -8,6 +8,7 @@ from lumped.model_ledger.peak import Peak as Peak
 from lumped.scene import Scene
 from lumped.scene_tables import Model
 from lumped.sufficiency import LedgerEntry
+from lumped.targets.rod import Rod
 
 
 def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[LedgerEntry, ...]:
@@ -15,6 +16,9 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
     resolved = model or scene.model
     if not scene.has_geometry:
         return (motion.gravity(scene, resolved, peak.force, scene.mass),)
+    dented = isinstance(scene.target, Rod) and scene.profile.fixed_radius is None
+    if dented:
+        peak = kinematics.of_dent(scene, peak)
     height = scene.geometry.target.pressed_height(scene.geometry.shape)
     entries = [
         motion.inertia(scene, resolved, peak),
@@ -29,6 +33,8 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
     ]
     if scene.geometry.shape.plane:
         entries.append(kinematics.ends(scene.geometry.shape, scene.geometry.target, scene.geometry.material.nu))
+    if dented:
+        entries.append(kinematics.rod_end(scene, peak))
     return tuple(entries)
 
 

@@ -20,6 +20,8 @@ from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE
 from lumped.rod_waves.waves import Waves
 
 CASES = 40
+WIDE_CASES = 30
+HAIR, LEAST_BAND = 1e-9, 1e-6  # of the contact, within which a force jumps; of the peak, between rows of the law
 NEAR = 0.01  # share of the contact that counts as a front
 
 
@@ -48,6 +50,34 @@ def drawn(rng: np.random.Generator) -> Scene:
     )
 
 
+def widely_drawn(rng: np.random.Generator) -> Scene:
+    """A rod struck by any profile, 0.05 to 20 times as heavy, some under a weight, some left in mid contact."""
+    radius, modulus, density = 10 ** rng.uniform(-3, -1), 10 ** rng.uniform(6, 11.3), 10 ** rng.uniform(2.5, 4)
+    length, area, speed = radius * 10 ** rng.uniform(0.8, 2.3), np.pi * radius**2, np.sqrt(modulus / density)
+    mass, velocity = area * length * density * 10 ** rng.uniform(-1.3, 1.3), speed * 10 ** rng.uniform(-5, -2.5)
+    exponent = rng.uniform(1.2, 6.0)
+    striker = (
+        {"shape": "punch", "radius": radius},
+        {"shape": "sphere", "radius": radius * 10 ** rng.uniform(-0.7, 2.0)},
+        {"shape": "cone", "angle": rng.uniform(1.0, 20.0)},
+        {"shape": "power", "coefficient": radius ** (1.0 - exponent) * 10 ** rng.uniform(-2.5, -0.5)}
+        | {"exponent": exponent},
+    )[rng.integers(4)]
+    end = ("fixed", "free", "absorbing")[rng.integers(3)]
+    braking = mass / (area * speed * density)  # s, by waves alone
+    gravity = min(velocity / braking * 10 ** rng.uniform(-3, 0.3), 1e5) if rng.random() < 0.3 else 0.0
+    stays = end == "absorbing" or gravity > 0.0 or rng.random() < 0.2
+    return Scene.from_dict(
+        {
+            "striker": striker | {"mass": mass, "velocity": velocity},
+            "target": {"shape": "rod", "area": area, "length": length, "end": end}
+            | {"material": {"law": "elastic", "E": modulus, "nu": rng.uniform(-0.5, 0.4999), "density": density}},
+            "model": {"inertia": True, "profile": "parabola", "gravity": gravity},
+        }
+        | ({"motion": {"end_time": braking * 10 ** rng.uniform(-0.5, 0.7)}} if stays else {})
+    )
+
+
 def exact(scene: Scene) -> Result:
     return laws.get("rod_waves").of(scene).simulate(scene, 1e-7)
 
@@ -73,6 +103,40 @@ def test_every_number_of_a_rod_lies_within_its_bar(campaign_size: Callable[[int]
         away = np.abs(time[:, None] - fronts).min(axis=1) > NEAR * time[-1]
         known_force = np.interp(time, truth.history.time, force)
         assert np.abs(found.history.force - known_force)[away].max() < 1e-3 * force.max()
+
+
+@pytest.mark.parametrize("tolerance", [0.1, 1e-2, 1e-3])
+def test_no_bar_of_a_rod_is_too_small(
+    tolerance: float, campaign_size: Callable[[int], int], uncovered: Callable[..., dict[str, float]]
+) -> None:
+    """Alone, and the force at every time but where it jumps, a hair to either side."""
+    rng = np.random.default_rng([13, round(1 / tolerance)])
+    converged = []
+    for _ in range(campaign_size(WIDE_CASES)):
+        scene = widely_drawn(rng)
+        found, truth = simulate(scene, "fe", {"tolerance": tolerance}), exact(scene)
+        assert not uncovered(found, truth), scene
+        history, known = found.history, truth.history
+        sides = HAIR * history.time[-1] * np.array([[-1.0], [0.0], [1.0]])
+        missed = np.abs(history.force - known.force_at(history.time + sides)).min(axis=0)
+        law = np.interp(history.time, known.time, known.force_error) + LEAST_BAND * history.force.max()
+        assert (missed <= history.force_error + law).all(), scene
+        converged.append(found.converged)
+    assert np.mean(converged) >= 0.95
+
+
+def test_a_weight_pulls_until_the_very_end() -> None:
+    """Contact ends within a step: what left at that step's end had fallen on, and no change of steps told."""
+    striker = {"shape": "sphere", "radius": 2.3e-3, "mass": 4.6e-4, "velocity": 6.7e-3}
+    material = {"law": "elastic", "E": 3.9e6, "nu": 0.42, "density": 364.0}
+    target = {"shape": "rod", "area": 1.9e-4, "length": 0.14, "end": "absorbing", "material": material}
+    model = {"inertia": True, "profile": "parabola", "gravity": 3.6}
+    scene = Scene.from_dict({"striker": striker, "target": target, "model": model})
+    known = exact(scene).quantities["restitution"].value
+    for steps in (300, 310, 320, 330):
+        found = simulate(scene, "fe", {"steps": steps}).quantities["restitution"]
+        assert found.value == pytest.approx(known, abs=found.error)
+        assert found.error < 3e-4
 
 
 def test_a_heavy_ball_meets_the_first_front_long_before_it_turns() -> None:

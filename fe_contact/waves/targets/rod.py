@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -100,7 +101,10 @@ def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> R
     steps = chosen.numerics.steps
     assert isinstance(chosen.numerics, WaveNumerics)
     most = MOST * steps / elements(scene, chosen.numerics)
-    return certified(scene, chosen, partial(run, scene), partial(_varied, scene), most, progress)
+    found = certified(scene, chosen, partial(run, scene), partial(_varied, scene), most, progress)
+    if scene.profile.fixed_radius is not None:
+        return found
+    return replace(found, model_ledger=model_ledger(scene, Peak.of(found.quantities, found.history)))
 
 
 def _usual(scene: Scene) -> dict[str, Any]:
