@@ -184,7 +184,7 @@ def _largest(fine: Reading, coarse: Reading) -> Array:
     Between two rows of either both forces are straight lines: their ends tell, however little a jump is displaced.
     """
     end = fine.rows[TIME, -1]
-    knots = np.union1d(fine.rows[TIME], coarse.rows[TIME])
+    knots = np.unique(np.concatenate([fine.rows[TIME], coarse.rows[TIME], _places(fine)]))
     begun = np.flatnonzero(np.diff(knots) > 2.0 * ROUNDING * end)
     inside = ROUNDING * end * np.array([[1.0], [-1.0]])
     times = (np.stack([knots[begun], knots[begun + 1]]) + inside).ravel()
