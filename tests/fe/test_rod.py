@@ -125,6 +125,18 @@ def test_no_bar_of_a_rod_is_too_small(
     assert np.mean(converged) >= 0.95
 
 
+def test_steps_that_agree_by_chance_make_no_bar_too_small(uncovered: Callable[..., dict[str, float]]) -> None:
+    """What a quantity does as steps double crosses zero somewhere: at some of these steps for some quantity."""
+    striker = {"shape": "sphere", "radius": 0.13, "mass": 12.0, "velocity": 0.058}
+    material = {"law": "elastic", "E": 2.6e8, "nu": -0.36, "density": 7400.0}
+    target = {"shape": "rod", "area": 7.4e-4, "length": 2.2, "end": "fixed", "material": material}
+    scene = Scene.from_dict({"striker": striker, "target": target, "model": {"inertia": True, "profile": "parabola"}})
+    truth = exact(scene)
+    for steps in range(500, 1000, 20):
+        found = simulate(scene, "fe", {"steps": steps, "tolerance": 0.1})
+        assert not uncovered(found, truth), steps
+
+
 def test_a_weight_pulls_until_the_very_end() -> None:
     """Contact ends within a step: what left at that step's end had fallen on, and no change of steps told."""
     striker = {"shape": "sphere", "radius": 2.3e-3, "mass": 4.6e-4, "velocity": 6.7e-3}
