@@ -83,7 +83,8 @@ def clustered(contacts: tuple[tuple[float, float], ...], pause: float) -> list[t
 
 
 def _row(sample: Sample) -> tuple[float, ...]:
-    return sample.time, float(sample.displacement[0]), float(sample.velocity[0]), sample.force, 0.0
+    """A bar has no dent: in its place stands the gap to the plane, below zero."""
+    return sample.time, float(sample.displacement[0]), float(sample.velocity[0]), sample.force, float(sample.overlap[0])
 
 
 def _ended(rows: Array, end: float) -> tuple[Array, float]:
@@ -107,17 +108,32 @@ def _ended(rows: Array, end: float) -> tuple[Array, float]:
 
 
 def _cleaned(rows: Array, spans: list[tuple[float, float]]) -> Array:
-    """Forces without the ringing of the first element at both ends of every contact: a line through what follows."""
-    time, cleaned = rows[TIME], rows.copy()
+    """Forces without the ringing of the first element at both ends of every contact, but a line through what follows.
+
+    There the force jumps: two rows of one time at every end within the rows.
+    """
+    time, cleaned, ends = rows[TIME], rows.copy(), list[Array]()
     for start, end in spans:
         pressed = np.flatnonzero((time >= start) & (time <= end))
         if pressed.size < 2 * (SPOILED + TELLING):
             continue
-        for ordered in (pressed, pressed[::-1]):
+        for ordered, edge in ((pressed, start), (pressed[::-1], end)):
             telling, spoiled = ordered[SPOILED : SPOILED + TELLING], ordered[:SPOILED]
             line = np.polyfit(time[telling] - start, rows[FORCE, telling], 1)
             cleaned[FORCE, spoiled] = np.maximum(np.polyval(line, time[spoiled] - start), 0.0)
-    return cleaned
+            if time[0] < edge < spans[-1][1]:
+                ends += _jump(rows, edge, max(float(np.polyval(line, edge - start)), 0.0), edge == end)
+    places = np.searchsorted(time, [row[TIME] for row in ends])
+    return np.insert(cleaned, places, np.array(ends).T, axis=1) if ends else cleaned
+
+
+def _jump(rows: Array, time: float, force: float, falls: bool) -> list[Array]:
+    """Two rows of a time, s, between which the force jumps to nothing or from it."""
+    without = np.array([np.interp(time, rows[TIME], row) for row in rows])
+    without[[TIME, FORCE]] = time, 0.0
+    pressed = without.copy()
+    pressed[FORCE] = force
+    return [pressed, without] if falls else [without, pressed]
 
 
 def _onwards(values: Array) -> float:

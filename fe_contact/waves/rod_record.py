@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -44,7 +45,7 @@ class Run:
 
 @dataclass(frozen=True, eq=False)
 class Bars:
-    """A march and the same with one cause of error varied, by cause, half the steps among them; a ``quarter`` of them."""
+    """A march, the same with one cause of error varied, by cause, half the steps among them; a ``quarter`` of them."""
 
     fine: Run
     others: Mapping[str, Run]
@@ -65,12 +66,18 @@ class Bars:
         """Whether there was one contact only."""
         return len(self.fine.contacts) < 2
 
+    @property
+    def moved(self) -> float:
+        """Most by which half the steps move a contact, or half of what a quarter of them do, s."""
+        coarse, coarser = self.others["time_step"], self.quarter
+        return max(_apart(self.fine, coarse), 0.5 * _apart(coarse, coarser))
+
     @cached_property
     def by_cause(self) -> dict[str, dict[str, Quantity]]:
         """The quantities with the bars of each cause."""
         fine, found = self.fine.reading, {}
         for cause, other in self.others.items():
-            least = _nearby(fine, other.reading) if self._alone else {}
+            least = _nearby(fine, other.reading) if self._alone else _ended_later(self.fine, other)
             if cause == "time_step":
                 least = _halved(other.reading, self.quarter.reading) | least
             found[cause] = bars(fine, other.reading, least, self.safety)
@@ -145,6 +152,46 @@ def _nearby(fine: Reading, coarse: Reading) -> dict[str, float]:
         "restitution": slower / start,
         "impulse": fine.mass * slower,
     }
+
+
+def _apart(fine: Run, coarse: Run) -> float:
+    """Most by which contacts of two marches start apart, or may faintly press before that or after their end, s."""
+    pairs = zip(fine.contacts, coarse.contacts, strict=False)
+    starts = [abs((one["start"] or 0.0) - (other["start"] or 0.0)) for one, other in pairs]
+    return max((*starts, *(time for pair in _faintly(fine, coarse) for time in pair)), default=0.0)
+
+
+def _faintly(fine: Run, coarse: Run) -> list[tuple[float, float]]:
+    """How long after each contact and before the next one both may faintly press, s.
+
+    They may while the gap is smaller than what the steps change of it.
+    """
+    other, found = coarse.reading.rows, list[tuple[float, float]]()
+    for one, then in pairwise(fine.contacts):
+        end, start = (one["start"] or 0.0) + (one["duration"] or 0.0), then["start"] or 0.0
+        time, dent = (_free(fine, end, start)[row] for row in (TIME, DENT))
+        near = time[-dent < np.abs(dent - np.interp(time, other[TIME], other[DENT]))]
+        highest = time[np.argmin(dent)]
+        left, touching = near[near <= highest], near[near > highest]
+        found.append((float(left.max(initial=end)) - end, start - float(touching.min(initial=start))))
+    return found
+
+
+def _free(fine: Run, end: float, start: float) -> Array:
+    """Rows between a contact's end and the next one's start, s."""
+    rows = fine.reading.rows
+    return rows[:, (rows[TIME] >= end) & (rows[TIME] <= start)]
+
+
+def _ended_later(fine: Run, coarse: Run) -> dict[str, float]:
+    """Time, s, by which the first contact may faintly go on, and the share of the velocity that gravity changes till
+    then, or in the time by which the steps change the end: that change is the error, without more safety.
+    """
+    one, then = fine.contacts[:2]
+    free = _free(fine, (one["start"] or 0.0) + (one["duration"] or 0.0), then["start"] or 0.0)
+    later, moved = _faintly(fine, coarse)[0][0], (one["duration"] or 0.0) - (coarse.contacts[0]["duration"] or 0.0)
+    faster = np.ptp(free[VELOCITY]) / np.ptp(free[TIME]) / abs(fine.reading.rows[VELOCITY, 0])
+    return {"duration": later, "restitution": float(faster * max(later, abs(moved) / UNSHOWN))}
 
 
 def _lately(fine: Reading) -> float:
@@ -242,7 +289,8 @@ def history(scene: Scene, found: Bars) -> History:
         between = np.linspace(rows[TIME, 0], rows[TIME, -1], LEAST_ROWS)[1:-1]
         more = np.array([np.interp(between, rows[TIME], row) for row in rows])
         rows = np.hstack([rows, more])[:, np.argsort(np.append(rows[TIME], between), kind="stable")]
-    width, change = int(AWAY * COMPARED), np.maximum(_largest(fine, coarse), 0.5 * _largest(coarse, coarser))
+    change = np.maximum(_largest(fine, coarse), 0.5 * _largest(coarse, coarser))
+    width = int(COMPARED * min(max(AWAY, found.safety * found.moved / rows[TIME, -1]), 1.0))
     around = np.lib.stride_tricks.sliding_window_view(np.pad(change, width, mode="edge"), 2 * width + 1).max(axis=1)
     error = found.safety * np.interp(rows[TIME], _places(fine), around)
     flat, curve = scene.profile.fixed_radius, scene.profile.load_curve
