@@ -1,10 +1,10 @@
 """The error budget: the impact again with one setting varied at a time, by finite elements alone.
 
 Time steps in the ratio 1 : 2 : 4 give a value (extrapolated from the two finest) and its change from the pair before.
-Mesh and penalty are varied on the coarsest of them, where a march is cheapest: what they change does not depend on the
-step. The far field of an elastic body on a mesh that breathes with the contact takes no march, unless further contacts
-follow, each of which is judged like the first from the same runs. A change between settings in the ratio 1 : 2 bounds
-the error by
+Mesh and penalty are varied on the coarsest of them, where a march is cheapest: what they change hardly depends on the
+step, unless they are coarse themselves. The far field of an elastic body on a mesh that breathes with the contact takes
+no march, unless further contacts follow, each of which is judged like the first from the same runs. A change between
+settings in the ratio 1 : 2 bounds the error by
 
     SAFETY / (2^order - 1) x change ,
 
@@ -171,21 +171,29 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[C
         held = _by_stiffness(runs, steps.value, surface, numerics)
         return steps.value, held | {"time_step": (*steps.changes, *steps.jitter)}
     cheap = numerics.varied(steps=steps.cheap)
-    base = curve(cheap)
-    mesh, by_mesh = other_mesh(cheap) if surface.breathes else other_mesh(cheap, MESH_ORDER_ANYWHERE)
-    # a soft penalty is the softer the shorter the step, in which a dashpot is stiff
-    soft = numerics.penalty < LEAST_HALVED_SETTING["penalty"]
-    pressed = numerics.varied(steps=max(numerics.steps, steps.cheap)) if soft else cheap
+    meshed, pressed = (_judging(numerics, cheap, cause) for cause in ("mesh", "penalty"))
+    mesh, by_mesh = other_mesh(meshed) if surface.breathes else other_mesh(meshed, MESH_ORDER_ANYWHERE)
     penalty, stiffer = other_setting(pressed, "penalty")
     swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long
     by_steps = swings or steps.jitter_falls
     changes: dict[str, Causes] = {
-        "mesh": (_change(base, curve(mesh), by_mesh), *(() if by_steps else steps.jitter)),
+        "mesh": (_change(curve(meshed), curve(mesh), by_mesh), *(() if by_steps else steps.jitter)),
         "penalty": (_change(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
         "time_step": (*steps.changes, *(steps.jitter if by_steps else ())),
         "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
     }
     return steps.value, changes
+
+
+def _judging(numerics: Numerics, cheap: Numerics, cause: str) -> Numerics:
+    """Settings of which one is varied: with few steps, but where its half would tell nothing with all of them.
+
+    A soft penalty is the softer the shorter the step, in which a dashpot is stiff; what a coarse mesh changes, few
+    steps may hide.
+    """
+    key = SETTING[cause]
+    coarse = getattr(numerics, key) < LEAST_HALVED_SETTING[key]
+    return numerics.varied(steps=max(numerics.steps, cheap.steps)) if coarse else cheap
 
 
 def _by_stiffness(runs: Runs, value: Curve, end: FlatEnd, numerics: Numerics) -> dict[str, Causes]:

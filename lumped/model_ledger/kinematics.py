@@ -21,8 +21,8 @@ FIRST_ORDER = {
     "neo-Hooke": Polynomial([0.247781, -0.830110, 0.390577, 0.426889]),
     "Hencky": Polynomial([0.425033, -1.477636, 1.302120, -0.093957]),
 }
-# By how much less a rod's end comes in than a half-space, its uniform shortening apart, over F/(E* b), b the rod's radius:
-# 0.61 at nu = -0.5 to 0.66 at 0.5; tests/fe/test_rod_end.py finds it again.
+# By how much less a rod's end comes in than a half-space, its uniform shortening apart, over F/(E* b), b the rod's
+# radius: 0.61 at nu = -0.5 to 0.66 at 0.5; tests/fe/test_rod_end.py finds it again.
 ROD_END = 0.65
 IN_AN_IMPACT = 0.5  # of the change at one depth: W = (2/5) k d^(5/2) + (1/3) k c1 d^3/sqrt(R) is what was brought
 PROFILE = "model.profile = 'exact'"
@@ -69,7 +69,7 @@ def of_dent(scene: Scene, peak: Peak) -> Peak:
 
 
 def rod_end(scene: Scene, peak: Peak) -> LedgerEntry:
-    """A rod's end comes in less than a half-space of its material, in proportion to the force: k F/(E* b), b its radius.
+    """A rod's end comes in less than a half-space of its material, by k F/(E* b), b the rod's radius.
 
     What a half-space stores too much, k F^2/(2 E* b), is left to others, where the force goes as energy^(n/(n + 1)): to
     the dent alone, whose energy is F d/(n + 1), or to all that the striker brought. The geometric mean of both.

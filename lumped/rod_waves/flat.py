@@ -100,7 +100,7 @@ class FlatImpact:
 
     def steps(self, begin: float, end: float) -> Array:
         """Times between two others, s, as many as the forces between them need: they fade within m/Z."""
-        return np.asarray(begin + self.unit * FADING[FADING < (end - begin) / self.unit])
+        return np.asarray(begin + self.unit * FADING[(end - begin) / self.unit > FADING])
 
     def columns(self, times: Array) -> Array:
         """Depth, velocity, force, and what leaves, f', at times (n,): SI, shape (4, n). At an echo what follows it."""

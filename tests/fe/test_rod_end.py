@@ -123,9 +123,8 @@ def test_the_dent_that_presses_is_that_of_the_rods_end(share: float) -> None:
     depth = (share * radius) ** 2 / 0.2
     speed = math.sqrt(16.0 / 15.0 * 1e9 / (1.0 - nu**2) * math.sqrt(0.2) * depth**2.5 / 0.5)
     striker = {"shape": "sphere", "radius": 0.2, "mass": 0.5, "velocity": speed}
-    scene = Scene.from_dict(
-        {"striker": striker, "target": target | {"material": material}, "model": {"inertia": True, "profile": "parabola"}}
-    )
+    model = {"inertia": True, "profile": "parabola"}
+    scene = Scene.from_dict({"striker": striker, "target": target | {"material": material}, "model": model})
     found = simulate(scene, "fe", {})
     row = int(np.argmax(found.history.force))
     force, contact = found.history.force[row], found.history.contact_radius[row]
@@ -150,7 +149,7 @@ def test_the_ledger_says_how_far_a_half_space_is_from_a_rods_end(campaign_size: 
 
 
 def test_result_json_says_where_the_dent_comes_from() -> None:
-    """By elements and by the law alike, no more than of a dent that all the energy goes into; a flat end dents nothing."""
+    """By elements and by the law alike, no more than of a dent that takes all energy; a flat end dents nothing."""
     scene = Scene.load("concrete-pole")
     for result in (simulate(scene, "fe", {}), laws.get("rod_waves").of(scene).simulate(scene, 1e-6)):
         (entry,) = [one for one in result.to_json()["model_ledger"] if one["effect"] == EFFECT]
