@@ -280,7 +280,8 @@ def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics, f
     change = Change(value, before, least, weights, quarter.duration * float(quarter.x[UNSEEN]) ** 2)
     shares = {name: share / KEPT_OF_FORCE for name, share in KEPT.items()}
     kept = Change(fine, half, KEPT_OF_FORCE * trusted.kept, shares)
-    jitter, finer, coarser = (Change(one, one.thinned(), 1.0) for one in (value, fine, half))  # its own is the largest
+    end = {} if value.separated else {"peak_force": UNORDERED}  # at a cut-off, where no later step evens it out
+    jitter, finer, coarser = (Change(one, one.thinned(), 1.0, end) for one in (value, fine, half))  # its own is largest
     falls = finer.history < FALLS * coarser.history
     changes = (change, kept) if trusted.kept else (change,)
     return _TimeSteps(value, changes, (jitter,), numerics.steps // 4, falls)

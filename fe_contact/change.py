@@ -12,8 +12,9 @@ import numpy.typing as npt
 from fe_contact.curve import Curve, Reading
 from fe_contact.forms import Array
 
-DEEP = 0.998  # of the largest depth, above which it is near: further away what only comes later would count as an error
-SMOOTHING = 0.06  # share of the contact over which a pointwise change counts as the error of its neighbours
+TOP = 0.998  # of the largest depth or force, above which it is near: further away what comes later counts as an error
+STEEPER = 2.0  # times the chord there, that the slope of a change may have
+SMOOTHING = 0.08  # share of the contact over which a pointwise change counts as the error of its neighbours
 FIRST_ORDER = 1.25  # factor where order one is all that shows
 UNORDERED = 2.5  # factor where no order shows: the finer of two runs errs by less than twice their distance
 
@@ -44,7 +45,7 @@ class Change:
         around = {
             "peak_force": float(self._force_change[first.near_peak].max()),
             "peak_time": self._peak_time,
-            "peak_depth": float(depth[first.dense.depth > DEEP * first.dense.depth.max()].max()),
+            "peak_depth": float(depth[first.dense.depth > TOP * first.dense.depth.max()].max()),
             "duration": float(depth[first.late :].max()) / speed if speed > 0.0 else np.inf,
             "impulse": self.impulse,
             "restitution": self.velocity / first.strike.velocity,
@@ -72,7 +73,8 @@ class Change:
         """Error of the force at times, N: the largest change in the neighbourhood of each.
 
         While no order shows the whole change counts, and twice that within the first step of all; where the path turns,
-        and with it, of a viscous contact, the force's slope at once, the order is one.
+        and with it, of a viscous contact, the force's slope at once, the order is one. What steps err by there and at
+        touch, motion carries along: forces of viscous contacts have the velocity's order.
         """
         places, change = self._pointwise
         width = max(1, round(SMOOTHING * len(change)))
@@ -81,7 +83,8 @@ class Change:
         first_step = self.second.duration * self.second.x[1] ** 2
         resolved = time > (first_step if self.unresolved is None else self.unresolved)
         whole = ~resolved | self._about_turn(time)
-        factor = np.where(whole, max(self.factor, FIRST_ORDER), self.factor)
+        carried = 1.0 if self.second.strike.relaxation.is_elastic else self.weights.get("restitution", 1.0)
+        factor = np.where(whole, max(carried * self.factor, FIRST_ORDER), carried * self.factor)
         factor[time <= self.first.duration * self.first.x[1] ** 2] = max(self.factor, UNORDERED)
         return np.asarray(factor * np.interp(time, places, around))
 
@@ -156,12 +159,22 @@ class Change:
 
     @property
     def _peak_time(self) -> float:
-        """How far a change of the force's slope moves its peak: slope over curvature, s."""
+        """How far a change of the force's slope moves its peak: slope over curvature, s.
+
+        The curvature is that of all forces near the peak, the slope that of the change: of all these forces where a
+        dashpot makes it jitter, else twice the chord over the top.
+        """
         time, force, near = self.first.dense_time, self.first.dense_force, self.first.near_peak
         top = min(max(int(force.argmax()), 1), len(force) - 2)
         left, right = min(near.start, top - 1), max(near.stop - 1, top + 1)
-        slope = np.abs(np.gradient(self._second.force - force, time)[left : right + 1]).max()
         falling = (force[top] - force[right]) / (time[right] - time[top])
         rising = (force[top] - force[left]) / (time[top] - time[left])
         curvature = 2 * (falling + rising) / (time[right] - time[left])
+        change = self._second.force - force
+        if self.first.strike.relaxation.viscosity:
+            slope = np.abs(np.gradient(change, time)[left : right + 1]).max()
+        else:
+            high = np.flatnonzero(force > TOP * force.max())
+            begin, end = min(high[0], top - 1), max(high[-1], top + 1)
+            slope = STEEPER * np.ptp(change[begin : end + 1]) / (time[end] - time[begin])
         return float(min(slope / abs(curvature), self.first.duration)) if curvature else self.first.duration
