@@ -14,7 +14,7 @@ from fe_contact.forms import Array
 
 TOP = 0.998  # of the largest depth or force, above which it is near: further away what comes later counts as an error
 STEEPER = 2.0  # times the chord there, that the slope of a change may have
-SMOOTHING = 0.08  # share of the contact over which a pointwise change counts as the error of its neighbours
+SMOOTHING = 0.07  # share of the contact over which a pointwise change counts as the error of its neighbours
 FIRST_ORDER = 1.25  # factor where order one is all that shows
 UNORDERED = 2.5  # factor where no order shows: the finer of two runs errs by less than twice their distance
 

@@ -134,10 +134,10 @@ def test_bars_that_claim_anything_cover(points: tuple[Point, ...]) -> None:
 
 
 def test_a_default_marches_each_choice_of_settings_once() -> None:
-    """Of 400 and 800 steps: 200, 400 and 800."""
+    """Of 400 and 800 steps, with half and a quarter of them: 100, 200, 400 and 800."""
     result = simulate(Scene.load("rod"), "fe", {})
     assert result.numerics["steps"] == 800
-    assert result.work["marches"] == 3
+    assert result.work["marches"] == 4
 
 
 def test_without_exact_waves_the_reference_is_finer_and_its_bar_is_told(
