@@ -24,13 +24,14 @@ import numpy.typing as npt
 
 from fe_contact.forms import Array
 from fe_contact.kept import Store
-from fe_contact.line_search import Point, descended
 from fe_contact.pressed_surface import PressedSurface, solved
 
 MAX_ITERATIONS = 60
 UNGUARDED = 8  # iterations that nearly always suffice, and need no line search
 TRUSTED = 1e-3  # of the following: where a striker moved by one leaves no more, other overlaps do not either
 RESIDUAL = 1e-6  # of the largest overlap that presses: the answer is exact for one which differs by less
+ENERGY_ROUNDING = 1e-15  # a change of the energy below this share is rounding
+SHORTEST = 1e-10  # share of a step below which the energy stands still
 ROOM = 32e6  # bytes of answers to sets of touching points that are kept: some 300 of them
 
 Touching = npt.NDArray[np.bool_]
@@ -83,7 +84,7 @@ class ContactSolution:
 
 def solve(problem: ContactProblem, touching: Touching) -> ContactSolution:
     """Solve from a first guess of the points in contact, shape (q,)."""
-    before: Point | None = None
+    before: _Point | None = None
     held, guarded = touching.tobytes(), UNGUARDED
     for iteration in range(1, MAX_ITERATIONS + 1):
         answer = _answer(problem.surface, problem.penalty, held) if problem.surface.recurring else _once(problem, held)
@@ -93,9 +94,9 @@ def solve(problem: ContactProblem, touching: Touching) -> ContactSolution:
             settled = answer.trusted or _balances(problem, gap)
             return _solution(problem, gap, iteration, settled)
         if iteration >= guarded and isinstance(problem.yielding, float):
-            point = Point(answer.springs * gap, retreat, gap)
+            point = _Point(answer.springs * gap, retreat, gap)
             if before is not None:
-                point, still = descended(problem, before, point)
+                point, still = _descended(problem, before, point)
                 gap, found = point.gap, (point.gap > 0.0).tobytes()
                 if still:
                     if _balances(problem, gap):
@@ -193,3 +194,43 @@ def _answered(surface: PressedSurface, penalty: float, touching: bytes) -> _Answ
     lifted = left.sum(axis=1)
     off = np.abs(1.0 - surface.displaced(springs * lifted) - lifted).max()
     return _Answer(left, lifted, springs, float(springs @ lifted), bool(off <= TRUSTED * RESIDUAL))
+
+
+# --- the line search: a step of Newton's method that does not lessen the energy is shortened
+
+
+@dataclass(frozen=True, eq=False)
+class _Point:
+    """A place between Newton's points: forces (q,) that displace the surface, striker's retreat, gap (q,)."""
+
+    forces: Array
+    retreat: float
+    gap: Array
+
+    def towards(self, other: _Point, share: float) -> _Point:
+        """The point at a share of the way to another."""
+        return _Point(
+            self.forces + share * (other.forces - self.forces),
+            self.retreat + share * (other.retreat - self.retreat),
+            self.gap + share * (other.gap - self.gap),
+        )
+
+    def energy(self, problem: ContactProblem) -> float:
+        """J of the module's formula."""
+        strain = problem.surface.work(self.forces)
+        striker = self.retreat**2 / float(problem.yielding) if problem.yielding else 0.0
+        pressed = problem.surface.weights @ np.maximum(self.gap, 0.0) ** 2
+        return 0.5 * (strain + striker + problem.penalty * float(pressed))
+
+
+def _descended(problem: ContactProblem, start: _Point, end: _Point) -> tuple[_Point, bool]:
+    """The end, or the nearest point towards it of less energy than the start; whether the energy stands still."""
+    energy = start.energy(problem)
+    point, lowest, share = end, end.energy(problem), 1.0
+    while lowest > energy * (1 + ENERGY_ROUNDING):
+        share /= 2
+        if share < SHORTEST:
+            return start, True
+        point = start.towards(end, share)
+        lowest = point.energy(problem)
+    return point, abs(energy - lowest) <= ENERGY_ROUNDING * abs(lowest)

@@ -16,12 +16,11 @@ from lumped.pair import contact_modulus
 if TYPE_CHECKING:
     from lumped.history import History
     from lumped.indenter import Indenter
-    from lumped.result import Quantity
     from lumped.scene import Scene
 
 
-def groups(scene: Scene, quantities: Mapping[str, Quantity], history: History) -> dict[str, Any]:
-    """The groups by name; empty without a geometry, None where one is not defined.
+def groups(scene: Scene, values: Mapping[str, float | None], history: History) -> dict[str, Any]:
+    """The groups by name, of the ``values`` of the quantities; empty without a geometry, None where one is undefined.
 
     E_i/E_inf of the contact moduli; tau/T, every relaxation time over the duration; nu; a/R with the largest contact
     radius; h/a, thickness over that; and, F0 and T0 the peak force and duration of the shape's elastic impact on the
@@ -31,7 +30,6 @@ def groups(scene: Scene, quantities: Mapping[str, Quantity], history: History) -
         return {}
     geometry, modulus = scene.geometry, scene.contact_modulus
     largest = float(history.contact_radius.max())
-    values = {name: quantity.value for name, quantity in quantities.items()}
     duration = values["duration"]
     unit = geometry.shape.hertz_impact(modulus.relaxed or modulus.glassy, scene.reduced_mass, scene.velocity)
     return {

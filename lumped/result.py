@@ -85,6 +85,7 @@ class Result:
 
     def to_json(self) -> dict[str, Any]:
         """The content of result.json; what is not finite is null."""
+        values = {name: quantity.value for name, quantity in self.quantities.items()}
         content = {
             "schema": SCHEMA,
             "method": self.method,
@@ -97,7 +98,7 @@ class Result:
             "model": vars(self.model),
             "numerics": self.numerics,
             "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
-            "dimensionless": groups(self.scene, self.quantities, self.history),
+            "dimensionless": groups(self.scene, values, self.history),
             "contacts": list(self.contacts),
             "recovery": None if self.recovery is None else self.recovery.to_json(),
             "error_budget": self.error_budget,

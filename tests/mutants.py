@@ -55,7 +55,7 @@ ERRORS = tuple(
 )  # fmt: skip
 CORE = (
     *ERRORS, "fe_contact/pressing.py", "fe_contact/fixed_contact.py", "fe_contact/coming_radius.py",
-    "fe_contact/striker.py", "fe_contact/opening.py", "fe_contact/line_search.py", "fe_contact/waves/*.py",
+    "fe_contact/striker.py", "fe_contact/opening.py", "fe_contact/waves/*.py",
     "fe_contact/far_field/*.py", "fe_contact/enforcement/*.py", "fe_contact/schemes/*.py", "fe_contact/bodies/*.py",
     "lumped/hereditary/*.py", "lumped/collide/*.py", "lumped/spring_row/*.py", "lumped/table1/*.py",
     "lumped/rod_waves/*.py", "lumped/laws/_hereditary*.py", "lumped/laws/mdr.py", "lumped/laws/correspondence.py",

@@ -1,15 +1,15 @@
-"""What moves, what it meets, and what the law remembers between two events."""
+"""What moves, what it meets, what the law remembers between two events, and one step of the motion."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
+from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from lumped.collide.step import Step
+from lumped.collide.nodes import Nodes
 
 Array = NDArray[np.float64]
 # The least depth a law is asked for: powers below one of it stay finite, as do their slopes.
@@ -44,6 +44,42 @@ class State(NamedTuple):
     rate: float
     lost: float
     memory: tuple[float, ...] = ()
+
+
+class Step(NamedTuple):
+    """One step from `start`, `length` s long; gains, rates, depths and forces at the points of `nodes`, shape (s,).
+
+    A gain, m/s2, is the acceleration times the pace of the nodes: the rate's slope over the place.
+    """
+
+    start: State
+    length: float
+    nodes: Nodes
+    gain: Array
+    rate: Array
+    depth: Array
+    force: Array
+    end: State
+    iterations: int
+
+    @property
+    def last_acceleration(self) -> float:
+        """At its end, m/s2; not for a step whose nodes are mirrored."""
+        return float(self.gain[-1] / self.nodes.pace[-1])
+
+    def last_slope(self, values: Array) -> float:
+        """The slope over time, at its end, of what has these values at its points; not for mirrored nodes."""
+        return float(self.nodes.leaving @ values / (self.nodes.pace[-1] * self.length))
+
+    def accelerations(self, shares: Array) -> Array:
+        """By its polynomial, m/s2, at shares of its time in (0, 1], shape (n,); not for mirrored nodes."""
+        power, begun = self.nodes.power, self.nodes.begun
+        if power == 1:
+            return np.asarray(legendre.legval(2.0 * shares - 1.0, self.nodes.series @ self.gain))
+        low, high = self.nodes.roots
+        root = (shares + begun) ** (1.0 / power)
+        gains = legendre.legval(2.0 * (root - low) / (high - low) - 1.0, self.nodes.series @ self.gain)
+        return np.asarray(gains / (power * (high - low) * root ** (power - 1)))
 
 
 class PointLaw(Protocol):

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.collide.bodies import Bodies, PointLaw, Stage, State
+from lumped.collide.bodies import Bodies, PointLaw, Stage, State, Step
 from lumped.collide.nodes import STAGES
 from lumped.collide.phase import Event, March, Phase
-from lumped.collide.step import Step
 from lumped.ending import AT_REST, End
 from lumped.errors import TooManySteps
 

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.collide.bodies import Bodies, PointLaw, Stage, State
+from lumped.collide.bodies import Bodies, PointLaw, Stage, State, Step
 from lumped.collide.nodes import STAGES, Nodes
-from lumped.collide.step import NODES, Step, roughness, solved
+from lumped.collide.step import NODES, roughness, solved
 from lumped.ending import AT_REST
 from lumped.errors import TooManySteps
 

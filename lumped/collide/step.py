@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv
 
-from lumped.collide.bodies import TINY, Bodies, PointLaw, Stage, State
+from lumped.collide.bodies import TINY, Bodies, PointLaw, Stage, State, Step
 from lumped.collide.nodes import STAGES as STAGES
 from lumped.collide.nodes import Nodes, radau
 
@@ -22,42 +20,6 @@ ITERATIONS = 12
 SMALL = 1e-11
 # A correction as small as this is rounding.
 ROUNDING = 1e-14
-
-
-class Step(NamedTuple):
-    """One step from `start`, `length` s long; gains, rates, depths and forces at the points of `nodes`, shape (s,).
-
-    A gain, m/s2, is the acceleration times the pace of the nodes: the rate's slope over the place.
-    """
-
-    start: State
-    length: float
-    nodes: Nodes
-    gain: Array
-    rate: Array
-    depth: Array
-    force: Array
-    end: State
-    iterations: int
-
-    @property
-    def last_acceleration(self) -> float:
-        """At its end, m/s2; not for a step whose nodes are mirrored."""
-        return float(self.gain[-1] / self.nodes.pace[-1])
-
-    def last_slope(self, values: Array) -> float:
-        """The slope over time, at its end, of what has these values at its points; not for mirrored nodes."""
-        return float(self.nodes.leaving @ values / (self.nodes.pace[-1] * self.length))
-
-    def accelerations(self, shares: Array) -> Array:
-        """By its polynomial, m/s2, at shares of its time in (0, 1], shape (n,); not for mirrored nodes."""
-        power, begun = self.nodes.power, self.nodes.begun
-        if power == 1:
-            return np.asarray(legendre.legval(2.0 * shares - 1.0, self.nodes.series @ self.gain))
-        low, high = self.nodes.roots
-        root = (shares + begun) ** (1.0 / power)
-        gains = legendre.legval(2.0 * (root - low) / (high - low) - 1.0, self.nodes.series @ self.gain)
-        return np.asarray(gains / (power * (high - low) * root ** (power - 1)))
 
 
 def solved(

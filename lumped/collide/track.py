@@ -10,12 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.collide.bodies import PointLaw
+from lumped.collide.bodies import PointLaw, Step
 from lumped.collide.contact import Contact
 from lumped.collide.motion import Motion
 from lumped.collide.nodes import STAGES, place_of
 from lumped.collide.phase import Phase
-from lumped.collide.step import Step
 from lumped.ending import End
 
 Array = NDArray[np.float64]

@@ -10,10 +10,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.collide.bodies import TINY, Bodies, Stage, State
+from lumped.collide.bodies import TINY, Bodies, Stage, State, Step
 from lumped.collide.flight import returned
 from lumped.collide.outcome import Outcome
-from lumped.collide.step import Step
 from lumped.laws import _impacts
 from lumped.load_curves.base import LoadCurve
 from lumped.result import Result

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.collide import memory
-from lumped.collide.bodies import TINY, Bodies, Stage, State
+from lumped.collide.bodies import TINY, Bodies, Stage, State, Step
 from lumped.collide.hereditary import HereditaryLoad, StepLoad
 from lumped.collide.nodes import through_zero
-from lumped.collide.step import NODES, Step
+from lumped.collide.step import NODES
 from lumped.laws._force_law import ForceLaw
 from lumped.scene import Scene
 from lumped.scene_tables import Model

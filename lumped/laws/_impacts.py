@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.clock import Clock
-from lumped.collide.bodies import Bodies, State
+from lumped.collide.bodies import Bodies, PointLaw, State
 from lumped.collide.half_widths import half_widths
 from lumped.collide.motion import Motion, motion
 from lumped.collide.outcome import Outcome, outcome_of
@@ -18,11 +18,10 @@ from lumped.collide.phase import Phase
 from lumped.collide.track import Track
 from lumped.ending import End
 from lumped.laws._assembly import Answer, assemble, bars, impulse_of
+from lumped.load_curves.base import LoadCurve
 from lumped.result import UNITS, Quantity, Result, meets
 from lumped.scene import Scene
-
-if TYPE_CHECKING:
-    from lumped.laws._force_law import ForceLaw
+from lumped.scene_tables import Model
 
 Array = NDArray[np.float64]
 # Errors of the rate allowed in one step, relative to the velocity at touch: the history errs far less, its end less
@@ -35,6 +34,41 @@ END, END_COMPARED = 1e-11, 1e-8
 SAFETY = 2.0
 # Peaks of several contacts that differ by less, relatively, are one height: rounding makes more of a long march.
 EQUAL = 1e-9
+
+
+class SceneLaw(PointLaw, Protocol):
+    """A force between two masses as made for a scene, with what its Result has to say of it.
+
+    `exit`: where contact ends, by "force" or "depth"; `loss`: where lost work belongs among the energies; `source`: in
+    words, what was taken of the scene; `remembers`: whether the force depends on the path.
+    """
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def exit(self) -> str: ...
+
+    @property
+    def loss(self) -> str: ...
+
+    @property
+    def source(self) -> str: ...
+
+    @property
+    def remembers(self) -> bool: ...
+
+    @property
+    def load_curve(self) -> LoadCurve | None: ...
+
+    @property
+    def parameters(self) -> dict[str, Any]: ...
+
+    def elastic_contact_time(self, scene: Scene) -> float:
+        """Contact time without damping, s."""
+
+    def resolved(self, scene: Scene) -> Model:
+        """The scene's model as this law has it."""
 
 
 class Judged(NamedTuple):
@@ -51,7 +85,7 @@ def bodies_of(scene: Scene) -> Bodies:
     return Bodies(scene.reduced_mass, scene.velocity, scene.gravity)
 
 
-def simulate(law: ForceLaw, scene: Scene, tolerance: float) -> Result:
+def simulate(law: SceneLaw, scene: Scene, tolerance: float) -> Result:
     """The impacts of a scene to this tolerance. Raises TooManySteps."""
     clock, compared = Clock(), scene.motion.impacts > 1 or law.remembers
     end = END_COMPARED if compared else END
@@ -69,7 +103,7 @@ def simulate(law: ForceLaw, scene: Scene, tolerance: float) -> Result:
     return assemble(law.name, scene, tolerance, answer, quantities, force_error, clock, numerics, work, model)
 
 
-def outcome(law: ForceLaw, scene: Scene, tolerance: float) -> Outcome:
+def outcome(law: SceneLaw, scene: Scene, tolerance: float) -> Outcome:
     """The first contact, by one march and without bars. Raises TooManySteps."""
     track = _track(law, scene, 1, _first(tolerance))
     return outcome_of(track, track.motion.contacts[0])
@@ -79,7 +113,7 @@ def _first(tolerance: float) -> float:
     return min(max(tolerance, FINEST), COARSEST)
 
 
-def _estimated(law: ForceLaw, scene: Scene, step_tolerance: float) -> Judged:
+def _estimated(law: SceneLaw, scene: Scene, step_tolerance: float) -> Judged:
     """One contact, whose bars are what its march still lacks, estimated from its defect."""
     track = _track(law, scene, 1, step_tolerance)
     said = outcome_of(track, track.motion.contacts[0])
@@ -100,7 +134,7 @@ def _compared(marched: Callable[[float], tuple[Answer, int]], step_tolerance: fl
     return Judged(fine, *bars(fine, coarse, SAFETY), steps)
 
 
-def _marched(law: ForceLaw, scene: Scene, step_tolerance: float) -> tuple[Answer, int]:
+def _marched(law: SceneLaw, scene: Scene, step_tolerance: float) -> tuple[Answer, int]:
     """What all contacts of one march say, and how many steps it took."""
     track = _track(law, scene, scene.motion.impacts, step_tolerance)
     outcomes = [outcome_of(track, one) for one in track.motion.contacts]
@@ -113,15 +147,15 @@ def _ends_well(quantities: Mapping[str, Quantity], known: float) -> bool:
     return (duration.error or 0.0) <= known * (duration.value or 0.0) and (restitution.error or 0.0) <= known
 
 
-def _until(law: ForceLaw, scene: Scene) -> float:
+def _until(law: SceneLaw, scene: Scene) -> float:
     return scene.end_time_of(law.elastic_contact_time(scene))
 
 
-def _track(law: ForceLaw, scene: Scene, impacts: int, step_tolerance: float) -> Track:
+def _track(law: SceneLaw, scene: Scene, impacts: int, step_tolerance: float) -> Track:
     return Track(law, motion(law, bodies_of(scene), law.exit, impacts, _until(law, scene), step_tolerance))
 
 
-def _answer(law: ForceLaw, scene: Scene, track: Track, outcomes: Sequence[Outcome]) -> Answer:
+def _answer(law: SceneLaw, scene: Scene, track: Track, outcomes: Sequence[Outcome]) -> Answer:
     """What a march says."""
     moved, until = track.motion, _until(law, scene)
     said = _fewer(scene, len(outcomes)) if moved.end is End.SEPARATED else moved.end.value
@@ -146,7 +180,7 @@ def _fewer(scene: Scene, contacts: int) -> str:
 class _Columns(NamedTuple):
     """Depth, velocity, force and contact radius at times (n,), shape (4, n); no tension where contact ends by force."""
 
-    law: ForceLaw
+    law: SceneLaw
     track: Track
 
     def __call__(self, times: Array) -> Array:
@@ -179,7 +213,7 @@ def _values(scene: Scene, moved: Motion, outcomes: Sequence[Outcome], until: flo
     }
 
 
-def _energy(law: ForceLaw, scene: Scene, moved: Motion) -> dict[str, float | None]:
+def _energy(law: SceneLaw, scene: Scene, moved: Motion) -> dict[str, float | None]:
     """Energies at the end of the last contact, J, each on its own."""
     last, mass = moved.contacts[-1].last, scene.reduced_mass
     given = 0.5 * mass * scene.velocity**2 + mass * scene.gravity * last.depth
@@ -192,6 +226,6 @@ def _energy(law: ForceLaw, scene: Scene, moved: Motion) -> dict[str, float | Non
     return {"in": given, "out": out, "stored": stored[-1], law.loss: lost, "residual": residual}
 
 
-def _stored(law: ForceLaw, state: State, phase: Phase) -> float:
+def _stored(law: SceneLaw, state: State, phase: Phase) -> float:
     """What is stored where a phase begins or ends, J."""
     return float(law.stored(max(state.depth, 0.0), phase.stage))
