@@ -16,6 +16,7 @@ from lumped.geometry import Geometry
 from lumped.keys import Number
 from lumped.materials import Material
 from lumped.pair import check_striker_material, contact_modulus, places, tables
+from lumped.scene_file import load_indenter
 from lumped.scene_tables import Model
 from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
@@ -50,9 +51,7 @@ class Indenter:
     @classmethod
     def load(cls, source: str | Path, overrides: Mapping[str, object] | None = None) -> Indenter:
         """Of a scene file or a packaged scene's name; mass and velocity may be missing. Raises BadInput."""
-        from lumped.scene_file import load_indenter
-
-        return load_indenter(source, overrides)[0]
+        return load_indenter(cls, source, overrides)[0]
 
     @property
     def geometry(self) -> Geometry:

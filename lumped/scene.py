@@ -17,6 +17,7 @@ from lumped.materials import Material, Relaxation
 from lumped.members import get
 from lumped.pair import check_striker_material, contact_modulus, flying_faults, places, tables
 from lumped.scales import absurd_depth, relaxed_impact
+from lumped.scene_file import load, read
 from lumped.scene_tables import (
     LAWS,
     NAME_KEYS,
@@ -84,16 +85,12 @@ class Scene:
     @classmethod
     def load(cls, source: str | Path, overrides: Mapping[str, object] | None = None) -> Scene:
         """The scene of a file, or a packaged scene by its name. Raises BadInput with every fault."""
-        from lumped.scene_file import load
-
-        return load(source, overrides)[0]
+        return load(cls, source, overrides)[0]
 
     @classmethod
     def from_dict(cls, table: Mapping[str, object], source: str = "scene") -> Scene:
         """The scene of a table as in a scene file. Raises BadInput with every fault."""
-        from lumped.scene_file import read
-
-        return read(table, source)[0]
+        return read(cls, table, source)[0]
 
     @property
     def has_geometry(self) -> bool:

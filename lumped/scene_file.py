@@ -2,35 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import TypeVar
 
 from lumped import data
 from lumped.bounded_file import exists
-from lumped.indenter import Indenter
-from lumped.scene import Scene
-from lumped.scene_reader import SceneReader
+from lumped.scene_reader import Described, SceneReader
 from lumped.table_reader import Table
 from lumped.toml_file import overridden, parsed
 
+Impact = TypeVar("Impact", bound=Described)
+Pressed = TypeVar("Pressed")
 
-def load(source: str | Path, overrides: Mapping[str, object] | None = None) -> tuple[Scene, Table]:
-    """The scene of a file or of a packaged name, and its raw `[numerics]` table.
 
-    `overrides` maps dotted keys ("striker.velocity") to values that replace the file's. Raises BadInput
-    with every fault found, at most 20.
+def load(
+    kind: Callable[..., Impact],
+    source: str | Path,
+    overrides: Mapping[str, object] | None = None,
+    law_known: bool = True,
+) -> tuple[Impact, Table]:
+    """The scene, made by its ``kind``, of a file or of a packaged name, and its raw `[numerics]` table.
+
+    `overrides` maps dotted keys ("striker.velocity") to values that replace the file's. Where the law is yet to be
+    found, not `law_known`, mass and velocity are enough. Raises BadInput with every fault found, at most 20.
     """
-    return _reader(source, overrides).scene()
+    return _reader(source, overrides).scene(kind, law_known)
 
 
-def load_for_fit(source: str | Path, overrides: Mapping[str, object] | None = None) -> tuple[Scene, Table]:
-    """A scene whose law is yet to be found: mass and velocity are enough. Raises BadInput with every fault."""
-    return _reader(source, overrides).scene(law_known=False)
-
-
-def load_indenter(source: str | Path, overrides: Mapping[str, object] | None = None) -> tuple[Indenter, Table]:
+def load_indenter(
+    kind: Callable[..., Pressed], source: str | Path, overrides: Mapping[str, object] | None = None
+) -> tuple[Pressed, Table]:
     """What a slow indentation needs of a file, and its raw `[numerics]`. Raises BadInput with every fault."""
-    return _reader(source, overrides).indenter()
+    return _reader(source, overrides).indenter(kind)
 
 
 def resolved(source: str | Path) -> Path:
@@ -42,10 +46,13 @@ def resolved(source: str | Path) -> Path:
 
 
 def read(
-    table: Mapping[str, object], source: str = "scene", overrides: Mapping[str, object] | None = None
-) -> tuple[Scene, Table]:
+    kind: Callable[..., Impact],
+    table: Mapping[str, object],
+    source: str = "scene",
+    overrides: Mapping[str, object] | None = None,
+) -> tuple[Impact, Table]:
     """The scene of a table as in a scene file, and its raw `[numerics]` table. Raises BadInput."""
-    return SceneReader(source, overridden(table, overrides or {}, source)).scene()
+    return SceneReader(source, overridden(table, overrides or {}, source)).scene(kind)
 
 
 def _reader(source: str | Path, overrides: Mapping[str, object] | None) -> SceneReader:

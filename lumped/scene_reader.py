@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
 from types import ModuleType
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 from lumped.alternatives import alternatives
 from lumped.errors import BadInput, Fault
-from lumped.indenter import Indenter
 from lumped.key_table import optional
 from lumped.keys import Key
 from lumped.materials import Material
 from lumped.members import Member, get
-from lumped.scene import Scene
 from lumped.scene_tables import (
     LAWS,
     MODEL_KEYS,
@@ -34,12 +33,22 @@ SHAPES = "lumped.shapes"
 TARGET_KEYS: Mapping[str, Key] = {"mass": SECOND_BODY_KEYS["target_mass"]}
 
 
+class Described(Protocol):
+    """What a scene file describes: inside `addressed`, what a part refuses is said of that file and its keys."""
+
+    def addressed(self) -> AbstractContextManager[None]: ...
+
+
+Impact = TypeVar("Impact", bound=Described)
+Pressed = TypeVar("Pressed")
+
+
 class SceneReader(TableReader):
     """Makes a scene, or what a slow indentation needs of it, of the tables of a scene file."""
 
     TABLES = ("striker", "target", "model", "motion", "law", "numerics")
 
-    def scene(self, law_known: bool = True) -> tuple[Scene, Table]:
+    def scene(self, kind: Callable[..., Impact], law_known: bool = True) -> tuple[Impact, Table]:
         """The scene and the raw numerics; raises BadInput when anything is wrong.
 
         Without geometry a law has to be known, unless it is yet to be found.
@@ -55,13 +64,13 @@ class SceneReader(TableReader):
             self.inertia(model, bodies.get("target"))
         if self.faults:
             raise BadInput(self.faults)
-        built = Scene(**bodies, law=law, model=Model(**model), motion=Motion(**motion), name=name, source=self.source)
+        built = kind(**bodies, law=law, model=Model(**model), motion=Motion(**motion), name=name, source=self.source)
         if law is not None and law_known:
             with built.addressed():
                 get(LAWS, law.name).of(built)
         return built, numerics
 
-    def indenter(self) -> tuple[Indenter, Table]:
+    def indenter(self, kind: Callable[..., Pressed]) -> tuple[Pressed, Table]:
         """The scene without its motion; raises BadInput when anything is wrong."""
         name = self.name()
         bodies = self.bodies(optional(STRIKER_KEYS))
@@ -70,7 +79,7 @@ class SceneReader(TableReader):
         if self.faults:
             raise BadInput(self.faults)
         own = {key: bodies[key] for key in ("shape", "material", "target", "striker_material")}
-        return Indenter(**own, model=Model(**model), name=name, source=self.source), numerics
+        return kind(**own, model=Model(**model), name=name, source=self.source), numerics
 
     def bodies(self, striker_keys: Mapping[str, Key] = STRIKER_KEYS) -> Table:
         """Striker, target and material of a scene with geometry; None for what has a fault."""

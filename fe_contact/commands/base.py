@@ -10,6 +10,7 @@ import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any, Protocol, TypeVar
@@ -20,7 +21,7 @@ from lumped.errors import BadInput, Fault, shown
 from lumped.indenter import Indenter
 from lumped.result import Result
 from lumped.scene import Scene
-from lumped.scene_file import load, load_for_fit, load_indenter, resolved
+from lumped.scene_file import load, load_indenter, resolved
 from lumped.sufficiency import NO_KEY, LedgerEntry, good_to, worst
 from lumped.toml_file import overridden, parse_assignment, parsed
 
@@ -65,17 +66,17 @@ def overrides_of(args: argparse.Namespace) -> dict[str, object]:
 
 def read_scene(args: argparse.Namespace) -> tuple[Scene, dict[str, Any]]:
     """Scene and raw settings of a command line; raises BadInput with every fault of both."""
-    return _read(args, load)
+    return _read(args, partial(load, Scene))
 
 
 def read_scene_for_fit(args: argparse.Namespace) -> Scene:
     """The scene of a law that is yet to be found; raises BadInput with every fault."""
-    return _read(args, load_for_fit)[0]
+    return _read(args, partial(load, Scene, law_known=False))[0]
 
 
 def read_indenter(args: argparse.Namespace) -> tuple[Indenter, dict[str, Any]]:
     """What a slow indentation needs, and raw settings; raises BadInput with every fault of both."""
-    return _read(args, load_indenter)
+    return _read(args, partial(load_indenter, Indenter))
 
 
 def _read(args: argparse.Namespace, reader: Callable[..., tuple[Read, dict[str, Any]]]) -> tuple[Read, dict[str, Any]]:

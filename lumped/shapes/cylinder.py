@@ -16,7 +16,7 @@ from lumped.keys import Key, Number
 from lumped.load_curves import line_profile
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
-from lumped.shapes._outlines import circle, circle_slope
+from lumped.shapes._outlines import circle, circle_slope, parabola, parabola_slope
 from lumped.shapes.base import Shape
 
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "length": Number(1e-9, 1e6, "m")}
@@ -76,8 +76,6 @@ class Cylinder(Shape):
 
     def resolved(self, profile: str) -> Shape:
         """Itself, or the parabola with the same curvature."""
-        from lumped.shapes._parabolic_cylinder import ParabolicCylinder
-
         return ParabolicCylinder(self.radius, self.length) if profile == "parabola" else self
 
     def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
@@ -86,6 +84,30 @@ class Cylinder(Shape):
         period = math.sqrt(mass / stiffness)
         depth = velocity * period
         return HertzImpact(math.pi * period, depth, stiffness * depth, math.sqrt(self.radius * depth))
+
+
+@dataclass(frozen=True)
+class ParabolicCylinder(Cylinder):
+    """h(r) = r^2/(2R), R in m: no shape of a scene file, but what its cylinder is if `model.profile = "parabola"`."""
+
+    name: ClassVar[str] = "parabolic_cylinder"
+
+    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+        """r^2/(2R)."""
+        return parabola(r, self.radius)
+
+    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+        """r/R."""
+        return parabola_slope(r, self.radius)
+
+    @property
+    def line_profile(self) -> line_profile.LineProfile:
+        """The parabola."""
+        return line_profile.ParabolicCylinder(self.radius)
+
+    def resolved(self, profile: str) -> Cylinder:
+        """Itself."""
+        return self
 
 
 def of(radius: float, length: float) -> Cylinder:

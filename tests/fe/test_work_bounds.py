@@ -30,7 +30,7 @@ QUICK = [f"--set=numerics.{key}={value}" for key, value in COARSE.items() if key
 
 
 def overridden(name: str, **changes: Any) -> Scene:
-    return load(name, {key.replace("__", "."): value for key, value in changes.items()})[0]
+    return load(Scene, name, {key.replace("__", "."): value for key, value in changes.items()})[0]
 
 
 @pytest.mark.parametrize("bound", ["fe_contact.operators.MOST_UNKNOWNS", "meshes.triangles.MOST_NODES"])

@@ -34,12 +34,12 @@ def of_law(name: str, **values: Any) -> dict[str, Any]:
 
 def faults(table: dict[str, Any]) -> str:
     with pytest.raises(BadInput) as caught:
-        read(table, "scene.toml")
+        read(Scene, table, "scene.toml")
     return str(caught.value)
 
 
 def test_a_law_alone_is_a_scene_and_comes_back_from_its_tables() -> None:
-    scene, _ = read({**BARE, "target": {"mass": 3.0}}, "scene.toml")
+    scene, _ = read(Scene, {**BARE, "target": {"mass": 3.0}}, "scene.toml")
     assert scene.reduced_mass == pytest.approx(0.75, rel=1e-15)
     assert not scene.has_geometry
     again = Scene.from_dict(scene.to_dict())
@@ -51,19 +51,19 @@ def test_a_law_alone_is_a_scene_and_comes_back_from_its_tables() -> None:
 def test_every_key_of_a_law_is_read(name: str) -> None:
     """Each value reaches the law, or something that it has computed from it."""
     keys, k = laws.get(name).KEYS, {"k": 1e6}
-    bare = read(of_law(name, **k, **({"e": 0.5} if "e" in keys else {})), "scene.toml")[0]
+    bare = read(Scene, of_law(name, **k, **({"e": 0.5} if "e" in keys else {})), "scene.toml")[0]
     before = laws.get(name).of(bare).parameters
     values = {"k": 2e6, "alpha": 1.7, "gap": 1e-3, "exit": "depth", "e": 0.7}
     for key, value in values.items():
         if key in keys:
             table = of_law(name, **{**k, **({"e": 0.5} if "e" in keys else {}), key: value})
-            assert laws.get(name).of(read(table, "scene.toml")[0]).parameters != before, key
+            assert laws.get(name).of(read(Scene, table, "scene.toml")[0]).parameters != before, key
 
 
 @pytest.mark.parametrize("name", [name for name in FORCE_LAWS if "damping" in laws.get(name).KEYS])
 def test_a_formula_is_for_e_and_no_other_damping(name: str) -> None:
     formula = laws.get(name).KEYS["damping"].options[-1]
-    read(of_law(name, k=1e6, e=0.9, damping=formula), "scene.toml")
+    read(Scene, of_law(name, k=1e6, e=0.9, damping=formula), "scene.toml")
     assert "law.damping" in faults(of_law(name, k=1e6, e=0.9, damping="guess"))
     own = set(laws.get(name).KEYS) & {"xi", "c", "chi", "A", "alpha_t"}
     for key in own:
@@ -115,12 +115,12 @@ def test_a_law_of_one_impact_follows_no_more(name: str, impact: Callable[..., Sc
     table["motion"]["impacts"] = 2
     table["law"] = {"name": name}
     with pytest.raises(BadInput, match=r"motion\.impacts"):
-        simulate(laws.get(name).of(read(table)[0]), read(table)[0], 1e-3)
+        simulate(laws.get(name).of(read(Scene, table)[0]), read(Scene, table)[0], 1e-3)
 
 
 def test_the_bilinear_loop_takes_its_three_numbers_together() -> None:
     loop = {"k1": 3e6, "k2": 1e6, "yield_depth": 1e-3}
-    read(of_law("impact_bilinear", **loop), "scene.toml")
+    read(Scene, of_law("impact_bilinear", **loop), "scene.toml")
     assert "law.yield_depth: missing" in faults(of_law("impact_bilinear", k1=3e6, k2=1e6))
     assert "law.k2" in faults(of_law("impact_bilinear", **{**loop, "k2": 4e6}))
     assert "either, not both" in faults(of_law("impact_bilinear", **loop, e=0.5))
@@ -151,7 +151,7 @@ def test_undamped_and_of_geometry_every_law_peaks_as_hertz_does(name: str, impac
 def test_a_fixed_contact_area_has_a_restitution_to_take_too(name: str) -> None:
     material = {"law": "sls", "E1": 1.8e6, "E2": 0.9e6, "C1": 1.8e3, "nu": 0.45}
     striker = {"shape": "punch", "radius": 0.005, "mass": 0.01, "velocity": 0.1}
-    scene, _ = read({"striker": striker, "target": {"shape": "half_space", "material": material}})
+    scene, _ = read(Scene, {"striker": striker, "target": {"shape": "half_space", "material": material}})
     exact = simulate(laws.get("correspondence").of(scene), scene, 1e-6).quantities["restitution"].value
     found = simulate(laws.get(name).of(scene), scene, 1e-6).quantities["restitution"].value
     assert found == pytest.approx(exact if "e" in laws.get(name).KEYS else 1.0, abs=1e-6)
@@ -183,11 +183,11 @@ def test_impacts_asked_for_are_waited_for(velocity: float) -> None:
         "model": {"gravity": 9.81},
         "motion": {"impacts": 4},
     }
-    scene, _ = read(table)
+    scene, _ = read(Scene, table)
     bouncing = laws.jankowski.of(scene).simulate(scene, 1e-6)
     assert len(bouncing.contacts) == 4
     assert not bouncing.message
-    scene, _ = read({**table, "model": {}})
+    scene, _ = read(Scene, {**table, "model": {}})
     leaving = laws.jankowski.of(scene).simulate(scene, 1e-6)
     assert len(leaving.contacts) == 1
     assert leaving.message.startswith("1 of 4 impacts")

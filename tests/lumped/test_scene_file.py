@@ -58,13 +58,13 @@ def changed(key: str, value: object) -> dict[str, Any]:
 
 def faults(table: dict[str, Any]) -> list[str]:
     with pytest.raises(BadInput) as caught:
-        read(table, "scene.toml")
+        read(Scene, table, "scene.toml")
     assert caught.value.exit_code == 2
     return [str(fault) for fault in caught.value.faults]
 
 
 def test_good_table_makes_the_scene() -> None:
-    scene, numerics = read({**SOLID, "numerics": {"tolerance": 1e-4}}, "scene.toml")
+    scene, numerics = read(Scene, {**SOLID, "numerics": {"tolerance": 1e-4}}, "scene.toml")
     assert (scene.name, scene.mass, scene.velocity, scene.material.nu) == ("try", 0.05, 0.02, 0.45)
     assert numerics == {"tolerance": 1e-4}
     assert Scene.from_dict(scene.to_dict()).to_dict() == scene.to_dict()
@@ -189,13 +189,13 @@ def test_striker_deeper_than_its_radius_is_absurd() -> None:
 
 
 def test_overrides_replace_and_are_checked() -> None:
-    scene, _ = load("polymer-sphere", {"striker.velocity": 0.03, "model.profile": "parabola"})
+    scene, _ = load(Scene, "polymer-sphere", {"striker.velocity": 0.03, "model.profile": "parabola"})
     assert scene.velocity == 0.03
     assert scene.profile.name == "parabola"
     with pytest.raises(BadInput, match=r"striker\.mass"):
-        load("polymer-sphere", {"striker.mass": 0.0})
+        load(Scene, "polymer-sphere", {"striker.mass": 0.0})
     with pytest.raises(BadInput, match="not a table"):
-        load("polymer-sphere", {"name.first": 1.0})
+        load(Scene, "polymer-sphere", {"name.first": 1.0})
 
 
 def test_assignments_are_toml_or_text() -> None:
@@ -214,10 +214,10 @@ def test_unreadable_files_are_one_line_each(tmp_path: Path) -> None:
     deep.write_text("x = " + "[" * 100_000)
     for path in (binary, broken, deep, tmp_path, tmp_path / "nowhere.toml"):
         with pytest.raises(BadInput) as caught:
-            load(path)
+            load(Scene, path)
         assert str(caught.value).count("\n") == 0
 
 
 def test_unknown_packaged_name_suggests_the_nearest() -> None:
     with pytest.raises(BadInput, match="did you mean polymer-sphere"):
-        load("polymer-spher")
+        load(Scene, "polymer-spher")
