@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterator
 from fnmatch import filter as matching
 from functools import cache
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -109,6 +110,24 @@ def test_no_relative_import_leaves_its_package() -> None:
         if isinstance(node, ast.ImportFrom) and node.level >= len(path.relative_to(ROOT).parts)
     }
     assert not leaving
+
+
+@pytest.mark.parametrize("package", ["lumped", "meshes"])
+def test_no_files_import_each_other_in_a_circle(package: str) -> None:
+    """Imports within functions and for type checkers count: what is read needs what it names."""
+    TopologicalSorter({name(path): imported_files(path) for path in sources(package)}).prepare()
+
+
+def imported_files(path: Path) -> set[str]:
+    """Files of the suite, by name, that a file takes something from; a package's `__init__` hands on, no more."""
+    found = set()
+    for node in ast.walk(tree(path)):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            found |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
+    files = {module.replace(".", "/") + ".py" for module in found}
+    return {file for file in files if (ROOT / file).is_file()}
 
 
 def test_one_place_catches_everything() -> None:
