@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from types import ModuleType
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fe_contact.bodies.offer import Offer
+from fe_contact.bodies.offer import Offer, Staying
 from fe_contact.coming_radius import coming_square
 from fe_contact.contact import ContactProblem, ContactSolution, Touching
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
@@ -19,9 +18,6 @@ from fe_contact.pressing import BEYOND
 from fe_contact.steps import Step
 from fe_contact.striker import Inertia
 from lumped.members import get
-
-if TYPE_CHECKING:
-    from fe_contact.bodies.struck import Deformable
 
 FIRST = 0.5  # share of the first overlap from which on places are guessed to touch
 LEAST_KEPT = 0.05  # share of its area that a contact is guessed to keep over a step
@@ -34,7 +30,7 @@ Guesses = tuple[Touching, ...]
 class FixedContact:
     """A striker over a surface: ``scale`` of the mesh, m; ``places`` and ``heights`` there of the striker, m, (q,)."""
 
-    def __init__(self, strike: Strike, surface: Deformable, numerics: Numerics) -> None:
+    def __init__(self, strike: Strike, surface: Staying, numerics: Numerics) -> None:
         self.strike, self.surface, self.numerics = strike, surface, numerics
         self.enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
         self.scale = surface.unit(numerics.contact_radius)

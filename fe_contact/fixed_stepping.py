@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from fe_contact.bodies.memory import SurfaceMemory, step_law
+from fe_contact.bodies.offer import Staying
 from fe_contact.contact import ContactSolution
 from fe_contact.fixed_contact import FixedContact
 from fe_contact.forms import Array
@@ -19,9 +20,6 @@ from fe_contact.pressing import half_width
 from fe_contact.steps import State, Step
 from fe_contact.striker import Inertia
 from lumped.members import get
-
-if TYPE_CHECKING:
-    from fe_contact.bodies.struck import Deformable
 
 
 class Remembered(NamedTuple):
@@ -37,7 +35,7 @@ class FixedStepper:
     shortest = 2e-4  # the trend bends more than on a mesh that breathes
     first_force = 0.0
 
-    def __init__(self, strike: Strike, surface: Deformable, numerics: Numerics) -> None:
+    def __init__(self, strike: Strike, surface: Staying, numerics: Numerics) -> None:
         self.strike, self.surface, self.numerics = strike, surface, numerics
         self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
         self.contact = FixedContact(strike, surface, numerics)

@@ -14,24 +14,38 @@ former edge: here they get what the straight line missed.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from types import ModuleType
+from typing import Protocol
 
 import numpy as np
 
 from fe_contact.bodies.memory import interpolate, step_law
+from fe_contact.bodies.offer import Meshed
 from fe_contact.forms import Array
-from fe_contact.march import Snapshot
+from fe_contact.march import Snapshot, Strike
 from fe_contact.operators import SurfaceOperator
 from fe_contact.pressing import BEYOND
 from fe_contact.steps import State, Step
-
-if TYPE_CHECKING:
-    from fe_contact.stepping import Stepper
 
 CLOSING = 1.5  # power of the time left with which the gap closes before an edge
 EDGE = 1.0 - 1e-9  # of the unit mesh, safe from rounding
 GAUSS = np.polynomial.legendre.leggauss(8)
 SHARES, WEIGHTS = (GAUSS[0] + 1) / 2, GAUSS[1] / 2  # of a step
+
+
+class Stepper(Protocol):
+    """What took the steps: its memory's ``radii`` and the profile's ``heights`` there, m, each (r,)."""
+
+    strike: Strike
+    scheme: ModuleType
+    radii: Array
+    heights: Array
+
+    @property
+    def surface(self) -> Meshed: ...
+
+    def touch(self) -> State:
+        """The state at first touch."""
 
 
 def read(stepper: Stepper, steps: Sequence[Step]) -> tuple[Snapshot, ...]:

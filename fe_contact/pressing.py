@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from types import ModuleType
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
+from fe_contact.bodies.offer import Breathing
 from fe_contact.contact import ContactSolution, Touching
 from fe_contact.errors import ContactTooWide, IndentationNotSettled
 from fe_contact.forms import Array
 from fe_contact.numerics import ENFORCEMENTS, Numerics
 from lumped.indenter import Indenter
 from lumped.members import get
-
-if TYPE_CHECKING:
-    from fe_contact.bodies.scaled_surface import ScaledSurface
 
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
 RESCALINGS = 60
@@ -62,7 +60,7 @@ class Still(Protocol):
 class ScaledStill:
     """A body without a length of its own: the mesh is scaled until the contact edge lies in its finest elements."""
 
-    surface: ScaledSurface
+    surface: Breathing
     indenter: Indenter
     numerics: Numerics
 
@@ -107,7 +105,7 @@ class FixedStill:
     the mesh.
     """
 
-    surface: ScaledSurface
+    surface: Breathing
     indenter: Indenter
     numerics: Numerics
     reference: float
@@ -156,7 +154,7 @@ class FixedStill:
 
 
 def _enforced(
-    surface: ScaledSurface, overlap: Array, scale: float, numerics: Numerics, touching: Touching
+    surface: Breathing, overlap: Array, scale: float, numerics: Numerics, touching: Touching
 ) -> tuple[ContactSolution, int]:
     """The contact problem on the mesh scaled by ``scale``, m; and how many solves it took."""
     enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from types import ModuleType
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fe_contact import instants
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, area_weights, graded, interpolate, step_law
+from fe_contact.bodies.offer import Breathing
 from fe_contact.coming_radius import coming_square
 from fe_contact.contact import ContactSolution, Touching, count, moved
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
@@ -23,9 +23,6 @@ from fe_contact.pressing import BEYOND, EDGE_WINDOW, RESCALINGS
 from fe_contact.steps import OfSurface, State, Step
 from fe_contact.striker import Inertia
 from lumped.members import get
-
-if TYPE_CHECKING:
-    from fe_contact.bodies.scaled_surface import ScaledSurface
 
 LEAST_KEPT = 0.05  # share of its area that a contact is expected to keep over a step
 PATIENCE = 8  # rescalings after which the window widens by half each time: the edge may jitter in the last tail
@@ -48,7 +45,7 @@ class Stepper(OfSurface):
     def __init__(
         self,
         strike: Strike,
-        surface: ScaledSurface,
+        surface: Breathing,
         numerics: Numerics,
         expected: Sequence[float] | Array = (),
     ) -> None:

@@ -112,7 +112,7 @@ def test_no_relative_import_leaves_its_package() -> None:
     assert not leaving
 
 
-@pytest.mark.parametrize("package", ["lumped", "meshes"])
+@pytest.mark.parametrize("package", PACKAGES)
 def test_no_files_import_each_other_in_a_circle(package: str) -> None:
     """Imports within functions and for type checkers count: what is read needs what it names."""
     TopologicalSorter({name(path): imported_files(path) for path in sources(package)}).prepare()

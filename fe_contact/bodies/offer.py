@@ -1,11 +1,15 @@
-"""What a body on a mesh that stays offers contact for one time step, and what it makes of the pressure found."""
+"""What contact sees of a body: its surface on a mesh, what it offers for one time step, what it makes of a pressure."""
 
 from __future__ import annotations
 
+from types import ModuleType
 from typing import Any, NamedTuple, Protocol
 
+from fe_contact.contact import ContactProblem
 from fe_contact.forms import Array
+from fe_contact.operators import SurfaceOperator
 from fe_contact.pressed_surface import PressedSurface
+from lumped.materials import Relaxation
 
 
 class Offer(NamedTuple):
@@ -79,3 +83,44 @@ class Body(Protocol):
 
     def lost(self, before: Any, after: Any, length: float) -> float:
         """Of the work in a step, what the scheme leaves unaccounted for, J."""
+
+
+class Meshed(Protocol):
+    """The surface of one elastic body on its mesh; ``operator``: its places, weights and scale."""
+
+    @property
+    def operator(self) -> SurfaceOperator: ...
+
+
+class Staying(Meshed, Protocol):
+    """One on a mesh that stays while the contact grows."""
+
+    @property
+    def rim(self) -> float | None:
+        """Where all contacts end, m, if the body is loaded no farther."""
+
+    def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> Body:
+        """The body with a contact modulus E*(t), Pa, marched by a scheme, on a mesh whose unit is ``scale``, m."""
+
+    def unit(self, contact_radius: float) -> float:
+        """The mesh's unit of length, m, where contacts up to this radius, m, are expected."""
+
+    def places(self, unit: float) -> Array:
+        """Distance of the quadrature points from the first touch as the striker's profile counts it, m; (q,)."""
+
+
+class Breathing(Meshed, Protocol):
+    """One on a mesh for contact radius 1 and E* = 1, which is scaled to the contact of each instant."""
+
+    @property
+    def pressed(self) -> PressedSurface:
+        """What contact knows of it."""
+
+    def problem(self, overlap: Array, penalty: float, yielding: float | Array) -> ContactProblem:
+        """Contact problem on the unit mesh, of free overlaps times modulus (q,)."""
+
+    def response(self, pressure: Array) -> Array:
+        """Displacement times modulus of all surface nodes, (n_s,), under a unit-mesh pressure (q,)."""
+
+    def sample(self, nodal: Array, radii: Array) -> Array:
+        """A nodal surface field at increasing radii in units of the contact radius."""
