@@ -92,6 +92,21 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/waves/dent.py", "MOST", ""): "the most iterations, of which six suffice",
     ("fe_contact/waves/falling_ball.py", "plan", "0.0 -> 0.1"): "of a ball without a radius",
     ("lumped/collide/contact.py", "contact", "tolerance **"): "the first step to be tried",
+    ("lumped/collide/phase.py", "_ratio", ""): "how long the next step is tried: its roughness is asked afterwards",
+    ("lumped/collide/bodies.py", "Step.accelerations", ""): "a first guess for Newton's method",
+    ("lumped/hereditary/motion.py", "Motion.piece", "NEWTON_STEPS"): "one of many iterations more or less",
+    ("lumped/hereditary/march.py", "_landed", ""): "a break of the plan, or the same place but for rounding",
+    ("lumped/table1/prism.py", "KEYS", ""): "how far a key of a file may go",
+    ("lumped/table1/plate.py", "KEYS", ""): "how far a key of a file may go",
+    ("lumped/table1/sphere.py", "EXAMPLE", ""): "the body that a study takes where a file names none",
+    ("fe_contact/local_polynomial.py", "_stationary", "12 -> "): "how fast Newton's method gets there from next to it",
+    ("fe_contact/softening.py", "_work", "a tenth"): "a factor of both works that are compared",
+    (
+        "fe_contact/indentation.py",
+        "_refined",
+        "error >= DOMINANT",
+    ): "what is refined together, of what is too coarse: work",
+    ("fe_contact/reference.py", "MOST_STEPS", ""): "work after which a failure is told",
 }
 
 

@@ -30,7 +30,7 @@ def test_local_polynomials_give_back_quintics_and_their_slopes(seed: int) -> Non
     np.testing.assert_allclose(slope, [p.deriv()(places) for p in quintics], atol=1e-6 * size)
 
 
-@pytest.mark.parametrize("place", [0.31, 0.5, 0.64])
+@pytest.mark.parametrize("place", [0.07, 0.31, 0.5, 0.64, 0.93])
 def test_the_peak_of_a_quartic_is_found_by_interpolation_and_by_fit(place: float) -> None:
     def quartic(x: np.ndarray) -> np.ndarray:
         return np.asarray(2.0 - (x - place) ** 2 * (1.0 + 0.3 * (x - place) + (x - place) ** 2))

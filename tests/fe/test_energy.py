@@ -15,6 +15,7 @@ import numpy.typing as npt
 import pytest
 
 import fe_contact
+from fe_contact.account import _crept
 from lumped import Relaxation, Result, Scene, laws, simulate
 
 Array = npt.NDArray[np.float64]
@@ -106,3 +107,12 @@ def test_what_other_bodies_keep_and_lose_is_what_the_exact_law_loses(name: str) 
     allowed = bars["stored"] + bars["viscous"] + 2e-4 * (energy["in"] or 0.0) * (name == "rod-in-ring")
     assert abs(lost - (exact.energy["viscous"] or 0.0)) <= allowed
     closes(result)
+
+
+@pytest.mark.parametrize(
+    ("rate", "time", "heat"), [(0.5, 1e-6, 0.5e-6), (0.5, 1e6, 2.0), (0.0, 1.0, 0.0), (-1.0, 1.0, 0.0)]
+)
+def test_a_body_let_go_turns_into_heat_what_it_stores_and_no_more(rate: float, time: float, heat: float) -> None:
+    """At first as fast as it did, in the end all of it; a body that stores nothing has nothing to lose."""
+    assert _crept(2.0, rate, time) == pytest.approx(heat, rel=1e-6, abs=1e-15)
+    assert _crept(0.0, rate, time) == 0.0

@@ -10,6 +10,7 @@ import pytest
 from skfem import Basis, ElementTriP4, FacetBasis
 
 import meshes
+from fe_contact.bodies.scaled_surface import ScaledSurface
 from fe_contact.certify import certify
 from fe_contact.enforcement import corrected
 from fe_contact.far_field.half_plane import flamant
@@ -19,6 +20,8 @@ from fe_contact.march import Strike
 from fe_contact.numerics import Numerics
 from fe_contact.plan import plan
 from fe_contact.reference import strike_of
+from fe_contact.runs import Runs
+from fe_contact.softening import compliance_change
 from fe_contact.targets import half_space
 from lumped import Relaxation, Scene
 from lumped.load_curves import Hertz
@@ -172,3 +175,15 @@ def test_the_far_fields_share_of_a_bar_covers_what_a_larger_mesh_changes(shape: 
     for name in ("peak_force", "peak_depth", "duration"):
         change = abs((near.curve.quantities[name] or 0.0) - (far.curve.quantities[name] or 0.0))
         assert change <= near.error(name, "far_field"), name
+
+
+def test_a_lift_of_the_whole_contact_changes_the_force_by_twice_its_share() -> None:
+    """Pressed to a depth d, a sphere on a surface that lifts by c F sinks in by d - c F: force 3/2 of that share, and
+    F0 = 4/3, d = 1 for contact radius and E* of one.
+    """
+    scene, lift = Scene.load("steel-ball"), 1e-4
+    numerics = plan(scene, {"tolerance": 1e-3}).numerics
+    surface = Runs(strike_of(scene), scene.geometry, 1).surface(numerics)
+    assert isinstance(surface, ScaledSurface)
+    lifted = replace(surface, operator=replace(surface.operator, response=surface.operator.response + lift))
+    assert compliance_change(surface, lifted) == pytest.approx(1.5 * lift * 4.0 / 3.0, rel=1e-3)

@@ -291,6 +291,16 @@ def test_many_bounces_follow_their_restitution(name: str) -> None:
     )
 
 
+@pytest.mark.parametrize("share", [0.1, 0.9, 1.1])
+def test_a_flight_that_outlasts_the_end_time_is_not_followed_to_its_touch(share: float) -> None:
+    """Contact and flight of 2 v/g: the second contact counts only if it begins before the end."""
+    law, flight = LawChoice("hertz", {"k": K}), 2.0 * VELOCITY / 9.81
+    once = Scene(None, MASS, VELOCITY, law=law, model=Model(gravity=9.81))
+    duration = laws.get("hertz").of(once).simulate(once, 1e-6).quantities["duration"].value
+    case = replace(once, motion=Motion(2, duration + share * flight))
+    assert len(laws.get("hertz").of(case).simulate(case, 1e-6).contacts) == (2 if share > 1.0 else 1)
+
+
 @pytest.mark.parametrize("name", ["linear_spring", "hertz"])
 def test_an_elastic_bounce_never_tires(name: str) -> None:
     case = Scene(None, MASS, VELOCITY, law=LawChoice(name, {"k": K}), model=Model(gravity=9.81), motion=Motion(50, 1e3))
