@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from itertools import pairwise
 from types import ModuleType
@@ -19,6 +20,7 @@ from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
 from lumped.spring_row.coarse import coarse, problem_of
 from lumped.spring_row.grid import Grid
+from lumped.spring_row.memory import fading
 from lumped.spring_row.nest import Nest, limit, predicted_turn
 
 Array = NDArray[np.float64]
@@ -279,3 +281,14 @@ def test_the_bars_cover_the_poorer_of_the_two_integrations_too(
     times = found.history.time
     off = np.abs(poorer.columns.force(times) - found.history.force).max()
     assert off <= found.history.force_error.max()
+
+
+@pytest.mark.parametrize("ratio", np.geomspace(1e-6, 200.0, 17))
+def test_a_fading_branch_is_integrated_however_long_the_step(ratio: float) -> None:
+    """By Gauss' rule over the time left, u, of a step of `ratio` relaxation times: series and closed form alike."""
+    tau, (places, weights) = 0.3, np.polynomial.legendre.leggauss(200)
+    h = ratio * tau
+    u, du = 0.5 * h * (places + 1.0), 0.5 * h * weights
+    e = np.exp(-u / tau)
+    integrals = (du @ e, du @ (e * (h - u)), du @ (e * (h - u) ** 2) / h, tau * (du @ np.expm1(-u / tau) ** 2))
+    assert fading(tau, h) == pytest.approx((math.exp(-ratio), *integrals), rel=1e-10)
