@@ -85,8 +85,11 @@ class Curve:
         return LocalPolynomials.through(self.x, np.stack([self.mean_force, self.depth]))
 
     def read(self, time: Array) -> Reading:
-        """Force, zero outside the contact, impulse and depth up to its end."""
-        inside = (time >= 0) & ((time < self.duration) if self.separated else (time <= self.duration))
+        """Force, zero outside the contact, impulse and depth up to its end.
+
+        What is cut off presses on: runs that touch a little later, or earlier, are cut off a little before each other.
+        """
+        inside = (time >= 0) & ((time < self.duration) if self.separated else True)
         x = self.share(time)
         (mean, depth), (slope, _) = self.polynomials.at(x)
         return Reading(np.where(inside, np.maximum(mean + 0.5 * x * slope, 0.0), 0.0), mean * time, depth)

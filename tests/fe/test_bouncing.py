@@ -69,6 +69,18 @@ def test_every_bounce_of_an_elastic_body_is_the_same(scene_of: Scenes) -> None:
             assert contact[name] == pytest.approx(value, abs=contact[f"{name}_error"] + 1e-6 * value), (number, name)
 
 
+def test_a_later_contact_ends_where_the_motion_does(scene_of: Scenes) -> None:
+    """A third of a contact after the second touch, as a third of the first."""
+    exact = mdr.estimate(thrown(scene_of, ELASTIC), SPRINGS)
+    assert exact.duration is not None
+    third = exact.duration / 3.0
+    end = exact.duration + 2 * 0.15 / 9.81 + third
+    history = fe_contact.run(thrown(scene_of, ELASTIC, end_time=end), tolerance=1e-2).history
+    assert history.time[-1] == pytest.approx(end, rel=1e-12)
+    first = float(history.force_at(np.array([third]))[0])
+    assert history.force[-1] == pytest.approx(first, abs=2.0 * history.force_error[-1] + 1e-2 * exact.peak_force)
+
+
 def test_a_layer_gives_back_what_it_got_too(scene_of: Scenes) -> None:
     """On a mesh that stays, by the steps of the march alone, which lose a thousandth."""
     layer = {"shape": "layer", "thickness": 4e-3, "base": "bonded", "material": ELASTIC | {"nu": 0.3}}

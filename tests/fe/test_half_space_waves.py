@@ -124,6 +124,7 @@ def test_how_well_an_end_is_read_covers_smooth_forces_and_is_about_what_chatter_
         read = parting(time, force * (1.0 + chatter * rng.normal(size=time.size)), 1.5)
         assert read is not None
         found.append((abs(read[0] - 1.0), read[1]))
+        assert read[1] <= (1.0 + 1e-12) / steps, "within a step, whatever chatters"
     off, spread = np.array(found).T
     if chatter:
         assert 0.3 * np.median(off) < np.median(spread) < 10.0 * np.median(off)

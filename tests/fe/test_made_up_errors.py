@@ -16,6 +16,7 @@ from fe_contact.curve import Curve, extrapolated
 from fe_contact.forms import Array
 from fe_contact.march import Strike
 from fe_contact.numerics import Numerics
+from fe_contact.waves.certify import Moved
 from lumped.materials import Relaxation
 
 STEPS, CASES = 160, 40
@@ -91,11 +92,11 @@ def sizes(seed: int) -> list[tuple[float, float]]:
 
 
 @pytest.mark.parametrize("steps", [STEPS, 16])
-def test_errors_that_halve_with_the_step_are_covered(settings: Numerics, steps: int) -> None:
+def test_errors_that_halve_with_the_step_are_covered_and_no_more(settings: Numerics, steps: int) -> None:
     """Extrapolation by order two gains little on them: half of the scheme's order is missing."""
     for size, phase in sizes(1):
         found = over(judged(settings.varied(steps=steps), {1: size}, phase), *RULED)
-        assert max(found.values()) <= 1.0, (size, phase, found)
+        assert 0.25 < min(found.values()) <= max(found.values()) <= 1.0, (size, phase, found)
 
 
 def test_errors_of_the_schemes_order_and_the_next_are_covered_and_the_bars_are_tight(settings: Numerics) -> None:
@@ -150,16 +151,18 @@ def wave(size: float, period: float, phase: float) -> Callable[[Array], Array]:
     return lambda share: size * np.cos(2.0 * np.pi * (share / period) + phase)
 
 
-def test_two_curves_that_cross_just_where_a_quantity_is_read_make_neither_of_them_right() -> None:
+@pytest.mark.parametrize("kind", [Change, Moved])
+def test_two_curves_that_cross_just_where_a_quantity_is_read_make_neither_of_them_right(kind: type[Change]) -> None:
     """The second errs four times as much as the first, a little earlier or later: they cross, wherever that is."""
     rng = np.random.default_rng(6)
     missed = dict.fromkeys((*RULED, "peak_time"), 0)
     for _ in range(CASES):
         period, size, phase, shift = rng.uniform(0.08, 0.12), 10 ** rng.uniform(-5, -4), *rng.uniform(0.0, 2 * np.pi, 2)
         fine = made_up(STEPS, wave(size, period, phase))
-        change = Change(fine, made_up(STEPS, wave(4.0 * size, period, shift)), 1.25 / 3.0)
+        change = kind(fine, made_up(STEPS, wave(4.0 * size, period, shift)), 1.25 / 3.0)
         for name in missed:
             assert abs(fine.quantities[name] - TRUTH.quantities[name]) <= change.errors[name], (name, phase, shift)
+        assert change.errors["peak_time"] < 100.0 * size / period, "nor is all of the contact unknown"
         times = np.linspace(0.0, 1.0, 500)
         assert np.all(np.abs(fine.force(times) - TRUTH.force(times)) <= change.force(times) + 1e-6), (phase, shift)
 
@@ -180,3 +183,9 @@ def test_ends_that_are_read_badly_are_known_no_better() -> None:
         used = max(used, abs(found.duration - 1.0) / bar)
         assert abs(found.duration - 1.0) <= bar * (1.0 + 1e-9)
     assert used > 0.99, "nor any worse"
+
+
+def test_runs_that_end_at_quite_different_times_tell_nothing(settings: Numerics) -> None:
+    """Of sixteen, thirty-two and sixty-four steps, the last two a contact of 6 and of 3.5 s."""
+    found = judged(settings.varied(steps=16), {2: 1e-3}, 0.0, {1: 1.0})
+    assert all(found.total(name) == np.inf for name in (*RULED, "duration"))

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.sparse import linalg
 
 import meshes
 from fe_contact.forms import Array
@@ -18,7 +19,7 @@ from fe_contact.waves import refining
 from fe_contact.waves.certify import ORDER, Runs, certify
 from fe_contact.waves.half_space_body import moving
 from fe_contact.waves.plan import viscous_share
-from fe_contact.waves.reading import curve_of, reading
+from fe_contact.waves.reading import AT, ROWS, curve_of, reading
 from fe_contact.waves.refining import AIM, MOST, factors
 from fe_contact.waves.steps import graded
 from fe_contact.waves.targets import half_space
@@ -87,8 +88,9 @@ def test_a_force_is_read_through_chatter(steps: int) -> None:
 
 def test_a_smaller_tolerance_keeps_more_rows() -> None:
     march, strike = impact(640, 0.0)
-    rows = [len(curve_of(march, strike, settings(steps=640, tolerance=t)).x) for t in (3e-3, 1e-4)]
-    assert 55 <= rows[0] < rows[1] < 640
+    rows = [len(curve_of(march, strike, settings(steps=640, tolerance=t)).x) for t in (AT, 1e-4)]
+    assert ROWS + 1 == rows[0] < rows[1] < 640, "both ends of so many intervals"
+    assert len(curve_of(march, strike, settings(steps=640), 0.5).x) == ROWS // 2 + 1
 
 
 def test_only_what_is_missing_is_refined_and_the_cheapest_first() -> None:
@@ -154,3 +156,24 @@ def test_a_finer_surface_leaves_the_body_as_coarse(kind: str) -> None:
     touched = [np.count_nonzero((mesh.p[1] == 0.0) & (mesh.p[0] <= 1.0)) for mesh in (one, two)]
     assert touched[1] / touched[0] == pytest.approx(2.0, abs=0.25)
     assert two.p.shape[1] < 2.5 * one.p.shape[1]
+
+
+def test_counted_factorisations_are_those_of_every_length_of_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Counted from outside, where one more in every march is that of the mass, which tells how it begins to move."""
+    made, factorise = [0], linalg.splu
+
+    def counted(*args: Any, **options: Any) -> Any:
+        made[0] += 1
+        return factorise(*args, **options)
+
+    monkeypatch.setattr(linalg, "splu", counted)
+    scene = Scene.load("steel-ball-waves")
+    coarse = {"elements_per_contact": 3.0, "steps": 40, "far_radius": 4.0, "penalty": 20.0}
+    numerics = half_space.plan(scene, coarse).numerics.varied(peak_share=0.05)
+    assert len(graded(numerics)[1]) > 1
+    runs = Runs(scene, strike_of(scene), moving, 20)
+    certify(runs, numerics)
+    work = runs.work()
+    assert work.marches == 5
+    assert made[0] == work.factorizations + work.marches > 3 * work.marches
+    assert runs.curve(1, numerics) is None, "there is no second contact"

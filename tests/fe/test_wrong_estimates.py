@@ -11,6 +11,8 @@ import pytest
 
 import fe_contact
 from fe_contact import plan as planning
+from fe_contact.reference import strike_of
+from fe_contact.runs import PILOT_STEPS, PLACED, Runs
 from fe_contact.scales import scales
 from fe_contact.time_grid import share_of_rest, step_length
 from lumped import Result, Scene, laws, simulate
@@ -87,6 +89,20 @@ def test_contacts_in_a_row_lie_within_both_bars_whatever_was_expected(
         for quantity in ("duration", "restitution", "peak_force"):
             apart = abs(one[quantity] - other[quantity])
             assert apart <= one[f"{quantity}_error"] + other[f"{quantity}_error"], quantity
+
+
+@pytest.mark.parametrize("times", [0.4, 2.0])
+def test_a_coarse_march_tells_how_long_contact_lasts_and_when_it_peaks(
+    times: float, misjudged: Callable[[float, float], None]
+) -> None:
+    misjudged(times, 1.0)
+    scene, truth = Scene.load("polymer-sphere"), exact("polymer-sphere").quantities
+    numerics = planning.plan(scene, {"tolerance": 1e-3}).numerics
+    placed = Runs(strike_of(scene), scene.geometry, 1).placed(numerics, PILOT_STEPS)
+    duration, peak_time = truth["duration"].value, truth["peak_time"].value
+    assert abs(numerics.contact_time / duration - 1.0) > 0.5
+    assert placed.contact_time == pytest.approx(duration, rel=PLACED)
+    assert placed.peak_share == pytest.approx(peak_time / duration, rel=PLACED)
 
 
 @pytest.mark.parametrize("late", [1.2, 1.5, 3.0])
