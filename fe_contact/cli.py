@@ -56,7 +56,7 @@ class OneLine(argparse.ArgumentParser):
 
 def parser() -> OneLine:
     """The parser of all commands."""
-    from lumped.members import available, get
+    from lumped.schema.members import available, get
 
     top = OneLine(prog="fe-contact", description="Finite-element contact validation suite.")
     top.add_argument("--version", action="version", version=f"fe-contact {__version__}")
@@ -73,7 +73,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _said("stdout is closed: accepted an open one, as > /dev/null", BAD_INPUT)
     if _memory_limit() < LEAST_MEMORY:
         return _said(f"out of memory; cure: a limit of {LEAST_MEMORY // 1024} kB or more (ulimit -v)", NOT_REACHED)
-    from lumped.members import get
+    from lumped.schema.members import get
 
     args = parser().parse_args(arguments)
     try:

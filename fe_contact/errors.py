@@ -7,9 +7,9 @@ from functools import wraps
 from typing import Concatenate, ParamSpec, TypeVar
 
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.indenter import Indenter
-from lumped.keys import Number
-from lumped.scene import Scene
+from lumped.scene.indenter import Indenter
+from lumped.scene.scene import Scene
+from lumped.schema.keys import Number
 from meshes.errors import GmshMissing, MeshError, MeshTooFine
 
 Said = TypeVar("Said", Scene, Indenter)

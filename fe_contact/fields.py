@@ -24,15 +24,15 @@ from typing import Any
 import numpy as np
 from skfem import Basis
 
-from fe_contact.bodies.scaled_surface import ScaledSurface
-from fe_contact.forms import Array, isotropic
-from fe_contact.numerics import ENFORCEMENTS, TARGETS, Numerics
-from fe_contact.pressing import BEYOND
+from fe_contact.assembly.forms import Array, isotropic
+from fe_contact.bodies.pressing import BEYOND
 from fe_contact.reference import Solved
-from fe_contact.surface_pressure import felt, peak_step, scale
+from fe_contact.results.surface_pressure import felt, peak_step, scale
+from fe_contact.settings import ENFORCEMENTS, TARGETS, Numerics
+from fe_contact.steppers.scaled_surface import ScaledSurface
 from lumped.errors import BadInput, Fault
-from lumped.members import get
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
+from lumped.schema.members import get
 from lumped.targets import HalfSpace
 from lumped.targets.layer import Layer
 
@@ -140,7 +140,7 @@ def nodal_stress(basis: Any, displacement: Array, law: Array) -> Array:
     ----------
     basis : scalar scikit-fem basis with N degrees of freedom, coordinates (r, z).
     displacement : (2 N,), degree 2 k + c for node k and component c.
-    law : stress over strain, (4, 4), see :func:`fe_contact.forms.isotropic`.
+    law : stress over strain, (4, 4), see :func:`fe_contact.assembly.forms.isotropic`.
     """
     at_nodes = Basis(basis.mesh, basis.elem, quadrature=(basis.elem.doflocs.T, np.ones(len(basis.elem.doflocs))))
     nodal = displacement.reshape(-1, 2)[basis.element_dofs]  # (local node, element, component)

@@ -11,20 +11,20 @@ from typing import Any
 
 import numpy as np
 
-from fe_contact.certify import LEAST_ORDER, factor, other_mesh, other_setting
+from fe_contact.assembly.forms import Array, check_compressible
+from fe_contact.bodies.pressing import Still
+from fe_contact.budget.certify import LEAST_ORDER, factor, other_mesh, other_setting
+from fe_contact.budget.expected_contacts import expected
+from fe_contact.budget.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, RIM_PENALTY, SETTING, refined
 from fe_contact.errors import says_which_key
-from fe_contact.expected_contacts import expected
-from fe_contact.forms import Array, check_compressible
-from fe_contact.numerics import RANGES, TARGETS, Numerics, check_kind
-from fe_contact.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, RIM_PENALTY, SETTING, refined
-from fe_contact.pressing import Still
 from fe_contact.progress import Progress, silent
+from fe_contact.settings import RANGES, TARGETS, Numerics, check_kind
 from fe_contact.threads import one_thread
-from lumped.clock import Clock
 from lumped.errors import BadInput, Fault
-from lumped.indentation import Indentation
-from lumped.indenter import Indenter
-from lumped.members import get
+from lumped.indentation.indentation import Indentation
+from lumped.numbers.clock import Clock
+from lumped.scene.indenter import Indenter
+from lumped.schema.members import get
 from lumped.shapes import Shape
 
 CAUSES = ("mesh", "penalty", "far_field")

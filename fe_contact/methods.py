@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from typing import Any
 
 from fe_contact.errors import says_which_key
-from fe_contact.numerics import WAVES, check_kind, checked
 from fe_contact.progress import Progress, silent
+from fe_contact.settings import WAVES, check_kind, checked
 from lumped import laws
 from lumped import simulate as simulate_law
 from lumped.errors import BadInput, Fault, FeContactError, nearest, shown
-from lumped.members import get
-from lumped.result import Result
-from lumped.scene import Scene
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
+from lumped.schema.members import get
 
 FE = "fe"
 EXACT = ("mdr", "ting")  # exact in milliseconds: the row of springs on the half-space, Ting on any load curve
@@ -53,7 +53,7 @@ def simulate(
 
 
 def _lumped(scene: Scene, name: str, given: Mapping[str, Any]) -> Result:
-    from fe_contact.plan import DEFAULT_TOLERANCE
+    from fe_contact.budget.plan import DEFAULT_TOLERANCE
 
     found = simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))
     if scene.has_geometry:

@@ -10,22 +10,22 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from fe_contact.bodies.chosen import struck
-from fe_contact.certify import CAUSES, Budget, Certified, Several, certify
+from fe_contact.assembly.forms import check_compressible
+from fe_contact.budget.certify import CAUSES, Budget, Certified, Several, certify
+from fe_contact.budget.plan import SETTING, Plan, plan, refined
+from fe_contact.budget.runs import operations
 from fe_contact.errors import MemoryTooSmall, says_which_key
-from fe_contact.forms import check_compressible
-from fe_contact.march import Strike
-from fe_contact.numerics import RANGES, TARGETS, Numerics
-from fe_contact.plan import SETTING, Plan, plan, refined
 from fe_contact.progress import Progress, silent
-from fe_contact.recovery import indentation_left, recovers
-from fe_contact.runs import operations
-from fe_contact.several import whole
-from fe_contact.told import history, quantities_of, shares_of
+from fe_contact.results.recovery import indentation_left, recovers
+from fe_contact.results.several import whole
+from fe_contact.results.told import history, quantities_of, shares_of
+from fe_contact.settings import RANGES, TARGETS, Numerics
+from fe_contact.steppers.chosen import struck
+from fe_contact.steppers.march import Strike
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.members import get
-from lumped.result import UNITS, Quantity, Result, meets, provenance, unmet
-from lumped.scene import Scene
+from lumped.result.result import UNITS, Quantity, Result, meets, provenance, unmet
+from lumped.scene.scene import Scene
+from lumped.schema.members import get
 
 CURE = "cure: a larger tolerance, or fewer numerics of your own"
 ROUNDS = 4  # refinements before giving up

@@ -164,8 +164,8 @@ def marginal(imports: float) -> None:
     sys.path.insert(0, str(ROOT))
     import fe_contact
     import lumped
-    from fe_contact.impact import march
-    from fe_contact.plan import plan
+    from fe_contact.budget.plan import plan
+    from fe_contact.march.impact import march
     from fe_contact.reference import strike_of
     from fe_contact.targets import half_space
 

@@ -33,7 +33,8 @@ class Constant(NamedTuple):
     weaker: Any = None
 
 
-CERTIFY, ORDERS = "fe_contact.certify", "fe_contact.trusted_order"
+CERTIFY, ORDERS = "fe_contact.budget.certify", "fe_contact.budget.trusted_order"
+CHANGE, CURVE, IMPACT = "fe_contact.budget.change", "fe_contact.budget.curve", "fe_contact.march.impact"
 TABLE = (
     Constant(CERTIFY, "SAFETY", DERIVED, "Roache's for three grids, doi:10.1115/1.2910291"),
     Constant(CERTIFY, "LEAST_ORDER", DERIVED, "a penalty errs as its inverse, a far field as the inverse square"),
@@ -55,11 +56,11 @@ TABLE = (
     Constant(CERTIFY, "MOST_APART", MEASURED, "durations that tell of one and the same end", 1e9),
     Constant(CERTIFY, "ROUNDING", MEASURED, "of a solve of nearly incompressible bodies", 0.0),
     Constant(CERTIFY, "MARCHES", WORK, "what a budget costs"),
-    Constant("fe_contact.change", "FIRST_ORDER", DERIVED, "SAFETY over 2^1 - 1"),
-    Constant("fe_contact.change", "UNORDERED", DERIVED, "SAFETY times two: an order of 0.6 is supposed", 1.25),
-    Constant("fe_contact.change", "TOP", MEASURED, "depth and time of a peak are judged by all above this share", 1.0),
-    Constant("fe_contact.change", "STEEPER", MEASURED, "slope of a rippling change over its chord, at a peak", 0.5),
-    Constant("fe_contact.change", "SMOOTHING", MEASURED, "a change that crosses zero is that of its neighbours", 0.0),
+    Constant(CHANGE, "FIRST_ORDER", DERIVED, "SAFETY over 2^1 - 1"),
+    Constant(CHANGE, "UNORDERED", DERIVED, "SAFETY times two: an order of 0.6 is supposed", 1.25),
+    Constant(CHANGE, "TOP", MEASURED, "depth and time of a peak are judged by all above this share", 1.0),
+    Constant(CHANGE, "STEEPER", MEASURED, "slope of a rippling change over its chord, at a peak", 0.5),
+    Constant(CHANGE, "SMOOTHING", MEASURED, "a change that crosses zero is that of its neighbours", 0.0),
     Constant(ORDERS, "AS_EXPECTED", MEASURED, "ratio of changes over the expected one that shows the order", (0, 1e9)),
     Constant(ORDERS, "ABOUT", MEASURED, "the same that shows it about", (0.0, 1e9)),
     Constant(ORDERS, "ASYMPTOTIC", MEASURED, "error of the duration with the fewest steps where orders count", 1e9),
@@ -71,17 +72,17 @@ TABLE = (
         "step over relaxation time; outside, the branch's weight is within 1/8 of a power of the step",
         (1e300, 1e301),
     ),
-    Constant("fe_contact.curve", "PEAK_SHARE", MEASURED, "a peak is judged by all forces above this share", 1.0),
-    Constant("fe_contact.curve", "LATE", MEASURED, "path and speed from here on count for those at the end", 1.0),
-    Constant("fe_contact.curve", "EARLIEST", WORK, "rows that tell where a curve is read"),
-    Constant("fe_contact.impact", "PREDICTIONS", MEASURED, "their spread is that of the end", 1),
-    Constant("fe_contact.impact", "NOISE", MEASURED, "share of the peak below which contact may be lost in the mesh"),
-    Constant("fe_contact.impact", "FAINT", MEASURED, "share of the peak below which a kink may be the end"),
-    Constant("fe_contact.impact", "SETTLED", MEASURED, "of the tolerance: what still swings of a weight at rest"),
-    Constant("fe_contact.impact", "LONGEST", MEASURED, "mean steps that a weight which swings may be stepped over"),
-    Constant("fe_contact.impact", "AT_REST", MEASURED, "share of the velocity at which a fluid has stopped a striker"),
-    Constant("fe_contact.impact", "REST_ROWS", WORK, "rows of a striker at rest"),
-    Constant("fe_contact.impact", "STEPS_ALLOWED", WORK, "after which a march gives up"),
+    Constant(CURVE, "PEAK_SHARE", MEASURED, "a peak is judged by all forces above this share", 1.0),
+    Constant(CURVE, "LATE", MEASURED, "path and speed from here on count for those at the end", 1.0),
+    Constant(CURVE, "EARLIEST", WORK, "rows that tell where a curve is read"),
+    Constant(IMPACT, "PREDICTIONS", MEASURED, "their spread is that of the end", 1),
+    Constant(IMPACT, "NOISE", MEASURED, "share of the peak below which contact may be lost in the mesh"),
+    Constant(IMPACT, "FAINT", MEASURED, "share of the peak below which a kink may be the end"),
+    Constant(IMPACT, "SETTLED", MEASURED, "of the tolerance: what still swings of a weight at rest"),
+    Constant(IMPACT, "LONGEST", MEASURED, "mean steps that a weight which swings may be stepped over"),
+    Constant(IMPACT, "AT_REST", MEASURED, "share of the velocity at which a fluid has stopped a striker"),
+    Constant(IMPACT, "REST_ROWS", WORK, "rows of a striker at rest"),
+    Constant(IMPACT, "STEPS_ALLOWED", WORK, "after which a march gives up"),
     Constant("fe_contact.waves.certify", "ORDER", DERIVED, "contact that begins point by point has order one"),
     Constant("fe_contact.waves.certify", "LEAST_NODES", MEASURED, "along the contact radius; fewer are doubled"),
     Constant("fe_contact.waves.reading", "SAFETY", DERIVED, "as above"),
@@ -90,7 +91,7 @@ TABLE = (
     Constant("lumped.laws._hereditary", "LOCAL_SHARE", WORK, "what a piece may err"),
     Constant("lumped.laws._assembly", "ROUNDING", DERIVED, "of sums of some thousand terms"),
     Constant("lumped.laws._assembly", "LEAST_SHARE", MEASURED, "two integrations may agree in a number by chance"),
-    Constant("lumped.collide.half_widths", "SAFETY", MEASURED, "of first-order estimates told at some points"),
+    Constant("lumped.solvers.point.half_widths", "SAFETY", MEASURED, "of first-order estimates told at some points"),
 )
 
 

@@ -16,22 +16,20 @@ from typing import Any
 
 from fe_contact.cli import main
 from fe_contact.commands import base
-from fe_contact.validation import (
-    blocks,
-    exponents,
-    exponents_check,
-    finite_spheres,
-    rings,
-    rings_impact,
-    table1,
-    tradeoff,
-    tradeoff_waves,
-)
-from fe_contact.validation.stability._bar import DEFAULT
-from fe_contact.validation.stability.base import STUDIES
-from fe_contact.validation.waves import _rod
-from lumped.members import available, get
-from lumped.table1 import prism, punch
+from fe_contact.studies.exponents import check as exponents_check
+from fe_contact.studies.exponents import finite_spheres
+from fe_contact.studies.exponents import study as exponents
+from fe_contact.studies.rings import impact as rings_impact
+from fe_contact.studies.rings import study as rings
+from fe_contact.studies.stability._bar import DEFAULT
+from fe_contact.studies.stability.base import STUDIES
+from fe_contact.studies.table1 import blocks
+from fe_contact.studies.table1 import study as table1
+from fe_contact.studies.tradeoff import study as tradeoff
+from fe_contact.studies.tradeoff import study_with_waves as tradeoff_waves
+from fe_contact.studies.tradeoff.targets import _rod
+from lumped.paper.table1 import prism, punch
+from lumped.schema.members import available, get
 
 ROWS = (prism.EXAMPLE, punch.EXAMPLE)
 PROFILES = tuple(one for one in exponents.PROFILES if one.name in ("cone", "cylinder"))

@@ -14,17 +14,17 @@ import pytest
 from fe_contact.cli import main
 from fe_contact.commands.compare import law_names
 from fe_contact.reference import Solved, result_of, solve
-from fe_contact.report.compare import plot_comparison
-from fe_contact.validation.compare import DEFAULT_LAWS, Comparison, Judgement, compare
-from fe_contact.validation.deviations import rebound_steps
-from fe_contact.validation.law_pressure import LawPressure
-from fe_contact.validation.told import Told
-from fe_contact.validation.verdict import WITHIN, verdicts
+from fe_contact.studies.compare.chart import plot_comparison
+from fe_contact.studies.compare.deviations import rebound_steps
+from fe_contact.studies.compare.law_pressure import LawPressure
+from fe_contact.studies.compare.study import DEFAULT_LAWS, Comparison, Judgement, compare
+from fe_contact.studies.compare.told import Told
+from fe_contact.studies.compare.verdict import WITHIN, verdicts
 from lumped import laws, simulate
 from lumped.errors import BadInput
-from lumped.result import Result
-from lumped.scene import Scene
-from lumped.score import Curve as Measured
+from lumped.result.result import Result
+from lumped.result.score import Curve as Measured
+from lumped.scene.scene import Scene
 
 MATERIALS: dict[str, dict[str, Any]] = {
     "sls": {},

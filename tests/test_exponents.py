@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from fe_contact.cli import main
-from fe_contact.report.exponents import plot_exponents
-from fe_contact.validation.exponents import PROFILES, Curve, Profile, curve, curves
-from fe_contact.validation.exponents_check import TOLERANCE, Check, check
-from fe_contact.validation.exponents_files import COLUMNS, write_exponents
-from fe_contact.validation.finite_spheres import SHARES, Pair, pairs
+from fe_contact.studies.exponents.chart import plot_exponents
+from fe_contact.studies.exponents.check import TOLERANCE, Check, check
+from fe_contact.studies.exponents.files import COLUMNS, write_exponents
+from fe_contact.studies.exponents.finite_spheres import SHARES, Pair, pairs
+from fe_contact.studies.exponents.study import PROFILES, Curve, Profile, curve, curves
 from lumped.load_curves.layer import Layer
 from lumped.load_curves.thin_layer import compressible, incompressible
 
@@ -173,8 +173,8 @@ def test_the_command(
     code: int,
 ) -> None:
     spots = (*checked[:-1], replace(checked[-1], converged=converged))
-    monkeypatch.setattr("fe_contact.validation.exponents_check.checks", lambda quick, where, progress: spots)
-    monkeypatch.setattr("fe_contact.validation.finite_spheres.pairs", lambda quick, where, progress: spheres)
+    monkeypatch.setattr("fe_contact.studies.exponents.check.checks", lambda quick, where, progress: spots)
+    monkeypatch.setattr("fe_contact.studies.exponents.finite_spheres.pairs", lambda quick, where, progress: spheres)
     assert main(["exponents", "--quick", "--out", str(tmp_path / "out"), "--quiet"]) == code
     said = capsys.readouterr()
     assert len(said.out.splitlines()) == len(found) + len(spots) + len(spheres) + 1

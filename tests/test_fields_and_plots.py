@@ -14,16 +14,16 @@ from hypothesis import strategies as st
 from skfem import Basis
 
 import meshes
+from fe_contact.assembly.forms import isotropic
+from fe_contact.assembly.operators import ELEMENTS
 from fe_contact.cli import main
 from fe_contact.fields import STRESSES, check_fields, fields_at_peak, nodal_stress, subdivided, write_fields
-from fe_contact.forms import isotropic
-from fe_contact.operators import ELEMENTS
 from fe_contact.reference import Solved, result_of, solve
-from fe_contact.report.history import plot_history
-from fe_contact.report.style import prefixed, with_error
-from fe_contact.surface_pressure import felt, peak_step
+from fe_contact.results.surface_pressure import felt, peak_step
+from fe_contact.studies.history_chart import plot_history
+from fe_contact.studies.style import prefixed, with_error
 from lumped.errors import BadInput
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
 
 SCENES: dict[str, dict[str, Any]] = {
     "steel-ball": {},

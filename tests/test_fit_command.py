@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from fe_contact.cli import main
-from fe_contact.report.fit import plot_fit
+from fe_contact.studies.fit.chart import plot_fit
 from lumped import History, Scene, fit, laws, simulate
-from lumped.score import normalized_error, read_curve
+from lumped.result.score import normalized_error, read_curve
 
 BODY = "[striker]\nmass = 0.001\nvelocity = 1.0\n"
 LAW = '[law]\nname = "jankowski"\nk = 1e7\nxi = 0.2\n'

@@ -6,6 +6,7 @@ import ast
 import runpy
 import subprocess
 import sys
+from collections import defaultdict
 from collections.abc import Iterator
 from fnmatch import filter as matching
 from functools import cache
@@ -93,8 +94,9 @@ def test_importing_a_package_loads_nothing_heavy(package: str) -> None:
     assert not NOT_LOADED[package] & set(run.stdout.split())
 
 
-def test_only_the_report_imports_matplotlib() -> None:
-    assert {p for p in importers("matplotlib") if not p.startswith("fe_contact/report/")} == set()
+def test_only_charts_import_matplotlib() -> None:
+    charts = {name(path) for path in (ROOT / "fe_contact/studies").rglob("*chart.py")}
+    assert importers("matplotlib") <= charts | {"fe_contact/studies/style.py"}
 
 
 def test_only_the_session_imports_gmsh() -> None:
@@ -116,6 +118,37 @@ def test_no_relative_import_leaves_its_package() -> None:
 def test_no_files_import_each_other_in_a_circle(package: str) -> None:
     """Imports within functions and for type checkers count: what is read needs what it names."""
     TopologicalSorter({name(path): imported_files(path) for path in sources(package)}).prepare()
+
+
+ROOMS = {  # lowest first
+    "lumped": (
+        "errors numbers schema load_curves materials restitution shapes targets scene result solvers indentation laws "
+        "fit ptmd paper __init__"
+    ),
+    "fe_contact": (
+        "errors settings progress threads assembly contact schemes dynamics bodies steppers march targets budget "
+        "indentation results reference methods fields waves studies commands cli __main__ __init__"
+    ),
+}
+FILES_AT_A_ROOT = 14
+
+
+@pytest.mark.parametrize("package", ROOMS)
+def test_rooms_stand_in_order_and_folders_import_one_way(package: str) -> None:
+    """A new room has its place in ``ROOMS``: it knows those before it."""
+    order, folders = ROOMS[package].split(), defaultdict[str, set[str]](set)
+    for path in sources(package):
+        for file in {file for file in imported_files(path) if file.startswith(f"{package}/")}:
+            above, below = (parts.split("/")[1].removesuffix(".py") for parts in (name(path), file))
+            assert order.index(above) >= order.index(below), f"{name(path)} takes something from {file}"
+            if above == below:
+                folders[name(path.parent)].add(file.rpartition("/")[0])
+    TopologicalSorter({folder: lower - {folder} for folder, lower in folders.items()}).prepare()
+
+
+@pytest.mark.parametrize("package", ROOMS)
+def test_a_root_is_no_corridor(package: str) -> None:
+    assert len(list((ROOT / package).glob("*.py"))) <= FILES_AT_A_ROOT
 
 
 def imported_files(path: Path) -> set[str]:
@@ -180,7 +213,7 @@ def members(folder: str) -> set[str]:
 def test_a_target_stands_on_every_floor() -> None:
     targets, meshed = members("lumped/targets"), members("meshes") - MESH_HELPERS
     assert targets
-    assert members("fe_contact/targets") == targets
+    assert members("fe_contact/targets") | members("fe_contact/waves/targets") == targets
     assert targets - RIGID <= meshed
     assert meshed <= targets | members("lumped/shapes"), "a mesh of neither a target nor a deformable striker"
 
@@ -198,9 +231,9 @@ def test_the_manual_tells_every_constant_on_the_way_to_a_bar_as_the_code_has_it(
     script = runpy.run_path(str(ROOT / "tests" / "constants.py"))
     assert script["table"]() in script["PAGE"].read_text(encoding="utf-8"), "cure: python tests/constants.py --write"
     for module in ERROR_PATH:
-        tree = ast.parse((ROOT / "fe_contact" / f"{module}.py").read_text(encoding="utf-8"))
+        tree = ast.parse((ROOT / "fe_contact" / "budget" / f"{module}.py").read_text(encoding="utf-8"))
         numbers = {target.id for node in tree.body if isinstance(node, ast.Assign) for target in named(node)}
-        told = {one.name for one in script["TABLE"] if one.module == f"fe_contact.{module}"}
+        told = {one.name for one in script["TABLE"] if one.module == f"fe_contact.budget.{module}"}
         assert numbers == told, module
 
 

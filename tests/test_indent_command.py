@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from fe_contact.cli import main
-from lumped.data import scene_names
 from lumped.errors import BadInput
-from lumped.indenter import Indenter
+from lumped.scene.indenter import Indenter
+from lumped.schema.data import scene_names
 
 HEADER = ["depth_m", "force_N", "contact_radius_m", "force_error_N"]
 SCENE = """

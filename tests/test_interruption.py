@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lumped.result_folder import checksum
+from lumped.result.folder import checksum
 
 ROOT = Path(__file__).resolve().parent.parent
 FAST = ("run", "polymer-sphere", "--method", "ting", "--out", "results")

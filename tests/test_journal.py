@@ -21,10 +21,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fe_contact.errors import ContactNotSettled, WorkerLost
-from fe_contact.validation import journal
-from fe_contact.validation.journal import measured, rows
+from fe_contact.studies import journal
+from fe_contact.studies.journal import measured, rows
 from lumped.errors import BadInput, Fault
-from lumped.table1 import Elastic, contact_modulus
+from lumped.paper.table1 import Elastic, contact_modulus
 from meshes.errors import GmshMissing
 
 SMALL = Path(__file__).with_name("small_studies.py")
@@ -81,7 +81,7 @@ def test_another_suite_measures_anew(
 
 def test_a_changed_source_is_another_suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As are changed data, which lie beside the sources or in their own folder."""
-    monkeypatch.setattr("lumped.data.directory", lambda: tmp_path)
+    monkeypatch.setattr("lumped.schema.data.directory", lambda: tmp_path)
     digests = set()
     for text in ("radius = 1.0", "radius = 2.0"):
         (tmp_path / "scene.toml").write_text(text)

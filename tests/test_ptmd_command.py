@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from fe_contact.cli import main
-from fe_contact.report.ptmd import plot_study
-from lumped.csv_file import read_columns
+from fe_contact.studies.ptmd.chart import plot_study
 from lumped.errors import BadInput
-from lumped.pounding_tmd import Memory, march
-from lumped.pounding_tmd import study as studies
-from lumped.pounding_tmd.case_file import load, names, read
-from lumped.pounding_tmd.result import COLUMNS
-from lumped.pounding_tmd.study import BARE, FULL, PLAIN, study
+from lumped.ptmd import Memory, march
+from lumped.ptmd import study as studies
+from lumped.ptmd.case_file import load, names, read
+from lumped.ptmd.result import COLUMNS
+from lumped.ptmd.study import BARE, FULL, PLAIN, study
+from lumped.schema.csv_file import read_columns
 
 SHORT = ["--set", "motion.end_time=1.0", "--quiet"]
 CASE: dict[str, Any] = {

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from fe_contact.cli import main
-from fe_contact.report.restitution import plot_restitution
-from fe_contact.validation.restitution_files import write_restitution
+from fe_contact.studies.restitution.chart import plot_restitution
+from fe_contact.studies.restitution.files import write_restitution
+from fe_contact.studies.restitution.table import EXITS, Line, formulas, table
 from lumped import restitution
-from lumped.restitution_table import EXITS, Line, formulas, table
 
 ASKED = (0.1, 0.5, 0.9)
 
@@ -67,7 +67,7 @@ def test_the_chart_is_the_same_every_time(tmp_path: Path, lines: tuple[Line, ...
 def test_the_command_says_a_line_each(
     tmp_path: Path, lines: tuple[Line, ...], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("lumped.restitution_table.table", lambda: lines)
+    monkeypatch.setattr("fe_contact.studies.restitution.table.table", lambda: lines)
     assert main(["restitution", "--out", str(tmp_path / "out"), "--quiet"]) == 0
     said = capsys.readouterr().out.splitlines()
     assert len(said) == len(lines) + 1

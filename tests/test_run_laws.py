@@ -13,9 +13,9 @@ import pytest
 import fe_contact
 from fe_contact.cli import main
 from lumped import BadInput, Scene
-from lumped.data import scene_names
 from lumped.errors import NotReached
-from lumped.history import History
+from lumped.result.history import History
+from lumped.schema.data import scene_names
 
 POUNDING = [name for name in scene_names() if name.startswith("pounding-")]
 

@@ -14,12 +14,12 @@ import pytest
 from fe_contact.bodies.bar import TIP, falling, pitch
 from fe_contact.cli import main
 from fe_contact.errors import MotionUnbounded
-from fe_contact.validation.stability import explicit_limit, table
-from fe_contact.validation.stability._bar import BAR, DEFAULT, bounced, measured
-from fe_contact.validation.stability.base import STUDIES, row
+from fe_contact.studies.stability import explicit_limit, table
+from fe_contact.studies.stability._bar import BAR, DEFAULT, bounced, measured
+from fe_contact.studies.stability.base import STUDIES, row
 from fe_contact.waves import falling_block
 from lumped import Scene
-from lumped.members import available, get
+from lumped.schema.members import available, get
 
 USUAL = {**DEFAULT, "cfl": 1.0, "elements": 60, "periods": 1}
 
@@ -174,7 +174,7 @@ def few(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
     cases = [small, {**small, "cfl": 2.0}]
     for study in available(STUDIES):
         monkeypatch.setattr(get(STUDIES, study), "cases", lambda quick, own=study == "table": cases if own else [])
-    monkeypatch.setattr("fe_contact.report.stability.plot_stability", lambda rows, where: [])
+    monkeypatch.setattr("fe_contact.studies.stability._chart.plot_stability", lambda rows, where: [])
     return cases
 
 
@@ -190,7 +190,7 @@ def test_the_command_writes_rows_and_counts(few: list[dict[str, Any]], tmp_path:
 
 
 def test_the_chart_shows_every_case(tmp_path: Path) -> None:
-    from fe_contact.report.stability import plot_stability
+    from fe_contact.studies.stability._chart import plot_stability
 
     rows = [row("table", {**USUAL, "elements": 10, "cfl": cfl}) for cfl in (1.0, 2.0)]
     limits = [{"study": "explicit_limit", **_limit("lumped", 1.0, 0.5), "gain": 0.1, "failure": ""}]

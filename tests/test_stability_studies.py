@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_contact.plan import DEFAULTS
-from fe_contact.validation.stability import conditioning, far_radius, gap, locking, relaxation, tension
-from fe_contact.validation.stability._bar import DEFAULT, choices
+from fe_contact.budget.plan import DEFAULTS
+from fe_contact.studies.stability import conditioning, far_radius, gap, locking, relaxation, tension
+from fe_contact.studies.stability._bar import DEFAULT, choices
 from fe_contact.waves.plan import TRAVEL
-from lumped.radiation import pulse_energy, shear_speed
+from lumped.materials.radiation import pulse_energy, shear_speed
 from lumped.restitution import kelvin
 
 # locking

@@ -14,18 +14,18 @@ import pytest
 from scipy.optimize import brentq
 
 from fe_contact.cli import main
-from fe_contact.report.table1 import plot_table1
-from fe_contact.validation import blocks as blocks_module
-from fe_contact.validation import datum
-from fe_contact.validation.blocks import Block, within
-from fe_contact.validation.datum import DEPTH, Place, curve
-from fe_contact.validation.table1 import RATIOS, Trial, bodies, table1
-from fe_contact.validation.table1_files import COLUMNS, write_table1
-from fe_contact.validation.table1_reach import LIMIT, Reach
-from fe_contact.validation.table1_verdict import HOLDS, RANGE, UNDECIDED, UNTRIED, WRONG, deviations, verdict
+from fe_contact.studies.table1 import blocks as blocks_module
+from fe_contact.studies.table1 import datum
+from fe_contact.studies.table1.blocks import Block, within
+from fe_contact.studies.table1.chart import plot_table1
+from fe_contact.studies.table1.datum import DEPTH, Place, curve
+from fe_contact.studies.table1.files import COLUMNS, write_table1
+from fe_contact.studies.table1.reach import LIMIT, Reach
+from fe_contact.studies.table1.study import RATIOS, Trial, bodies, table1
+from fe_contact.studies.table1.verdict import HOLDS, RANGE, UNDECIDED, UNTRIED, WRONG, deviations, verdict
 from lumped.load_curves import Hertz, SneddonSphere
-from lumped.result import Quantity
-from lumped.table1 import Elastic, Row, cone, cylinder, examples, prism, punch, sphere, two_cylinders
+from lumped.paper.table1 import Elastic, Row, cone, cylinder, examples, prism, punch, sphere, two_cylinders
+from lumped.result.result import Quantity
 
 ROUNDING = 1e-9
 
@@ -273,7 +273,7 @@ def test_the_command(
     code: int,
 ) -> None:
     tried = (made_up(sphere.EXAMPLE, factor=factor), trials["cone"], trials["two_cylinders"])
-    monkeypatch.setattr("fe_contact.validation.table1.table1", lambda where, progress: tried)
+    monkeypatch.setattr("fe_contact.studies.table1.study.table1", lambda where, progress: tried)
     assert main(["table1", "--out", str(tmp_path / "out"), "--quiet"]) == code
     said = capsys.readouterr()
     assert [line[0] for line in said.out.splitlines() if line[0].isdigit()] == ["4", "6", "8"]

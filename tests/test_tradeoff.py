@@ -14,14 +14,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fe_contact.cli import main
-from fe_contact.report.tradeoff import plot_tradeoff
+from fe_contact.studies.tradeoff import study as study
+from fe_contact.studies.tradeoff.chart import plot_tradeoff
+from fe_contact.studies.tradeoff.design import MARKED, defaults, variations
+from fe_contact.studies.tradeoff.front import NEAR, excess, finite_elements, front, verdict
+from fe_contact.studies.tradeoff.point import Point
+from fe_contact.studies.tradeoff.study import LAW_TOLERANCES, ROW_ELEMENTS, tradeoff
 from fe_contact.targets import half_space
-from fe_contact.validation import tradeoff as study
-from fe_contact.validation.design import MARKED, defaults, variations
-from fe_contact.validation.front import NEAR, excess, finite_elements, front, verdict
-from fe_contact.validation.point import Point
-from fe_contact.validation.tradeoff import LAW_TOLERANCES, ROW_ELEMENTS, tradeoff
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
 
 
 def point(cpu: float, error: float, bar: float = 1e-9, default_for: float | None = None) -> Point:

@@ -11,20 +11,20 @@ import numpy as np
 import pytest
 
 from fe_contact.cli import main
-from fe_contact.distance import distance
 from fe_contact.methods import simulate
-from fe_contact.numerics import RANGES, WAVES
-from fe_contact.report.tradeoff import plot_tradeoff
-from fe_contact.report.tradeoff_signs import Signs
-from fe_contact.validation import tradeoff_waves as study
-from fe_contact.validation.front import finite_elements, known_to, verdict
-from fe_contact.validation.point import REFERENCE, Point
-from fe_contact.validation.waves import _block as block
-from fe_contact.validation.waves import _meshed as meshed
-from fe_contact.validation.waves import _rod as rod
+from fe_contact.results.distance import distance
+from fe_contact.settings import RANGES, WAVES
+from fe_contact.studies.tradeoff import study_with_waves as study
+from fe_contact.studies.tradeoff.chart import plot_tradeoff
+from fe_contact.studies.tradeoff.front import finite_elements, known_to, verdict
+from fe_contact.studies.tradeoff.point import REFERENCE, Point
+from fe_contact.studies.tradeoff.signs_chart import Signs
+from fe_contact.studies.tradeoff.targets import _block as block
+from fe_contact.studies.tradeoff.targets import _meshed as meshed
+from fe_contact.studies.tradeoff.targets import _rod as rod
 from fe_contact.waves.numerics import WaveNumerics
-from lumped.members import available, get
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
+from lumped.schema.members import available, get
 
 SCENES = (
     "steel-ball-waves",

@@ -23,8 +23,8 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sparse
 
+from fe_contact.assembly.forms import Array, scatter
 from fe_contact.dynamics.body import Body, Part, Pressing
-from fe_contact.forms import Array, scatter
 from lumped.materials import Relaxation
 
 TIP = 0.5**0.5  # first element over the others, for a surface without mass

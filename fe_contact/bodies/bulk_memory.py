@@ -18,11 +18,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
 from fe_contact.bodies.modes import Modes
 from fe_contact.bodies.offer import Offer, Recalled
-from fe_contact.forms import Array
-from fe_contact.pressed_surface import PressedSurface
 from lumped.materials import Material, Relaxation
 
 SURFACES_KEPT = 4

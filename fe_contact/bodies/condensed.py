@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from fe_contact.assembly.operators import SurfaceOperator
 from fe_contact.bodies.modes import Modes
-from fe_contact.operators import SurfaceOperator
 
 
 class Condensed:

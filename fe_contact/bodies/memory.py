@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fe_contact.forms import Array
+from fe_contact.assembly.forms import Array
 from fe_contact.schemes import galerkin
 from lumped.materials import Relaxation
 

@@ -19,10 +19,10 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import eigh
 
-from fe_contact.elastic_body import ElasticBody, moduli
-from fe_contact.forms import Array
-from fe_contact.kept import kept
-from fe_contact.operators import SurfaceOperator
+from fe_contact.assembly.cache import kept
+from fe_contact.assembly.elastic_body import ElasticBody, moduli
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import SurfaceOperator
 
 FEWEST, PER_E_FOLD = 3, 0.5  # ratios, at least and for every factor e of the interval: errors of some 1e-7
 LEAST_HALF_WIDTH = 0.3  # of the interval's logarithm: closer ratios would cancel

@@ -5,10 +5,10 @@ from __future__ import annotations
 from types import ModuleType
 from typing import Any, NamedTuple, Protocol
 
-from fe_contact.contact import ContactProblem
-from fe_contact.forms import Array
-from fe_contact.operators import SurfaceOperator
-from fe_contact.pressed_surface import PressedSurface
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import SurfaceOperator
+from fe_contact.assembly.pressed_surface import PressedSurface
+from fe_contact.contact.problem import ContactProblem
 from lumped.materials import Relaxation
 
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.assembly.forms import Array
 from fe_contact.bodies.memory import SurfaceMemory, product
-from fe_contact.forms import Array
 from lumped.materials import Relaxation
 
 

@@ -11,11 +11,11 @@ from types import ModuleType
 
 import numpy as np
 
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import SurfaceOperator
+from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
 from fe_contact.bodies.offer import Offer, Recalled
-from fe_contact.forms import Array
-from fe_contact.operators import SurfaceOperator
-from fe_contact.pressed_surface import PressedSurface
 from lumped.materials import Relaxation
 
 

@@ -15,15 +15,15 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any, Protocol, TypeVar
 
-from fe_contact.numerics import faults
 from fe_contact.progress import Progress, clear, log_to, terminal, to_all
+from fe_contact.settings import faults
 from lumped.errors import BadInput, Fault, shown
-from lumped.indenter import Indenter
-from lumped.result import Result
-from lumped.scene import Scene
-from lumped.scene_file import load, load_indenter, resolved
-from lumped.sufficiency import NO_KEY, LedgerEntry, good_to, worst
-from lumped.toml_file import overridden, parse_assignment, parsed
+from lumped.result.result import Result
+from lumped.result.sufficiency import NO_KEY, LedgerEntry, good_to, worst
+from lumped.scene.file import load, load_indenter, resolved
+from lumped.scene.indenter import Indenter
+from lumped.scene.scene import Scene
+from lumped.schema.toml_file import overridden, parse_assignment, parsed
 
 DONE, NOT_REACHED = 0, 3
 LONGEST = 80  # characters of what --set changed in a folder's name: file systems take 255 bytes with the scene's name

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault
-from lumped.result_folder import publish
-from lumped.scene import Scene
+from lumped.result.folder import publish
+from lumped.scene.scene import Scene
 
 SUMMARY = "the finite-element reference against lumped laws: scores, verdict, chart"
 
@@ -25,10 +25,10 @@ def execute(args: argparse.Namespace) -> int:
     """Solve, judge, write, say the verdict; 0 or 3."""
     from fe_contact.methods import settings, simulate
     from fe_contact.reference import result_of, solve
-    from fe_contact.report.compare import plot_comparison
-    from fe_contact.validation.compare import compare
-    from fe_contact.validation.compare_files import comparison_content, write_comparison
-    from lumped.score import read_curve
+    from fe_contact.studies.compare.chart import plot_comparison
+    from fe_contact.studies.compare.files import comparison_content, write_comparison
+    from fe_contact.studies.compare.study import compare
+    from lumped.result.score import read_curve
 
     scene, table = base.read_scene(args)
     given, names = settings(table, None, scene.source), law_names(args.laws, scene)
@@ -57,7 +57,7 @@ def execute(args: argparse.Namespace) -> int:
 def law_names(text: str | None, scene: Scene) -> tuple[str, ...]:
     """Checked names of the laws asked for, each once; raises BadInput with every unknown one and the nearest."""
     from fe_contact.methods import EXACT_WITH_INERTIA
-    from fe_contact.validation.compare import DEFAULT_LAWS
+    from fe_contact.studies.compare.study import DEFAULT_LAWS
     from lumped.errors import nearest, shown
     from lumped.laws import available
 

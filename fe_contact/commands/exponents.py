@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from lumped.result_folder import publish
+from lumped.result.folder import publish
 
 if TYPE_CHECKING:
-    from fe_contact.validation.exponents import Curve
-    from fe_contact.validation.exponents_check import Check
+    from fe_contact.studies.exponents.check import Check
+    from fe_contact.studies.exponents.study import Curve
 
 SUMMARY = (
     "local exponent and D from the half-space to the thin layer, every profile, base and nu, checked by finite "
@@ -27,11 +27,11 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Solve, check, write, draw; 0, or 3 where finite elements missed their tolerance."""
-    from fe_contact.report.exponents import plot_exponents
-    from fe_contact.validation.exponents import curves
-    from fe_contact.validation.exponents_check import checks
-    from fe_contact.validation.exponents_files import write_exponents
-    from fe_contact.validation.finite_spheres import pairs
+    from fe_contact.studies.exponents.chart import plot_exponents
+    from fe_contact.studies.exponents.check import checks
+    from fe_contact.studies.exponents.files import write_exponents
+    from fe_contact.studies.exponents.finite_spheres import pairs
+    from fe_contact.studies.exponents.study import curves
 
     where = base.folder(args, "exponents", "layers")
     progress = base.progress_of(args)

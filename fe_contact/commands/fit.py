@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from fe_contact.commands import base
 from fe_contact.progress import clear
 from lumped.errors import BadInput, Fault, NotReached, addressed, shown
-from lumped.result_folder import publish
+from lumped.result.folder import publish
 
 if TYPE_CHECKING:
     from lumped.fit import Estimate, Fit
@@ -36,9 +36,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Fit, write, report; 0 or 3."""
-    from fe_contact.report.fit import plot_fit
+    from fe_contact.studies.fit.chart import plot_fit
     from lumped.fit import RECORD, fit, write_failure
-    from lumped.score import read_curve
+    from lumped.result.score import read_curve
 
     _check_opensees(args)
     scene, curve = base.read_scene_for_fit(args), read_curve(args.curve)
@@ -65,7 +65,8 @@ def execute(args: argparse.Namespace) -> int:
 
 def _report(args: argparse.Namespace, found: Fit, content: dict[str, Any], where: Path) -> None:
     """Parameters; for OpenSees the law, with the parameters as comments; warnings on stderr."""
-    from lumped import laws, opensees
+    from lumped import laws
+    from lumped.fit import opensees
 
     text = summary(found, where)
     if args.opensees:
@@ -96,7 +97,7 @@ def _shown(estimate: Estimate) -> str:
 
 def _check_opensees(args: argparse.Namespace) -> None:
     """Refuse, before anything is computed, what OpenSees does not have; raises BadInput."""
-    from lumped import opensees
+    from lumped.fit import opensees
 
     if args.opensees is None:
         return

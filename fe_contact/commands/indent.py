@@ -9,10 +9,10 @@ from typing import Any
 from fe_contact.commands import base
 from fe_contact.progress import clear
 from lumped.errors import BadInput, Fault, NotReached, nearest, shown
-from lumped.indentation import Indentation
-from lumped.indenter import Indenter
-from lumped.result_folder import publish
-from lumped.sufficiency import good_to
+from lumped.indentation.indentation import Indentation
+from lumped.result.folder import publish
+from lumped.result.sufficiency import good_to
+from lumped.scene.indenter import Indenter
 
 SUMMARY = "slow indentation to given depths: indentation.csv and result.json, with error bars"
 EXACT = ("mdr", "ting", "correspondence")  # at rest all are the exact load curve, the first the half-space's alone
@@ -50,8 +50,8 @@ def _indented(
     args: argparse.Namespace, indenter: Indenter, depths: tuple[float, ...], given: dict[str, Any]
 ) -> Indentation:
     """By finite elements or by a closed form; raises BadInput for any other method."""
+    from fe_contact.budget.plan import DEFAULT_TOLERANCE
     from fe_contact.indentation import indent as by_elements
-    from fe_contact.plan import DEFAULT_TOLERANCE
 
     progress = base.progress_of(args)
     if args.method == "fe":
@@ -60,7 +60,7 @@ def _indented(
     if args.method not in names:
         reason = f"{shown(args.method)}: accepted {', '.join(names)}{nearest(args.method, names)}"
         raise BadInput(Fault("--method", "", reason))
-    from lumped.slow import indent as closed_form
+    from lumped.indentation.slow import indent as closed_form
 
     tolerance = given.get("tolerance", DEFAULT_TOLERANCE)
     if args.method != "cheapest":

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from lumped.result_folder import publish
+from lumped.result.folder import publish
 
 if TYPE_CHECKING:
     from lumped.paper import Judged, Value
@@ -25,8 +25,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Recompute, write, say the verdicts; 0."""
-    from fe_contact.report.paper import plot_paper
-    from fe_contact.validation.paper_files import write_study
+    from fe_contact.studies.paper.chart import plot_paper
+    from fe_contact.studies.paper.files import write_study
     from lumped.paper import Examples
     from lumped.paper.study import study
 

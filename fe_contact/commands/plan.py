@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from fe_contact.commands import base
 from fe_contact.progress import clear
 from lumped.errors import FeContactError, NotReached
-from lumped.scene import Scene
-from lumped.sufficiency import good_to
+from lumped.result.sufficiency import good_to
+from lumped.scene.scene import Scene
 
 if TYPE_CHECKING:  # finite elements are loaded when they are needed
-    from fe_contact.plan import Plan
+    from fe_contact.budget.plan import Plan
     from fe_contact.waves.cost import Cost
 
 SUMMARY = "the settings chosen and what the model leaves out, without solving"
@@ -27,8 +27,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print settings, ledger, what waves take, and why finite elements refuse the scene; 3 where that is too much."""
+    from fe_contact.budget.plan import plan
     from fe_contact.methods import settings
-    from fe_contact.plan import plan
 
     scene, table = base.read_scene(args)
     progress = base.progress_of(args)
@@ -60,7 +60,7 @@ def execute(args: argparse.Namespace) -> int:
 
 def _takes(scene: Scene, chosen: Plan) -> tuple[Cost | None, FeContactError | None]:
     """What waves take, None without them, and why finite elements refuse the scene, None where they do not."""
-    from fe_contact.plan import cost
+    from fe_contact.budget.plan import cost
     from fe_contact.reference import check_target
 
     try:

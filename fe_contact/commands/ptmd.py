@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from lumped.errors import NotReached
-from lumped.result_folder import publish
-from lumped.sufficiency import worst
+from lumped.result.folder import publish
+from lumped.result.sufficiency import worst
 
 if TYPE_CHECKING:
-    from lumped.pounding_tmd.study import Study
+    from lumped.ptmd.study import Study
 
 SUMMARY = "free vibration of a pounding tuned mass damper: motion, contacts, energies, chart"
 
@@ -26,10 +26,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Simulate, write, report; 0 or 3."""
-    from fe_contact.report.ptmd import plot_study
-    from fe_contact.validation.ptmd_files import RECORD, write_failure, write_study
-    from lumped.pounding_tmd.case_file import load
-    from lumped.pounding_tmd.study import study
+    from fe_contact.studies.ptmd.chart import plot_study
+    from fe_contact.studies.ptmd.files import RECORD, write_failure, write_study
+    from lumped.ptmd.case_file import load
+    from lumped.ptmd.study import study
 
     case = load(args.file, base.overrides_of(args))
     where = base.folder(args, "ptmd", case.name)

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from lumped.result_folder import publish
+from lumped.result.folder import publish
 
 if TYPE_CHECKING:
-    from lumped.restitution_table import Line
+    from fe_contact.studies.restitution.table import Line
 
 SUMMARY = "restitution asked for against obtained: every law, exact and published dampings, both exits"
 
@@ -22,9 +22,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Simulate, write, say how far each formula is off; 0."""
-    from fe_contact.report.restitution import plot_restitution
-    from fe_contact.validation.restitution_files import write_restitution
-    from lumped.restitution_table import table
+    from fe_contact.studies.restitution.chart import plot_restitution
+    from fe_contact.studies.restitution.files import write_restitution
+    from fe_contact.studies.restitution.table import table
 
     where = base.folder(args, "restitution", "laws")
     progress = base.progress_of(args)

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from lumped.result_folder import publish
+from lumped.result.folder import publish
 
 if TYPE_CHECKING:
-    from fe_contact.validation.rings import RingCurve
-    from fe_contact.validation.rings_impact import RingStruck
+    from fe_contact.studies.rings.impact import RingStruck
+    from fe_contact.studies.rings.study import RingCurve
 
 SUMMARY = "rod in ring, O-ring and washer pressed, the paper's ring struck, by finite elements against its (27)-(32)"
 
@@ -23,10 +23,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Press, strike, judge, write, draw; 0, or 3 where finite elements missed their tolerance."""
-    from fe_contact.report.rings import plot_rings
-    from fe_contact.validation.rings import cases, rings
-    from fe_contact.validation.rings_files import write_rings
-    from fe_contact.validation.rings_impact import struck
+    from fe_contact.studies.rings.chart import plot_rings
+    from fe_contact.studies.rings.files import write_rings
+    from fe_contact.studies.rings.impact import struck
+    from fe_contact.studies.rings.study import cases, rings
 
     where = base.folder(args, "ring", "paper")
     progress = base.progress_of(args)
@@ -50,7 +50,7 @@ def execute(args: argparse.Namespace) -> int:
 
 def _said(curve: RingCurve) -> list[str]:
     """A ring: the verdict, then every depth."""
-    from fe_contact.validation.rings_verdict import verdict
+    from fe_contact.studies.rings.verdict import verdict
 
     judged, found = verdict(curve), curve.found
     lines = [f"{curve.case.name}: (27)-(29) {judged.word}: {judged.sentence}"]

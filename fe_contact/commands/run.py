@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.result import Result, write_failure
-from lumped.result_folder import publish
-from lumped.scene import Scene
+from lumped.result.folder import publish
+from lumped.result.result import Result, write_failure
+from lumped.scene.scene import Scene
 
 if TYPE_CHECKING:  # finite elements are loaded when they are needed
     from fe_contact.reference import Solved
@@ -62,7 +62,7 @@ def _write(args: argparse.Namespace, solved: Solved | None, result: Result, fold
     if args.fields:
         _write_fields(result.scene, solved, result, folder)
     if args.plot:
-        from fe_contact.report.history import plot_history
+        from fe_contact.studies.history_chart import plot_history
 
         plot_history(result, folder, solved)
 
@@ -83,8 +83,8 @@ def _check(args: argparse.Namespace, scene: Scene) -> None:
 
 
 def _moving_target(scene: Scene) -> Any:
-    from fe_contact.numerics import WAVES
-    from lumped.members import get
+    from fe_contact.settings import WAVES
+    from lumped.schema.members import get
 
     return get(WAVES, scene.target.name)
 

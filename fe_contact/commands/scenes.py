@@ -6,7 +6,7 @@ import argparse
 import json
 
 from fe_contact.commands import base
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
 
 SUMMARY = "the packaged scenes, one line each"
 
@@ -18,7 +18,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print; 0."""
-    from lumped.data import scene_names
+    from lumped.schema.data import scene_names
 
     scenes = {name: Scene.load(name) for name in scene_names()}
     if args.json:

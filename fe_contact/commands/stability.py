@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from lumped.result_folder import publish
+from lumped.result.folder import publish
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from fe_contact.validation.stability.base import Row
+    from fe_contact.studies.stability.base import Row
 
 SUMMARY = "maps of where methods break: schemes, masses, penalties, locking, relaxation, exits, gaps, far ends"
 
@@ -27,8 +27,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Measure what is not yet measured, write, draw; 0."""
-    from fe_contact.report.stability import plot_stability
-    from fe_contact.validation.stability_files import rows_of, write_stability
+    from fe_contact.studies.stability._chart import plot_stability
+    from fe_contact.studies.stability._files import rows_of, write_stability
 
     where = base.folder(args, "stability", "bars")
     progress = base.progress_of(args)

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from lumped.result_folder import publish
+from lumped.result.folder import publish
 
 if TYPE_CHECKING:
-    from fe_contact.validation.table1 import Trial
+    from fe_contact.studies.table1.study import Trial
 
 SUMMARY = "the paper's Table 1 on trial: D, alpha and E* of every row by finite elements, with error bars and verdicts"
 
@@ -22,9 +22,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Press, identify, judge, write, draw; 0, or 3 where bars leave a row undecided."""
-    from fe_contact.validation.table1 import table1
-    from fe_contact.validation.table1_files import write_table1
-    from fe_contact.validation.table1_verdict import UNDECIDED, verdict
+    from fe_contact.studies.table1.files import write_table1
+    from fe_contact.studies.table1.study import table1
+    from fe_contact.studies.table1.verdict import UNDECIDED, verdict
 
     where = base.folder(args, "table1", "paper")
     progress = base.progress_of(args)
@@ -33,7 +33,7 @@ def execute(args: argparse.Namespace) -> int:
     def write(folder: Path) -> None:
         write_table1(trials, folder)
         progress("chart")
-        from fe_contact.report.table1 import plot_table1  # matplotlib, once the two processes are gone
+        from fe_contact.studies.table1.chart import plot_table1  # matplotlib, once the two processes are gone
 
         plot_table1(trials, folder)
 
@@ -47,7 +47,7 @@ def execute(args: argparse.Namespace) -> int:
 
 def _said(trial: Trial) -> list[str]:
     """A row: its verdict, then its numbers."""
-    from fe_contact.validation.table1_verdict import verdict
+    from fe_contact.studies.table1.verdict import verdict
 
     row, judged = trial.row, verdict(trial)
     lines = [f"{row.number} {row.case}: {judged.word}: {judged.sentence}"]

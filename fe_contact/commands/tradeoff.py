@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from fe_contact.commands import base
-from lumped.result_folder import publish
+from lumped.result.folder import publish
 
 SUMMARY = "error over processor time and counted work, by every method; where the defaults lie"
 
@@ -21,9 +21,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Measure, write, say where the defaults lie; 0."""
     from fe_contact.methods import settings
-    from fe_contact.report.tradeoff import plot_tradeoff
-    from fe_contact.validation import tradeoff, tradeoff_waves
-    from fe_contact.validation.tradeoff_files import write_tradeoff
+    from fe_contact.studies.tradeoff import study as tradeoff
+    from fe_contact.studies.tradeoff import study_with_waves as tradeoff_waves
+    from fe_contact.studies.tradeoff.chart import plot_tradeoff
+    from fe_contact.studies.tradeoff.files import write_tradeoff
 
     scene, table = base.read_scene(args)
     where = base.folder(args, "tradeoff", scene.name)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sparse
 
-from fe_contact.forms import Array
+from fe_contact.assembly.forms import Array
 from lumped.materials import Relaxation
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_contact.forms import Array
+from fe_contact.assembly.forms import Array
 
 
 def touched(time: float, step: float, overlap: Array, closing: Array) -> float:

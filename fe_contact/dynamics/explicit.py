@@ -15,14 +15,14 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.interior import factorized
+from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.dynamics import memory
 from fe_contact.dynamics.body import Body
 from fe_contact.dynamics.pressed import Enforced, Found, surface_of
 from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.dynamics.state import State, internal
-from fe_contact.forms import Array
-from fe_contact.interior import factorized
-from fe_contact.pressed_surface import PressedSurface
 from lumped.errors import BadInput, Fault
 
 

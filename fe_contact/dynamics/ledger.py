@@ -14,11 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_contact.assembly.forms import Array
 from fe_contact.dynamics import memory
 from fe_contact.dynamics.body import Body
 from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.dynamics.state import State
-from fe_contact.forms import Array
 
 
 class Energies(NamedTuple):

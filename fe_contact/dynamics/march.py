@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_contact.assembly.forms import Array
 from fe_contact.dynamics import events, ledger
 from fe_contact.dynamics.body import Body
 from fe_contact.dynamics.explicit import ExplicitStepper
@@ -19,7 +20,6 @@ from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.dynamics.stages import stages
 from fe_contact.dynamics.state import State, undeformed
 from fe_contact.errors import ContactLost, MotionUnbounded, TooManySteps
-from fe_contact.forms import Array
 
 MOST_STEPS = 200_000  # of a small body: a minute and a half, nearly all of it beside the unknowns
 MOST_WORK = 3e8  # unknowns times steps, of a large one: some eight minutes of one core

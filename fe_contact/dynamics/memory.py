@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_contact.assembly.forms import Array
 from fe_contact.dynamics.body import Part
-from fe_contact.forms import Array
 from fe_contact.schemes import galerkin
 
 SLOW = 1e-3  # step over relaxation time below which the lag is a twelfth of that, to rounding

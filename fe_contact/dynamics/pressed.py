@@ -7,17 +7,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fe_contact.contact import ContactProblem, ContactSolution, Touching
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.pressed_surface import PressedSurface
+from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching
 from fe_contact.dynamics.body import Pressing
 from fe_contact.dynamics.mass.consistent import Nodes
 from fe_contact.errors import ContactNotSettled
-from fe_contact.forms import Array
-from fe_contact.pressed_surface import PressedSurface
 
 
 @dataclass(frozen=True, eq=False)
 class Enforced:
-    """A way to keep the surfaces apart, a member of :mod:`fe_contact.enforcement` or like one; its penalty, Pa/m."""
+    """A member of :mod:`fe_contact.contact.enforcement`, or like one, and its penalty, Pa/m."""
 
     member: Any
     penalty: float

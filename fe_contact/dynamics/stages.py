@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sparse
 
+from fe_contact.assembly.forms import Array
 from fe_contact.dynamics.body import Body
 from fe_contact.dynamics.pressed import Enforced
-from fe_contact.forms import Array
 from lumped.errors import BadInput, Fault
 
 ROUNDING = 1e-9  # of a stage that just keeps the limit

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.interior import factorized
 from fe_contact.dynamics import memory
 from fe_contact.dynamics.body import Body
-from fe_contact.forms import Array
-from fe_contact.interior import factorized
 
 
 class State(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_contact.forms import Array
+from fe_contact.assembly.forms import Array
 
 ORDER = 1
 SAMPLE = 1.0

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from fe_contact.forms import Array
+from fe_contact.assembly.forms import Array
 
 ORDER = 2
 SAMPLE = 0.5

@@ -7,16 +7,16 @@ from types import ModuleType
 
 import numpy as np
 
-from fe_contact.contact import ContactProblem
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import SurfaceOperator
+from fe_contact.assembly.pressed_surface import PressedSurface
+from fe_contact.assembly.trace import trace_between
+from fe_contact.bodies.pressing import BEYOND, EDGE_ORDER, Pressed, half_width
+from fe_contact.contact.problem import ContactProblem
 from fe_contact.errors import ContactTooWide, IndentationNotSettled
-from fe_contact.forms import Array
-from fe_contact.numerics import ENFORCEMENTS, Numerics
-from fe_contact.operators import SurfaceOperator
-from fe_contact.pressed_surface import PressedSurface
-from fe_contact.pressing import BEYOND, EDGE_ORDER, Pressed, half_width
-from fe_contact.trace import trace_between
-from lumped.indenter import Indenter
-from lumped.members import get
+from fe_contact.settings import ENFORCEMENTS, Numerics
+from lumped.scene.indenter import Indenter
+from lumped.schema.members import get
 
 STIFFER = 6.0  # penalty where the contact ends at a rim, over that where it may move: no edge asks for softness
 

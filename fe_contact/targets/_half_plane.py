@@ -9,18 +9,18 @@ import scipy.sparse as sparse
 from skfem import FacetBasis
 
 import meshes
-from fe_contact.bodies.scaled_surface import ScaledSurface
-from fe_contact.far_field import half_plane
-from fe_contact.forms import Array, isotropic, plane_stiffness
-from fe_contact.kept import kept
-from fe_contact.numerics import Numerics
-from fe_contact.operators import basis_on, condensed, made
-from fe_contact.pressing import FixedStill, Still
-from fe_contact.surface import flat
-from fe_contact.targets._zone import LINE_REFINEMENT, STRUCK_REFINEMENT, Zone, held, smallest_struck
-from fe_contact.trace import lagrange
-from lumped.geometry import Geometry
-from lumped.indenter import Indenter
+from fe_contact.assembly import half_plane
+from fe_contact.assembly.cache import kept
+from fe_contact.assembly.forms import Array, isotropic, plane_stiffness
+from fe_contact.assembly.operators import basis_on, condensed, made
+from fe_contact.assembly.surface import flat
+from fe_contact.assembly.trace import lagrange
+from fe_contact.bodies.pressing import FixedStill, Still
+from fe_contact.bodies.zone import LINE_REFINEMENT, STRUCK_REFINEMENT, Zone, held, smallest_struck
+from fe_contact.settings import Numerics
+from fe_contact.steppers.scaled_surface import ScaledSurface
+from lumped.scene.geometry import Geometry
+from lumped.scene.indenter import Indenter
 
 DATUM = 0.15  # size of the mesh over the datum's depth, per far radius of the settings
 

@@ -6,16 +6,16 @@ import numpy as np
 from skfem import FacetBasis
 
 import meshes
-from fe_contact.bodies.scaled_surface import ScaledSurface
-from fe_contact.far_field import static
-from fe_contact.forms import isotropic, stiffness
-from fe_contact.kept import kept
-from fe_contact.numerics import Numerics
-from fe_contact.operators import basis_on, condensed, made
-from fe_contact.pressing import FixedStill, Still
-from fe_contact.surface import flat
-from fe_contact.targets._zone import REFINEMENT, held
-from lumped.indenter import Indenter
+from fe_contact.assembly import far_field as static
+from fe_contact.assembly.cache import kept
+from fe_contact.assembly.forms import isotropic, stiffness
+from fe_contact.assembly.operators import basis_on, condensed, made
+from fe_contact.assembly.surface import flat
+from fe_contact.bodies.pressing import FixedStill, Still
+from fe_contact.bodies.zone import REFINEMENT, held
+from fe_contact.settings import Numerics
+from fe_contact.steppers.scaled_surface import ScaledSurface
+from lumped.scene.indenter import Indenter
 
 
 def still(indenter: Indenter, radius: float, numerics: Numerics) -> Still:

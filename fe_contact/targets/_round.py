@@ -11,20 +11,15 @@ import numpy.typing as npt
 from skfem import Basis
 
 import meshes
+from fe_contact.assembly.cache import kept
+from fe_contact.assembly.elastic_body import ElasticBody, axisymmetric, plane
+from fe_contact.assembly.floating import Floating
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import SurfaceOperator, basis_on, made
+from fe_contact.assembly.surface import crown
 from fe_contact.bodies.bulk_memory import Moduli
-from fe_contact.bodies.bulk_surface import Pace
-from fe_contact.bodies.sides import BulkSide, Side, stacked
-from fe_contact.bodies.stacked import Stacked
-from fe_contact.elastic_body import ElasticBody, axisymmetric, plane
-from fe_contact.floating import Floating
-from fe_contact.forms import Array
-from fe_contact.kept import kept
-from fe_contact.numerics import Numerics
-from fe_contact.operators import SurfaceOperator, basis_on, made
-from fe_contact.pressing import Still
-from fe_contact.surface import crown
-from fe_contact.targets._body import BodyStill, trace_at
-from fe_contact.targets._zone import (
+from fe_contact.bodies.pressing import Still
+from fe_contact.bodies.zone import (
     LINE_REFINEMENT,
     MARGIN,
     SPHERE_REFINEMENT,
@@ -32,9 +27,14 @@ from fe_contact.targets._zone import (
     Zone,
     smallest_struck,
 )
-from lumped.geometry import Geometry
-from lumped.indenter import Indenter
+from fe_contact.settings import Numerics
+from fe_contact.steppers.bulk_surface import Pace
+from fe_contact.steppers.sides import BulkSide, Side, stacked
+from fe_contact.steppers.stacked import Stacked
+from fe_contact.targets._body import BodyStill, trace_at
 from lumped.materials import Material
+from lumped.scene.geometry import Geometry
+from lumped.scene.indenter import Indenter
 from lumped.shapes import Shape
 from lumped.targets._round import Round
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import meshes
-from fe_contact.bodies.scaled_surface import ScaledSurface
-from fe_contact.forms import Array
-from fe_contact.kept import kept
-from fe_contact.numerics import Numerics
-from fe_contact.operators import made, surface_operator
-from fe_contact.pressing import ScaledStill, Still
+from fe_contact.assembly.cache import kept
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import made, surface_operator
+from fe_contact.bodies.pressing import ScaledStill, Still
+from fe_contact.settings import Numerics
+from fe_contact.steppers.scaled_surface import ScaledSurface
 from fe_contact.targets import _half_plane as half_plane
 from fe_contact.targets import _rim as rim
-from lumped.geometry import Geometry
-from lumped.indenter import Indenter
+from lumped.scene.geometry import Geometry
+from lumped.scene.indenter import Indenter
 
 
 def surface(poisson: float, numerics: Numerics) -> ScaledSurface:

@@ -8,19 +8,15 @@ from typing import Any
 from skfem import FacetBasis, MeshTri
 
 import meshes
-from fe_contact.bodies import bulk_surface
+from fe_contact.assembly import plate
+from fe_contact.assembly.cache import kept
+from fe_contact.assembly.elastic_body import ElasticBody
+from fe_contact.assembly.forms import Array, elastic, plane_stiffness, stiffness
+from fe_contact.assembly.operators import basis_on, made
+from fe_contact.assembly.surface import flat
 from fe_contact.bodies.bulk_memory import Moduli
-from fe_contact.bodies.bulk_surface import BulkSurface
-from fe_contact.bodies.scaled_surface import ScaledSurface
-from fe_contact.elastic_body import ElasticBody
-from fe_contact.far_field import plate
-from fe_contact.forms import Array, elastic, plane_stiffness, stiffness
-from fe_contact.kept import kept
-from fe_contact.numerics import Numerics
-from fe_contact.operators import basis_on, made
-from fe_contact.pressing import FixedStill, Still
-from fe_contact.surface import flat
-from fe_contact.targets._zone import (
+from fe_contact.bodies.pressing import FixedStill, Still
+from fe_contact.bodies.zone import (
     LINE_REFINEMENT,
     REFINEMENT,
     STRUCK_REFINEMENT,
@@ -29,8 +25,12 @@ from fe_contact.targets._zone import (
     smallest_struck,
     thickness_over,
 )
-from lumped.geometry import Geometry
-from lumped.indenter import Indenter
+from fe_contact.settings import Numerics
+from fe_contact.steppers import bulk_surface
+from fe_contact.steppers.bulk_surface import BulkSurface
+from fe_contact.steppers.scaled_surface import ScaledSurface
+from lumped.scene.geometry import Geometry
+from lumped.scene.indenter import Indenter
 from lumped.targets.layer import Layer
 
 Sizes = tuple[float, float | None, float, float]  # elements, smallest contact, thickness, width: see _mesh

@@ -7,20 +7,15 @@ from functools import partial
 import numpy as np
 
 import meshes
+from fe_contact.assembly.cache import kept
+from fe_contact.assembly.elastic_body import ElasticBody, axisymmetric
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import SurfaceOperator, basis_on, made
+from fe_contact.assembly.pressed_surface import PressedSurface
+from fe_contact.assembly.surface import crown
 from fe_contact.bodies.bulk_memory import Moduli
-from fe_contact.bodies.bulk_surface import Pace
-from fe_contact.bodies.sides import BulkSide, Side
-from fe_contact.bodies.stacked import Stacked
-from fe_contact.elastic_body import ElasticBody, axisymmetric
-from fe_contact.forms import Array
-from fe_contact.kept import kept
-from fe_contact.numerics import Numerics
-from fe_contact.operators import SurfaceOperator, basis_on, made
-from fe_contact.pressed_surface import PressedSurface
-from fe_contact.pressing import Still
-from fe_contact.surface import crown
-from fe_contact.targets._body import BodyStill
-from fe_contact.targets._zone import (
+from fe_contact.bodies.pressing import Still
+from fe_contact.bodies.zone import (
     LINE_REFINEMENT,
     MARGIN,
     STRUCK_REFINEMENT,
@@ -28,9 +23,14 @@ from fe_contact.targets._zone import (
     held,
     smallest_struck,
 )
-from lumped.geometry import Geometry
-from lumped.indenter import Indenter
+from fe_contact.settings import Numerics
+from fe_contact.steppers.bulk_surface import Pace
+from fe_contact.steppers.sides import BulkSide, Side
+from fe_contact.steppers.stacked import Stacked
+from fe_contact.targets._body import BodyStill
 from lumped.materials import Relaxation
+from lumped.scene.geometry import Geometry
+from lumped.scene.indenter import Indenter
 from lumped.targets.o_ring import ORing
 
 Sizes = tuple[float, int, float, float, float]  # elements, order, smallest contact, contact, mean radius: see _body

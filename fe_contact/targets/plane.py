@@ -9,15 +9,15 @@ import numpy as np
 import scipy.sparse.linalg as linalg
 
 import meshes
-from fe_contact.bodies.struck import Deformable
-from fe_contact.forms import Array, isotropic, stiffness
-from fe_contact.numerics import Numerics
-from fe_contact.operators import basis_on, made
-from fe_contact.pressing import Pressed, Still
+from fe_contact.assembly.forms import Array, isotropic, stiffness
+from fe_contact.assembly.operators import basis_on, made
+from fe_contact.bodies.pressing import Pressed, Still
+from fe_contact.bodies.zone import held
+from fe_contact.settings import Numerics
+from fe_contact.steppers.struck import Deformable
 from fe_contact.targets import _round
-from fe_contact.targets._zone import held
-from lumped.geometry import Geometry
-from lumped.indenter import Indenter
+from lumped.scene.geometry import Geometry
+from lumped.scene.indenter import Indenter
 from lumped.shapes._block import Block
 
 FEWER = 0.75  # elements along the block's shorter side, of those along a contact radius: no edge of contact moves

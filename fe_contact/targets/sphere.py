@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from fe_contact.bodies.struck import Deformable
-from fe_contact.forms import Array
-from fe_contact.numerics import Numerics
-from fe_contact.pressing import ScaledStill, Still
+from fe_contact.assembly.forms import Array
+from fe_contact.bodies.pressing import ScaledStill, Still
+from fe_contact.settings import Numerics
+from fe_contact.steppers.struck import Deformable
 from fe_contact.targets import _round, half_space
-from lumped.geometry import Geometry
-from lumped.indenter import Indenter
+from lumped.scene.geometry import Geometry
+from lumped.scene.indenter import Indenter
 from lumped.targets.sphere import Sphere
 
 

@@ -7,21 +7,21 @@ from functools import partial
 import numpy as np
 
 import meshes
-from fe_contact.bodies import bulk_surface
+from fe_contact.assembly.cache import kept
+from fe_contact.assembly.elastic_body import ElasticBody, axisymmetric
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import SurfaceOperator, basis_on, made
+from fe_contact.assembly.pressed_surface import PressedSurface
+from fe_contact.assembly.surface import Surface, ring_area
 from fe_contact.bodies.bulk_memory import Moduli
-from fe_contact.bodies.bulk_surface import BulkSurface
-from fe_contact.elastic_body import ElasticBody, axisymmetric
-from fe_contact.forms import Array
-from fe_contact.kept import kept
-from fe_contact.numerics import Numerics
-from fe_contact.operators import SurfaceOperator, basis_on, made
-from fe_contact.pressed_surface import PressedSurface
-from fe_contact.pressing import Still
-from fe_contact.surface import Surface, ring_area
+from fe_contact.bodies.pressing import Still
+from fe_contact.bodies.zone import held, thickness_over
+from fe_contact.settings import Numerics
+from fe_contact.steppers import bulk_surface
+from fe_contact.steppers.bulk_surface import BulkSurface
 from fe_contact.targets._body import BodyStill
-from fe_contact.targets._zone import held, thickness_over
-from lumped.geometry import Geometry
-from lumped.indenter import Indenter
+from lumped.scene.geometry import Geometry
+from lumped.scene.indenter import Indenter
 from lumped.targets import Target
 from lumped.targets.washer import Washer
 

@@ -9,20 +9,20 @@ import numpy as np
 import scipy.sparse as sparse
 
 import meshes
+from fe_contact.assembly.cache import kept
+from fe_contact.assembly.forms import Array, isotropic, mass, stiffness, vector_dofs
+from fe_contact.assembly.operators import basis_on, made
+from fe_contact.assembly.surface import Surface, crown
+from fe_contact.assembly.trace import contact_quadrature, trace_between
+from fe_contact.bodies.zone import WIDEST
 from fe_contact.dynamics.body import Part
 from fe_contact.dynamics.mass.consistent import Nodes
-from fe_contact.forms import Array, isotropic, mass, stiffness, vector_dofs
-from fe_contact.kept import kept
-from fe_contact.numerics import MASSES
-from fe_contact.operators import basis_on, made
-from fe_contact.surface import Surface, crown
-from fe_contact.targets._zone import WIDEST
-from fe_contact.trace import contact_quadrature, trace_between
+from fe_contact.settings import MASSES
 from fe_contact.waves.half_space_body import SMALLEST
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.sides import Side
 from lumped.materials import Material
-from lumped.members import get
+from lumped.schema.members import get
 
 
 @dataclass(frozen=True, eq=False)

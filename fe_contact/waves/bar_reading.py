@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.assembly.forms import Array
 from fe_contact.dynamics.march import Motion, Sample
-from fe_contact.forms import Array
 from fe_contact.waves.fronts import DEPTH, FORCE, TIME, VELOCITY, with_fronts
 from fe_contact.waves.rod_reading import Contacts, Reading, stopped
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
 
 SPOILED, TELLING = 8, 8  # steps at the ends of a contact in which its element rings, and those beside them
 UNENDED = {"duration": None, "restitution": None}

@@ -8,16 +8,16 @@ from fe_contact.dynamics import ledger
 from fe_contact.dynamics.march import MOST_WORK, Moment, Motion, Sample, onwards
 from fe_contact.dynamics.state import undeformed
 from fe_contact.errors import TooManySteps
-from fe_contact.flight import FAINTEST, Grounded
-from fe_contact.impacts import Contact, Followed
-from fe_contact.march import Strike
+from fe_contact.march.flight import FAINTEST, Grounded
+from fe_contact.march.impacts import Contact, Followed
 from fe_contact.progress import Counted, uncounted
+from fe_contact.steppers.march import Strike
 from fe_contact.waves.cost import MARCHES
 from fe_contact.waves.flight import Flights
 from fe_contact.waves.impact import choices_of, left, record
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
 
 LONGEST = 12.0  # planned contact times after which one of several contacts counts as swinging on its weight
 PATIENCE = 0.1  # of the steps along a contact that a flight takes before they double

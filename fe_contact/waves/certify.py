@@ -13,20 +13,20 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from fe_contact.certify import MESH_ORDER, WITNESS, Budget, Causes, Several, factor, other_setting
-from fe_contact.change import UNORDERED, Change
-from fe_contact.curve import Curve
-from fe_contact.forms import Array
-from fe_contact.march import March, Strike
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.certify import MESH_ORDER, WITNESS, Budget, Causes, Several, factor, other_setting
+from fe_contact.budget.change import UNORDERED, Change
+from fe_contact.budget.curve import Curve
+from fe_contact.budget.runs import TotalWork
 from fe_contact.progress import Counted, uncounted
-from fe_contact.runs import TotalWork
+from fe_contact.steppers.march import March, Strike
 from fe_contact.waves.bounces import Bounces, follow
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.reading import curve_of, reading
 from fe_contact.waves.steps import graded
 from lumped.errors import NotReached
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
 
 ORDER = {"mesh": 1, "penalty": 1, "time_step": 1, "far_field": 2}
 # along the contact radius: half of fewer may err alike by chance, and are hardly larger in the bulk

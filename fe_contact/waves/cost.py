@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from fe_contact.budget.plan import EARLY_PEAK
 from fe_contact.dynamics.march import MOST_WORK
 from fe_contact.errors import WavesTooDear
-from fe_contact.numerics import Numerics
-from fe_contact.plan import EARLY_PEAK
+from fe_contact.settings import Numerics
 from fe_contact.waves.steps import graded
 
 STEP = 300  # unknowns whose share of a step takes as long as all the rest of it

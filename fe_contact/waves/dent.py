@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from fe_contact.contact import ContactProblem, ContactSolution, Touching
+from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching
 from lumped.load_curves.base import LoadCurve
 
 MOST = 60

@@ -6,12 +6,12 @@ import time
 from collections.abc import Callable, Mapping
 from functools import cache
 
-from fe_contact.plan import Plan
+from fe_contact.budget.plan import Plan
 from fe_contact.progress import Progress
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.rod_record import Bars, Run, result_of
-from lumped.result import Result, meets
-from lumped.scene import Scene
+from lumped.result.result import Result, meets
+from lumped.scene.scene import Scene
 
 ROUNDS = 3  # refinements before giving up
 STEP = 2_000  # unknowns whose share of a step takes as long as all the rest of it

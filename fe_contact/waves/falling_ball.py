@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from fe_contact.forms import check_compressible
-from fe_contact.numerics import RANGES
-from fe_contact.plan import Plan
+from fe_contact.assembly.forms import check_compressible
+from fe_contact.budget.plan import Plan
 from fe_contact.progress import Progress, silent
+from fe_contact.settings import RANGES
 from fe_contact.waves.cost import Cost
 from fe_contact.waves.flying_ball import on_plane
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.plan import SPRINGS, placed
 from fe_contact.waves.refining import cost_of, refined_to_tolerance
-from fe_contact.waves.targets.half_space import changing, too_fast
+from fe_contact.waves.refusals import changing, too_fast
 from lumped.errors import BadInput
 from lumped.laws import mdr
 from lumped.laws.mdr import ImpactScales
-from lumped.result import Result
-from lumped.scene import Scene
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
 
 
 def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:

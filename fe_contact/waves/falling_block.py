@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from fe_contact.bodies.bar import TIP, Bar, falling, pitch
+from fe_contact.budget.plan import Plan
 from fe_contact.dynamics.march import Choices, march
 from fe_contact.dynamics.pressed import Enforced
-from fe_contact.numerics import ENFORCEMENTS, MASSES, WAVE_SCHEMES
-from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
+from fe_contact.settings import ENFORCEMENTS, MASSES, WAVE_SCHEMES
 from fe_contact.waves.bar_reading import Ending, read
 from fe_contact.waves.cost import Cost
 from fe_contact.waves.doubling import certified
@@ -25,12 +25,12 @@ from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.rod_record import Run
 from fe_contact.waves.usual import witness
 from lumped.errors import BadInput, Fault
-from lumped.members import get
-from lumped.model_ledger.motion import gravity
-from lumped.result import Result
-from lumped.scene import Scene
+from lumped.result.model_ledger.motion import gravity
+from lumped.result.result import Result
+from lumped.result.sufficiency import LedgerEntry
+from lumped.scene.scene import Scene
+from lumped.schema.members import get
 from lumped.shapes._block import Block
-from lumped.sufficiency import LedgerEntry
 
 DEFAULT_TOLERANCE = 3e-3
 STEPS, MANY, MOST = 200, 1600, 12_800  # while a wave goes to the far end and back: at first, and at all

@@ -6,17 +6,17 @@ from pathlib import Path
 
 import numpy as np
 
+from fe_contact.assembly.forms import Array, isotropic
 from fe_contact.dynamics import memory
 from fe_contact.dynamics.march import march
 from fe_contact.dynamics.state import State
 from fe_contact.fields import Fields, nodal_stress, subdivided, written
-from fe_contact.forms import Array, isotropic
 from fe_contact.waves.half_space_body import UnitBody, moving, unit_of
 from fe_contact.waves.impact import choices_of
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
-from lumped.result import Result
-from lumped.scene import Scene
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
 
 
 def write_fields(scene: Scene, result: Result, where: Path) -> Path:

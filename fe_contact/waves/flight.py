@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fe_contact.assembly.cache import Store
 from fe_contact.dynamics import events, ledger
 from fe_contact.dynamics.body import Body
 from fe_contact.dynamics.implicit import ImplicitStepper
@@ -18,7 +19,6 @@ from fe_contact.dynamics.march import MOST_WORK, Choices, Moment
 from fe_contact.dynamics.schemes import generalised_alpha
 from fe_contact.dynamics.state import State
 from fe_contact.errors import TooManySteps
-from fe_contact.kept import Store
 from fe_contact.progress import Counted, uncounted
 
 DAMPED = generalised_alpha.of(0.5)  # waves that no step follows any more die away, by half a step

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from fe_contact.forms import Array
+from fe_contact.assembly.forms import Array
 
 Steps = npt.NDArray[np.intp]
 TELLING = 3  # steps on either side of a front that tell the force there

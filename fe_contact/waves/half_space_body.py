@@ -11,18 +11,18 @@ import scipy.sparse as sparse
 from skfem import FacetBasis
 
 import meshes
+from fe_contact.assembly import absorbing
+from fe_contact.assembly.forms import Array, mass, vector_dofs
+from fe_contact.assembly.operators import basis_on, made, system_matrix
+from fe_contact.assembly.surface import flat
+from fe_contact.assembly.trace import contact_quadrature
 from fe_contact.dynamics.body import Body, Part, Pressing
 from fe_contact.dynamics.mass.consistent import Nodes
-from fe_contact.far_field import absorbing
-from fe_contact.forms import Array, mass, vector_dofs
-from fe_contact.numerics import MASSES
-from fe_contact.operators import basis_on, made, system_matrix
-from fe_contact.surface import flat
-from fe_contact.trace import contact_quadrature
+from fe_contact.settings import MASSES
 from fe_contact.waves.moving import Moving, with_striker
 from fe_contact.waves.numerics import WaveNumerics
-from lumped.members import get
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
+from lumped.schema.members import get
 
 SMALLEST = 0.1  # contact radius over the largest one down to which every contact is resolved alike
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim

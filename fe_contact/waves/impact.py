@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from fe_contact.bodies.pressing import half_width
 from fe_contact.dynamics.march import Choices, Motion, Sample, march
 from fe_contact.dynamics.pressed import Enforced
 from fe_contact.errors import MemoryTooSmall
-from fe_contact.march import March, Work
-from fe_contact.numerics import ENFORCEMENTS, WAVE_SCHEMES
-from fe_contact.pressing import half_width
+from fe_contact.settings import ENFORCEMENTS, WAVE_SCHEMES
+from fe_contact.steppers.march import March, Work
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.parting import parting
 from fe_contact.waves.steps import graded
-from lumped.members import get
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
+from lumped.schema.members import get
 
 
 def motion(moving: Moving, scene: Scene, numerics: WaveNumerics) -> Motion:

@@ -11,23 +11,23 @@ import numpy as np
 from skfem import FacetBasis
 
 import meshes
+from fe_contact.assembly.elastic_body import moduli
+from fe_contact.assembly.far_field import on_boundary
+from fe_contact.assembly.forms import Array, mass, plane_mass, vector_dofs
+from fe_contact.assembly.operators import basis_on, made
+from fe_contact.assembly.surface import flat
+from fe_contact.assembly.trace import contact_quadrature
+from fe_contact.bodies.zone import held, thickness_over
 from fe_contact.dynamics.body import Body, Part, Pressing
 from fe_contact.dynamics.mass.consistent import Nodes
-from fe_contact.elastic_body import moduli
-from fe_contact.far_field.static import on_boundary
-from fe_contact.forms import Array, mass, plane_mass, vector_dofs
-from fe_contact.numerics import MASSES
-from fe_contact.operators import basis_on, made
-from fe_contact.surface import flat
-from fe_contact.targets._zone import held, thickness_over
+from fe_contact.settings import MASSES
 from fe_contact.targets.layer import matrix
-from fe_contact.trace import contact_quadrature
 from fe_contact.waves.half_space_body import BEYOND, SMALLEST, pushing
 from fe_contact.waves.moving import Moving, with_striker
 from fe_contact.waves.numerics import WaveNumerics
 from lumped.materials import Material, Relaxation
-from lumped.members import get
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
+from lumped.schema.members import get
 from lumped.targets.layer import Layer
 
 

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sparse
 
+from fe_contact.assembly.forms import Array
 from fe_contact.dynamics import memory
 from fe_contact.dynamics.body import Body
 from fe_contact.dynamics.mass.consistent import Nodes
 from fe_contact.dynamics.state import State
-from fe_contact.forms import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
-from fe_contact.numerics import Numerics
+from fe_contact.settings import Numerics
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_contact.forms import Array
+from fe_contact.assembly.forms import Array
 
 READ, STRAIGHT = 5, 3  # last steps asked, by a parabola and by a line
 SOONEST = 0.05  # steps after the last one in which something presses

@@ -12,16 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from fe_contact.far_field.absorbing import wave_speeds
-from fe_contact.forms import check_compressible
-from fe_contact.numerics import RANGES
-from fe_contact.plan import SOONEST_PEAK, Plan
+from fe_contact.assembly.absorbing import wave_speeds
+from fe_contact.assembly.forms import check_compressible
+from fe_contact.budget.plan import SOONEST_PEAK, Plan
+from fe_contact.settings import RANGES
 from fe_contact.waves.numerics import WaveNumerics
 from lumped.laws import mdr
 from lumped.laws.mdr import ImpactScales
 from lumped.materials import Relaxation
-from lumped.model_ledger import Peak, model_ledger
-from lumped.scene import Scene
+from lumped.result.model_ledger import Peak, model_ledger
+from lumped.scene.scene import Scene
 
 DEFAULT_TOLERANCE = 3e-3  # of a peak force; what chatter at the contact's edge leaves is about a third
 SPRINGS = 32  # along the contact radius: scales within one per cent place everything well

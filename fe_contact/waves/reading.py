@@ -13,11 +13,11 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from fe_contact.change import Change
-from fe_contact.curve import Curve
-from fe_contact.forms import Array
-from fe_contact.march import March, Strike
-from fe_contact.numerics import Numerics
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.change import Change
+from fe_contact.budget.curve import Curve
+from fe_contact.settings import Numerics
+from fe_contact.steppers.march import March, Strike
 
 ROWS, AT = 60, 3e-3  # along a contact, and the tolerance for which they suffice: polynomials through six of them
 ORDER = 5  # of the force between them

@@ -13,21 +13,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.certify import Budget
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.certify import Budget
+from fe_contact.budget.plan import SETTING, Plan
 from fe_contact.errors import MemoryTooSmall
-from fe_contact.forms import Array
-from fe_contact.numerics import RANGES, Numerics
-from fe_contact.plan import SETTING, Plan
 from fe_contact.progress import Count, Progress
 from fe_contact.reference import result_of, strike_of
-from fe_contact.told import quantities_of, shares_of
+from fe_contact.results.told import quantities_of, shares_of
+from fe_contact.settings import RANGES, Numerics
 from fe_contact.waves.certify import ORDER, Runs, certify, other_mesh
 from fe_contact.waves.cost import Cost
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
 from lumped.errors import NotReached
-from lumped.result import Result, meets
-from lumped.scene import Scene
+from lumped.result.result import Result, meets
+from lumped.scene.scene import Scene
 
 ROUNDS = 3  # refinements before giving up
 WIDER = 1.5  # the mesh again where the contact outgrew it

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.assembly.forms import Array
 from fe_contact.dynamics.march import Motion, Sample
-from fe_contact.forms import Array
 from fe_contact.waves.fronts import DENT, DEPTH, FORCE, TELLING, TIME, VELOCITY, with_fronts
-from lumped.interpolation import peak
-from lumped.scene import Scene
+from lumped.numbers.interpolation import peak
+from lumped.scene.scene import Scene
 
 SPOILED = 2  # steps behind a front
 LASTING = 0.5  # of the force before a front, which it would still have had

@@ -9,18 +9,18 @@ from itertools import pairwise
 
 import numpy as np
 
-from fe_contact.certify import CAUSES, SAFETY
-from fe_contact.curve import PEAK_SHARE
-from fe_contact.distance import distance
-from fe_contact.forms import Array
-from fe_contact.numerics import Numerics
-from fe_contact.plan import Plan
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.certify import CAUSES, SAFETY
+from fe_contact.budget.curve import PEAK_SHARE
+from fe_contact.budget.plan import Plan
 from fe_contact.reference import CURE
+from fe_contact.results.distance import distance
+from fe_contact.settings import Numerics
 from fe_contact.waves.fronts import DENT, DEPTH, FORCE, TIME, VELOCITY
 from fe_contact.waves.rod_reading import Contacts, Reading
-from lumped.history import LEAST_ROWS, History
-from lumped.result import RULED_ABSOLUTE, UNITS, Quantity, Result, meets, provenance, unmet
-from lumped.scene import Scene
+from lumped.result.history import LEAST_ROWS, History
+from lumped.result.result import RULED_ABSOLUTE, UNITS, Quantity, Result, meets, provenance, unmet
+from lumped.scene.scene import Scene
 
 ROUNDING = 1e-9  # relative, of what adds up over the steps
 COMPARED = 2001  # places along the contact at which two histories are compared

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sparse
 
+from fe_contact.assembly.forms import Array
 from fe_contact.dynamics.body import Body, Part, Pressing
-from fe_contact.forms import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from fe_contact.numerics import Numerics
-from fe_contact.plan import EARLY_PEAK
+from fe_contact.budget.plan import EARLY_PEAK
+from fe_contact.settings import Numerics
 
 
 def graded(numerics: Numerics) -> tuple[float, tuple[float, ...]]:

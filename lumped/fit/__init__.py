@@ -12,9 +12,9 @@ from lumped.fit.record import write_failure as write_failure
 
 if TYPE_CHECKING:
     from lumped.fit.space import Bounds
-    from lumped.history import History
-    from lumped.scene import Scene
-    from lumped.score import Curve
+    from lumped.result.history import History
+    from lumped.result.score import Curve
+    from lumped.scene.scene import Scene
 
 
 def fit(

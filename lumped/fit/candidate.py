@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped import laws
-from lumped.collide.motion import motion
-from lumped.collide.outcome import peak_of
-from lumped.collide.track import Track
-from lumped.interpolation import local
 from lumped.laws._force_law import ForceLaw
 from lumped.laws._hereditary import Solve, once
 from lumped.laws._impacts import bodies_of
-from lumped.result import Result
-from lumped.scene import Scene
+from lumped.numbers.interpolation import local
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
+from lumped.solvers.point.motion import motion
+from lumped.solvers.point.outcome import peak_of
+from lumped.solvers.point.track import Track
 
 Array = NDArray[np.float64]
 # Below what the differences of a Jacobian see.

@@ -14,7 +14,7 @@ from lumped.errors import BadInput, NotReached
 from lumped.fit.problem import Problem
 from lumped.fit.record import Estimate
 from lumped.fit.space import TOUCH
-from lumped.keys import Number
+from lumped.schema.keys import Number
 
 Array = NDArray[np.float64]
 CONFIDENCE = 0.95

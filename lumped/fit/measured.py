@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.history import History
-from lumped.interpolation import peak
-from lumped.score import POINTS, Curve
+from lumped.numbers.interpolation import peak
+from lumped.result.history import History
+from lumped.result.score import POINTS, Curve
 
 Array = NDArray[np.float64]
 # A curve whose last force is at most this share of its peak has ended: after it the force is zero.

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import Key, Number
 from lumped.materials import Material, Relaxation
-from lumped.members import get
+from lumped.schema.keys import Key, Number
+from lumped.schema.members import get
 
 NETWORKS = "lumped.materials.networks"
 FAMILIES = ("elastic", "kelvin_voigt", "maxwell", "sls")

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.csv_file import write_csv
-from lumped.history import History
-from lumped.json_file import plain, write_json
-from lumped.result import Result
-from lumped.result_folder import publish
-from lumped.scene import Scene
+from lumped.result.folder import publish
+from lumped.result.history import History
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
+from lumped.schema.csv_file import write_csv
+from lumped.schema.json_file import plain, write_json
 
 Array = NDArray[np.float64]
 SCHEMA, RECORD = "fe-contact/fit/1", "fit.json"
@@ -85,7 +85,7 @@ class Fit:
     def write(self, directory: Path) -> None:
         """Make fit.json, fit.csv (the fitted history) and parameters.csv the content of a folder of results.
 
-        Raises CannotWrite; what was there stays then, see :mod:`lumped.result_folder`.
+        Raises CannotWrite; what was there stays then, see :mod:`lumped.result.folder`.
         """
         publish(directory, self.write_files, RECORD)
 

@@ -14,10 +14,10 @@ from lumped.fit.problem import Problem
 from lumped.fit.record import Fit
 from lumped.fit.space import Bounds, space_of
 from lumped.fit.starts import starts
-from lumped.history import History
 from lumped.laws.base import check_mass, simulate
-from lumped.scene import Scene
-from lumped.score import Curve, normalized_error
+from lumped.result.history import History
+from lumped.result.score import Curve, normalized_error
+from lumped.scene.scene import Scene
 
 # How many of the starts, the nearest to the curve first, are followed; one is enough where noise is all that is left.
 FOLLOWED = 2

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from lumped import laws
 from lumped.errors import BadInput, Fault, nearest
 from lumped.fit import network
-from lumped.keys import Number
 from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS
-from lumped.scene import Scene
-from lumped.scene_tables import LawChoice
+from lumped.scene.scene import Scene
+from lumped.scene.tables import LawChoice
+from lumped.schema.keys import Number
 
 Array = NDArray[np.float64]
 Bounds = Mapping[str, tuple[float, float]]

@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 from lumped import laws
-from lumped.collide.bodies import Stage
 from lumped.fit import network
 from lumped.fit.measured import Measured
 from lumped.fit.space import TOUCH, Space, damping_names, own_keys
 from lumped.laws._impacts import bodies_of
 from lumped.laws._power_law import spring_contact_time, spring_of_peak
-from lumped.scene_tables import LawChoice
+from lumped.scene.tables import LawChoice
+from lumped.solvers.point.bodies import Stage
 
 # The damper's force over the spring's, at half depth and full speed, per 1 - e: Hunt-Crossley has 3/2, Kelvin 4/pi.
 DAMPER = 1.4

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from lumped import members as _members
 from lumped.laws.base import Law as Law
+from lumped.schema import members as _members
 
 
 def available() -> tuple[str, ...]:

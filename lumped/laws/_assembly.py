@@ -10,13 +10,13 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.clock import Clock
-from lumped.ending import AT_REST, End
-from lumped.history import History, densified
-from lumped.model_ledger import Peak, model_ledger
-from lumped.result import RULED_RELATIVE, UNITS, Quantity, Result, provenance, unmet
-from lumped.scene import Scene
-from lumped.scene_tables import Model
+from lumped.numbers.clock import Clock
+from lumped.result.ending import AT_REST, End
+from lumped.result.history import History, densified
+from lumped.result.model_ledger import Peak, model_ledger
+from lumped.result.result import RULED_RELATIVE, UNITS, Quantity, Result, provenance, unmet
+from lumped.scene.scene import Scene
+from lumped.scene.tables import Model
 
 Array = NDArray[np.float64]
 # Rounding of the sums behind a quantity, relative to it.

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from lumped.collide.bodies import Bodies
+from lumped.solvers.point.bodies import Bodies
 
 YIELD_SHARE = 0.1
 

@@ -10,21 +10,21 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.collide.bodies import TINY, Bodies, Stage, State, Step
-from lumped.collide.flight import returned
-from lumped.collide.outcome import Outcome
 from lumped.laws import _impacts
 from lumped.load_curves.base import LoadCurve
-from lumped.result import Result
-from lumped.scene import Scene
-from lumped.scene_tables import Model
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
+from lumped.scene.tables import Model
+from lumped.solvers.point.bodies import TINY, Bodies, Stage, State, Step
+from lumped.solvers.point.flight import returned
+from lumped.solvers.point.outcome import Outcome
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
 class ForceLaw(ABC):
-    """F(depth, rate) of two masses, contract :class:`lumped.collide.bodies.PointLaw`.
+    """F(depth, rate) of two masses, contract :class:`lumped.solvers.point.bodies.PointLaw`.
 
     `exit`: contact ends when the force returns to zero ("force", no tension) or at depth zero ("depth").
     `gap`: distance before touch, m; time starts at touch. `load_curve`: that of the scene the law was

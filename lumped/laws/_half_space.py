@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import Key
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
+from lumped.schema.keys import Key
 from lumped.targets import HalfSpace
 
 KEYS: Mapping[str, Key] = {}

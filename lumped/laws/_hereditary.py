@@ -10,18 +10,18 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.clock import Clock
-from lumped.ending import End
-from lumped.hereditary.approach import Approach
-from lumped.hereditary.closing import Closing
-from lumped.hereditary.march import Settings
-from lumped.hereditary.phase import Phase
-from lumped.hereditary.problem import Hereditary
-from lumped.hereditary.rebound import Rebound
 from lumped.laws._assembly import Answer, assemble, bars, impulse_of
-from lumped.result import Result, meets
-from lumped.scales import stiffest_impact
-from lumped.scene import Scene
+from lumped.numbers.clock import Clock
+from lumped.result.ending import End
+from lumped.result.result import Result, meets
+from lumped.scene.scales import stiffest_impact
+from lumped.scene.scene import Scene
+from lumped.solvers.hereditary.approach import Approach
+from lumped.solvers.hereditary.closing import Closing
+from lumped.solvers.hereditary.march import Settings
+from lumped.solvers.hereditary.phase import Phase
+from lumped.solvers.hereditary.problem import Hereditary
+from lumped.solvers.hereditary.rebound import Rebound
 
 Array = NDArray[np.float64]
 # The force may err by this share of the tolerance in each piece.

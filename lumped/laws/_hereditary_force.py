@@ -10,14 +10,14 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.collide import memory
-from lumped.collide.bodies import TINY, Bodies, Stage, State, Step
-from lumped.collide.hereditary import HereditaryLoad, StepLoad
-from lumped.collide.nodes import through_zero
-from lumped.collide.step import NODES
 from lumped.laws._force_law import ForceLaw
-from lumped.scene import Scene
-from lumped.scene_tables import Model
+from lumped.scene.scene import Scene
+from lumped.scene.tables import Model
+from lumped.solvers.point import memory
+from lumped.solvers.point.bodies import TINY, Bodies, Stage, State, Step
+from lumped.solvers.point.hereditary import HereditaryLoad, StepLoad
+from lumped.solvers.point.nodes import through_zero
+from lumped.solvers.point.step import NODES
 
 Array = NDArray[np.float64]
 

@@ -9,19 +9,19 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.clock import Clock
-from lumped.collide.bodies import Bodies, PointLaw, State
-from lumped.collide.half_widths import half_widths
-from lumped.collide.motion import Motion, motion
-from lumped.collide.outcome import Outcome, outcome_of
-from lumped.collide.phase import Phase
-from lumped.collide.track import Track
-from lumped.ending import End
 from lumped.laws._assembly import Answer, assemble, bars, impulse_of
 from lumped.load_curves.base import LoadCurve
-from lumped.result import UNITS, Quantity, Result, meets
-from lumped.scene import Scene
-from lumped.scene_tables import Model
+from lumped.numbers.clock import Clock
+from lumped.result.ending import End
+from lumped.result.result import UNITS, Quantity, Result, meets
+from lumped.scene.scene import Scene
+from lumped.scene.tables import Model
+from lumped.solvers.point.bodies import Bodies, PointLaw, State
+from lumped.solvers.point.half_widths import half_widths
+from lumped.solvers.point.motion import Motion, motion
+from lumped.solvers.point.outcome import Outcome, outcome_of
+from lumped.solvers.point.phase import Phase
+from lumped.solvers.point.track import Track
 
 Array = NDArray[np.float64]
 # Errors of the rate allowed in one step, relative to the velocity at touch: the history errs far less, its end less

@@ -10,10 +10,10 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
-from lumped.collide.bodies import Stage
 from lumped.laws._parameters import Parameters
 from lumped.laws._power_law import PowerLaw
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
+from lumped.solvers.point.bodies import Stage
 
 # The exponent for which the dampings of a given restitution are told.
 TOLD_FOR = 1.5

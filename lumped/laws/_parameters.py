@@ -9,12 +9,12 @@ from typing import Any
 
 from lumped import restitution
 from lumped.errors import BadInput, Fault
-from lumped.keys import Choice, Key, Number
 from lumped.laws._half_space import check_half_space
 from lumped.laws._impacts import bodies_of
 from lumped.laws._power_law import spring_of_peak
 from lumped.load_curves.base import LoadCurve
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
+from lumped.schema.keys import Choice, Key, Number
 
 STIFFNESS: Mapping[str, Key] = {"k": Number(1e-30, 1e30, "N/m^alpha", required=False)}
 EXPONENT: Mapping[str, Key] = {"alpha": Number(0.5, 5.0, required=False)}

@@ -7,8 +7,8 @@ from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
-from lumped.collide.bodies import Bodies, Stage
 from lumped.laws._force_law import ForceLaw
+from lumped.solvers.point.bodies import Bodies, Stage
 
 GRADINGS = (1, 2, 4)
 

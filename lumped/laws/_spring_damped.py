@@ -6,8 +6,8 @@ from abc import abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
-from lumped.collide.bodies import Stage
 from lumped.laws._power_law import PowerLaw
+from lumped.solvers.point.bodies import Stage
 
 
 @dataclass(frozen=True, kw_only=True)

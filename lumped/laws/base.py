@@ -9,8 +9,8 @@ from __future__ import annotations
 from typing import ClassVar, Protocol
 
 from lumped.errors import BadInput, Fault
-from lumped.result import Result
-from lumped.scene import Scene
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
 
 
 class Law(Protocol):

@@ -11,22 +11,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lumped.collide import memory
-from lumped.ending import End
 from lumped.errors import FeContactError
-from lumped.hereditary.approach import DEPTH, approach
-from lumped.hereditary.closing import Closing, close
-from lumped.hereditary.march import Settings
-from lumped.hereditary.path import Path
-from lumped.hereditary.phase import Phase, SinceTouch, UntilEnd
-from lumped.hereditary.problem import Hereditary
-from lumped.keys import Choice, Key
 from lumped.laws._half_space import check_geometry
 from lumped.laws._hereditary import Course, once, simulate
 from lumped.laws._hereditary_force import law_of
 from lumped.laws.mdr import ImpactScales
-from lumped.result import Result
-from lumped.scene import Scene
+from lumped.result.ending import End
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
+from lumped.schema.keys import Choice, Key
+from lumped.solvers.hereditary.approach import DEPTH, approach
+from lumped.solvers.hereditary.closing import Closing, close
+from lumped.solvers.hereditary.march import Settings
+from lumped.solvers.hereditary.path import Path
+from lumped.solvers.hereditary.phase import Phase, SinceTouch, UntilEnd
+from lumped.solvers.hereditary.problem import Hereditary
+from lumped.solvers.point import memory
 
 ROUGH, FINE = 1e-3, 1e-6  # tolerances of scales
 KEYS: Mapping[str, Key] = {
@@ -41,7 +41,7 @@ class Correspondence:
 
     `exit`: contact ends when the force returns to zero ("force", as the paper clips it) or at depth zero ("depth",
     the surface pulls). `memory`: what is left of it when the bodies meet again, a member of
-    :mod:`lumped.collide.memory`.
+    :mod:`lumped.solvers.point.memory`.
     """
 
     exit: str = "force"

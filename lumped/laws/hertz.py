@@ -9,10 +9,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lumped.keys import Key
 from lumped.laws._parameters import COMMON, EXPONENT, STIFFNESS, Parameters
 from lumped.laws._power_law import Undamped
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
+from lumped.schema.keys import Key
 
 KEYS: Mapping[str, Key] = {**STIFFNESS, **EXPONENT, **COMMON}
 

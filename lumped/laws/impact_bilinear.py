@@ -16,14 +16,14 @@ from typing import Any, ClassVar
 import numpy as np
 
 from lumped import restitution
-from lumped.collide.bodies import Bodies, Stage
 from lumped.errors import Fault
-from lumped.keys import Choice, Key, Number
 from lumped.laws import _bilinear
 from lumped.laws._force_law import ForceLaw
 from lumped.laws._impacts import bodies_of
 from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
+from lumped.schema.keys import Choice, Key, Number
+from lumped.solvers.point.bodies import Bodies, Stage
 
 FORMULAS = {restitution.EXACT: _bilinear.exact, "muthukumar": _bilinear.published}
 # A step that ends at a corner, to rounding, is still before it.

@@ -10,10 +10,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lumped.keys import Key
 from lumped.laws._oscillator_damped import OscillatorDamped
 from lumped.laws._parameters import COMMON, EXPONENT_FROM_ONE, RESTITUTION, STIFFNESS, damping_keys, formula_key
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
+from lumped.schema.keys import Key
 
 KEYS: Mapping[str, Key] = {
     **STIFFNESS,

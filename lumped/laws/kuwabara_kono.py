@@ -13,11 +13,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from lumped.collide.bodies import Stage
-from lumped.keys import Key
 from lumped.laws._parameters import COMMON, RESTITUTION, STIFFNESS, Parameters, damping_keys, formula_key
 from lumped.laws._power_law import PowerLaw
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
+from lumped.schema.keys import Key
+from lumped.solvers.point.bodies import Stage
 
 KEYS: Mapping[str, Key] = {
     **STIFFNESS,

@@ -9,17 +9,17 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.clock import Clock
-from lumped.ending import End
 from lumped.errors import BadInput, Fault
-from lumped.interpolation import local, peak
 from lumped.laws._assembly import Answer, assemble, bars, impulse_of
 from lumped.laws._half_space import KEYS as KEYS
 from lumped.laws._half_space import check
-from lumped.result import Result, meets
-from lumped.scene import Scene
-from lumped.spring_row.coarse import coarse, coarse_beyond, pace_of, problem_of
-from lumped.spring_row.nest import Level, Nest, limit, predicted_turn
+from lumped.numbers.clock import Clock
+from lumped.numbers.interpolation import local, peak
+from lumped.result.ending import End
+from lumped.result.result import Result, meets
+from lumped.scene.scene import Scene
+from lumped.solvers.mdr.coarse import coarse, coarse_beyond, pace_of, problem_of
+from lumped.solvers.mdr.nest import Level, Nest, limit, predicted_turn
 
 Array = NDArray[np.float64]
 # Of the fields of Instant the force, and those which are seen: depth, velocity, force, edge.

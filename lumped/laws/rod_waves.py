@@ -10,18 +10,18 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.clock import Clock
-from lumped.ending import End
 from lumped.errors import BadInput, Fault
-from lumped.interpolation import highest
-from lumped.keys import Key
 from lumped.laws._assembly import Answer, assemble, bars, impulse_of
 from lumped.laws._half_space import check_geometry
-from lumped.result import Result
-from lumped.rod_waves.flat import FlatImpact
-from lumped.rod_waves.tipped import LONGEST, Scales, TippedImpact
-from lumped.rod_waves.waves import Waves
-from lumped.scene import Scene
+from lumped.numbers.clock import Clock
+from lumped.numbers.interpolation import highest
+from lumped.result.ending import End
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
+from lumped.schema.keys import Key
+from lumped.solvers.rod.flat import FlatImpact
+from lumped.solvers.rod.tipped import LONGEST, Scales, TippedImpact
+from lumped.solvers.rod.waves import Waves
 from lumped.targets.rod import Rod
 
 Array = NDArray[np.float64]

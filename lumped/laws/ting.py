@@ -8,17 +8,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lumped.ending import End
-from lumped.hereditary import rebound as back
-from lumped.hereditary.approach import DEPTH, approach
-from lumped.hereditary.march import Settings
-from lumped.hereditary.phase import ByField, Phase, SinceTouch
-from lumped.hereditary.problem import Hereditary
 from lumped.laws._half_space import KEYS as KEYS
 from lumped.laws._half_space import check_geometry
 from lumped.laws._hereditary import Course, simulate
-from lumped.result import Result
-from lumped.scene import Scene
+from lumped.result.ending import End
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
+from lumped.solvers.hereditary import rebound as back
+from lumped.solvers.hereditary.approach import DEPTH, approach
+from lumped.solvers.hereditary.march import Settings
+from lumped.solvers.hereditary.phase import ByField, Phase, SinceTouch
+from lumped.solvers.hereditary.problem import Hereditary
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.quadrature import gauss
+from lumped.numbers.quadrature import gauss
 
 GAUSS_POINTS = 48
 

@@ -15,7 +15,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from lumped.load_curves.layer import Array, deficit, waves
-from lumped.quadrature import gauss
+from lumped.numbers.quadrature import gauss
 
 
 @dataclass(frozen=True)

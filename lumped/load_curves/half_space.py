@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.load_curves.base import GAUSS_POINTS, LoadCurve
-from lumped.quadrature import gauss
+from lumped.numbers.quadrature import gauss
 
 
 class HalfSpaceCurve(LoadCurve):

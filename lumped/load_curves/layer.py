@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault, nearest
-from lumped.quadrature import gauss
+from lumped.numbers.quadrature import gauss
 
 Array = NDArray[np.float64]
 BASES = ("bonded", "sliding")

@@ -16,7 +16,7 @@ from lumped.load_curves.fixed_area import FixedArea, under_flat_end
 from lumped.load_curves.half_space import HalfSpaceCurve
 from lumped.load_curves.layer import Array, Layer
 from lumped.load_curves.tabulated import REACH, State, TabulatedCurve, growing_edges
-from lumped.quadrature import gauss
+from lumped.numbers.quadrature import gauss
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from lumped.errors import NotReached
 from lumped.load_curves.base import GAUSS_POINTS, LoadCurve
 from lumped.load_curves.panels import Array, evaluate, panel, tested_place
 from lumped.load_curves.ring_contact import RingContact
-from lumped.quadrature import gauss
+from lumped.numbers.quadrature import gauss
 
 # Panels by the logarithm of the depth over its limit: the deeper half, and a decade each below it.
 EDGES = -log(2.0) - log(10.0) * np.arange(-1.0, 18.0)

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.csv_file import read_columns, read_header
 from lumped.errors import BadInput, Fault
 from lumped.materials.relaxation import Relaxation
+from lumped.schema.csv_file import read_columns, read_header
 
 Array = NDArray[np.float64]
 

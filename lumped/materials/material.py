@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from lumped.errors import BadInput, Fault
-from lumped.key_table import check_fields
-from lumped.keys import Choice, Key, Number
 from lumped.materials.relaxation import Relaxation
+from lumped.schema.key_table import check_fields
+from lumped.schema.keys import Choice, Key, Number
 
 KEYS: Mapping[str, Key] = {
     "nu": Number(-1.0, 0.5, above=True),

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from lumped.errors import BadInput, Fault
 from lumped.paper import recompute, table
-from lumped.paper.examples import Examples
-from lumped.paper.value import Values
+from lumped.paper.examples.given import Examples
+from lumped.paper.examples.value import Values
 
 HOLDS, FAILS, OPEN = "holds", "fails", "cannot be judged"
 COLUMNS = ("id", "example", "assumption", "criterion", "recompute", "holds_below", "fails_above", "note")

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from lumped.paper import recompute, rules, table
-from lumped.paper.examples import Examples
+from lumped.paper.examples.given import Examples
+from lumped.paper.examples.value import Values
 from lumped.paper.rules import Rule
-from lumped.paper.value import Values
 
 COLUMNS = ("id", "place", "quantity", "unit", "printed", "rule", "recompute", "recomputed_as", "note")
 

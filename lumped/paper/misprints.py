@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from lumped.paper import recompute, table
-from lumped.paper.examples import Examples
-from lumped.paper.value import Values
+from lumped.paper.examples.given import Examples
+from lumped.paper.examples.value import Values
 
 COLUMNS = ("number", "place", "printed", "correct", "proof", "kind", "recompute", "recomputed_as")
 

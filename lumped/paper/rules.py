@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 
-from lumped.data import directory
 from lumped.errors import BadInput, Fault, nearest
-from lumped.key_table import read_table
-from lumped.keys import Choice, Key, Number, Text
-from lumped.paper.value import Value
-from lumped.toml_file import parsed
+from lumped.paper.examples.value import Value
+from lumped.schema.data import directory
+from lumped.schema.key_table import read_table
+from lumped.schema.keys import Choice, Key, Number, Text
+from lumped.schema.toml_file import parsed
 
 AGREES, DIFFERS, UNDECIDED, UNKNOWN = "agrees", "differs", "undecided", "cannot be computed from the text"
 UNPRINTED = "nothing printed"

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from lumped.paper import assumptions, claims, misprints
 from lumped.paper.assumptions import JudgedAssumption
 from lumped.paper.claims import Judged
-from lumped.paper.examples import Examples
+from lumped.paper.examples.given import Examples
+from lumped.paper.examples.steel_impacts import solid
+from lumped.paper.examples.value import Values
 from lumped.paper.misprints import Misprint
-from lumped.paper.steel_impacts import solid
-from lumped.paper.value import Values
-from lumped.result import Result
+from lumped.result.result import Result
 
 CLIPPED, EXACT = "correspondence", "ting"
 

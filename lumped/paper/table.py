@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import csv
 
-from lumped.data import directory
 from lumped.errors import BadInput, Fault
+from lumped.schema.data import directory
 
 
 def rows(name: str, columns: tuple[str, ...]) -> list[dict[str, str]]:

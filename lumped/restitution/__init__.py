@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import cast as _cast
 
-from lumped import members as _members
 from lumped.errors import BadInput as _BadInput
 from lumped.errors import Fault as _Fault
 from lumped.errors import nearest as _nearest
 from lumped.restitution.base import Family as Family
+from lumped.schema import members as _members
 
 EXACT = "exact"
 

@@ -9,11 +9,11 @@ from types import MappingProxyType
 from typing import Protocol
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import Choice, Key, Number
+from lumped.schema.keys import Choice, Key, Number
 
 EXIT = Choice(("force", "depth"))
 RESTITUTION = Number(1e-6, 1.0)
-PLASTIC = "; for a plastic impact, e = 0, see lumped.stereomechanics"
+PLASTIC = "; for a plastic impact, e = 0, see lumped.solvers.stereomechanics"
 
 Published = Mapping[str, Callable[[float], float]]
 

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 
 from lumped.errors import NotReached
-from lumped.keys import Number
 from lumped.restitution._sphere_impact import log_restitution
 from lumped.restitution.base import Limit, check, check_damping, decay_of, formulas
+from lumped.schema.keys import Number
 
 TOO_DAMPED = "; beyond it e is below 1e-6"
 LIMITS = {"force": Limit(1e4, TOO_DAMPED), "depth": Limit(25.0, TOO_DAMPED)}

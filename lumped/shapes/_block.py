@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.key_table import read_table
 from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.hertz import HertzImpact, power_impact
 from lumped.materials import Material, Relaxation
+from lumped.schema.key_table import read_table
 from lumped.shapes.base import Shape
 
 

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lumped.key_table import check_fields
-from lumped.keys import Key, Number
 from lumped.load_curves.hertz import HertzImpact, hertz_impact
+from lumped.schema.key_table import check_fields
+from lumped.schema.keys import Key, Number
 from lumped.shapes.base import Shape
 
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import Key
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
 from lumped.load_curves.line_profile import LineProfile
 from lumped.materials import Material, Relaxation
+from lumped.schema.keys import Key
 
 
 class Shape(ABC):

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.key_table import check_fields
-from lumped.keys import Key, Number
 from lumped.load_curves import line_profile
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
+from lumped.schema.key_table import check_fields
+from lumped.schema.keys import Key, Number
 from lumped.shapes._outlines import circle, circle_slope, parabola, parabola_slope
 from lumped.shapes.base import Shape
 

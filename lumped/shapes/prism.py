@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from lumped.keys import Choice, Key, Number
+from lumped.schema.keys import Choice, Key, Number
 from lumped.shapes._block import Block
 
 KEYS: Mapping[str, Key] = {

@@ -9,10 +9,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.key_table import check_fields
-from lumped.keys import Key, Number
 from lumped.load_curves import fixed_area
 from lumped.load_curves.hertz import HertzImpact, power_impact
+from lumped.schema.key_table import check_fields
+from lumped.schema.keys import Key, Number
 from lumped.shapes.base import Shape
 
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}

@@ -1,6 +1,6 @@
 """Targets, one a file: `KEYS`, the keys of the scene file, and `of(**values)`, the Target."""
 
-from lumped.members import available as _available
+from lumped.schema.members import available as _available
 from lumped.targets.base import Target as Target
 from lumped.targets.half_space import HalfSpace as HalfSpace
 

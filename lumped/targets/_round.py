@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.key_table import check_fields
 from lumped.materials import Material
-from lumped.radiation import Pulse
+from lumped.materials.radiation import Pulse
+from lumped.schema.key_table import check_fields
 from lumped.shapes.base import Shape
 from lumped.targets.base import MOVES, Target, vibrations
 

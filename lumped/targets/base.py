@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import Key
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material
-from lumped.radiation import Pulse, radiated_share
+from lumped.materials.radiation import Pulse, radiated_share
+from lumped.schema.keys import Key
 from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar
 
-from lumped.keys import Choice, Key, Number
+from lumped.schema.keys import Choice, Key, Number
 from lumped.shapes.cylinder import Cylinder as Profile
 from lumped.targets._round import SUPPORTS, Round
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import Key, Number
 from lumped.load_curves.base import LoadCurve
+from lumped.schema.keys import Key, Number
 from lumped.shapes.base import Shape
 from lumped.targets.base import Target
 

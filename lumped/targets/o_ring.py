@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.key_table import check_fields
-from lumped.keys import Key, Number
 from lumped.materials import Material
-from lumped.radiation import Pulse
+from lumped.materials.radiation import Pulse
+from lumped.schema.key_table import check_fields
+from lumped.schema.keys import Key, Number
 from lumped.shapes.base import Shape
 from lumped.shapes.sphere import Sphere
 from lumped.targets.base import MOVES, NEEDS_DENSITY, Target

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.keys import Key
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material
-from lumped.radiation import Pulse
+from lumped.materials.radiation import Pulse
+from lumped.schema.keys import Key
 from lumped.shapes._block import Block
 from lumped.shapes._round import Round
 from lumped.shapes.base import Shape

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from typing import ClassVar
 
 from lumped.errors import Fault
-from lumped.keys import Choice, Key, Number
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.two_profiles import TwoProfiles
 from lumped.materials import Material
+from lumped.schema.keys import Choice, Key, Number
 from lumped.shapes import Sphere as Profile
 from lumped.shapes.base import Shape
 from lumped.targets._round import SUPPORTS, Round

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.key_table import check_fields
-from lumped.keys import Choice, Key, Number
-from lumped.layer_mass import moving_share
 from lumped.materials import Material
-from lumped.radiation import Pulse
+from lumped.materials.radiation import Pulse
+from lumped.schema.key_table import check_fields
+from lumped.schema.keys import Choice, Key, Number
 from lumped.shapes.base import Shape
+from lumped.targets._layer_mass import moving_share
 from lumped.targets.base import MOVES, NEEDS_DENSITY, Target
 
 KEYS: Mapping[str, Key] = {

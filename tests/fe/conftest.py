@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import lumped
-from fe_contact.march import Strike
-from fe_contact.numerics import Numerics
+from fe_contact.settings import Numerics
+from fe_contact.steppers.march import Strike
 from lumped.load_curves.hertz import hertz_impact
 from lumped.materials import Relaxation
-from lumped.result import RULED_RELATIVE
+from lumped.result.result import RULED_RELATIVE
 from lumped.shapes import Parabola
 
 LAWS = ("elastic", "prony of one term", "prony of three terms", "kelvin_voigt")

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_contact.certify import certify, other_mesh, other_setting
+from fe_contact.budget.certify import certify, other_mesh, other_setting
+from fe_contact.budget.plan import plan
+from fe_contact.budget.runs import Runs
 from fe_contact.methods import simulate as fe
-from fe_contact.numerics import RANGES
-from fe_contact.plan import plan
 from fe_contact.reference import strike_of
-from fe_contact.runs import Runs
+from fe_contact.settings import RANGES
 from lumped import FeContactError, Relaxation, Result, Scene, laws, simulate
 
 IMPACTS, SEED, END_TO_END = 120, 20261124, 0.95

@@ -17,10 +17,10 @@ import fe_contact
 from fe_contact.cli import main
 from fe_contact.waves.falling_block import PAUSE
 from lumped import Scene
-from lumped.bar_waves import Bounces, StraightBar, bounces
 from lumped.errors import BadInput
-from lumped.result import Result
-from lumped.scene_tables import Motion
+from lumped.result.result import Result
+from lumped.scene.tables import Motion
+from lumped.solvers.bar import Bounces, StraightBar, bounces
 
 BAR = StraightBar(length=10.0, speed=30.0, impedance=30.0)
 ECHO = 2 / 3

@@ -9,9 +9,9 @@ import pytest
 
 from fe_contact.indentation import indent, press, settings
 from lumped import BadInput, Material, Relaxation
-from lumped.indenter import Indenter
 from lumped.load_curves.layer import Layer
 from lumped.load_curves.layer_curve import LayerPunch
+from lumped.scene.indenter import Indenter
 from lumped.shapes import plate, prism
 from lumped.shapes.punch import Punch
 from lumped.targets.plane import Plane

@@ -10,7 +10,7 @@ import pytest
 from fe_contact.errors import ContactTooWide
 from fe_contact.indentation import indent, press, settings
 from lumped import BadInput, Material, Relaxation
-from lumped.indenter import Indenter
+from lumped.scene.indenter import Indenter
 from lumped.shapes.punch import Punch
 from lumped.shapes.sphere import Sphere
 from lumped.targets.o_ring import ORing

@@ -9,11 +9,11 @@ import pytest
 
 from fe_contact.indentation import indent, press, settings
 from lumped import BadInput, Material, Relaxation, Sphere
-from lumped.indenter import Indenter
-from lumped.scene_tables import Model
+from lumped.indentation.slow import indent as closed_form
+from lumped.scene.indenter import Indenter
+from lumped.scene.tables import Model
 from lumped.shapes.cylinder import Cylinder as Roller
 from lumped.shapes.punch import Punch
-from lumped.slow import indent as closed_form
 from lumped.targets.cylinder import Cylinder
 from lumped.targets.sphere import Sphere as Ball
 

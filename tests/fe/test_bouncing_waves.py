@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import fe_contact
+from fe_contact.budget.curve import Curve
 from fe_contact.cli import main
-from fe_contact.curve import Curve
-from fe_contact.flight import Grounded
+from fe_contact.march.flight import Grounded
 from fe_contact.methods import simulate
 from fe_contact.reference import strike_of
 from fe_contact.waves.bounces import Bounces, follow

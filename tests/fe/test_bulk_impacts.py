@@ -10,8 +10,8 @@ import pytest
 from scipy.optimize import nnls
 
 import fe_contact
-from fe_contact.certify import CAUSES, Certified, certify
-from fe_contact.plan import SETTING, plan
+from fe_contact.budget.certify import CAUSES, Certified, certify
+from fe_contact.budget.plan import SETTING, plan
 from fe_contact.reference import strike_of
 from lumped import Material, Relaxation, Result, Scene, laws, simulate
 from lumped.shapes.punch import Punch

@@ -14,24 +14,24 @@ from skfem import Basis
 
 import fe_contact
 import meshes
+from fe_contact.assembly.elastic_body import ElasticBody, moduli
+from fe_contact.assembly.forms import elastic, stiffness
+from fe_contact.assembly.operators import ELEMENTS
+from fe_contact.assembly.surface import flat
 from fe_contact.bodies.bulk_memory import BulkBody, BulkMemory, Moduli
-from fe_contact.bodies.chosen import struck
 from fe_contact.bodies.modes import modes, poisson
-from fe_contact.curve import Curve
-from fe_contact.elastic_body import ElasticBody, moduli
-from fe_contact.forms import elastic, stiffness
-from fe_contact.impact import march
-from fe_contact.numerics import TARGETS
-from fe_contact.operators import ELEMENTS
-from fe_contact.plan import plan
+from fe_contact.bodies.zone import held
+from fe_contact.budget.curve import Curve
+from fe_contact.budget.plan import plan
+from fe_contact.march.impact import march
 from fe_contact.reference import strike_of
 from fe_contact.schemes import backward_euler, galerkin
-from fe_contact.surface import flat
+from fe_contact.settings import TARGETS
+from fe_contact.steppers.chosen import struck
 from fe_contact.targets import _round, layer, o_ring, ring, washer
-from fe_contact.targets._zone import held
 from lumped import BadInput, Material, Relaxation, Scene, laws, simulate
 from lumped.materials.laplace import inverse
-from lumped.members import get
+from lumped.schema.members import get
 from lumped.shapes.prism import Prism
 from lumped.shapes.punch import Punch
 from lumped.targets.layer import Layer

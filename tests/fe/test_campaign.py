@@ -16,7 +16,7 @@ import pytest
 import fe_contact
 import lumped
 from lumped.laws import mdr
-from lumped.result import RULED_RELATIVE, Quantity
+from lumped.result.result import RULED_RELATIVE, Quantity
 
 IMPACTS = 48
 TOLERANCES = (1e-3, 1e-4)

@@ -12,17 +12,17 @@ from scipy.sparse import linalg
 import fe_contact
 import lumped
 from fe_contact import reference
-from fe_contact.certify import CAUSES, Certified, certify
-from fe_contact.contact import solve
-from fe_contact.enforcement import corrected
-from fe_contact.numerics import Numerics
-from fe_contact.plan import SETTING, plan, refined
+from fe_contact.budget.certify import CAUSES, Certified, certify
+from fe_contact.budget.plan import SETTING, plan, refined
+from fe_contact.budget.softening import Softening
+from fe_contact.contact.enforcement import corrected
+from fe_contact.contact.problem import solve
 from fe_contact.reference import result_of, strike_of
-from fe_contact.softening import Softening
+from fe_contact.settings import Numerics
 from fe_contact.targets import half_space
 from lumped import laws, load_curves
 from lumped.laws import mdr
-from lumped.result import RULED_RELATIVE
+from lumped.result.result import RULED_RELATIVE
 
 Scenes = Callable[..., lumped.Scene]
 RULED = (*RULED_RELATIVE, "restitution")

@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_contact import stepping
 from fe_contact.cli import COMMANDS, main
+from fe_contact.steppers import stepping
 from fe_contact.targets import half_space
 from lumped import Scene, laws
-from lumped.data import scene_names
-from lumped.members import available
+from lumped.schema.data import scene_names
+from lumped.schema.members import available
 from meshes import session
 from meshes.errors import APT_LINE, GmshMissing
 

@@ -10,12 +10,12 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from fe_contact import contact
-from fe_contact.contact import ContactProblem, ContactSolution, solve
-from fe_contact.enforcement import augmented, corrected, exact, penalty
-from fe_contact.numerics import ENFORCEMENTS
-from fe_contact.pressed_surface import PressedSurface
-from lumped.members import available, get
+from fe_contact.assembly.pressed_surface import PressedSurface
+from fe_contact.contact import problem as contact
+from fe_contact.contact.enforcement import augmented, corrected, exact, penalty
+from fe_contact.contact.problem import ContactProblem, ContactSolution, solve
+from fe_contact.settings import ENFORCEMENTS
+from lumped.schema.members import available, get
 
 SEEDS = st.integers(0, 2**32 - 1)
 

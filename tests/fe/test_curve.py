@@ -7,11 +7,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from fe_contact.contact_radius import seen_from_both_sides
-from fe_contact.impact import STEPS_ALLOWED
-from fe_contact.local_polynomial import PLACES, LocalPolynomials, fitted_peak, peak
-from fe_contact.separation import time_left
-from fe_contact.time_grid import share_of_rest, step_length
+from fe_contact.budget.contact_radius import seen_from_both_sides
+from fe_contact.budget.local_polynomial import PLACES, LocalPolynomials, fitted_peak, peak
+from fe_contact.march.impact import STEPS_ALLOWED
+from fe_contact.march.separation import time_left
+from fe_contact.march.time_grid import share_of_rest, step_length
 
 SEEDS = st.integers(0, 2**32 - 1)
 

@@ -13,18 +13,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import eigh, expm
 
+from fe_contact.assembly.interior import factorized
 from fe_contact.bodies.bar import Bar, falling
+from fe_contact.contact.enforcement import augmented, corrected, exact, penalty
 from fe_contact.dynamics import explicit, implicit, mass, schemes
 from fe_contact.dynamics.body import Body, Part, Pressing
 from fe_contact.dynamics.march import Choices, Motion, march
 from fe_contact.dynamics.pressed import Enforced
 from fe_contact.dynamics.stages import safe_step
-from fe_contact.enforcement import augmented, corrected, exact, penalty
 from fe_contact.errors import MotionUnbounded
-from fe_contact.interior import factorized
 from lumped.errors import BadInput
 from lumped.materials import Relaxation
-from lumped.members import available, get
+from lumped.schema.members import available, get
 
 MASSES, SCHEMES = mass.__name__, schemes.__name__
 SEEDS = st.integers(0, 2**32 - 1)

@@ -10,18 +10,18 @@ import pytest
 from skfem import Basis, ElementTriP4, FacetBasis
 
 import meshes
-from fe_contact.bodies.scaled_surface import ScaledSurface
-from fe_contact.certify import certify
-from fe_contact.enforcement import corrected
-from fe_contact.far_field.half_plane import flamant
-from fe_contact.far_field.static import boussinesq, robin
-from fe_contact.forms import isotropic
-from fe_contact.march import Strike
-from fe_contact.numerics import Numerics
-from fe_contact.plan import plan
+from fe_contact.assembly.far_field import boussinesq, robin
+from fe_contact.assembly.forms import isotropic
+from fe_contact.assembly.half_plane import flamant
+from fe_contact.budget.certify import certify
+from fe_contact.budget.plan import plan
+from fe_contact.budget.runs import Runs
+from fe_contact.budget.softening import compliance_change
+from fe_contact.contact.enforcement import corrected
 from fe_contact.reference import strike_of
-from fe_contact.runs import Runs
-from fe_contact.softening import compliance_change
+from fe_contact.settings import Numerics
+from fe_contact.steppers.march import Strike
+from fe_contact.steppers.scaled_surface import ScaledSurface
 from fe_contact.targets import half_space
 from lumped import Relaxation, Scene
 from lumped.load_curves import Hertz

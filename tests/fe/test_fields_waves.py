@@ -9,8 +9,8 @@ import meshio
 import numpy as np
 import pytest
 
+from fe_contact.assembly.absorbing import wave_speeds
 from fe_contact.cli import main
-from fe_contact.far_field.absorbing import wave_speeds
 from fe_contact.fields import STRESSES, Fields
 from fe_contact.waves.fields import fields_at
 from fe_contact.waves.numerics import WaveNumerics

@@ -9,10 +9,10 @@ import pytest
 
 from fe_contact.indentation import indent, press, settings
 from lumped import Material, Relaxation, Sphere
-from lumped.finite_size import FiniteSize
-from lumped.indenter import Indenter
-from lumped.result import Quantity
-from lumped.scene import Model
+from lumped.indentation.finite_size import FiniteSize
+from lumped.result.result import Quantity
+from lumped.scene.indenter import Indenter
+from lumped.scene.scene import Model
 from lumped.targets.sphere import Sphere as Ball
 
 

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 import fe_contact
-from fe_contact.flat_stepping import FlatStepper
-from fe_contact.march import Strike
-from fe_contact.numerics import Numerics
 from fe_contact.reference import solve
+from fe_contact.settings import Numerics
+from fe_contact.steppers.flat_stepping import FlatStepper
+from fe_contact.steppers.march import Strike
 from lumped import BadInput, Material, Model, Relaxation, Result, Scene, laws, simulate
-from lumped.scene import Motion
+from lumped.scene.scene import Motion
 from lumped.shapes import plate, prism
 from lumped.shapes.punch import Punch
 from lumped.targets import HalfSpace

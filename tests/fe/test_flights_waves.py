@@ -9,13 +9,13 @@ import pytest
 import scipy.sparse as sparse
 from scipy.optimize import brentq
 
+from fe_contact.contact.enforcement import penalty
 from fe_contact.dynamics import ledger
 from fe_contact.dynamics.body import Body, Part, Pressing
 from fe_contact.dynamics.march import Choices, Moment
 from fe_contact.dynamics.pressed import Enforced
 from fe_contact.dynamics.schemes import generalised_alpha
 from fe_contact.dynamics.state import State, internal, undeformed
-from fe_contact.enforcement import penalty
 from fe_contact.waves.flight import Flights
 from lumped.materials import Relaxation
 

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 import scipy.sparse.linalg as linalg
 
+from fe_contact.budget.curve import Curve
 from fe_contact.cli import main
-from fe_contact.curve import Curve
 from fe_contact.dynamics.march import Motion, march
 from fe_contact.methods import simulate
-from fe_contact.numerics import RANGES
 from fe_contact.reference import strike_of
+from fe_contact.settings import RANGES
 from fe_contact.waves import half_space_body
 from fe_contact.waves.flying_ball import on_ball, on_half_space, on_plane
 from fe_contact.waves.impact import choices_of, energies, motion, record
@@ -25,7 +25,7 @@ from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.targets import half_space, plane, sphere
 from lumped import BadInput, Result, Scene
-from lumped.radiation import radiation_coefficient
+from lumped.materials.radiation import radiation_coefficient
 
 RADIUS, YOUNG, DENSITY = 2e-3, 2.06e11, 7850.0
 MASS = DENSITY * 4.0 / 3.0 * math.pi * RADIUS**3

@@ -9,8 +9,8 @@ import pytest
 from skfem import Basis, BilinearForm, ElementTriP1, FacetBasis, LinearForm, MeshTri
 
 import meshes
-from fe_contact.forms import isotropic, stiffness
-from fe_contact.operators import ELEMENTS, surface_operator, system_matrix
+from fe_contact.assembly.forms import isotropic, stiffness
+from fe_contact.assembly.operators import ELEMENTS, surface_operator, system_matrix
 
 RNG = np.random.default_rng(11)
 RADIUS, HEIGHT, YOUNG = 1.7, 0.9, 3.0

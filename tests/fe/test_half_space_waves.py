@@ -13,19 +13,19 @@ import pytest
 from skfem import Basis, ElementTriP2
 
 import meshes
-from fe_contact import forms
+from fe_contact.assembly import forms
+from fe_contact.assembly.absorbing import wave_speeds
+from fe_contact.budget.curve import Curve
 from fe_contact.cli import main
-from fe_contact.curve import Curve
-from fe_contact.far_field.absorbing import wave_speeds
-from fe_contact.march import March
 from fe_contact.methods import simulate
 from fe_contact.reference import strike_of
+from fe_contact.steppers.march import March
 from fe_contact.waves.half_space_body import moving
 from fe_contact.waves.impact import motion, record
 from fe_contact.waves.parting import parting
 from fe_contact.waves.targets import half_space
 from lumped import BadInput, Result, Scene, laws
-from lumped.radiation import radiation_coefficient
+from lumped.materials.radiation import radiation_coefficient
 
 PLACES = 2001
 QUICK = {"elements_per_contact": 6.0, "steps": 200, "penalty": 60.0}  # errs by 3e-4 in what is radiated

@@ -13,25 +13,27 @@ from scipy.sparse.linalg import spsolve
 
 import fe_contact
 import lumped
-from fe_contact import contact, impact, stepping
-from fe_contact.bodies.scaled_surface import ScaledSurface
-from fe_contact.certify import certify
-from fe_contact.contact import ContactSolution
-from fe_contact.enforcement import corrected
+from fe_contact.assembly.operators import system_matrix
+from fe_contact.budget.certify import certify
+from fe_contact.budget.plan import plan
+from fe_contact.contact import problem as contact
+from fe_contact.contact.enforcement import corrected
+from fe_contact.contact.problem import ContactSolution
 from fe_contact.errors import ContactNotSettled, MemoryTooSmall, TooManySteps
-from fe_contact.impact import march
-from fe_contact.march import March, Strike
+from fe_contact.march import impact
+from fe_contact.march.impact import march
 from fe_contact.methods import simulate
-from fe_contact.numerics import SCHEMES, Numerics
-from fe_contact.operators import system_matrix
-from fe_contact.plan import plan
 from fe_contact.reference import strike_of
-from fe_contact.steps import State, Step
+from fe_contact.settings import SCHEMES, Numerics
+from fe_contact.steppers import stepping
+from fe_contact.steppers.march import March, Strike
+from fe_contact.steppers.scaled_surface import ScaledSurface
+from fe_contact.steppers.steps import State, Step
 from fe_contact.targets import half_space
 from lumped.laws import mdr
 from lumped.materials import Relaxation
-from lumped.members import available, get
-from lumped.scene import Scene
+from lumped.scene.scene import Scene
+from lumped.schema.members import available, get
 from lumped.shapes import Parabola
 
 Strikes = Callable[..., Strike]

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from fe_contact import run
+from fe_contact.assembly.forms import LARGEST_NU
 from fe_contact.cli import main
-from fe_contact.forms import LARGEST_NU
 from lumped import Scene
 from lumped.errors import BadInput
 

@@ -12,9 +12,9 @@ import pytest
 from fe_contact.errors import BodyTooThin, ContactTooWide
 from fe_contact.indentation import indent, press, settings
 from lumped import BadInput, Material, Relaxation
-from lumped.indentation import Indentation
-from lumped.indenter import Indenter
-from lumped.members import get
+from lumped.indentation.indentation import Indentation
+from lumped.scene.indenter import Indenter
+from lumped.schema.members import get
 from lumped.shapes import Shape, Sphere
 from lumped.targets import HalfSpace, Target
 from lumped.targets.layer import Layer

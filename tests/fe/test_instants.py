@@ -13,15 +13,15 @@ import numpy as np
 import pytest
 
 import lumped
-from fe_contact import instants
-from fe_contact.curve import Curve
-from fe_contact.impact import march
-from fe_contact.march import March, Snapshot
-from fe_contact.plan import plan
+from fe_contact.budget.curve import Curve
+from fe_contact.budget.plan import plan
+from fe_contact.march.impact import march
 from fe_contact.reference import strike_of
+from fe_contact.steppers import instants
+from fe_contact.steppers.march import March, Snapshot
+from fe_contact.studies.compare import law_pressure
+from fe_contact.studies.compare.law_pressure import LawPressure
 from fe_contact.targets import half_space
-from fe_contact.validation import law_pressure
-from fe_contact.validation.law_pressure import LawPressure
 from lumped.laws import mdr
 
 IMPACTS = 48

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fe_contact.kept import BODIES, Store, kept
+from fe_contact.assembly.cache import BODIES, Store, kept
 
 
 class Thing:

@@ -10,7 +10,7 @@ import pytest
 
 import fe_contact
 from lumped import BadInput, Material, Model, Relaxation, Result, Scene, Sphere, laws, simulate
-from lumped.score import normalized_error
+from lumped.result.score import normalized_error
 from lumped.shapes.cone import Cone
 from lumped.shapes.cylinder import Cylinder
 from lumped.targets.layer import Layer

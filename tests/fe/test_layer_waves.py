@@ -10,22 +10,22 @@ import numpy as np
 import pytest
 from scipy.sparse import linalg
 
+from fe_contact.assembly.elastic_body import moduli
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.curve import Curve
 from fe_contact.cli import main
-from fe_contact.curve import Curve
 from fe_contact.dynamics.march import Motion
-from fe_contact.elastic_body import moduli
-from fe_contact.forms import Array
-from fe_contact.march import March
 from fe_contact.methods import simulate
-from fe_contact.numerics import WAVES
 from fe_contact.reference import strike_of
+from fe_contact.settings import WAVES
+from fe_contact.steppers.march import March
 from fe_contact.waves import half_space_body, layer_body
 from fe_contact.waves.impact import motion, record
 from fe_contact.waves.targets import layer
 from lumped import BadInput, Scene, laws
-from lumped.layer_mass import moving_share
 from lumped.load_curves.hertz import hertz_impact
-from lumped.members import get
+from lumped.schema.members import get
+from lumped.targets._layer_mass import moving_share
 from lumped.targets.layer import Layer
 
 RULED = ("peak_force", "duration", "restitution", "peak_depth", "impulse")

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from fe_contact import run
-from fe_contact.plan import plan
+from fe_contact.budget.plan import plan
 from lumped import FeContactError, Scene
-from lumped.data import scene_names
-from lumped.model_ledger import Peak, model_ledger
+from lumped.result.model_ledger import Peak, model_ledger
+from lumped.schema.data import scene_names
 
 HEAVY = 1000.0  # kg/m3
 PEAK = Peak(1.0, 1e-5, 1e-3, 1e-3)

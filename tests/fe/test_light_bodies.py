@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_contact.curve import Curve
+from fe_contact.budget.curve import Curve
 from fe_contact.methods import simulate
 from fe_contact.reference import strike_of
 from fe_contact.waves.half_space_body import moving

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from scipy.special import beta, betainc
 
-from fe_contact.certify import CAUSES, Budget, Causes, _time_steps
-from fe_contact.change import Change
-from fe_contact.curve import Curve, extrapolated
-from fe_contact.forms import Array
-from fe_contact.march import Strike
-from fe_contact.numerics import Numerics
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.certify import CAUSES, Budget, Causes, _time_steps
+from fe_contact.budget.change import Change
+from fe_contact.budget.curve import Curve, extrapolated
+from fe_contact.settings import Numerics
+from fe_contact.steppers.march import Strike
 from fe_contact.waves.certify import Moved
 from lumped.materials import Relaxation
 

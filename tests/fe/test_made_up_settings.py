@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from scipy.special import beta, betainc
 
-from fe_contact import certify
-from fe_contact.certify import Budget
-from fe_contact.curve import Curve
-from fe_contact.march import March, Strike, Work
-from fe_contact.numerics import Numerics
-from fe_contact.plan import SETTING
+from fe_contact.budget import certify
+from fe_contact.budget.certify import Budget
+from fe_contact.budget.curve import Curve
+from fe_contact.budget.plan import SETTING
+from fe_contact.settings import Numerics
+from fe_contact.steppers.march import March, Strike, Work
 from fe_contact.waves import certify as waves
 from fe_contact.waves.numerics import WaveNumerics
 from lumped.materials import Relaxation

@@ -14,7 +14,7 @@ import pytest
 from skfem import MeshTri
 
 import meshes
-from fe_contact.validation.journal import measured
+from fe_contact.studies.journal import measured
 from meshes import GmshMissing, MeshError, triangles
 from meshes.errors import MeshTooLarge
 from meshes.session import session

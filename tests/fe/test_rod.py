@@ -12,12 +12,12 @@ import pytest
 
 from fe_contact.cli import main
 from fe_contact.methods import simulate
-from fe_contact.validation.verdict import WITHIN
+from fe_contact.studies.compare.verdict import WITHIN
 from fe_contact.waves.targets import rod
 from lumped import BadInput, Result, Scene, laws
-from lumped.indenter import Indenter
-from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE
-from lumped.rod_waves.waves import Waves
+from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE
+from lumped.scene.indenter import Indenter
+from lumped.solvers.rod.waves import Waves
 
 CASES = 40
 WIDE_CASES = 30

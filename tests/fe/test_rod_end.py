@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 
 import meshes
-from fe_contact.elastic_body import ElasticBody, axisymmetric
+from fe_contact.assembly.elastic_body import ElasticBody, axisymmetric
+from fe_contact.assembly.operators import basis_on
+from fe_contact.assembly.surface import flat
+from fe_contact.bodies.zone import held
 from fe_contact.methods import simulate
-from fe_contact.operators import basis_on
-from fe_contact.surface import flat
-from fe_contact.targets._zone import held
 from lumped import Scene, laws
-from lumped.model_ledger.kinematics import ROD_END
-from lumped.rod_waves.tipped import Scales, TippedImpact
-from lumped.rod_waves.waves import Waves
+from lumped.result.model_ledger.kinematics import ROD_END
+from lumped.solvers.rod.tipped import Scales, TippedImpact
+from lumped.solvers.rod.waves import Waves
 
 LONG = 3.0  # radii of the rod, behind which its section moves as one
 FINE = 16.0  # elements along the contact radius

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import meshes
-from fe_contact.bodies.scaled_surface import ScaledSurface
-from fe_contact.contact import ContactSolution
-from fe_contact.enforcement import corrected, penalty
-from fe_contact.far_field.static import boussinesq
-from fe_contact.operators import surface_operator
-from fe_contact.pressing import EDGE_WINDOW
+from fe_contact.assembly.far_field import boussinesq
+from fe_contact.assembly.operators import surface_operator
+from fe_contact.bodies.pressing import EDGE_WINDOW
+from fe_contact.contact.enforcement import corrected, penalty
+from fe_contact.contact.problem import ContactSolution
+from fe_contact.steppers.scaled_surface import ScaledSurface
 from lumped.shapes import Parabola, Shape, Sphere
 
 RNG = np.random.default_rng(2)

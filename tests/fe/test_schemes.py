@@ -9,10 +9,10 @@ import pytest
 from scipy.linalg import expm
 
 from fe_contact.bodies.memory import step_law
-from fe_contact.numerics import SCHEMES
 from fe_contact.schemes import galerkin
+from fe_contact.settings import SCHEMES
 from lumped.materials import Relaxation
-from lumped.members import available, get
+from lumped.schema.members import available, get
 
 MATERIALS = {
     "elastic": Relaxation(1.0),

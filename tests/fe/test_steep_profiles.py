@@ -10,8 +10,8 @@ import pytest
 import fe_contact
 from fe_contact.indentation import indent
 from lumped import Material, Relaxation, Scene, Sphere, simulate
-from lumped.indenter import Indenter
 from lumped.laws import ting
+from lumped.scene.indenter import Indenter
 from lumped.shapes import Shape
 from lumped.shapes.power import PowerProfile
 from lumped.targets.layer import Layer

@@ -13,9 +13,9 @@ import pytest
 
 import fe_contact
 import lumped
-from fe_contact.plan import plan
+from fe_contact.budget.plan import plan
 from lumped.laws import mdr
-from lumped.result import RULED_RELATIVE
+from lumped.result.result import RULED_RELATIVE
 
 IMPACTS = 24
 TOLERANCES = (1e-3, 1e-4)

@@ -17,10 +17,10 @@ from threadpoolctl import threadpool_info, threadpool_limits
 
 import fe_contact
 import fe_contact.indentation
+from fe_contact.studies import journal
 from fe_contact.threads import one_thread
-from fe_contact.validation import journal
 from lumped import Scene
-from lumped.indenter import Indenter
+from lumped.scene.indenter import Indenter
 
 SETTINGS = ("1", "2", None)
 IMPACT = """

@@ -11,11 +11,11 @@ import pytest
 
 from fe_contact.errors import RodTooLong
 from fe_contact.methods import simulate
-from fe_contact.numerics import ENFORCEMENTS, MASSES, WAVE_SCHEMES
+from fe_contact.settings import ENFORCEMENTS, MASSES, WAVE_SCHEMES
 from lumped import BadInput, Scene, laws
 from lumped.errors import NotReached
-from lumped.members import available
-from lumped.result import UNITS
+from lumped.result.result import UNITS
+from lumped.schema.members import available
 
 CASES = 60
 ROUNDING = 1e-7  # of a number

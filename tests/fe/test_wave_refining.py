@@ -11,10 +11,10 @@ import pytest
 from scipy.sparse import linalg
 
 import meshes
-from fe_contact.forms import Array
-from fe_contact.march import March, Strike, Work
-from fe_contact.plan import EARLY_PEAK
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.plan import EARLY_PEAK
 from fe_contact.reference import strike_of
+from fe_contact.steppers.march import March, Strike, Work
 from fe_contact.waves import refining
 from fe_contact.waves.certify import ORDER, Runs, certify
 from fe_contact.waves.half_space_body import moving

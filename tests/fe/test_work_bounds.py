@@ -9,21 +9,22 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_contact import cli, operators, reference
-from fe_contact.bodies.chosen import struck
-from fe_contact.certify import certify
+from fe_contact import cli, reference
+from fe_contact.assembly import operators
+from fe_contact.budget.certify import certify
+from fe_contact.budget.runs import operations
 from fe_contact.dynamics import march
 from fe_contact.errors import BodyTooFine, TooManySteps, WavesTooDear
-from fe_contact.flight import Grounded
+from fe_contact.march.flight import Grounded
 from fe_contact.methods import simulate
-from fe_contact.numerics import WAVES
-from fe_contact.runs import operations
+from fe_contact.settings import WAVES
+from fe_contact.steppers.chosen import struck
 from fe_contact.waves import cost, doubling
 from fe_contact.waves.certify import Runs
 from lumped import Scene
-from lumped.members import get
-from lumped.result import meets
-from lumped.scene_file import load
+from lumped.result.result import meets
+from lumped.scene.file import load
+from lumped.schema.members import get
 
 COARSE = {"tolerance": 3e-2, "elements_per_contact": 3.0, "steps": 64, "order": 2}
 QUICK = [f"--set=numerics.{key}={value}" for key, value in COARSE.items() if key != "tolerance"]
@@ -33,7 +34,7 @@ def overridden(name: str, **changes: Any) -> Scene:
     return load(Scene, name, {key.replace("__", "."): value for key, value in changes.items()})[0]
 
 
-@pytest.mark.parametrize("bound", ["fe_contact.operators.MOST_UNKNOWNS", "meshes.triangles.MOST_NODES"])
+@pytest.mark.parametrize("bound", ["fe_contact.assembly.operators.MOST_UNKNOWNS", "meshes.triangles.MOST_NODES"])
 @pytest.mark.parametrize("name", ["steel-ball", "polymer-layer", "two-cylinders", "rod-in-ring", "polymer-layer-waves"])
 def test_a_body_too_fine_is_refused_before_its_matrix(name: str, bound: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bound, 70)
@@ -104,7 +105,7 @@ def test_a_word_is_said_before_and_while_bodies_are_meshed(monkeypatch: pytest.M
         built.append(len(told))
         return struck(*given)
 
-    monkeypatch.setattr("fe_contact.runs.struck", body)
+    monkeypatch.setattr("fe_contact.budget.runs.struck", body)
     monkeypatch.setattr(reference, "ROUNDS", 0)
     given = {"elements_per_contact": 2.0, "steps": 16, "order": 1}
     reference.solve(scene, given, lambda message, *_: told.append(message))
@@ -113,7 +114,7 @@ def test_a_word_is_said_before_and_while_bodies_are_meshed(monkeypatch: pytest.M
 
 
 def test_a_row_of_contacts_ends_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("fe_contact.impacts.MOST_STEPS", 60)
+    monkeypatch.setattr("fe_contact.march.impacts.MOST_STEPS", 60)
     found = simulate(overridden("ball-bouncing", motion__impacts=100), "fe", {"tolerance": 1e-2})
     assert Grounded.MANY.value in found.message
     assert not found.converged

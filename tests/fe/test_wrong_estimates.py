@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import fe_contact
-from fe_contact import plan as planning
+from fe_contact.budget import plan as planning
+from fe_contact.budget.runs import PILOT_STEPS, PLACED, Runs
+from fe_contact.budget.scales import scales
+from fe_contact.march.time_grid import share_of_rest, step_length
 from fe_contact.reference import strike_of
-from fe_contact.runs import PILOT_STEPS, PLACED, Runs
-from fe_contact.scales import scales
-from fe_contact.time_grid import share_of_rest, step_length
 from lumped import Result, Scene, laws, simulate
 
 SCENES = ("polymer-sphere", "polymer-layer", "rod-in-ring", "polymer-cone")

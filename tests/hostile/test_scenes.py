@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 from lumped import laws
-from lumped.data import scene_names, scene_path
+from lumped.schema.data import scene_names, scene_path
 
 Table = dict[str, Any]
 SCENES = 20_000

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumped.bar_waves import Bounces, StraightBar, bounces
+from lumped.solvers.bar import Bounces, StraightBar, bounces
 
 # Doyen, Ern and Piperno 2011, doi:10.1137/100791440: L = 10, E = 900, density 1, area 1; transit time 1/3
 BAR = StraightBar(length=10.0, speed=30.0, impedance=30.0)

@@ -13,8 +13,8 @@ from scipy.optimize import brentq
 from scipy.special import beta
 
 from lumped import Model, Motion, Quantity, Scene, laws
-from lumped.result import UNITS, meets
-from lumped.scene_tables import LawChoice
+from lumped.result.result import UNITS, meets
+from lumped.scene.tables import LawChoice
 
 CASES = 600
 # Where an error is rounding its size is an accident; the time of a flat peak is known to the root of rounding.

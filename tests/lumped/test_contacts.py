@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from lumped import BadInput, Model, Motion, Scene, laws, simulate
-from lumped.collide import memory
 from lumped.laws.correspondence import Correspondence
-from lumped.result import Result
+from lumped.result.result import Result
+from lumped.solvers.point import memory
 
 Build = Callable[..., Scene]
 Array = NDArray[np.float64]

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from lumped import Material, Relaxation, Scene, Sphere, laws, simulate
-from lumped.indenter import Indenter
+from lumped.indentation.slow import indent as closed_form
+from lumped.scene.indenter import Indenter
 from lumped.shapes.cone import Cone
-from lumped.slow import indent as closed_form
 from lumped.targets.layer import Layer
 
 YOUNG = Relaxation(1e6, (0.7e6,), (3e-3,))

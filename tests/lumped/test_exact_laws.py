@@ -13,15 +13,15 @@ import pytest
 from numpy.typing import NDArray
 
 from lumped import Result, Scene, laws, simulate
-from lumped.ending import End
 from lumped.laws import _hereditary
 from lumped.laws._assembly import Answer
+from lumped.result.ending import End
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
-from lumped.spring_row.coarse import coarse, problem_of
-from lumped.spring_row.grid import Grid
-from lumped.spring_row.memory import fading
-from lumped.spring_row.nest import Nest, limit, predicted_turn
+from lumped.solvers.mdr.coarse import coarse, problem_of
+from lumped.solvers.mdr.grid import Grid
+from lumped.solvers.mdr.memory import fading
+from lumped.solvers.mdr.nest import Nest, limit, predicted_turn
 
 Array = NDArray[np.float64]
 

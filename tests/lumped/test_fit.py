@@ -11,8 +11,8 @@ import pytest
 
 from lumped import BadInput, Fit, History, NotReached, Scene, fit, laws, simulate
 from lumped.fit import certainty
-from lumped.scene_tables import LawChoice
-from lumped.score import Curve
+from lumped.result.score import Curve
+from lumped.scene.tables import LawChoice
 
 BODY = Scene(None, mass=0.001, velocity=1.0)
 TRUTHS: dict[str, dict[str, float]] = {

@@ -14,9 +14,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumped import BadInput, Motion, Scene, laws, restitution
-from lumped.collide.bodies import Bodies, Stage
-from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE
-from lumped.scene_tables import LawChoice, Model
+from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE
+from lumped.scene.tables import LawChoice, Model
+from lumped.solvers.point.bodies import Bodies, Stage
 
 OF_GEOMETRY = {"correspondence", "ting", "mdr", "rod_waves"}
 NAMES = sorted(set(laws.available()) - OF_GEOMETRY)
@@ -360,8 +360,8 @@ def test_one_contact_is_cheap(name: str, spent: Callable[..., int]) -> None:
 
 @pytest.fixture
 def spent(monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
-    from lumped.collide import phase
-    from lumped.collide.motion import motion
+    from lumped.solvers.point import phase
+    from lumped.solvers.point.motion import motion
 
     count, solve = [0], phase.solved
 

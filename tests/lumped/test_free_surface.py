@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from lumped import Relaxation, Sphere
-from lumped.collide.bodies import State
-from lumped.collide.hereditary import HereditaryLoad
-from lumped.collide.memory.recovering import FreeSurface
+from lumped.solvers.point.bodies import State
+from lumped.solvers.point.hereditary import HereditaryLoad
+from lumped.solvers.point.memory.recovering import FreeSurface
 
 Array = NDArray[np.float64]
 

@@ -12,21 +12,22 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lee_radok_map import error_map, point
 from numpy.typing import NDArray
 
-from lumped import Material, Model, Relaxation, Result, Scene, Sphere, data, laws, simulate
-from lumped.ending import End
+from lumped import Material, Model, Relaxation, Result, Scene, Sphere, laws, simulate
 from lumped.errors import NotReached
-from lumped.hereditary.march import Settings
-from lumped.interpolation import local, peak
 from lumped.laws import correspondence, ting
 from lumped.laws._hereditary import problem_of
 from lumped.laws.correspondence import Correspondence
-from lumped.lee_radok_map import error_map, point
+from lumped.numbers.interpolation import local, peak
+from lumped.result.ending import End
+from lumped.schema import data
 from lumped.shapes import Shape
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
 from lumped.shapes.punch import Punch
+from lumped.solvers.hereditary.march import Settings
 
 Array = NDArray[np.float64]
 Build = Callable[..., Scene]

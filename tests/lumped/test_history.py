@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from lumped import BadInput, History, Scene, laws, simulate
-from lumped.history import COLUMNS, LEAST_ROWS, densified
-from lumped.interpolation import highest, local, peak
-from lumped.result import UNITS, quantities_of
+from lumped.numbers.interpolation import highest, local, peak
+from lumped.result.history import COLUMNS, LEAST_ROWS, densified
+from lumped.result.result import UNITS, quantities_of
 
 HEADER = "time_s,depth_m,velocity_m_per_s,force_N,contact_radius_m,force_error_N"
 

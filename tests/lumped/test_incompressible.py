@@ -12,15 +12,16 @@ import pytest
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from lumped import Material, Relaxation, Scene, laws, simulate, table1
-from lumped.data import scene_names
+from lumped import Material, Relaxation, Scene, laws, simulate
 from lumped.errors import BadInput, FeContactError
-from lumped.indenter import Indenter
+from lumped.indentation.slow import indent
 from lumped.load_curves.annulus import compliances
 from lumped.load_curves.layer import deficit
-from lumped.model_ledger import Peak, model_ledger
-from lumped.slow import indent
-from lumped.table1.base import Elastic
+from lumped.paper import table1
+from lumped.paper.table1.base import Elastic
+from lumped.result.model_ledger import Peak, model_ledger
+from lumped.scene.indenter import Indenter
+from lumped.schema.data import scene_names
 
 Array = NDArray[np.float64]
 PARTS = ("striker", "target")

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from lumped import Scene, laws, simulate
-from lumped.json_file import decoded, encoded
-from lumped.result import Quantity, Result
-from lumped.table1 import Row, punch
+from lumped.paper.table1 import Row, punch
+from lumped.result.result import Quantity, Result
+from lumped.schema.json_file import decoded, encoded
 
 
 class Pair(NamedTuple):

@@ -24,7 +24,7 @@ from lumped.load_curves import (
 from lumped.load_curves.dual_equation import DualEquation
 from lumped.load_curves.layer import deficit
 from lumped.load_curves.thin_layer import compressible, incompressible
-from lumped.quadrature import gauss
+from lumped.numbers.quadrature import gauss
 
 H = 0.002
 LAYERS = [Layer(H, 0.3), Layer(H, 0.5), Layer(H, 0.3, "sliding")]

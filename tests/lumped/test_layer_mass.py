@@ -7,8 +7,8 @@ import math
 import pytest
 
 from lumped import Scene, laws
-from lumped.layer_mass import THICK, moving_share
-from lumped.model_ledger import Peak, model_ledger
+from lumped.result.model_ledger import Peak, model_ledger
+from lumped.targets._layer_mass import THICK, moving_share
 
 
 @pytest.mark.parametrize("plane", [False, True])

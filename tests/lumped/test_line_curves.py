@@ -21,7 +21,7 @@ from lumped.load_curves.layer import deficit
 from lumped.load_curves.line_profile import hertz_pressure
 from lumped.load_curves.plane_contact import collocation
 from lumped.load_curves.thin_layer import compressible, incompressible
-from lumped.quadrature import gauss
+from lumped.numbers.quadrature import gauss
 
 R, DATUM = 0.006, 0.1
 CURVES: list[LoadCurve] = [

@@ -11,8 +11,9 @@ from typing import Any
 
 import pytest
 
-from lumped import BadInput, Relaxation, Scene, laws, members, simulate
-from lumped.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS
+from lumped import BadInput, Relaxation, Scene, laws, simulate
+from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS
+from lumped.schema import members
 from lumped.shapes import Shape
 from lumped.targets import Target
 

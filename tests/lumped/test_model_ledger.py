@@ -13,12 +13,12 @@ from scipy.integrate import quad
 
 from lumped import LedgerEntry, Material, Model, Relaxation, Scene, Sphere, laws, simulate
 from lumped.errors import BadInput
-from lumped.indenter import Indenter
-from lumped.model_ledger import Peak, ledger_at_rest, model_ledger
-from lumped.radiation import SINE_PULSE, line_coefficient, pulse_energy, radiation_coefficient
+from lumped.materials.radiation import SINE_PULSE, line_coefficient, pulse_energy, radiation_coefficient
+from lumped.result.model_ledger import Peak, ledger_at_rest, model_ledger
+from lumped.result.sufficiency import ABOVE, NO_KEY, OPEN, UNKNOWN, WITHIN, good_to, sufficient
+from lumped.scene.indenter import Indenter
 from lumped.shapes import plate
 from lumped.shapes.punch import Punch
-from lumped.sufficiency import ABOVE, NO_KEY, OPEN, UNKNOWN, WITHIN, good_to, sufficient
 from lumped.targets.layer import Layer
 from lumped.targets.o_ring import ORing
 from lumped.targets.plane import Plane

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lumped import BadInput, Scene, laws, opensees
-from lumped.collide.bodies import Stage
-from lumped.scene_tables import LawChoice
+from lumped import BadInput, Scene, laws
+from lumped.fit import opensees
+from lumped.scene.tables import LawChoice
+from lumped.solvers.point.bodies import Stage
 
 BODY = Scene(None, mass=0.002, velocity=1.5)
 

@@ -10,8 +10,9 @@ import numpy as np
 import openseespy.opensees as ops
 import pytest
 
-from lumped import Scene, laws, opensees, simulate
-from lumped.scene_tables import LawChoice
+from lumped import Scene, laws, simulate
+from lumped.fit import opensees
+from lumped.scene.tables import LawChoice
 
 BODY = Scene(None, mass=0.001, velocity=1.0)
 STEPS = 20_000

@@ -17,17 +17,17 @@ from scipy.optimize import minimize_scalar
 
 from lumped import Scene, laws, simulate
 from lumped.errors import BadInput, NotReached
-from lumped.history import History
 from lumped.paper import Claim, Examples, Value, assumptions, claims, misprints, recompute, rules
 from lumped.paper.assumptions import FAILS, HOLDS, OPEN, Assumption
-from lumped.paper.concrete_impacts import proposed
-from lumped.paper.dented_surface import DentedSurface
-from lumped.paper.examples import Steel
-from lumped.paper.plateau import plateau_cut
-from lumped.paper.ring_impact import impact
+from lumped.paper.examples.concrete_impacts import proposed
+from lumped.paper.examples.dented_surface import DentedSurface
+from lumped.paper.examples.given import Steel
+from lumped.paper.examples.plateau import plateau_cut
+from lumped.paper.examples.ring_impact import impact
+from lumped.paper.examples.steel_impacts import R1_of_peak, damped_of_peak, elastic_of_peak, solid
 from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNJUDGED, UNKNOWN, UNPRINTED, Rule, half_unit
-from lumped.paper.steel_impacts import R1_of_peak, damped_of_peak, elastic_of_peak, solid
-from lumped.result import Result
+from lumped.result.history import History
+from lumped.result.result import Result
 
 AUDIT_IDS = {"A": 2, "B": 2, "C": 1, "D": 19, "E": 15, "F": 5, "G": 6, "H": 14}
 MISPRINTS = 44

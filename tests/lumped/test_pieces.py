@@ -10,9 +10,9 @@ import pytest
 from numpy.polynomial import chebyshev as reference
 
 from lumped import Scene
-from lumped.hereditary.path import Path, chebyshev
 from lumped.laws import correspondence, ting
 from lumped.laws._hereditary import once
+from lumped.solvers.hereditary.path import Path, chebyshev
 
 
 def test_polynomials_are_chebyshev_s_of_few_places_and_of_many() -> None:

@@ -18,16 +18,16 @@ from scipy.special import gamma
 
 from lumped import BadInput, Relaxation
 from lumped.materials.networks import sls
-from lumped.pounding_tmd import Memory, Oscillator, PoundingDamper, PtmdResult, Ring, Start, simulate
-from lumped.pounding_tmd import exact as exact_route
-from lumped.pounding_tmd.crossing import first_fall
-from lumped.pounding_tmd.equations import Equations, Stages
-from lumped.pounding_tmd.exact import Flow
-from lumped.pounding_tmd.exponential import exponential
-from lumped.pounding_tmd.integrated import Rates
-from lumped.pounding_tmd.march import most_rows
-from lumped.pounding_tmd.phase import ROWS_PER_PERIOD
-from lumped.pounding_tmd.surface import Stage
+from lumped.ptmd import Memory, Oscillator, PoundingDamper, PtmdResult, Ring, Start, simulate
+from lumped.ptmd import exact as exact_route
+from lumped.ptmd.crossing import first_fall
+from lumped.ptmd.equations import Equations, Stages
+from lumped.ptmd.exact import Flow
+from lumped.ptmd.exponential import exponential
+from lumped.ptmd.integrated import Rates
+from lumped.ptmd.march import most_rows
+from lumped.ptmd.phase import ROWS_PER_PERIOD
+from lumped.ptmd.surface import Stage
 
 POLE, DAMPER = Oscillator(20.0, 7248.9, 7.615), Oscillator(1.67, 592.9, 0.6312)
 SOLID = sls.of(E0=0.6e6, R1=0.5, R2=0.01)
@@ -578,6 +578,6 @@ def test_bad_input_is_named(bad: Any, named: str) -> None:
 
 @pytest.mark.parametrize("route", ["exact", "integrated"])
 def test_a_motion_of_too_many_rows_is_refused_before_it_begins(route: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lumped.pounding_tmd.free_vibration.march", lambda *_: pytest.fail("marched"))
+    monkeypatch.setattr("lumped.ptmd.free_vibration.march", lambda *_: pytest.fail("marched"))
     with pytest.raises(BadInput, match=rf"more than {most_rows(route)} rows; accepted: at most "):
         simulate(PLAIN, Start(0.05), 1e6, route=route)

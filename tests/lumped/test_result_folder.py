@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lumped import result_folder
 from lumped.errors import CannotWrite
-from lumped.json_file import write_json
-from lumped.result_folder import HIDDEN, LOCK, checksum, publish
+from lumped.result import folder as result_folder
+from lumped.result.folder import HIDDEN, LOCK, checksum, publish
+from lumped.schema.json_file import write_json
 
 SCHEMA = "fe-contact/test/1"
 OLDER = {"history.csv": "older", "plot.svg": "older, which the newer run does not draw"}
@@ -141,7 +141,7 @@ import os, signal, sys
 from pathlib import Path
 sys.path[:0] = [sys.argv[2], sys.argv[3]]
 from test_result_folder import NEWER, OLDER, content, is_whole, writer
-from lumped.result_folder import publish
+from lumped.result.folder import publish
 
 CALLS = ("mkdir", "link", "symlink", "replace", "unlink", "fsync", "rmdir", "open", "scandir", "readlink")
 
@@ -194,8 +194,8 @@ def test_killed_at_any_call_it_leaves_one_result_whole_and_the_next_run_tidies_u
 SIDE_BY_SIDE = """
 import sys
 from pathlib import Path
-from lumped.json_file import write_json
-from lumped.result_folder import publish
+from lumped.schema.json_file import write_json
+from lumped.result.folder import publish
 
 own, rounds = sys.argv[2], int(sys.argv[3])
 

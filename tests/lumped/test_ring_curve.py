@@ -12,7 +12,7 @@ from lumped.load_curves import Cylinder, Layer, LineLayer, Ring
 from lumped.load_curves.annulus import compliances, hole
 from lumped.load_curves.plane_contact import collocation
 from lumped.load_curves.ring_kernel import ring_compliance
-from lumped.quadrature import gauss
+from lumped.numbers.quadrature import gauss
 
 RINGS = [Ring(0.006, 0.010, 0.003, 0.3), Ring(0.0099, 0.010, 0.003, 0.49), Ring(0.006, 0.010, 0.003, 0.5)]
 SHARES = np.array([1e-9, 1e-3, 0.04, 0.2, 0.49])

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from lumped import BadInput, Result, Scene, laws, simulate
-from lumped.rod_waves.flat import FlatImpact
-from lumped.rod_waves.tipped import Scales, TippedImpact
-from lumped.rod_waves.waves import Waves
+from lumped.solvers.rod.flat import FlatImpact
+from lumped.solvers.rod.tipped import Scales, TippedImpact
+from lumped.solvers.rod.waves import Waves
 
 # Mass over that of the rod, contact time over the transit of a wave: Timoshenko and Goodier, Theory of Elasticity,
 # art. 169, after St Venant.

@@ -12,9 +12,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumped import BadInput, Scene
-from lumped.data import scene_names
-from lumped.scene_file import load, read
-from lumped.toml_file import parse_assignment
+from lumped.scene.file import load, read
+from lumped.schema.data import scene_names
+from lumped.schema.toml_file import parse_assignment
 
 SOLID: dict[str, Any] = {
     "name": "try",

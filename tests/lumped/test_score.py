@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lumped import BadInput, History, score
-from lumped.score import Curve, normalized_error, read_curve
+from lumped import BadInput, History
+from lumped.result import score
+from lumped.result.score import Curve, normalized_error, read_curve
 
 
 def half_sine(peak: float, duration: float, rebound: float = 1.0) -> History:

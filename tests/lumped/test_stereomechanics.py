@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumped.errors import BadInput
-from lumped.stereomechanics import Collision, restitution
+from lumped.solvers.stereomechanics import Collision, restitution
 
 MASSES = st.floats(1e-3, 1e3)
 VELOCITIES = st.floats(-10.0, 10.0)

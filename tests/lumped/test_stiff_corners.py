@@ -12,7 +12,7 @@ import pytest
 from lumped import Material, Model, Motion, Relaxation, Scene, laws
 from lumped.errors import BadInput, TooManySteps
 from lumped.laws import correspondence
-from lumped.scene_tables import LawChoice
+from lumped.scene.tables import LawChoice
 from lumped.shapes.power import PowerProfile
 from lumped.targets.layer import Layer
 

@@ -10,7 +10,7 @@ import pytest
 
 from lumped.errors import BadInput
 from lumped.load_curves import Cone, Hertz, Punch
-from lumped.table1 import Elastic, Row, cone, contact_modulus, examples, prism, punch, sphere, two_spheres
+from lumped.paper.table1 import Elastic, Row, cone, contact_modulus, examples, prism, punch, sphere, two_spheres
 
 STEEL = Elastic(2.0e11, 0.23)
 SOFT = Elastic(1.0e6, 0.45)

@@ -6,16 +6,17 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
+import convolution
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.integrate import quad
 from scipy.special import gamma
+from transfer_function import TransferFunction
 
-from lumped import BadInput, Relaxation, Scene, convolution, laws, simulate
-from lumped.interpolation import local
+from lumped import BadInput, Relaxation, Scene, laws, simulate
 from lumped.materials.networks import fractional_zener, kelvin_voigt, operators, sls
-from lumped.transfer_function import TransferFunction
+from lumped.numbers.interpolation import local
 
 Array = NDArray[np.float64]
 Build = Callable[..., Scene]

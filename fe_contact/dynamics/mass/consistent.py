@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy.typing as npt
 
-from fe_contact.forms import Array, scatter
+from fe_contact.assembly.forms import Array, scatter
 
 Nodes = npt.NDArray[Any]
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sparse
 
+from fe_contact.assembly.forms import Array
 from fe_contact.dynamics.mass.consistent import Nodes
-from fe_contact.forms import Array
 
 
 def of(local: Array, dofs: Nodes, size: int, contact: Nodes) -> Any:

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sparse
 
+from fe_contact.assembly.forms import Array
 from fe_contact.dynamics.mass.consistent import Nodes
 from fe_contact.dynamics.mass.lumped import shares
-from fe_contact.forms import Array
 
 
 def of(local: Array, dofs: Nodes, size: int, contact: Nodes) -> Any:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -15,12 +14,10 @@ from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.plan import plan as plan
 from fe_contact.waves.refining import cost_of, refined_to_tolerance
+from fe_contact.waves.refusals import changing, too_fast
 from lumped.errors import BadInput, Fault
-from lumped.radiation import shear_speed
-from lumped.result import Result
-from lumped.scene import Scene
-
-FASTEST = 0.3  # of the speed of shear waves: beyond, strains are not small anywhere
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
 
 
 def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
@@ -48,23 +45,3 @@ def check(scene: Scene) -> None:
         faults.append(Fault(scene.source, "striker.shape", reason))
     if faults:
         raise BadInput(faults)
-
-
-def too_fast(scene: Scene) -> list[Fault]:
-    """Nearer to the speed of shear waves than small displacements reach."""
-    speeds = [speed for _, material in scene.geometry.yielding if (speed := shear_speed(material)) is not None]
-    speed = min(speeds, default=math.inf)
-    if scene.velocity < FASTEST * speed:
-        return []
-    reason = f"{scene.velocity:g} m/s: accepted below {FASTEST:g} of the speed of shear waves, {speed:.3g} m/s"
-    return [Fault(scene.source, "striker.velocity", reason)]
-
-
-def changing(scene: Scene) -> list[Fault]:
-    """A Poisson's ratio that changes in time."""
-    reason = '"bulk" changes nu in time, which no far field follows in this version; accepted: "poisson"'
-    return [
-        Fault(scene.source, f"{part}.material.constant", reason)
-        for part, material in scene.geometry.yielding
-        if material.constant == "bulk" and not material.young.is_elastic
-    ]

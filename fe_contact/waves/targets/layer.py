@@ -6,21 +6,21 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from fe_contact.forms import check_compressible
-from fe_contact.numerics import RANGES
-from fe_contact.plan import Plan
+from fe_contact.assembly.forms import check_compressible
+from fe_contact.budget.plan import Plan
+from fe_contact.budget.scales import scales
 from fe_contact.progress import Progress, silent
-from fe_contact.scales import scales
+from fe_contact.settings import RANGES
 from fe_contact.waves.cost import Cost
 from fe_contact.waves.layer_body import moving
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.plan import DEFAULTS, SPREAD, TRAVEL, contact_time, placed
 from fe_contact.waves.refining import cost_of, refined_to_tolerance
-from fe_contact.waves.targets.half_space import too_fast
+from fe_contact.waves.refusals import too_fast
 from lumped.errors import BadInput, Fault
 from lumped.laws.mdr import ImpactScales
-from lumped.result import Result
-from lumped.scene import Scene
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
 from lumped.targets.layer import Layer
 
 SPARE = 1.2  # a resonance may press the striker deeper than statics

@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from types import ModuleType
 from typing import Any
 
-from fe_contact.plan import Plan
+from fe_contact.budget.plan import Plan
 from fe_contact.progress import Progress, silent
 from fe_contact.waves import falling_ball, falling_block
 from fe_contact.waves.cost import Cost
 from fe_contact.waves.numerics import WaveNumerics
-from lumped.result import Result
-from lumped.scene import Scene
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
 from lumped.shapes._block import Block
 
 

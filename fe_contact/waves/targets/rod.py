@@ -10,27 +10,27 @@ from typing import Any
 
 import numpy as np
 
+from fe_contact.budget.plan import Plan
 from fe_contact.dynamics.march import Choices, march
 from fe_contact.dynamics.pressed import Enforced
 from fe_contact.errors import RodTooLong
-from fe_contact.numerics import ENFORCEMENTS, RANGES, WAVE_SCHEMES
-from fe_contact.plan import Plan
 from fe_contact.progress import Progress, silent
-from fe_contact.targets.rod import elements, moving, rod_mass, transit
+from fe_contact.settings import ENFORCEMENTS, RANGES, WAVE_SCHEMES
 from fe_contact.waves.cost import Cost
 from fe_contact.waves.dent import Dent
 from fe_contact.waves.doubling import certified
 from fe_contact.waves.impact import energies, left
 from fe_contact.waves.numerics import WaveNumerics
+from fe_contact.waves.rod_body import elements, moving, rod_mass, transit
 from fe_contact.waves.rod_reading import read
 from fe_contact.waves.rod_record import Run
 from fe_contact.waves.usual import witness
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.hertz import HertzImpact
-from lumped.members import get
-from lumped.model_ledger import Peak, model_ledger
-from lumped.result import Result
-from lumped.scene import Scene
+from lumped.result.model_ledger import Peak, model_ledger
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
+from lumped.schema.members import get
 from lumped.targets.rod import Rod
 
 DEFAULT_TOLERANCE = 1e-3

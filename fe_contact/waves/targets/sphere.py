@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from fe_contact.plan import Plan
+from fe_contact.budget.plan import Plan
 from fe_contact.progress import Progress, silent
 from fe_contact.waves.cost import Cost
 from fe_contact.waves.falling_ball import check, flying
@@ -14,8 +14,8 @@ from fe_contact.waves.flying_ball import on_ball
 from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.refining import cost_of, refined_to_tolerance
 from lumped.laws import correspondence
-from lumped.result import Result
-from lumped.scene import Scene
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
 from lumped.targets.sphere import Sphere
 
 

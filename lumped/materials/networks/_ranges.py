@@ -1,6 +1,6 @@
 """Ranges which the networks share."""
 
-from lumped.keys import Number
+from lumped.schema.keys import Number
 
 MODULUS = Number(1e-3, 1e16, "Pa")
 MODULUS_OR_ZERO = Number(0.0, 1e16, "Pa")

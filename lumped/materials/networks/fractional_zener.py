@@ -8,11 +8,11 @@ from functools import cache
 import numpy as np
 
 from lumped.errors import NotReached
-from lumped.keys import Number, Numbers
 from lumped.materials.laplace import Complex
 from lumped.materials.networks._ranges import MODULUS, TIME
 from lumped.materials.prony_fit import of_operational
 from lumped.materials.relaxation import Relaxation
+from lumped.schema.keys import Number, Numbers
 
 KEYS = (
     {

@@ -5,10 +5,10 @@ The table has the columns storage_Pa, loss_Pa and one of frequency_Hz, angular_f
 
 from pathlib import Path
 
-from lumped.keys import File, Flag
 from lumped.materials.dynamic_moduli import DynamicModuli
 from lumped.materials.prony_fit import of_dynamic
 from lumped.materials.relaxation import Relaxation
+from lumped.schema.keys import File, Flag
 
 KEYS = ({"file": File(), "viscous": Flag(required=False)},)
 

@@ -4,8 +4,8 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
-from lumped.keys import Number, Numbers
 from lumped.materials.relaxation import Relaxation
+from lumped.schema.keys import Number, Numbers
 
 COEFFICIENT = Number(-1e30, 1e30)
 KEYS = ({"p": Numbers(COEFFICIENT, most=21), "q": Numbers(COEFFICIENT, most=22)},)

@@ -7,10 +7,10 @@ A series fitted to another modulus may say how well: `fit_window`, s, and the re
 import math
 from dataclasses import replace
 
-from lumped.keys import Number, Numbers
 from lumped.materials.fidelity import Fidelity
 from lumped.materials.networks._ranges import MODULUS_OR_ZERO, TIME, VISCOSITY
 from lumped.materials.relaxation import Relaxation
+from lumped.schema.keys import Number, Numbers
 
 DEVIATION = Number(0.0, 1e6, required=False)
 KEYS = (

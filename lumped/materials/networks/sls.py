@@ -1,8 +1,8 @@
 """The 3-parameter solid of the paper: a Kelvin-Voigt element (E1, C1) in a row with a spring E2, "(12)"."""
 
-from lumped.keys import Number
 from lumped.materials.networks._ranges import MODULUS, TIME, VISCOSITY
 from lumped.materials.relaxation import Relaxation
+from lumped.schema.keys import Number
 
 KEYS = (
     {"E1": MODULUS, "E2": MODULUS, "C1": VISCOSITY},

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from lumped import members as _members
 from lumped.errors import BadInput, Fault, nearest
-from lumped.paper.examples import Examples
-from lumped.paper.value import Values
+from lumped.paper.examples.given import Examples
+from lumped.paper.examples.value import Values
+from lumped.schema import members as _members
 
 Recomputation = Callable[[Examples], Values]
 

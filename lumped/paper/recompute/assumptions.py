@@ -10,17 +10,17 @@ from dataclasses import replace
 
 from lumped.materials import Material, Relaxation
 from lumped.materials.networks import elastic, sls
-from lumped.model_ledger import Peak, model_ledger
-from lumped.model_ledger.kinematics import IN_AN_IMPACT, finite_strain
-from lumped.paper.concrete_impacts import proposed
-from lumped.paper.examples import Examples
-from lumped.paper.free_vibration import ROUNDING, measure, with_ring
-from lumped.paper.steel_impacts import hertz, solid
-from lumped.paper.value import Value, Values, read
-from lumped.radiation import Pulse
-from lumped.result import Result
-from lumped.scene import Scene
-from lumped.scene_tables import Model
+from lumped.materials.radiation import Pulse
+from lumped.paper.examples.concrete_impacts import proposed
+from lumped.paper.examples.free_vibration import ROUNDING, measure, with_ring
+from lumped.paper.examples.given import Examples
+from lumped.paper.examples.steel_impacts import hertz, solid
+from lumped.paper.examples.value import Value, Values, read
+from lumped.result.model_ledger import Peak, model_ledger
+from lumped.result.model_ledger.kinematics import IN_AN_IMPACT, finite_strain
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
+from lumped.scene.tables import Model
 from lumped.shapes.cylinder import Cylinder
 from lumped.targets.base import LOST_FORCE
 from lumped.targets.ring import Ring

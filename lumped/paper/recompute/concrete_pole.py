@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from lumped.paper.concrete_impacts import TOLERANCE, cut_at_measured_peak, proposed
-from lumped.paper.examples import Examples
-from lumped.paper.value import Value, Values, closed, read
+from lumped.paper.examples.concrete_impacts import TOLERANCE, cut_at_measured_peak, proposed
+from lumped.paper.examples.given import Examples
+from lumped.paper.examples.value import Value, Values, closed, read
 
 KILO = 1e-3
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 from lumped import restitution
-from lumped.paper.concrete_impacts import proposed
-from lumped.paper.examples import Examples
-from lumped.paper.ring_impact import stiffness
-from lumped.paper.steel_impacts import hertz, solid
-from lumped.paper.value import Value, Values, closed, read
-from lumped.stereomechanics import Collision
+from lumped.paper.examples.concrete_impacts import proposed
+from lumped.paper.examples.given import Examples
+from lumped.paper.examples.ring_impact import stiffness
+from lumped.paper.examples.steel_impacts import hertz, solid
+from lumped.paper.examples.value import Value, Values, closed, read
+from lumped.solvers.stereomechanics import Collision
 
 # Masses, kg, velocities, m/s, and e of a collision to try "(2)" on.
 COLLISION = Collision(3.0, 5.0, 1.0, 0.6, 2.0)

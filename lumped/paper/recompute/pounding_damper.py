@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from lumped.paper.examples import Examples
-from lumped.paper.free_vibration import measure, with_ring, without_damper, without_ring
-from lumped.paper.value import Value, Values, closed
-from lumped.pounding_tmd import Measures
+from lumped.paper.examples.free_vibration import measure, with_ring, without_damper, without_ring
+from lumped.paper.examples.given import Examples
+from lumped.paper.examples.value import Value, Values, closed
+from lumped.ptmd import Measures
 
 POUND = 0.45359237  # kg
 PERCENT, MILLI = 100.0, 1e3

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from lumped.paper.examples import Examples
-from lumped.paper.steel_impacts import hertz
-from lumped.paper.value import Value, Values, closed, read
-from lumped.score import POINTS
+from lumped.paper.examples.given import Examples
+from lumped.paper.examples.steel_impacts import hertz
+from lumped.paper.examples.value import Value, Values, closed, read
+from lumped.result.score import POINTS
 
 # Profiles c r^n on a half-space: flat punch, parabola, cone.
 PROFILES = (math.inf, 2.0, 1.0)

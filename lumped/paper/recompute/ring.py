@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from lumped.paper.examples import Examples
-from lumped.paper.ring_impact import impact, stiffness
-from lumped.paper.value import Values, closed
+from lumped.paper.examples.given import Examples
+from lumped.paper.examples.ring_impact import impact, stiffness
+from lumped.paper.examples.value import Values, closed
 
 MILLI = 1e3
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from lumped.paper.examples import Examples
-from lumped.paper.steel_impacts import R1_of_peak, damped_of_peak, elastic_of_peak, hertz, solid
-from lumped.paper.value import Value, Values, closed, read
-from lumped.result import Result
-from lumped.score import normalized_error
+from lumped.paper.examples.given import Examples
+from lumped.paper.examples.steel_impacts import R1_of_peak, damped_of_peak, elastic_of_peak, hertz, solid
+from lumped.paper.examples.value import Value, Values, closed, read
+from lumped.result.result import Result
+from lumped.result.score import normalized_error
 
 MICRO, MILLI, PERCENT = 1e6, 1e3, 100.0
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from lumped.paper.examples import Examples
-from lumped.paper.steel_impacts import solid
-from lumped.paper.value import Value, Values, read, spread
+from lumped.paper.examples.given import Examples
+from lumped.paper.examples.steel_impacts import solid
+from lumped.paper.examples.value import Value, Values, read, spread
 
 MICRO = 1e6
 # Fig. 7(b): the text sets the three largest R1 apart from the two smallest.

@@ -1,0 +1,82 @@
+"""Static far field: a tensor Robin condition that is exact for a point force on the half-space.
+
+On the outer boundary the traction is ``t = -k u`` with a symmetric 2 x 2 tensor ``k(x)`` chosen so that
+Boussinesq's displacement meets Boussinesq's traction at every point. What is left decays like the next
+moments of the pressure; a fixed boundary would err by about 1.1 contact radii over far radius instead.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sparse
+
+from fe_contact.assembly.forms import Array, scatter, vector_dofs
+
+
+def robin(facets: Any, poisson: float) -> sparse.coo_matrix:
+    """Stiffness of the outside on the far boundary for E* = 1, shape (2 N, 2 N).
+
+    Parameters
+    ----------
+    facets : scalar scikit-fem facet basis of the far boundary, coordinates (r, z) with the body at z < 0.
+    poisson : Poisson's ratio.
+    """
+    position = np.asarray(facets.global_coordinates())
+    displacement, traction = boussinesq(position, np.asarray(facets.normals), poisson)
+    return springs(facets, displacement, traction, 2 * np.pi * position[0])
+
+
+def springs(facets: Any, displacement: Array, traction: Array, measure: Array | float) -> sparse.coo_matrix:
+    """Stiffness of ``t = -k u`` with the symmetric k that meets this displacement and traction, shape (2 N, 2 N).
+
+    Both (2, facets, points) on the boundary of ``facets``; ``measure``: area per length of the boundary.
+    """
+    length = np.hypot(*displacement)
+    along = displacement / length
+    across = np.stack([-along[1], along[0]])
+    direct = -np.einsum("c...,c...", traction, along) / length
+    coupling = -np.einsum("c...,c...", traction, across) / length
+    tensor = direct * (_outer(along, along) + _outer(across, across))
+    tensor += coupling * (_outer(along, across) + _outer(across, along))
+    return on_boundary(facets, tensor, measure)
+
+
+def on_boundary(facets: Any, tensor: Array, measure: Array | float) -> sparse.coo_matrix:
+    """``int u.k v`` over a boundary, k (2, 2, facets, points); shape (2 N, 2 N)."""
+    weight = measure * np.asarray(facets.dx)
+    value = np.stack([np.broadcast_to(np.asarray(shape[0]), weight.shape) for shape in facets.basis])
+    local = np.einsum("ifq,jfq,abfq,fq->fiajb", value, value, tensor, weight, optimize=True)
+    functions = 2 * len(facets.basis)
+    matrices = local.reshape(len(weight), functions, functions)
+    return scatter(matrices, vector_dofs(facets.element_dofs), 2 * facets.N)
+
+
+def boussinesq(position: Array, normal: Array, poisson: float) -> tuple[Array, Array]:
+    """Displacement and traction of a unit point force pressing on the half-space z <= 0 with E* = 1.
+
+    Parameters
+    ----------
+    position, normal : (r, z) arrays of shape (2, ...); the force acts at the origin along -z.
+
+    Returns
+    -------
+    displacement, traction on the plane with that normal, both (r, z), shape (2, ...).
+    Source: Johnson, Contact Mechanics (1985), (3.18)-(3.19).
+    """
+    r, depth = position[0], -position[1]
+    distance = np.hypot(r, depth)
+    shear = (1 - poisson) / 2  # E* = 1: E = 1 - nu^2, G = E / (2 (1 + nu))
+    radial = r * depth / distance**3 - (1 - 2 * poisson) * r / (distance * (distance + depth))
+    axial = 2 * (1 - poisson) / distance + depth**2 / distance**3
+    displacement = np.stack([radial, -axial]) / (4 * np.pi * shear)
+    stress_rr = (1 - 2 * poisson) / (distance * (distance + depth)) - 3 * depth * r**2 / distance**5
+    stress_rz = 3 * r * depth**2 / distance**5  # z points out of the body, depth into it
+    stress_zz = -3 * depth**3 / distance**5
+    traction = np.stack([stress_rr * normal[0] + stress_rz * normal[1], stress_rz * normal[0] + stress_zz * normal[1]])
+    return displacement, traction / (2 * np.pi)
+
+
+def _outer(first: Array, second: Array) -> Array:
+    return first[:, None] * second[None]

@@ -1,0 +1,103 @@
+"""The body behind its surface: from forces on the contact zone to the displacement of the whole mesh."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse.linalg as linalg
+
+from fe_contact.assembly.floating import Floating
+from fe_contact.assembly.forms import Array
+
+FACTORS = 160  # bytes a matrix entry: ten entries of the factors, each a number, its place and as much while they grow
+WORK_SPACE = 100e6  # bytes that BLAS and SuperLU take beside
+
+
+class Solve(Protocol):
+    """Displacement (2 N,) of the whole mesh under nodal forces (n,) on the zone; or of (n, m) loads at once."""
+
+    @property
+    def interior(self) -> Interior:
+        """What it solves, without the factors."""
+
+    def __call__(self, forces: Array) -> Array: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Interior:
+    """Answers by factorising anew: the factors, ten times the matrix, are seldom wanted once the surface is condensed.
+
+    ``matrix`` stiffness of the ``free`` degrees of freedom of all (2 N); ``push`` sparse (2 N, n): unit forces on the
+    zone, out of the body; ``floating`` of a body that nothing holds.
+    """
+
+    matrix: Any
+    free: npt.NDArray[np.integer[Any]]
+    push: Any
+    floating: Floating | None = None
+
+    @property
+    def interior(self) -> Interior:
+        """Itself."""
+        return self
+
+    def factorised(self) -> Factorised:
+        """The same with its factors."""
+        return Factorised(self, factorized(self.matrix))
+
+    def __call__(self, forces: Array) -> Array:
+        """See :class:`Solve`."""
+        return self.factorised()(forces)
+
+
+@dataclass(frozen=True, eq=False)
+class Factorised:
+    """An interior with its factors: as large as all the rest of a body and ten times more."""
+
+    interior: Interior
+    solve: Callable[[Array], Array]
+
+    def __call__(self, forces: Array) -> Array:
+        """See :class:`Solve`."""
+        body = self.interior
+        load = -(body.push @ forces)  # pressure pushes into the body
+        if body.floating is not None:
+            load = body.floating.balanced(load)
+        answer = np.zeros_like(load)
+        answer[body.free] = self.solve(load[body.free])
+        return answer if body.floating is None else body.floating.centred(answer)
+
+
+def factorized(matrix: Any) -> Callable[[Array], Array]:
+    """Back-substitution for a symmetric positive definite sparse matrix, of one right-hand side or several.
+
+    Raises MemoryError where the process may not have so much: SuperLU would crash, and BLAS ask for ever.
+    """
+    if FACTORS * matrix.nnz + WORK_SPACE > _room():
+        raise MemoryError
+    factor = linalg.splu(
+        matrix.tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    solve: Callable[[Array], Array] = factor.solve
+    return solve
+
+
+def _room() -> float:
+    """Bytes of address space left to this process, where it has a limit."""
+    if sys.platform != "linux":
+        return math.inf
+    import resource
+
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    taken = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * resource.getpagesize()
+    return math.inf if limit == resource.RLIM_INFINITY else limit - taken

@@ -1,0 +1,232 @@
+"""Mesh and Poisson's ratio -> what the contact surface knows of the body: one condensed operator.
+
+Assembled and factorised once; a unit force on every surface degree of freedom gives the compliance
+``C = B K^-1 B^T``. All quantities are for contact radius 1 and contact modulus E* = 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sparse
+from skfem import (
+    Basis,
+    ElementTriP1,
+    ElementTriP2,
+    ElementTriP3,
+    ElementTriP4,
+    FacetBasis,
+    MeshTri,
+)
+
+from fe_contact.assembly import far_field as static
+from fe_contact.assembly.floating import Floating
+from fe_contact.assembly.forms import Array, isotropic, stiffness
+from fe_contact.assembly.interior import Interior, Solve
+from fe_contact.assembly.surface import Surface, flat
+from fe_contact.assembly.trace import contact_quadrature, trace_between
+from fe_contact.errors import BodyTooFine
+from meshes.errors import MeshTooLarge
+
+ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
+MOST_UNKNOWNS = 200_000  # of one body: its factors take a gigabyte and half a minute
+SOLVED_AT_ONCE = 32  # right-hand sides: more of them leave the processor's cache
+
+
+@dataclass(frozen=True)
+class SurfaceOperator:
+    """A body seen through its surface, in units of contact radius and contact modulus.
+
+    ``nodes`` (n_s,) radii, or coordinates, of all surface nodes, sorted, ``order`` of them a facet plus one;
+    ``stiffness`` (n, n) condensed normal stiffness of the n first nodes, those in the contact zone;
+    ``response`` (n_s, n) normal displacement of all surface nodes under unit nodal forces there;
+    ``points``, ``weights`` (q,) quadrature of the contact zone, weights including 2 pi r; ``pull`` (q,) of them
+    what counts for the force along the motion;
+    ``trace`` (q, n) displacement at the points from that of the nodes;
+    ``solve`` maps nodal forces (n,) on the zone to the displacement of the whole mesh (2 N,), factorising anew unless
+    asked to keep its factors;
+    ``basis`` the scalar scikit-fem basis, ``poisson`` its Poisson's ratio; ``dimension`` as of :class:`Surface`;
+    ``watched`` (n,) how far the place from which depth is measured comes up under unit nodal forces on the zone, None
+    where it is at rest.
+    """
+
+    nodes: Array
+    order: int
+    stiffness: Array
+    response: Array
+    points: Array
+    weights: Array
+    pull: Array
+    trace: Array
+    solve: Solve
+    basis: Any
+    poisson: float
+    dimension: int
+    watched: Array | None
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Unknowns of the finite-element system behind the surface."""
+        return 2 * int(self.basis.N)
+
+    def without_factors(self) -> SurfaceOperator:
+        """The same, of a size to be kept."""
+        return replace(self, solve=self.solve.interior)
+
+    def force(self, scale: float, pressure: Array) -> float:
+        """Force along the motion of a unit-mesh pressure (q,) on the mesh scaled by ``scale``."""
+        return float(scale ** (self.dimension - 2) * (self.pull @ pressure))
+
+    def punched(self, radius: float) -> Array:
+        """Nodal forces (m,) of a flat end pressed in by one, on the m nodes up to a radius."""
+        reached = min(max(int(np.searchsorted(self.nodes, radius)), self.order + 1), len(self.stiffness))
+        forces = np.asarray(np.linalg.solve(self.response[:reached, :reached], np.ones(reached)))
+        return forces if self.watched is None else forces / (1.0 + self.watched[:reached] @ forces)
+
+    @property
+    def compliance(self) -> Array:
+        """Displacement of the zone's nodes relative to that place under unit nodal forces there, (n, n)."""
+        own = self.response[: len(self.stiffness)]
+        return own if self.watched is None else own + self.watched
+
+    @property
+    def corners(self) -> Array:
+        """Ends of the facets in the contact zone, ascending."""
+        return self.nodes[: self.trace.shape[1] : self.order]
+
+    def projected(self, pressure: Array) -> Array:
+        """Nodal values (n,) whose moments against the shape functions are those of a pressure (q,)."""
+        return self._projected(self.trace, pressure)
+
+    def hats(self, pressure: Array) -> Array:
+        """Values at the corners of the facets, whose moments against the hats there are those of a pressure (q,)."""
+        return self._projected(self.hat_shapes, pressure)
+
+    @cached_property
+    def hat_shapes(self) -> Array:
+        """The hats at the points, (q, corners)."""
+        return trace_between(self.corners, self.points, 1)
+
+    def _projected(self, trace: Array, pressure: Array) -> Array:
+        mass = trace.T @ (self.weights[:, None] * trace)
+        return np.asarray(np.linalg.solve(mass, trace.T @ (self.weights * pressure)))
+
+    @property
+    def yielding(self) -> float | Array:
+        """How far the place from which depth is measured comes up under unit forces at the points, (q,) or 0."""
+        return 0.0 if self.watched is None else np.asarray(self.trace @ self.watched)
+
+
+def made(make: Callable[..., Any], *numbers: Any) -> Any:
+    """The mesh that numbers make; raises BodyTooFine where it would be too large."""
+    try:
+        return make(*numbers)
+    except MeshTooLarge as failure:
+        raise BodyTooFine(f"a mesh of more than {failure.most} nodes", "its size is estimated first") from failure
+
+
+def basis_on(mesh: Any, order: int) -> Any:
+    """Scalar scikit-fem basis of an element order, 1 to 4; raises BodyTooFine for more unknowns than is bearable."""
+    unknowns = 2 * order**2 * int(mesh.nvertices)
+    if unknowns > MOST_UNKNOWNS:
+        raise BodyTooFine(f"a body of {unknowns} unknowns", f"accepted up to {MOST_UNKNOWNS}")
+    return Basis(mesh, ELEMENTS[order](), intorder=2 * order)
+
+
+def surface_operator(mesh: MeshTri, order: int, poisson: float) -> SurfaceOperator:
+    """Assemble, factorise once and condense the half-space on ``mesh`` to its contact zone.
+
+    Parameters
+    ----------
+    mesh : boundaries ``surface``, ``axis``, ``far``; contact radius 1.
+    order : element order, 1 to 4.
+    poisson : Poisson's ratio.
+
+    Raises BodyTooFine for more unknowns than is bearable.
+    """
+    basis = basis_on(mesh, order)
+    fixed = 2 * basis.get_dofs("axis").flatten()
+    return condensed(basis, system_matrix(basis, poisson), fixed, poisson, flat(basis))
+
+
+def condensed(
+    basis: Any,
+    matrix: Any,
+    fixed: npt.NDArray[np.integer[Any]],
+    poisson: float,
+    surface: Surface,
+    watch: Any = None,
+    floating: Floating | None = None,
+    factors: bool = False,
+) -> SurfaceOperator:
+    """Factorise the stiffness of a body once and condense it to its contact zone.
+
+    Parameters
+    ----------
+    basis : scalar scikit-fem basis with N functions.
+    matrix : stiffness for E* = 1, sparse (2 N, 2 N).
+    fixed : degrees of freedom held at zero.
+    poisson : Poisson's ratio.
+    surface : where contact may happen, in units of the mesh.
+    watch : weights of the displacement of the place from which depth is measured, (1, 2 N); None: it is at rest.
+    floating : of a body whose inertia alone balances the load; ``fixed`` then holds it at one point too.
+    factors : whether to keep them.
+    """
+    order = basis.elem.maxdeg
+    corners = surface.coordinate[::order]
+    zone = corners[: np.searchsorted(corners, surface.zone) + 1]  # whole facets only
+    loaded = (len(zone) - 1) * order + 1
+    normal = _normals(surface, matrix.shape[0])
+    free = np.setdiff1d(np.arange(matrix.shape[0]), fixed)
+    interior = Interior(matrix[free][:, free], free, normal[:, :loaded], floating)
+    displacement = interior.factorised()
+    response, watched = _influence(displacement, normal, watch, loaded)
+    compliance = response[:loaded]
+    condensed = np.linalg.inv((compliance + compliance.T) / 2)
+    points, lengths, trace = contact_quadrature(zone, order)
+    weights = lengths * surface.measure(points)
+    return SurfaceOperator(
+        nodes=surface.coordinate,
+        order=order,
+        stiffness=(condensed + condensed.T) / 2,
+        response=response,
+        points=points,
+        weights=weights,
+        pull=weights * surface.motion(points),
+        trace=trace,
+        solve=displacement if factors else interior,
+        basis=basis,
+        poisson=poisson,
+        dimension=surface.dimension,
+        watched=watched,
+    )
+
+
+def _influence(displacement: Solve, normal: Any, watch: Any, loaded: int) -> tuple[Array, Array | None]:
+    """Inward displacement of the surface nodes, (n_s, loaded), and of what is watched, (loaded,), under unit forces."""
+    seen = -normal.T if watch is None else sparse.vstack([-normal.T, watch])
+    parts = np.array_split(np.eye(loaded), -(-loaded // SOLVED_AT_ONCE), axis=1)
+    answers = np.hstack([seen @ displacement(part) for part in parts])
+    surface = normal.shape[1]
+    return answers[:surface], None if watch is None else answers[surface]
+
+
+def _normals(surface: Surface, size: int) -> sparse.csc_matrix:
+    """Unit normals of the surface nodes as columns, sparse (2 N, n_s)."""
+    columns = np.arange(surface.dofs.size)
+    rows = np.concatenate([2 * surface.dofs, 2 * surface.dofs + 1])
+    entries = (surface.normal.T.ravel(), (rows, np.tile(columns, 2)))
+    return sparse.csc_matrix(entries, shape=(size, columns.size))
+
+
+def system_matrix(basis: Any, poisson: float) -> Any:
+    """Stiffness of body and far field for E* = 1, sparse (2 N, 2 N); the axis is not yet fixed."""
+    order = basis.elem.maxdeg
+    far = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["far"], intorder=2 * order + 4)
+    body = stiffness(basis, isotropic(1 - poisson**2, poisson))
+    return (body + static.robin(far, poisson)).tocsc()

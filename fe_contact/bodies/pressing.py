@@ -1,0 +1,217 @@
+"""A rigid profile pressed into a body at rest: the contact problem at one depth, elastic with unit modulus."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from types import ModuleType
+from typing import Protocol
+
+import numpy as np
+
+from fe_contact.assembly.forms import Array
+from fe_contact.bodies.offer import Breathing
+from fe_contact.contact.problem import ContactSolution, Touching
+from fe_contact.errors import ContactTooWide, IndentationNotSettled
+from fe_contact.settings import ENFORCEMENTS, Numerics
+from lumped.scene.indenter import Indenter
+from lumped.schema.members import get
+
+EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
+RESCALINGS = 60
+EDGE_ORDER = 1.5  # of the force's error where the contact ends anywhere in an element
+BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
+# The gap tells where contact ends up to this distance from the edge, in contact radii and in thicknesses of the body,
+# but for the nearest share of it.
+GAP_REACH, GAP_REACH_OF_THICKNESS, GAP_NEAREST = 0.4, 0.6, 0.2
+GAP_POINTS = 16  # beyond the edge of a contact that has just begun to recede, or is steep: two elements
+GAP_DEGREE = 2
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """Force over modulus, m^2, and contact radius, m, at one depth; contact problems and Newton iterations spent."""
+
+    force: float
+    contact_radius: float
+    problems: int
+    iterations: int
+
+
+class Still(Protocol):
+    """A body at rest, ready to be pressed by one profile."""
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Unknowns of the finite-element system behind it."""
+
+    @property
+    def mesh_order(self) -> float:
+        """The most that the order of the mesh's error in the force can be, whatever that of the elements."""
+
+    @property
+    def ends(self) -> bool:
+        """Whether the mesh is all of the body, so that there is no far field to err."""
+
+    def press(self, depth: float, guess: float) -> Pressed:
+        """Press to a depth, m; ``guess``: a contact radius to begin with, m. Raises NotReached."""
+
+
+@dataclass(frozen=True)
+class ScaledStill:
+    """A body without a length of its own: the mesh is scaled until the contact edge lies in its finest elements."""
+
+    surface: Breathing
+    indenter: Indenter
+    numerics: Numerics
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Unknowns of the one mesh."""
+        return self.surface.operator.degrees_of_freedom
+
+    @property
+    def mesh_order(self) -> float:
+        """That of the elements: the edge is a node but for little."""
+        return np.inf
+
+    @property
+    def ends(self) -> bool:
+        """Never."""
+        return False
+
+    def press(self, depth: float, guess: float) -> Pressed:
+        """Press to a depth, m. Raises IndentationNotSettled."""
+        operator, profile, fixed = self.surface.operator, self.indenter.profile, self.indenter.profile.fixed_radius
+        scale, iterations = guess, 0
+        for attempt in range(1, RESCALINGS + 1):
+            overlap = self.indenter.target.overlap(profile, scale * operator.points, depth)
+            solution, solves = _enforced(self.surface, overlap, scale, self.numerics, operator.points < 1.0)
+            iterations += solution.iterations
+            if not solution.converged:
+                break
+            edge = solution.edge(operator.points)
+            if abs(edge - 1.0) <= EDGE_WINDOW:
+                force = operator.force(scale, solution.pressure)
+                return Pressed(force, fixed or scale * edge, attempt * solves, iterations)
+            scale *= min(max(edge, 0.3), operator.points[-1])
+        raise IndentationNotSettled(depth)
+
+
+@dataclass(frozen=True)
+class FixedStill:
+    """A body with lengths of its own, on one mesh in units of ``reference``, m: the contact may end anywhere in it.
+
+    ``stretch``: the target's place on the surface over the mesh's coordinate; ``thickness`` of the body, in units of
+    the mesh.
+    """
+
+    surface: Breathing
+    indenter: Indenter
+    numerics: Numerics
+    reference: float
+    stretch: float
+    thickness: float
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Unknowns of the one mesh."""
+        return self.surface.operator.degrees_of_freedom
+
+    @property
+    def mesh_order(self) -> float:
+        """Less where the edge may lie anywhere in an element, at which the pressure has no slope."""
+        return EDGE_ORDER if self.indenter.shape.fixed_radius is None else np.inf
+
+    @property
+    def ends(self) -> bool:
+        """Its sides are far away."""
+        return False
+
+    def press(self, depth: float, guess: float) -> Pressed:
+        """Press to a depth, m; raises IndentationNotSettled, ContactTooWide."""
+        operator, fixed = self.surface.operator, self.indenter.shape.fixed_radius
+        overlap = self.indenter.target.overlap(self.indenter.profile, self.stretch * operator.points, depth)
+        solution, solves = self._solved(overlap, guess / self.reference)
+        if not solution.converged:
+            raise IndentationNotSettled(depth)
+        edge = solution.edge(operator.points)
+        if fixed is None and not np.isfinite(edge):
+            raise ContactTooWide(depth)
+        gap, height = -solution.signed_pressure, depth - overlap
+        radius = fixed or self.reference * contact_end(operator.points, edge, gap, height, self.thickness)
+        return Pressed(operator.force(self.reference, solution.pressure), radius, solves, solution.iterations)
+
+    def _solved(self, overlap: Array, expected: float) -> tuple[ContactSolution, int]:
+        """The contact problem of an overlap, (q,), m, and how many solves it took.
+
+        The penalty counts in the body's own stiffness under a flat end of radius a over 2 a^2 (2 a in plane strain):
+        E*/a on the half-space, and much more where a thin layer is confined.
+        """
+        operator = self.surface.operator
+        unit = float(operator.punched(expected).sum()) / (2.0 * expected ** (operator.dimension - 1))
+        numerics = replace(self.numerics, penalty=self.numerics.penalty * unit)
+        return _enforced(self.surface, overlap, self.reference, numerics, operator.points < expected)
+
+
+def _enforced(
+    surface: Breathing, overlap: Array, scale: float, numerics: Numerics, touching: Touching
+) -> tuple[ContactSolution, int]:
+    """The contact problem on the mesh scaled by ``scale``, m; and how many solves it took."""
+    enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
+    problem = surface.problem(np.maximum(overlap, -BEYOND * scale), numerics.penalty, surface.operator.yielding)
+    return enforcement.enforce(problem, touching), enforcement.SOLVES
+
+
+def contact_end(
+    points: Array, edge: float, gap: Array, height: Array, thickness: float = np.inf, touched: float = np.inf
+) -> float:
+    """Where the surfaces part, from the gap (q,) outside: beyond the edge it grows like the 3/2 power of the distance.
+
+    The pressure, which falls to zero at ``edge``, rings there if that is anywhere in an element; the gap, a
+    displacement, does not. In a body thinner than the contact is wide the power holds less far: ``thickness``, in the
+    unit of the points. So it does in a contact that has receded from where the surface was ``touched`` and remembers,
+    and under a profile that is steep: distance counts in the root of the ``height`` between the undeformed surfaces
+    (q,), which under a round one is the distance.
+    """
+    after, rise = int(points.searchsorted(edge)), np.sqrt(height)
+    start = float(np.interp(edge, points, rise))
+    fewest = float(points[min(after + GAP_POINTS, points.size - 1)])
+    steep = float(points[min(int(rise.searchsorted((1.0 + GAP_REACH) * start)), points.size - 1)])
+    reach = min(GAP_REACH * edge, GAP_REACH_OF_THICKNESS * thickness, max(min(touched, steep), fewest) - edge)
+    outside = (points > edge + GAP_NEAREST * reach) & (points < edge + reach) & np.isfinite(rise)
+    if np.count_nonzero(outside) <= 2 * GAP_DEGREE or rise[outside][0] == rise[outside][-1]:  # the last: past a rim
+        return edge
+    roots = np.polynomial.Polynomial.fit(rise[outside], np.maximum(gap[outside], 0.0) ** (2 / 3), GAP_DEGREE).roots()
+    real = np.real(roots[np.abs(np.imag(roots)) < 1e-9 * start])
+    near = real[np.abs(real - start) < rise[outside][-1] - start]
+    return _place(points, rise, float(near[np.argmin(np.abs(near - start))])) if near.size else edge
+
+
+def _place(points: Array, rise: Array, value: float) -> float:
+    """The place where the rise has this value, by a power between the points."""
+    after = int(rise.searchsorted(value))
+    if after in (0, points.size):
+        return float(points[min(after, points.size - 1)])
+    pair = slice(after - 1, after + 1)
+    return float(np.exp(np.interp(np.log(value), np.log(rise[pair]), np.log(points[pair]))))
+
+
+def half_width(
+    places: Array, signed_pressure: Array, gap: Array, touched: float = np.inf, height: Array | None = None
+) -> float:
+    """From the first touch to where the surfaces part; where there is a left side too, half from end to end.
+
+    Infinite where the contact reaches the last place, 0 without contact. See :func:`contact_end`.
+    """
+    height = places**2 if height is None else height
+    right = _end(places, signed_pressure, gap, touched, height)
+    if places[0] > 0.0:
+        return right
+    return 0.5 * (right + _end(-places[::-1], signed_pressure[::-1], gap[::-1], touched, height[::-1]))
+
+
+def _end(places: Array, signed_pressure: Array, gap: Array, touched: float, height: Array) -> float:
+    """Where the surfaces part on the side of the places, ascending, that are positive."""
+    side = places > 0.0
+    edge = ContactSolution(signed_pressure[side], 0, True, ()).edge(places[side])
+    return contact_end(places[side], edge, gap[side], height[side], touched=touched)

@@ -1,0 +1,1 @@
+"""Error bars: plan, runs, curve, variation, orders, sum."""

@@ -1,0 +1,325 @@
+"""The error budget: the impact again with one setting varied at a time, by finite elements alone.
+
+Time steps in the ratio 1 : 2 : 4 give a value (extrapolated from the two finest) and its change from the pair before.
+Mesh and penalty are varied on the coarsest of them, where a march is cheapest: what they change hardly depends on the
+step, unless they are coarse themselves. The far field of an elastic body on a mesh that breathes with the contact takes
+no march, unless further contacts follow, each of which is judged like the first from the same runs. A change between
+settings in the ratio 1 : 2 bounds the error by
+
+    SAFETY / (2^order - 1) x change ,
+
+with the lowest order that theory or the scheme promises, not the higher one that is usually seen (Roache's
+grid convergence index, doi:10.1115/1.2910291). Elements of order one and two promise none: where a material is nearly
+incompressible they lock, and two meshes of them err alike by far more than they differ. Elements of twice the order on
+the same mesh err by less than half as much, so that twice the distance between both bounds the error.
+
+Extrapolation leaves the order after the scheme's own, if the three step lengths show that order; where they do not,
+order one is all that is trusted. What extrapolation does not cure but make larger, the jitter of a viscous contact's
+force, shows when every other step is left out. It counts with the steps where it falls with them, as at the touch of a
+dashpot; else mesh and rounding leave it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, TypeVar
+
+import numpy as np
+
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.change import UNORDERED, Change
+from fe_contact.budget.curve import Curve, extrapolated
+from fe_contact.budget.plan import SETTING
+from fe_contact.budget.runs import Runs, TotalWork
+from fe_contact.budget.softening import Softening, compliance_change
+from fe_contact.budget.trusted_order import trust
+from fe_contact.march.impacts import Followed
+from fe_contact.progress import Count, Progress, silent
+from fe_contact.settings import SCHEMES, Numerics
+from fe_contact.steppers.flat_end import FlatEnd
+from fe_contact.steppers.march import March, Strike
+from fe_contact.steppers.struck import Deformable, Struck
+from lumped.scene.geometry import Geometry
+from lumped.schema.members import get
+
+MARCHES = 2.5  # steps of all marches of a contact over those of the finest one: half and a quarter, and three of these
+SAFETY = 1.25
+UNSEEN = 2  # first steps of the coarsest run in which no order shows
+LEAST_ORDER = {"penalty": 1, "far_field": 2}
+MESH_ORDER = {3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
+WITNESS = 2  # times the order have the elements that tell of those which lock
+WITNESS_ELEMENTS = 4.0  # of them along the contact radius, at least
+MESH_ORDER_ANYWHERE = 1  # where the edge falls anywhere in an element: 1.6 is what is seen
+# of the steps' change in the share that branches about as fast as a step carry, by quantity, and of the force
+KEPT = {"peak_depth": 0.4, "duration": 0.4, "impulse": 1.5, "restitution": 1.5}
+KEPT_OF_FORCE = 0.1
+LEAST_HALVED = 40  # steps below which halving them twice would leave too few to tell anything
+# half of less tells nothing: a corrected penalty below a hundred errs to either side in turn
+LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 200.0, "far_radius": 5.0}
+CAUSES = ("mesh", "penalty", "time_step", "far_field")
+OUTSIDE = ("in", "out")  # terms of the energy account that the striker knows
+LOST = ("contact", "numerical", "residual")  # terms that are zero but for errors
+FALLS = 0.7  # share of a jitter which half the step leaves, if the step is its cause
+MOST_APART = 1.5  # durations by different steps that tell of one and the same end
+ROUNDING = 1e-9  # of a solve of nearly incompressible bodies
+
+Causes = tuple[Change | Softening | None, ...]  # what one setting changes, None: unknown
+
+AnyNumerics = TypeVar("AnyNumerics", bound=Numerics)
+
+
+@dataclass(frozen=True)
+class Budget:
+    """A curve with what each setting contributes to its error.
+
+    ``march`` is the finest run behind it, ``work`` that of all runs together.
+    """
+
+    curve: Curve
+    march: March
+    changes: Mapping[str, Causes]
+    work: TotalWork
+
+    @property
+    def row(self) -> tuple[Budget, ...]:
+        """All contacts in order, this one first."""
+        return (self,)
+
+    def error(self, name: str, cause: str) -> float:
+        """Error of a quantity by one cause, in its unit; infinite where a variation failed."""
+        reading = self.curve.end_spread if (name, cause) == ("duration", "time_step") else 0.0
+        return reading + sum(_error(change, name) for change in self.changes[cause])
+
+    def total(self, name: str) -> float:
+        """Error bar of a quantity, in its unit."""
+        return sum(self.error(name, cause) for cause in CAUSES)
+
+    def energy_error(self, name: str) -> float:
+        """Error bar of a term of the energy account, J; infinite where a variation failed.
+
+        What is lost on the way to the body, or to rounding, may belong to any term within it.
+        """
+        energy = self.curve.energy
+        lost = sum(abs(energy[one]) for one in LOST)
+        own = 0.0 if name in OUTSIDE or energy[name] == 0.0 else lost
+        return own + sum(np.inf if one is None else one.energies[name] for row in self.changes.values() for one in row)
+
+    def force_error(self, time: Array) -> Array:
+        """Half-width of the force's error band, N; the whole of the largest force where a variation failed.
+
+        After the last step the force falls to nothing in any way.
+        """
+        last = self.curve.last_step if self.curve.separated else np.inf
+        fading = np.where(time > last, self.curve.force(np.array([last])), 0.0)
+        changes = [change for causes in self.changes.values() for change in causes]
+        unknown = np.full_like(time, self.curve.dense_force.max())
+        known = [unknown if change is None else change.force(time) for change in changes]
+        return np.asarray(np.sum([fading, *known], axis=0))
+
+
+@dataclass(frozen=True)
+class Several(Budget):
+    """The same with all contacts ``followed`` in the finest run and budgets of the ``later`` ones."""
+
+    followed: Followed
+    later: tuple[Budget, ...]
+
+    @property
+    def row(self) -> tuple[Budget, ...]:
+        return (self, *self.later)
+
+
+@dataclass(frozen=True)
+class Certified(Several):
+    """The same with the ``surface`` of the finest run and its settings, placed where the contact turned out to be."""
+
+    surface: Struck
+    numerics: Numerics
+
+
+def certify(
+    strike: Strike, geometry: Geometry, numerics: Numerics, impacts: int = 1, progress: Progress = silent
+) -> Certified:
+    """March with ``numerics`` and with each setting varied; raises where the march itself fails.
+
+    Up to so many ``impacts``: the budget is that of the first, those of the ``later`` ones stand in it.
+    """
+    message = f"{numerics.steps} steps, {numerics.elements_per_contact:g} elements along the contact radius"
+    expected = MARCHES * impacts * numerics.steps
+    progress(message)
+    runs = Runs(strike, geometry, impacts, Count(progress, message, expected))
+    numerics = runs.placed(numerics, numerics.steps // 4 if numerics.steps >= LEAST_HALVED else numerics.steps)
+    followed = runs.follow(numerics)
+    judged = [_judged(runs, number, numerics, impacts == 1) for number in range(len(followed.contacts))]
+    surface = runs.surface(numerics)
+    work = runs.work(surface)
+    row = [
+        Budget(curve, contact.march, changes, work)
+        for (curve, changes), contact in zip(judged, followed.contacts, strict=True)
+    ]
+    return Certified(row[0].curve, row[0].march, row[0].changes, work, followed, tuple(row[1:]), surface, numerics)
+
+
+def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[Curve, Mapping[str, Causes]]:
+    """One contact of all runs, where it is ``alone`` with the fewest marches."""
+    curve = partial(runs.curve, number)
+    surface = runs.surface(numerics)
+    steps = _time_steps(curve, numerics, isinstance(surface, FlatEnd))
+    if alone and isinstance(surface, FlatEnd):
+        held = _by_stiffness(runs, steps.value, surface, numerics)
+        return steps.value, held | {"time_step": (*steps.changes, *steps.jitter)}
+    cheap = numerics.varied(steps=steps.cheap)
+    meshed, pressed = (_judging(numerics, cheap, cause) for cause in ("mesh", "penalty"))
+    mesh, by_mesh = other_mesh(meshed) if surface.breathes else other_mesh(meshed, MESH_ORDER_ANYWHERE)
+    penalty, stiffer = other_setting(pressed, "penalty")
+    swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long
+    by_steps = swings or steps.jitter_falls
+    changes: dict[str, Causes] = {
+        "mesh": (_change(curve(meshed), curve(mesh), by_mesh), *(() if by_steps else steps.jitter)),
+        "penalty": (_change(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
+        "time_step": (*steps.changes, *(steps.jitter if by_steps else ())),
+        "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
+    }
+    return steps.value, changes
+
+
+def _judging(numerics: Numerics, cheap: Numerics, cause: str) -> Numerics:
+    """Settings of which one is varied: with few steps, but where its half would tell nothing with all of them.
+
+    A soft penalty is the softer the shorter the step, in which a dashpot is stiff; what a coarse mesh changes, few
+    steps may hide.
+    """
+    key = SETTING[cause]
+    coarse = getattr(numerics, key) < LEAST_HALVED_SETTING[key]
+    return numerics.varied(steps=max(numerics.steps, cheap.steps)) if coarse else cheap
+
+
+def _by_stiffness(runs: Runs, value: Curve, end: FlatEnd, numerics: Numerics) -> dict[str, Causes]:
+    """What the other causes change of the one stiffness under a flat end, without a march."""
+    others = {"mesh": other_mesh(numerics, end.mesh_order)}
+    for cause, order in LEAST_ORDER.items():
+        settings, finer = other_setting(numerics, SETTING[cause])
+        others[cause] = settings, factor(order, finer)
+    found: dict[str, Causes] = {}
+    for cause, (settings, trusted) in others.items():
+        other = runs.surface(settings)
+        assert isinstance(other, FlatEnd)
+        share = trusted * abs(other.stiffness / end.stiffness - 1.0)
+        found[cause] = (Softening(value, share + ROUNDING),)
+    return found
+
+
+def _far_field(
+    runs: Runs, value: Curve, cheap: Numerics, mesh: Numerics, number: int, alone: bool
+) -> Change | Softening | None:
+    """By one press of either surface where an elastic one breathes with one contact; else by a march more, on the
+    varied mesh: what a surface remembers beside a small contact, the far field lifts by more than its share there.
+
+    Bodies that end have none.
+    """
+    order = LEAST_ORDER["far_field"]
+    far, farther = other_setting(cheap, "far_radius")
+    surface = runs.surface(cheap)
+    pressed = alone and surface.breathes and value.strike.relaxation.is_elastic and not farther
+    if pressed or not surface.breathes:
+        other = runs.surface(far)
+        if other is surface:
+            return Softening(value, 0.0)
+        if pressed:
+            assert isinstance(surface, Deformable)
+            assert isinstance(other, Deformable)
+            return Softening(value, factor(order, farther) * compliance_change(surface, other))
+    before, after = runs.curve(number, mesh), runs.curve(number, mesh.varied(far_radius=far.far_radius))
+    return _change(before, after, factor(order, farther))
+
+
+@dataclass(frozen=True)
+class _TimeSteps:
+    """What the variation of the step length yields: value, what changes it, jitter, steps for other variations.
+
+    ``jitter_falls``: with the step, which then is its cause.
+    """
+
+    value: Curve
+    changes: Causes
+    jitter: tuple[Change, ...]
+    cheap: int
+    jitter_falls: bool = False
+
+
+def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics, flat: bool) -> _TimeSteps:
+    """Halve the number of steps twice and extrapolate; double it twice where it is too small for that.
+
+    Under a ``flat`` end the first steps count as much as any: its area presses at once.
+    """
+    order, fine = get(SCHEMES, numerics.scheme).ORDER, curve(numerics)
+    assert fine is not None
+    if numerics.steps < LEAST_HALVED:
+        double = curve(numerics.varied(steps=2 * numerics.steps))
+        fourfold = curve(numerics.varied(steps=4 * numerics.steps))
+        if double is None or fourfold is None or not _end_alike(fourfold, double):
+            return _TimeSteps(fine, (None,), (), 4 * numerics.steps)
+        best, before = extrapolated(fourfold, double, order), extrapolated(double, fine, order)
+        jitter = Change(best, before, SAFETY)
+        return _TimeSteps(fine, (Change(fine, best, SAFETY),), (jitter,), 4 * numerics.steps, True)
+    half = curve(numerics.varied(steps=numerics.steps // 2))
+    quarter = curve(numerics.varied(steps=numerics.steps // 4))
+    if half is None or quarter is None or not _end_alike(fine, half, quarter):
+        return _TimeSteps(fine, (None,), (), numerics.steps)
+    value, before = extrapolated(fine, half, order), extrapolated(half, quarter, order)
+    taken = fine.duration * np.diff(fine.x**2)[: numerics.steps]  # those beyond grow while a weight comes to rest
+    shortest = float(taken[0]) if flat else numerics.contact_time / numerics.steps
+    trusted = trust((fine, half, quarter), order, (shortest, float(taken.max())), flat)
+    if flat and trusted.orders["force"] == 1:  # steps as long as a relaxation show no order: the finest run stands
+        jitter = Change(fine, fine.thinned(), 1.0)
+        return _TimeSteps(fine, (Change(fine, half, UNORDERED),), (jitter,), numerics.steps // 4, True)
+    least = SAFETY / (2 ** trusted.orders["force"] - 1)
+    weights = {name: SAFETY / (2**one - 1) / least for name, one in trusted.orders.items()}
+    change = Change(value, before, least, weights, quarter.duration * float(quarter.x[UNSEEN]) ** 2)
+    shares = {name: share / KEPT_OF_FORCE for name, share in KEPT.items()}
+    kept = Change(fine, half, KEPT_OF_FORCE * trusted.kept, shares)
+    end = {} if value.separated else {"peak_force": UNORDERED}  # at a cut-off, where no later step evens it out
+    jitter, finer, coarser = (Change(one, one.thinned(), 1.0, end) for one in (value, fine, half))  # its own is largest
+    falls = finer.history < FALLS * coarser.history
+    changes = (change, kept) if trusted.kept else (change,)
+    return _TimeSteps(value, changes, (jitter,), numerics.steps // 4, falls)
+
+
+def _end_alike(*curves: Curve) -> bool:
+    """Whether none separates or all do, and at one time: too long a step misses a graze under gravity, not the next."""
+    durations = [curve.duration for curve in curves]
+    return len({curve.separated for curve in curves}) == 1 and max(durations) <= MOST_APART * min(durations)
+
+
+def _error(change: Change | Softening | None, name: str) -> float:
+    """Error of a quantity by one change; infinite where the variation failed."""
+    return np.inf if change is None else change.errors[name]
+
+
+def _change(first: Curve | None, second: Curve | None, trusted: float) -> Change | None:
+    """Change between settings, ``trusted`` so many times as the error of the first."""
+    return None if first is None or second is None else Change(first, second, trusted)
+
+
+def factor(order: float, finer: bool) -> float:
+    """Error over change, by the module's formula; of the first setting, ``finer`` if the second is the better one."""
+    return SAFETY * (2**order if finer else 1) / (2**order - 1)
+
+
+def other_setting(numerics: AnyNumerics, key: str) -> tuple[AnyNumerics, bool]:
+    """One setting halved; where half of it would tell nothing, at least doubled, until it would, and True."""
+    value, least = getattr(numerics, key), LEAST_HALVED_SETTING[key]
+    finer = value < least
+    changed: Any = {key: max(2 * value, least) if finer else value / 2}
+    return replace(numerics, **changed), finer
+
+
+def other_mesh(numerics: Numerics, most: float = np.inf) -> tuple[Numerics, float]:
+    """Settings of the mesh that tells of this one, and error over change, by an order of ``most`` at most."""
+    if numerics.order not in MESH_ORDER:
+        elements = max(numerics.elements_per_contact, WITNESS_ELEMENTS)
+        return numerics.varied(order=WITNESS * numerics.order, elements_per_contact=elements), UNORDERED
+    other, finer = other_setting(numerics, "elements_per_contact")
+    return other, factor(min(MESH_ORDER[numerics.order], most), finer)

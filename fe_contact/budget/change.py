@@ -1,0 +1,180 @@
+"""What one varied setting changes, quantity by quantity, and the error that this change stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.curve import Curve, Reading
+
+TOP = 0.998  # of the largest depth or force, above which it is near: further away what comes later counts as an error
+STEEPER = 2.0  # times the chord there, that the slope of a change may have
+SMOOTHING = 0.07  # share of the contact over which a pointwise change counts as the error of its neighbours
+FIRST_ORDER = 1.25  # factor where order one is all that shows
+UNORDERED = 2.5  # factor where no order shows: the finer of two runs errs by less than twice their distance
+
+
+@dataclass(frozen=True)
+class Change:
+    """Two curves that differ in one setting, and the factor that turns their difference into an error.
+
+    ``weights``: what that factor is to be multiplied with for quantities that deserve less trust. ``unresolved``: time
+    up to which no order shows, s; where it is not told, the first step of the second curve.
+    """
+
+    first: Curve
+    second: Curve
+    factor: float
+    weights: Mapping[str, float] = field(default_factory=dict)
+    unresolved: float | None = None
+
+    @cached_property
+    def errors(self) -> dict[str, float]:
+        """Error of every quantity, in its unit.
+
+        What is read at one instant takes the largest change around it: a difference of two curves may cross
+        zero just there, which makes neither of them right.
+        """
+        first, depth = self.first, self._depth_change
+        speed = abs(first.leaving_speed) if first.separated else np.inf
+        around = {
+            "peak_force": float(self._force_change[first.near_peak].max()),
+            "peak_time": self._peak_time,
+            "peak_depth": float(depth[first.dense.depth > TOP * first.dense.depth.max()].max()),
+            "duration": float(depth[first.late :].max()) / speed if speed > 0.0 else np.inf,
+            "impulse": self.impulse,
+            "restitution": self.velocity / first.strike.velocity,
+        }
+        errors = {name: self._error(name, value) for name, value in around.items()}
+        return errors | {"history_l2": self.factor * self.history}
+
+    @cached_property
+    def energies(self) -> dict[str, float]:
+        """Error of every term of the energy account, J; of what the striker takes along by the velocity's."""
+        first, second = self.first.energy, self.second.energy
+        strike, factor = self.first.strike, self.factor * self.weights.get("restitution", 1.0)
+        speed = factor * self.velocity
+        errors = {name: factor * abs(value - second[name]) for name, value in first.items()}
+        out = strike.mass * speed * (abs(self.first.leaving_speed) + 0.5 * speed)
+        return errors | {"out": max(errors["out"], out)}
+
+    def _error(self, name: str, around: float) -> float:
+        first, second = self.first.quantities[name], self.second.quantities[name]
+        if first is None or second is None:
+            return np.inf if first is not second else 0.0
+        return self.factor * self.weights.get(name, 1.0) * max(abs(first - second), around)
+
+    def force(self, time: Array) -> Array:
+        """Error of the force at times, N: the largest change in the neighbourhood of each.
+
+        While no order shows the whole change counts, and twice that within the first step of all; where the path turns,
+        and with it, of a viscous contact, the force's slope at once, the order is one. What steps err by there and at
+        touch, motion carries along: forces of viscous contacts have the velocity's order.
+        """
+        places, change = self._pointwise
+        width = max(1, round(SMOOTHING * len(change)))
+        padded = np.pad(change, width, mode="edge")
+        around = np.lib.stride_tricks.sliding_window_view(padded, 2 * width + 1).max(axis=1)
+        first_step = self.second.duration * self.second.x[1] ** 2
+        resolved = time > (first_step if self.unresolved is None else self.unresolved)
+        whole = ~resolved | self._about_turn(time)
+        carried = 1.0 if self.second.strike.relaxation.is_elastic else self.weights.get("restitution", 1.0)
+        factor = np.where(whole, max(carried * self.factor, FIRST_ORDER), carried * self.factor)
+        factor[time <= self.first.duration * self.first.x[1] ** 2] = max(self.factor, UNORDERED)
+        return np.asarray(factor * np.interp(time, places, around))
+
+    def _about_turn(self, time: Array) -> npt.NDArray[np.bool_]:
+        """Which times lie within two steps of the second curve from where a viscous contact turns.
+
+        No step but the one whose change is told with its ``unresolved`` time tells of that.
+        """
+        if self.unresolved is None or self.second.strike.relaxation.is_elastic:
+            return np.zeros(len(time), dtype=bool)
+        top, last = int(self.second.depth.argmax()), len(self.second.x) - 1
+        begin, end = self.second.duration * self.second.x[[max(top - 2, 0), min(top + 2, last)]] ** 2
+        return np.asarray((time >= begin) & (time <= end))
+
+    def radius(self, time: Array) -> Array:
+        """How much the contact radius changes at times, m."""
+        return self.first.radius_at(time) - self.second.radius_at(time)
+
+    @property
+    def _pointwise(self) -> tuple[Array, Array]:
+        """Times, dense and within every step, and how much the force changes there, N."""
+        x = self.first.x
+        within = self.first.duration * (0.5 * (x[1:] + x[:-1])) ** 2
+        times = np.concatenate([self.first.dense_time, within])
+        order = times.argsort(kind="stable")
+        change = np.abs(self.first.force(within) - self.second.force(within))
+        return times[order], np.concatenate([self._force_change, change])[order]
+
+    @cached_property
+    def velocity(self) -> float:
+        """Largest change of the velocity late in the contact, compared at equal shares of it, m/s."""
+        return abs(self.signed_velocity)
+
+    @cached_property
+    def signed_velocity(self) -> float:
+        """The same with its sign."""
+        second = self.second.velocity(self.second.duration * self.first.shares, self._alike.impulse)
+        late = (self.first.dense_velocity - second)[self.first.late :]
+        return float(late[np.abs(late).argmax()])
+
+    @cached_property
+    def impulse(self) -> float:
+        """The same of the impulse, N s."""
+        return float(np.abs(self.first.dense.impulse - self._alike.impulse)[self.first.late :].max())
+
+    @cached_property
+    def history(self) -> float:
+        """Norm of the force's change over the norm of the force."""
+        time = self.first.dense_time
+        change = np.trapezoid(self._force_change**2, time)
+        return float(np.sqrt(change / np.trapezoid(self.first.dense_force**2, time)))
+
+    @cached_property
+    def _alike(self) -> Reading:
+        """The second curve at equal shares of its contact."""
+        if self.second.shares is self.first.shares:
+            return self.second.dense
+        return self.second.read(self.second.duration * self.first.shares)
+
+    @cached_property
+    def _second(self) -> Reading:
+        """The second curve at the first one's times."""
+        return self.second.read(self.first.dense_time)
+
+    @cached_property
+    def _force_change(self) -> Array:
+        return np.abs(self.first.dense_force - self._second.force)
+
+    @property
+    def _depth_change(self) -> Array:
+        return np.abs(self.first.dense.depth - self._second.depth)
+
+    @property
+    def _peak_time(self) -> float:
+        """How far a change of the force's slope moves its peak: slope over curvature, s.
+
+        The curvature is that of all forces near the peak, the slope that of the change: of all these forces where a
+        dashpot makes it jitter, else twice the chord over the top.
+        """
+        time, force, near = self.first.dense_time, self.first.dense_force, self.first.near_peak
+        top = min(max(int(force.argmax()), 1), len(force) - 2)
+        left, right = min(near.start, top - 1), max(near.stop - 1, top + 1)
+        falling = (force[top] - force[right]) / (time[right] - time[top])
+        rising = (force[top] - force[left]) / (time[top] - time[left])
+        curvature = 2 * (falling + rising) / (time[right] - time[left])
+        change = self._second.force - force
+        if self.first.strike.relaxation.viscosity:
+            slope = np.abs(np.gradient(change, time)[left : right + 1]).max()
+        else:
+            high = np.flatnonzero(force > TOP * force.max())
+            begin, end = min(high[0], top - 1), max(high[-1], top + 1)
+            slope = STEEPER * np.ptp(change[begin : end + 1]) / (time[end] - time[begin])
+        return float(min(slope / abs(curvature), self.first.duration)) if curvature else self.first.duration

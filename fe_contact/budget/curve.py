@@ -1,0 +1,226 @@
+"""A march as a smooth curve: interpolation between its steps, extrapolation between step lengths, quantities.
+
+The abscissa is ``x = sqrt(t / duration)``: powers of the square root of time at first touch become a
+polynomial, and marches whose ends differ a little are compared at equal shares of their contact. The force
+comes from the impulse, the one quantity that a step of any scheme knows exactly, by way of the mean force
+``G = impulse / t``, which stays regular at touch: ``F = d(t G)/dt = G + x/2 dG/dx``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.contact_radius import squared_radius
+from fe_contact.budget.local_polynomial import PLACES, LocalPolynomials, fitted_peak, peak
+from fe_contact.march.account import Energies, balanced
+from fe_contact.steppers.march import March, Strike
+
+PEAK_SHARE = 0.98  # of its peak above which a force is near it
+SHARES = np.linspace(0.0, 1.0, 601)
+EARLIEST = 4  # rows after touch that tell whether steps or shares are more crowded there
+LATE = 0.75  # of the contact: from here on path and speed count for those at separation
+DENSE = SHARES**2 * (3 - 2 * SHARES)  # shares of the contact, crowded at its ends, for peaks and norms
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """Force, N, impulse since touch, N s, and depth, m, at some times, each (n,)."""
+
+    force: Array
+    impulse: Array
+    depth: Array
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Mean force since touch (n,), N, depth (n,), m, at ``x`` (n,); squared radius at ``radius_x``; duration and how
+    sharply its end can be read, s; energies of the account, J.
+    """
+
+    strike: Strike
+    duration: float
+    separated: bool
+    x: Array
+    mean_force: Array
+    depth: Array
+    radius_x: Array
+    radius_squared: Array
+    end_spread: float
+    energy: Energies
+
+    @classmethod
+    def of(cls, march: March, strike: Strike) -> Curve:
+        """The curve through the steps of a march."""
+        duration = float(march.time[-1])
+        shares, squares = squared_radius(march)
+        return cls(
+            strike=strike,
+            duration=duration,
+            separated=march.separated,
+            x=np.sqrt(march.time / duration),
+            mean_force=np.concatenate([[march.first_force], march.impulse[1:] / march.time[1:]]),
+            depth=march.depth,
+            radius_x=np.sqrt(shares),
+            radius_squared=squares,
+            end_spread=march.end_spread,
+            energy=march.energy,
+        )
+
+    def thinned(self) -> Curve:
+        """The curve through every other step, both ends kept."""
+        return self.through(np.unique(np.append(np.arange(0, len(self.x), 2), len(self.x) - 1)))
+
+    def through(self, rows: npt.NDArray[np.intp]) -> Curve:
+        """The curve through some of the steps only, between which it tells the mean force exactly."""
+        return replace(self, x=self.x[rows], mean_force=self.mean_force[rows], depth=self.depth[rows])
+
+    @cached_property
+    def polynomials(self) -> LocalPolynomials:
+        """Mean force and depth between the steps, over x."""
+        return LocalPolynomials.through(self.x, np.stack([self.mean_force, self.depth]))
+
+    def read(self, time: Array) -> Reading:
+        """Force, zero outside the contact, impulse and depth up to its end.
+
+        What is cut off presses on: runs that touch a little later, or earlier, are cut off a little before each other.
+        """
+        inside = (time >= 0) & ((time < self.duration) if self.separated else True)
+        x = self.share(time)
+        (mean, depth), (slope, _) = self.polynomials.at(x)
+        return Reading(np.where(inside, np.maximum(mean + 0.5 * x * slope, 0.0), 0.0), mean * time, depth)
+
+    def force(self, time: Array) -> Array:
+        """Contact force, N; zero outside the contact."""
+        return self.read(time).force
+
+    def velocity(self, time: Array, impulse: Array) -> Array:
+        """Velocity by the balance of momentum, m/s."""
+        return self.strike.velocity + self.strike.gravity * time - impulse / self.strike.mass
+
+    def radius_at(self, time: Array) -> Array:
+        """Contact radius, m."""
+        return np.sqrt(np.maximum(self.radius_squared_at(self.share(time)), 0.0))
+
+    def radius_squared_at(self, x: Array) -> Array:
+        """Squared contact radius, m^2, linear in time between the steps."""
+        return np.asarray(np.interp(x**2, self.radius_x**2, self.radius_squared))
+
+    def share(self, time: Array) -> Array:
+        """Abscissa x of times."""
+        return np.sqrt(np.minimum(np.maximum(time / self.duration, 0.0), 1.0))
+
+    @cached_property
+    def shares(self) -> Array:
+        """Of the contact: crowded at both ends, or with the steps where these are more crowded at touch, about an early
+        peak, or where gravity may have swung it for long.
+        """
+        swings = not self.separated and self.strike.gravity > 0.0
+        if not swings and self.x[EARLIEST] ** 2 > DENSE[EARLIEST]:
+            return DENSE
+        count = len(self.x)
+        places = np.linspace(0.0, count - 1.0, max(len(DENSE), 2 * count - 1))
+        return np.asarray(np.interp(places, np.arange(count), self.x) ** 2)
+
+    @cached_property
+    def late(self) -> int:
+        """The first of :attr:`dense_time` at which path and speed count for those at the end."""
+        return int(np.searchsorted(self.shares, LATE))
+
+    @cached_property
+    def dense_time(self) -> Array:
+        """Times as dense as the contact may ask for, s."""
+        return self.duration * self.shares
+
+    @cached_property
+    def dense(self) -> Reading:
+        """What there is to read at :attr:`dense_time`."""
+        return self.read(self.dense_time)
+
+    @property
+    def dense_force(self) -> Array:
+        """Force at :attr:`dense_time`, N."""
+        return self.dense.force
+
+    @cached_property
+    def dense_velocity(self) -> Array:
+        """Velocity at :attr:`dense_time`, m/s."""
+        return self.velocity(self.dense_time, self.dense.impulse)
+
+    @property
+    def last_step(self) -> float:
+        """When the last step ended, s: from there to separation no force is known."""
+        return self.duration * float(self.x[-2]) ** 2
+
+    @cached_property
+    def leaving_speed(self) -> float:
+        """Speed away from the target at the end, m/s."""
+        return -float(self.dense_velocity[-1])
+
+    @cached_property
+    def near_peak(self) -> slice:
+        """Dense times from the first to the last at which the force is nearly as large as ever."""
+        near = np.flatnonzero(self.dense_force > PEAK_SHARE * self.dense_force.max())
+        return slice(int(near[0]), int(near[-1]) + 1)
+
+    @property
+    def _force_peak(self) -> tuple[float, float]:
+        # under a flat end no place comes or goes, so that nothing jitters; or the striker comes to rest: no hill to fit
+        if np.ptp(self.radius_squared) == 0.0 or self.near_peak.stop == len(self.shares):
+            return peak(self.dense_time, self.dense_force)
+        near = self.dense_time[self.near_peak]
+        return fitted_peak(float(near[0]), float(near[-1]), self.force(np.linspace(near[0], near[-1], PLACES)))
+
+    @cached_property
+    def quantities(self) -> dict[str, float | None]:
+        """The numbers of ``result.json`` but the history's own error."""
+        peak_time, peak_force = self._force_peak
+        _, peak_depth = peak(self.dense_time, self.dense.depth)
+        impulse = float(self.mean_force[-1]) * self.duration
+        return {
+            "peak_force": peak_force,
+            "peak_time": peak_time,
+            "peak_depth": peak_depth,
+            "duration": self.duration if self.separated else None,
+            "restitution": self.leaving_speed / self.strike.velocity if self.separated else None,
+            "impulse": impulse,
+        }
+
+
+def extrapolated(fine: Curve, coarse: Curve, order: int) -> Curve:
+    """Richardson's extrapolation of two curves whose step lengths are as one to two."""
+    weight = 1 / (2**order - 1)
+
+    (mean, depth), _ = coarse.polynomials.at(fine.x)
+    found = Curve(
+        strike=_onwards(fine.strike, coarse.strike, weight),
+        duration=fine.duration + weight * (fine.duration - coarse.duration),
+        separated=fine.separated,
+        x=fine.x,
+        mean_force=fine.mean_force + weight * (fine.mean_force - mean),
+        depth=fine.depth + weight * (fine.depth - depth),
+        radius_x=fine.radius_x,
+        radius_squared=fine.radius_squared + weight * (fine.radius_squared - coarse.radius_squared_at(fine.radius_x)),
+        end_spread=fine.end_spread + weight * (fine.end_spread + coarse.end_spread),
+        energy={name: value + weight * (value - coarse.energy[name]) for name, value in fine.energy.items()},
+    )
+    return replace(found, energy=_by_speed(found))
+
+
+def _by_speed(curve: Curve) -> Energies:
+    """The account of an extrapolated curve: the square of a speed is that of the extrapolated speed, which is numerical
+    in so far as it is not the extrapolated square.
+    """
+    energy, out = curve.energy, 0.5 * curve.strike.mass * curve.leaving_speed**2
+    return balanced({**energy, "out": out, "numerical": energy["numerical"] + energy["out"] - out})
+
+
+def _onwards(fine: Strike, coarse: Strike, weight: float) -> Strike:
+    """The strike of which the touch is extrapolated too: of a first one all settings know it."""
+    touches = [np.array([strike.touched_at, strike.depth, strike.velocity]) for strike in (fine, coarse)]
+    touched_at, depth, velocity = (touches[0] + weight * (touches[0] - touches[1])).tolist()
+    return replace(fine, touched_at=touched_at, depth=depth, velocity=velocity)

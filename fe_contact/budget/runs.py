@@ -1,0 +1,142 @@
+"""Marches of one strike with different settings, each run once, and a count of what they cost."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import partial
+
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.curve import Curve
+from fe_contact.budget.plan import share_of_peak
+from fe_contact.march.impact import march
+from fe_contact.march.impacts import Followed, follow
+from fe_contact.progress import Counted, uncounted
+from fe_contact.settings import Numerics
+from fe_contact.steppers.chosen import struck
+from fe_contact.steppers.march import Strike, Work
+from fe_contact.steppers.struck import Deformable, Struck
+from lumped.errors import NotReached
+from lumped.scene.geometry import Geometry
+
+PILOT_STEPS = 24  # of a march that only places the steps of others
+PLACED = 0.05  # share by which a contact may last longer, or less, than was expected
+PLACINGS = 4  # marches of few steps that look for its end, where an estimate is out by an order
+
+
+@dataclass(frozen=True)
+class TotalWork:
+    """Counted work of a certified impact: unknowns of the finest mesh; factorisations and back-substitutions
+    of all meshes; marches, time steps, contact problems and Newton iterations of all runs.
+    """
+
+    degrees_of_freedom: int
+    factorizations: int
+    solves: int
+    marches: int
+    steps: int
+    contact_problems: int
+    iterations: int
+
+
+def operations(work: TotalWork, finest: Struck) -> float:
+    """Leading terms of the arithmetic behind the counted work, as if all of it were on the finest mesh.
+
+    N unknowns in the plane cost N^(3/2) a factorisation and N log2 N a back-substitution (George 1973,
+    doi:10.1137/0710032); n surface unknowns and q quadrature points n^2 q + n^3/3 a Newton iteration.
+    """
+    unknowns = float(work.degrees_of_freedom)
+    inside = work.factorizations * unknowns**1.5 + work.solves * unknowns * math.log2(unknowns)
+    points, zone = finest.operator.trace.shape if isinstance(finest, Deformable) else (0, 0)
+    return float(inside + work.iterations * (zone**2 * points + zone**3 / 3))
+
+
+class Runs:
+    """Marches of a strike and of up to so many ``impacts`` in a row, with different settings, steps ``counted``."""
+
+    def __init__(self, strike: Strike, geometry: Geometry, impacts: int, counted: Counted = uncounted) -> None:
+        self._counted = counted
+        self._strike, self._geometry, self._impacts = strike, geometry, impacts
+        self._works: list[Work] = []
+        self._radii: dict[int, list[Array]] = {}
+        self._surfaces: dict[int, Struck] = {}
+        self._curves: dict[Numerics, tuple[Curve, ...]] = {}
+        self._places: dict[int, dict[str, float]] = {}
+
+    def placed(self, settings: Numerics, few: int) -> Numerics:
+        """The settings for a contact as long, and as wide, as a march of ``few`` steps finds it.
+
+        Where it fails, or does not separate, what was expected stands.
+        """
+        for _ in range(PLACINGS):
+            found = self.curve(0, settings.varied(steps=few))
+            if found is None or not found.separated or abs(found.duration / settings.contact_time - 1.0) <= PLACED:
+                break
+            share = share_of_peak(found.quantities["peak_time"] or 0.0, found.duration)
+            settings = settings.varied(contact_time=found.duration, peak_share=share)
+        return settings
+
+    def follow(self, settings: Numerics) -> Followed:
+        """One run, its contact radii expected to be those of the first with as many steps; raises where it fails."""
+        surface, expected = self.surface(settings), self._radii.get(settings.steps, [])
+        placed = partial(self._placed, settings, surface)
+        followed = follow(self._strike, surface, self._impacts, placed, expected, self._counted)
+        marches = [contact.march for contact in followed.contacts]
+        self._works += [one.work for one in marches]
+        self._radii.setdefault(settings.steps, [one.radius for one in marches])
+        self._curves[settings] = tuple(Curve.of(contact.march, contact.strike) for contact in followed.contacts)
+        return followed
+
+    def surface(self, settings: Numerics) -> Struck:
+        """What contact sees of the struck body."""
+        self._counted(0.0)  # a word before what may take long
+        surface = struck(self._geometry, settings)
+        self._surfaces[id(surface)] = surface
+        return surface
+
+    def curve(self, number: int, settings: Numerics) -> Curve | None:
+        """One contact of a run as a curve, None where it fails or has fewer: its cause of error is then unknown.
+
+        Settings asked for again are not run again: the fewest steps serve every other variation as base.
+        """
+        if settings not in self._curves:
+            try:
+                self.follow(settings)
+            except NotReached:
+                self._curves[settings] = ()
+        curves = self._curves[settings]
+        return curves[number] if number < len(curves) else None
+
+    def work(self, finest: Struck) -> TotalWork:
+        """What all runs cost together."""
+        works = self._works
+        return TotalWork(
+            degrees_of_freedom=finest.degrees_of_freedom,
+            factorizations=sum(s.factorizations for s in self._surfaces.values()),
+            solves=sum(s.solves for s in self._surfaces.values()),
+            marches=len(works),
+            steps=sum(w.steps for w in works),
+            contact_problems=sum(w.contact_problems for w in works),
+            iterations=sum(w.iterations for w in works),
+        )
+
+    def _placed(self, settings: Numerics, surface: Struck, number: int, begun: Strike) -> Numerics:
+        """Settings for one of the contacts: of a later one a march of few steps tells the finest run where to lie."""
+        if number == 0:
+            return settings
+        if number not in self._places:
+            self._places[number] = self._piloted(settings, surface, begun)
+        return settings.varied(**self._places[number])
+
+    def _piloted(self, settings: Numerics, surface: Struck, begun: Strike) -> dict[str, float]:
+        """Contact time, s, at first as if slower ones lasted longer as elastic ones do, and when its force peaks."""
+        elastic = partial(self._geometry.shape.hertz_impact, 1.0, 1.0)
+        slower = elastic(begun.velocity).duration / elastic(self._strike.velocity).duration
+        guess = {"contact_time": min(settings.contact_time * slower, begun.end_time)}
+        try:
+            pilot = march(begun, surface, settings.varied(steps=PILOT_STEPS, **guess))
+        except NotReached:
+            return guess
+        peak_time = Curve.of(pilot, begun).quantities["peak_time"] or 0.0
+        contact_time = float(pilot.time[-1]) if pilot.separated else max(2.0 * peak_time, guess["contact_time"])
+        return {"contact_time": contact_time, "peak_share": share_of_peak(peak_time, contact_time)}

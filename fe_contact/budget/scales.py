@@ -1,0 +1,86 @@
+"""How large an impact will be, so that mesh, memory and time steps can be placed; nothing of it enters a value.
+
+By the exact row of springs, by the target's exact load curve, or, where there is none, by one that a coarse mesh
+answers at a few depths.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from fe_contact.assembly.forms import check_compressible
+from fe_contact.bodies.pressing import Still
+from fe_contact.budget.bulk_scales import half_space_stiffness, with_constant_nu
+from fe_contact.settings import TARGETS, Numerics
+from fe_contact.steppers.flat_end import FlatEnd
+from lumped.errors import BadInput
+from lumped.laws import correspondence, mdr
+from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.fixed_area import Column
+from lumped.load_curves.sampled import SampledCurve
+from lumped.materials import Material
+from lumped.scene.answered import Answered
+from lumped.scene.indenter import Indenter
+from lumped.scene.scales import stiffest_impact
+from lumped.scene.scene import Scene
+from lumped.schema.members import get
+from lumped.targets import HalfSpace
+
+SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
+COARSE = {"elements_per_contact": 2.0, "order": 2}
+# Contact radii on a round body, over its radius, at which the coarse mesh is asked.
+WIDTHS = tuple(float(share) for share in np.geomspace(5e-3, 0.6, 9))
+
+
+def scales(scene: Scene, numerics: Numerics) -> mdr.ImpactScales:
+    """Of a scene; ``numerics`` but for the settings that are coarse. Raises NotReached, BadInput."""
+    geometry = scene.geometry
+    if isinstance(geometry.target, HalfSpace) and geometry.shape.fixed_radius is None and not geometry.shape.plane:
+        return mdr.estimate(scene, SPRINGS)
+    coarse, curve = numerics.varied(**COARSE), has_curve(scene)
+    if not (curve and geometry.surface_remembers):
+        check_compressible(scene)
+    if not geometry.surface_remembers:
+        scene = with_constant_nu(scene, partial(_stiffness, scene, coarse))
+    if not curve:
+        scene = Answered.by(scene, _answer(scene, coarse))
+    return correspondence.estimate(scene)
+
+
+def _stiffness(scene: Scene, coarse: Numerics, elastic: Material) -> float:
+    """Of an elastic target, in any unit; a round body counts as the half-space that it is near its contact."""
+    geometry, modulus = replace(scene.geometry, material=elastic), half_space_stiffness(elastic)
+    fixed = geometry.target.fixed_radius(geometry.shape)
+    if has_curve(scene):
+        stiffest = stiffest_impact(geometry.shape, scene.contact_modulus, scene.reduced_mass, scene.velocity)
+        return modulus * float(geometry.target.load_curve(scene.profile, elastic.nu).force(stiffest.depth))
+    return modulus if fixed is None else modulus * FlatEnd.of(geometry, fixed, coarse).stiffness
+
+
+def has_curve(scene: Scene) -> bool:
+    """Whether the target's load curve is known in closed form."""
+    try:
+        scene.geometry.target.load_curve(scene.profile, scene.geometry.material.nu)
+    except BadInput:
+        return False
+    return True
+
+
+def _answer(scene: Scene, numerics: Numerics) -> LoadCurve:
+    """By finite elements with these settings. Raises NotReached."""
+    geometry = scene.geometry
+    fixed = geometry.target.fixed_radius(geometry.shape)
+    if fixed is not None:
+        return Column(fixed, math.pi * fixed**2 / FlatEnd.of(geometry, fixed, numerics).stiffness)
+    indenter = Indenter(scene.profile, geometry.material, geometry.target, geometry.striker_material)
+    radii = np.array(WIDTHS) * geometry.target.round_radius(geometry.shape)
+    depths = -geometry.target.overlap(indenter.profile, radii, 0.0) / geometry.target.lead
+    still: Still = get(TARGETS, geometry.target.name).still(indenter, radii, numerics)
+    pressed = [still.press(float(depth), float(radius)) for depth, radius in zip(depths, radii, strict=True)]
+    columns = zip(*((one.force, one.contact_radius) for one in pressed), strict=True)
+    forces, widths = (tuple(float(value) for value in column) for column in columns)
+    return SampledCurve(tuple(float(depth) for depth in depths), forces, widths)

@@ -1,1 +1,0 @@
-"""What stands for the infinite body outside the mesh. One condition a file."""

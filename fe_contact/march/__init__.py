@@ -1,0 +1,1 @@
+"""One contact from touch to separation, flights between, the energy account."""

@@ -1,0 +1,154 @@
+"""One impact of a rigid striker, from physics and settings to a march; knows nothing of plans and bars."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from fe_contact.assembly.forms import Array
+from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall, TooManySteps
+from fe_contact.march.account import record
+from fe_contact.march.separation import time_left
+from fe_contact.march.time_grid import growth, share_of_rest, step_length
+from fe_contact.progress import Counted, uncounted
+from fe_contact.settings import Numerics
+from fe_contact.steppers.march import March, Strike
+from fe_contact.steppers.steps import State, Step, Stepping
+from fe_contact.steppers.struck import Struck
+
+FAILURES = (ContactLost, ContactNotSettled, MemoryTooSmall)  # of a step that may be too long
+PREDICTIONS = 2  # of the separation: how far they lie apart tells how well its time can be read
+NOISE = 1e-4  # share of the peak force below which a contact problem may drown in the mesh's error
+AT_REST = 1e-4  # share of the velocity at touch below which a fluid has stopped the striker
+REST_ROWS = 12
+FAINT = 1e-3  # share of the peak force below which contact may end
+LONGEST = 2.0  # under gravity, of the mean step: about the largest one within an expected contact
+SETTLED = 0.3  # of the tolerance: share of gravity below which force and velocity swing no more than may be missed
+STEPS_ALLOWED = 30  # multiple of the settings' steps after which the march gives up: 50 contact times take 25
+
+
+def march(
+    strike: Strike,
+    struck: Struck,
+    numerics: Numerics,
+    expected: Sequence[float] | Array = (),
+) -> March:
+    """Integrate from first touch to separation, or to ``strike.end_time``.
+
+    ``expected`` contact radii, m, of the first steps, known from a like march, spare a mesh that breathes the search
+    for its scale.
+
+    Raises the named failures of :mod:`fe_contact.errors` where a step does not converge.
+    """
+    return marched(struck.stepper(strike, numerics, expected))
+
+
+def marched(stepper: Stepping, counted: Counted = uncounted) -> March:
+    """The same with what takes its steps, each of them ``counted``."""
+    return _Marcher(stepper, counted).run()
+
+
+class _Marcher:
+    """The loop: what stays the same through an impact is held here, what changes is passed and returned."""
+
+    def __init__(self, stepper: Stepping, counted: Counted) -> None:
+        self.counted = counted
+        self.stepper, self.strike, self.numerics = stepper, stepper.strike, stepper.numerics
+        self.shortest = stepper.shortest * self.numerics.contact_time
+
+    def run(self) -> March:
+        strike = self.strike
+        states, steps = [self.stepper.touch()], list[Step]()
+        separated = False
+        free_fluid = strike.relaxation.equilibrium == 0 and strike.gravity == 0
+        resting = AT_REST * strike.velocity if free_fluid else 0.0
+        predicted, unseen = list[float](), 0.0
+        while states[-1].time < strike.end_time * (1 - 1e-12):
+            if len(steps) > STEPS_ALLOWED * self.numerics.steps:
+                raise TooManySteps(len(steps), states[-1].time)
+            left = self._time_left(steps)
+            predicted.append(states[-1].time + (left or 0.0))
+            step = None
+            if left is None or left > self.shortest:
+                try:
+                    step = self._advance(states[-1], steps, left)
+                except FAILURES as failure:
+                    if not _ends(failure, steps):
+                        raise
+                    if isinstance(failure, ContactLost):
+                        left = min(left or 0.0, self.shortest)
+                    else:  # too faint to be found: its end lies as far as the trend says, or within a step's length
+                        unseen = left or steps[-1].length
+            if step is None:
+                separated = states[-1].velocity < -resting
+                states += self._flight(states[-1], left or 0.0) if separated else self._rest(states[-1], resting)
+                break
+            self.counted(1.0)
+            steps.append(step)
+            states.append(step.state)
+        spread = float(np.ptp(predicted[-PREDICTIONS:])) + unseen if separated else 0.0
+        return record(self.stepper, states, steps, separated, spread)
+
+    def _time_left(self, steps: Sequence[Step]) -> float | None:
+        """Time to separation while the striker leaves, else None."""
+        if len(steps) < 4 or steps[-1].state.velocity >= 0:
+            return None
+        recent = steps[-3:]
+        times = [s.state.time - (1 - self.stepper.scheme.SAMPLE) * s.length for s in recent]
+        left = time_left(times, [s.axis_response for s in recent], recent[-1].state.time)
+        # a kink in the trend is not the end: contact ends faintly
+        return None if left is None or (left <= self.shortest and not _faint(steps, FAINT)) else left
+
+    def _advance(self, state: State, steps: Sequence[Step], left: float | None) -> Step:
+        """The next step: on the grid, shorter towards separation, and again where contact was lost in it.
+
+        Raises what the shortest step fails by.
+        """
+        numerics = self.numerics
+        length = numerics.contact_time * step_length(len(steps), numerics.steps, numerics.peak_share)
+        if left is not None:
+            length = min(length, left * share_of_rest(left / numerics.contact_time, numerics.steps))
+        if self.strike.gravity > 0.0 and steps:
+            length = min(length, self._longest(steps[-1]))
+        length = min(length, self.strike.end_time - state.time)
+        while True:
+            try:
+                return self.stepper.step(state, steps, length)
+            except FAILURES as failure:
+                length /= 2
+                if length < self.shortest or not _ends(failure, steps):
+                    raise
+
+    def _longest(self, last: Step) -> float:
+        """What does not separate swings about its weight, which no long step would see, until it has settled."""
+        strike, time = self.strike, self.numerics.contact_time
+        swing = abs(last.force / strike.mass - strike.gravity) + abs(last.state.velocity) / time
+        steps, small = self.numerics.steps, SETTLED * self.numerics.tolerance * strike.gravity
+        return max(growth(steps) * last.length if swing < small else 0.0, LONGEST * time / steps)
+
+    def _flight(self, state: State, left: float) -> list[State]:
+        """The little time to separation, over which the force is below any rounding that matters."""
+        if left == 0.0:
+            return []
+        pull = self.strike.gravity * left
+        depth = state.depth + left * (state.velocity + 0.5 * pull)
+        return [state._replace(time=state.time + left, depth=depth, velocity=state.velocity + pull)]
+
+    def _rest(self, state: State, resting: float) -> list[State]:
+        """A striker that a fluid has stopped, up to the end time; raises where it is no fluid or still moves."""
+        strike = self.strike
+        if resting == 0.0 or state.velocity > resting:
+            raise ContactNotSettled(state.time)
+        roots = np.linspace(np.sqrt(state.time), np.sqrt(strike.end_time), REST_ROWS)[1:]
+        return [state._replace(time=float(root) ** 2) for root in roots]
+
+
+def _ends(failure: Exception, steps: Sequence[Step]) -> bool:
+    """Whether a step may have failed because contact ends in it."""
+    return bool(steps) and (isinstance(failure, ContactLost) or _faint(steps, NOISE))
+
+
+def _faint(steps: Sequence[Step], share: float) -> bool:
+    """Whether the force has fallen below a share of its peak."""
+    return steps[-1].force <= share * max(step.force for step in steps)

@@ -1,6 +1,0 @@
-"""Charts: the only package that imports matplotlib. Figures are made without pyplot and hold no global state."""
-
-import logging
-
-# Where no home can be written matplotlib keeps its list of fonts elsewhere and warns: nothing that changes a chart.
-logging.getLogger("matplotlib").setLevel(logging.ERROR)

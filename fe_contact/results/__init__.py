@@ -1,0 +1,1 @@
+"""What a run tells: quantities, contacts, fields, pressure, the surface that is left."""

@@ -1,0 +1,87 @@
+"""A body whose volume and shape relax apart, before an impact: its modes for all ratios that the moduli will pass."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import ModuleType
+from typing import NamedTuple
+
+from fe_contact.assembly.cache import kept
+from fe_contact.assembly.elastic_body import ElasticBody
+from fe_contact.assembly.operators import SurfaceOperator
+from fe_contact.bodies.bulk_memory import BulkBody, Moduli
+from fe_contact.bodies.condensed import ByModes
+from fe_contact.bodies.memory import step_law
+from fe_contact.bodies.modes import Modes, modes
+from fe_contact.settings import SCHEMES, Numerics
+from fe_contact.steppers.struck import Deformable
+from lumped.materials import Relaxation
+from lumped.schema.members import get
+
+# Steps between which the ratio of the moduli is looked for, in contact times; it changes little beyond.
+SHORTEST, LONGEST = 1e-6, 50.0
+
+
+class Pace(NamedTuple):
+    """What of an impact's settings says how long its steps may be: the scheme, and the contact time, s."""
+
+    scheme: str
+    contact_time: float
+
+    @classmethod
+    def of(cls, numerics: Numerics) -> Pace:
+        """Of an impact."""
+        return cls(numerics.scheme, numerics.contact_time)
+
+    def ratios(self, moduli: Moduli) -> tuple[float, float]:
+        """Least and largest ratio of shear to bulk modulus that the steps may meet."""
+        scheme = get(SCHEMES, self.scheme)
+        extremes = [share * self.contact_time for share in (SHORTEST, LONGEST)]
+        laws = [[step_law(modulus, scheme, length).now for modulus in moduli] for length in extremes]
+        low, high = sorted(shear / bulk for bulk, shear in laws)
+        return low, high
+
+
+@dataclass(frozen=True, eq=False)
+class BulkSurface(ByModes, Deformable):
+    """A body before the impact, seen through its surface.
+
+    ``length``: unit of its mesh, m; None: the contact radius expected. ``rim``: where a contact ends that no depth
+    widens on a body loaded no farther, m.
+    """
+
+    modes: Modes
+    moduli: Moduli
+    breathes: bool = False
+    length: float | None = None
+    rim: float | None = None
+
+    @property
+    def operator(self) -> SurfaceOperator:
+        """Of the elastic body at one of the ratios: places, weights and scale are those of all."""
+        return self.modes.operator
+
+    @property
+    def recovers(self) -> bool:
+        """Its bulk remembers."""
+        return False
+
+    def unit(self, contact_radius: float) -> float:
+        """The mesh's unit of length, m."""
+        return contact_radius if self.length is None else self.length
+
+    def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> BulkBody:
+        """The body on its mesh of unit length ``scale``, m; its E*(t) follows from its own moduli."""
+        return BulkBody(self.modes, self.moduli, scheme, scale)
+
+
+def relaxing(
+    body: ElasticBody, moduli: Moduli, numerics: Numerics, length: float | None = None, rim: float | None = None
+) -> BulkSurface:
+    """A meshed body of a material with these moduli, in an impact with these settings; see :class:`BulkSurface`."""
+    return _surface(body, moduli, Pace.of(numerics), length, rim)
+
+
+@kept
+def _surface(body: ElasticBody, moduli: Moduli, pace: Pace, length: float | None, rim: float | None) -> BulkSurface:
+    return BulkSurface(modes(body, *pace.ratios(moduli)), moduli, length=length, rim=rim)

@@ -1,0 +1,153 @@
+"""Round bodies of their true size under one pressure: their displacements add, and each remembers its own past.
+
+With a constant Poisson's ratio the surface of each obeys the law of :mod:`fe_contact.bodies.memory`; where volume and
+shape relax apart its bulk does that of :mod:`fe_contact.bodies.bulk_memory`. In a step one over the modulus of all is
+the sum of one over theirs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import SurfaceOperator
+from fe_contact.assembly.pressed_surface import PressedSurface
+from fe_contact.bodies.offer import Half, Offer, Recalled
+from fe_contact.steppers.march import Snapshot
+from fe_contact.steppers.sides import Side, carriers, stacked
+from fe_contact.steppers.struck import Deformable
+from lumped.materials import Relaxation
+
+Memory = tuple[Any, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Stacked(Deformable):
+    """One body or two before the impact; ``operator`` of the one that has the points, angles on its ``radius``, m."""
+
+    operator: SurfaceOperator
+    sides: tuple[Side, ...]
+    radius: float
+    breathes: bool = False
+
+    @property
+    def recovers(self) -> bool:
+        """Each side has a memory of its own."""
+        return False
+
+    @property
+    def factorizations(self) -> int:
+        """Of all meshes."""
+        return sum(side.factorizations for side in self.sides)
+
+    @property
+    def solves(self) -> int:
+        """Of all meshes."""
+        return sum(side.solves for side in self.sides)
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Unknowns of all meshes."""
+        return sum(side.operator.degrees_of_freedom for side in self.sides)
+
+    def unit(self, contact_radius: float) -> float:
+        """Its radius, m, whatever contacts are expected."""
+        return self.radius
+
+    def places(self, unit: float) -> Array:
+        """From the line of motion, m."""
+        return unit * np.sin(self.operator.points)
+
+    def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> StackedBody:
+        """The bodies marched by a scheme; each has a modulus of its own, ``relaxation`` is that of all of them."""
+        halves = tuple(side.half(scheme, scale) for side in self.sides)
+        return StackedBody(self.operator, self.sides, halves)
+
+    def felt(self, snapshot: Snapshot) -> tuple[Array, Array]:
+        """At the nodes, without the roughness that the shape functions do not see.
+
+        Two meshes that do not match pin a facet more often than either can follow, as mortar methods with too many
+        multipliers do (Wohlmuth 2011, doi:10.1017/S0962492911000079): its mean and its tilt alone are known then.
+        """
+        if len(self.sides) > 1:
+            return self.radius * np.sin(self.operator.corners), self.operator.hats(snapshot.pressure)
+        nodes = self.operator.nodes[: self.operator.trace.shape[1]]
+        return self.radius * np.sin(nodes), self.operator.projected(snapshot.pressure)
+
+
+@dataclass(frozen=True, eq=False)
+class StackedBody:
+    """The contract of :class:`fe_contact.bodies.offer.Body`; the memory is one for each of the ``halves``."""
+
+    operator: SurfaceOperator
+    sides: tuple[Side, ...]
+    halves: tuple[Half, ...]
+
+    def at_rest(self) -> Memory:
+        """Relaxed, undeformed bodies."""
+        return tuple(half.at_rest() for half in self.halves)
+
+    def offer(self, memory: Memory, length: float) -> Offer:
+        """What contact meets in a step of a length, s."""
+        found = [half.recalled(own, length) for half, own in zip(self.halves, memory, strict=True)]
+        now = _together(one.now for one in found)
+        past = np.zeros_like(self.operator.points)
+        for side, one in zip(self.sides, found, strict=True):
+            past += now / one.now * (side.trace @ one.past)
+        return Offer(length, now, past, self._pressed(found, now))
+
+    def after(self, memory: Memory, offer: Offer, pressure: Array) -> tuple[Memory, float]:
+        """The memories after the step under a pressure (q,), and the first axis' elastic displacement times modulus."""
+        forces = self.operator.weights * pressure
+        loads = [side.trace.T @ forces for side in self.sides]
+        moved = tuple(
+            half.pushed(own, offer.length, load) for half, own, load in zip(self.halves, memory, loads, strict=True)
+        )
+        middle = int(np.abs(self.operator.nodes[: loads[0].size]).argmin())
+        return moved, float(self.operator.compliance[middle] @ loads[0])
+
+    def displacement(self, memory: Memory) -> Array:
+        """Inward displacement of all surfaces at the quadrature points, (q,), m."""
+        parts = zip(self.sides, self.halves, memory, strict=True)
+        return np.asarray(sum(side.trace @ half.sunk(own) for side, half, own in parts))
+
+    def stored(self, memory: Memory) -> float:
+        """Elastic energy in all springs, J."""
+        return sum(half.stored(own) for half, own in zip(self.halves, memory, strict=True))
+
+    def dissipated(self, before: Memory, after: Memory, length: float) -> float:
+        """Heat of a step, J."""
+        steps = zip(self.halves, before, after, strict=True)
+        return sum(half.dissipated(first, then, length) for half, first, then in steps)
+
+    def lost(self, before: Memory, after: Memory, length: float) -> float:
+        """Of the work in a step, what the scheme leaves unaccounted for, J."""
+        steps = zip(self.halves, before, after, strict=True)
+        return sum(half.lost(first, then, length) for half, first, then in steps)
+
+    def _pressed(self, found: Sequence[Recalled], now: float) -> PressedSurface:
+        """All sides, each with its modulus over the common one."""
+        weights = tuple(one.now / now for one in found)
+        if len(self.sides) > 1 and all(side.steady for side in self.sides):
+            return stacked(self.operator, self.sides, weights)
+        blocks = (weight * one.stiffness for one, weight in zip(found, weights, strict=True))
+        return self._points.stiffened(block_diag(*blocks))
+
+    @cached_property
+    def _points(self) -> PressedSurface:
+        """What is known of the points alone."""
+        trace = np.hstack([side.trace for side in self.sides])
+        blocks = block_diag(*(side.stiffness for side in self.sides))
+        shared = carriers(self.operator, self.sides)
+        return PressedSurface(blocks, trace, self.operator.weights, recurring=False, carriers=shared)
+
+
+def _together(moduli: Iterable[float]) -> float:
+    return 1.0 / sum(1.0 / modulus for modulus in moduli)

@@ -1,0 +1,117 @@
+"""What a march carries from step to step: named tuples, of which there are many and which are quick to make."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import ModuleType
+from typing import Any, NamedTuple, Protocol
+
+from fe_contact.assembly.forms import Array
+from fe_contact.bodies.memory import SurfaceMemory
+from fe_contact.contact.problem import ContactSolution
+from fe_contact.settings import Numerics
+from fe_contact.steppers.march import Snapshot, Strike, Work
+
+
+class State(NamedTuple):
+    """Striker and body at an instant: s, m, m/s, N s since touch; ``memory`` is the body's own."""
+
+    time: float
+    depth: float
+    velocity: float
+    impulse: float
+    memory: Any
+
+
+class Step(NamedTuple):
+    """A step taken, SI units: its length, the state after it, force and contact radius in it, and when that was.
+
+    ``axis_response`` is the axis' displacement times modulus, ``scale`` the contact radius the mesh was scaled
+    to, ``solution`` in units of the unit mesh.
+    """
+
+    length: float
+    state: State
+    force: float
+    radius: float
+    radius_time: float
+    axis_response: float
+    solution: ContactSolution
+    scale: float
+    work: Work
+
+
+class Stepping(Protocol):
+    """Takes the steps of one body.
+
+    ``shortest``: time left, in expected contact times, at which separation is read off the trend; ``first_force``
+    right at touch, N: not zero where a dashpot meets an area at once.
+    """
+
+    strike: Strike
+    numerics: Numerics
+    scheme: ModuleType
+    shortest: float
+    first_force: float
+
+    def touch(self) -> State:
+        """The striker at the surface, at rest or with what it remembers."""
+
+    def remembered(self, memory: Any) -> SurfaceMemory:
+        """What the surface remembers, of a body that recovers."""
+
+    def standing(self) -> int:
+        """Which place of that memory lies at the first touch."""
+
+    def clearance(self, surface: SurfaceMemory, depth: float) -> Array:
+        """Gap of the surfaces at all places of the body, m, where the striker is at a depth, m."""
+
+    def step(self, state: State, steps: Sequence[Step], length: float) -> Step:
+        """The step of a length, s, from a state reached by ``steps``; raises ContactLost and its like."""
+
+    def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
+        """The pressure of every step, where it is known."""
+
+    def stored(self, memory: Any) -> float:
+        """Elastic energy, J."""
+
+    def dissipated(self, before: Any, after: Any, length: float) -> float:
+        """Heat of a step of a length, s; J."""
+
+    def lost(self, before: Any, after: Any, length: float) -> float:
+        """Of the work on the body in a step of a length, s, what a scheme leaves unaccounted for, J."""
+
+    def between(self, before: State, step: Step) -> float:
+        """Work of the striker in a step that does not reach the body, J: its pressure stands where a gap changes."""
+
+
+class OfSurface:
+    """What, of the contract of :class:`Stepping`, all do on a body whose memory is that of its surface alone."""
+
+    strike: Strike
+    scheme: ModuleType
+
+    def at_rest(self) -> SurfaceMemory:
+        """The memory of a body that nothing has touched yet."""
+        raise NotImplementedError
+
+    def touch(self) -> State:
+        """The striker at the surface, at rest or with what it remembers."""
+        strike = self.strike
+        return State(0.0, strike.depth, strike.velocity, 0.0, strike.memory or self.at_rest())
+
+    def remembered(self, memory: SurfaceMemory) -> SurfaceMemory:
+        """All that is remembered."""
+        return memory
+
+    def stored(self, memory: SurfaceMemory) -> float:
+        """Elastic energy, J."""
+        return memory.stored(self.strike.relaxation)
+
+    def dissipated(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
+        """Heat of a step of a length, s; J."""
+        return before.dissipated(after, self.strike.relaxation, length)
+
+    def lost(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
+        """Of the work in a step of a length, s, what the scheme leaves unaccounted for, J."""
+        return before.lost(after, self.strike.relaxation, self.scheme, length)

@@ -1,0 +1,1 @@
+"""Finite elements against every law: study, verdict, files, chart."""

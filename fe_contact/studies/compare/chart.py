@@ -1,0 +1,191 @@
+"""The chart of a comparison: forces, their distance from the reference, contact radius and pressure in the rebound."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from fe_contact.reference import Solved
+from fe_contact.results.surface_pressure import felt
+from fe_contact.studies import style
+from fe_contact.studies.compare.deviations import rebound_steps, surface_radii
+from fe_contact.studies.compare.law_pressure import LawPressure
+from fe_contact.studies.compare.study import Comparison
+from fe_contact.studies.compare.verdict import verdicts
+from fe_contact.studies.history_chart import caption
+from fe_contact.studies.style import prefixed, readable
+from lumped.result.history import History
+from lumped.result.score import Curve as Measured
+
+PANELS = 4.6  # height of the four panels with what is around them, in
+TITLE_WIDTH = 134  # characters
+LEAST_SHOWN = 1e-6  # of the peak: the lower end of the logarithmic panel
+MOST_TENSION = 0.6  # of the largest pressure: a viscous law's tension at the edge is singular, and cut there
+# One colour and one dash a candidate: the reference is a broad grey line below all of them.
+STYLES: dict[str, dict[str, Any]] = {
+    "hertz": {"color": style.ORANGE, "linestyle": (0, (1, 1.2))},
+    "correspondence": {"color": style.VERMILION, "linestyle": "-"},
+    "ting": {"color": style.BLUE, "linestyle": (0, (5, 2.2))},
+    "mdr": {"color": style.GREEN, "linestyle": (2.5, (2.2, 5))},
+    "measured": {"color": style.PURPLE, "linestyle": "-", "linewidth": 0.9},
+}
+REFERENCE: dict[str, Any] = {"color": "#b8b8b8", "linewidth": 4.2, "solid_capstyle": "butt"}
+
+
+def plot_comparison(comparison: Comparison, where: Path) -> tuple[Path, Path]:
+    """Write ``compare.svg`` and ``compare.png`` into the folder ``where``; their paths."""
+    lines = list(verdicts(comparison))
+    with style.look():
+        above, below = style.heading_height(lines, TITLE_WIDTH) + 0.55, 0.65
+        height = above + PANELS + below
+        figure = Figure(figsize=(style.PAGE, height))
+        grid = figure.add_gridspec(2, 2, width_ratios=(1.25, 1.0), height_ratios=(1.15, 1.0), hspace=0.42, wspace=0.26)
+        grid.update(left=0.082, right=0.982, top=1 - above / height, bottom=below / height)
+        _force(figure.add_subplot(grid[0, 0]), comparison)
+        _distance(figure.add_subplot(grid[1, 0]), comparison)
+        _radius(figure.add_subplot(grid[0, 1]), comparison)
+        _pressure(figure.add_subplot(grid[1, 1]), comparison)
+        style.heading(figure, f"{comparison.reference.scene.name} against finite elements", lines, TITLE_WIDTH)
+        _legend(figure, comparison, 1 - (above - 0.3) / height)
+        text = caption(comparison.reference.scene).replace("\n", " ")
+        figure.text(0.011, 0.011, text, fontsize=6.0, color="#4d4d4d")
+        return style.save(figure, where, "compare")
+
+
+def _candidates(comparison: Comparison) -> Iterator[tuple[History | Measured, dict[str, Any]]]:
+    """Every candidate's curve and its line."""
+    for name, law in comparison.laws.items():
+        yield law.history, line_of(name)
+    if comparison.measured is not None:
+        yield comparison.measured, line_of("measured")
+
+
+def line_of(name: str) -> dict[str, Any]:
+    """Colour and dashes of a candidate, the same in every chart."""
+    return STYLES.get(name, {"color": style.BLACK, "linestyle": (0, (3, 1, 1, 1))})
+
+
+def _legend(figure: Figure, comparison: Comparison, height: float) -> None:
+    names = [judgement.name for judgement in comparison.judgements]
+    handles: list[Any] = [Line2D([], [], **REFERENCE)]
+    handles += [Patch(color=style.SKY, alpha=0.45, linewidth=0)]
+    handles += [Line2D([], [], **line_of(name)) for name in names]
+    labels = ["finite elements", "their error bar", *names]
+    figure.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.07, height - 0.012), ncols=len(labels),
+                  columnspacing=1.5, handlelength=2.4, borderaxespad=0.0)  # fmt: skip
+
+
+def _force(axes: Axes, comparison: Comparison) -> None:
+    history = comparison.reference.history
+    second, unit, span = _time_axis(axes, comparison)
+    newton, force_unit = prefixed(history.force.max(), "N")
+    axes.plot(second * history.time, newton * history.force, **REFERENCE)
+    for curve, line in _candidates(comparison):
+        axes.plot(second * curve.time, newton * curve.force, **line)
+    axes.fill_between(
+        second * history.time,
+        newton * np.maximum(history.force - history.force_error, 0.0),
+        newton * (history.force + history.force_error),
+        color=style.SKY,
+        alpha=0.45,
+        linewidth=0.0,
+    )
+    _mark_depth(axes, comparison, second)
+    turn = comparison.told.deepest
+    side, shift = ("left", 3.0) if turn < 0.6 * span else ("right", -3.0)
+    axes.annotate("maximum depth", (second * turn, 0.0), (shift, 3.0), textcoords="offset points", ha=side,
+                  fontsize=6.0, color="#666666")  # fmt: skip
+    axes.set(xlabel=f"time, {unit}", ylabel=f"force, {force_unit}")
+    axes.set_ylim(bottom=0.0)
+    style.label(axes, "a", "contact force")
+
+
+def _distance(axes: Axes, comparison: Comparison) -> None:
+    """|force - reference| over the peak, logarithmic, so that the error bar can be seen."""
+    told = comparison.told
+    second, unit, span = _time_axis(axes, comparison)
+    times = np.linspace(0.0, span, 1200)
+    inside = times <= told.duration
+    bar = np.where(inside, told.force_error(np.minimum(times, told.duration)), 0.0) / told.peak
+    top = np.maximum(bar[inside], LEAST_SHOWN)
+    axes.fill_between(second * times[inside], LEAST_SHOWN, top, color=style.SKY, alpha=0.45, linewidth=0.0)
+    for candidate, line in _candidates(comparison):
+        distance = np.abs(candidate.force_at(times) - told.force(times)) / told.peak
+        ended = times > max(told.duration, float(candidate.time[-1]))
+        axes.plot(second * times, np.where(ended, np.nan, np.maximum(distance, 0.5 * LEAST_SHOWN)), **line)
+    _mark_depth(axes, comparison, second)
+    axes.set(yscale="log", ylabel="share of the peak", ylim=(LEAST_SHOWN, 2.0))
+    axes.set_xlabel(f"time, {unit}")
+    style.label(axes, "c", "distance from the reference's force")
+
+
+def _radius(axes: Axes, comparison: Comparison) -> None:
+    history = comparison.reference.history
+    second, unit, _ = _time_axis(axes, comparison)
+    metre, length_unit = prefixed(history.contact_radius.max(), "m")
+    axes.plot(second * history.time, metre * history.contact_radius, **REFERENCE)
+    for name, law in comparison.laws.items():
+        axes.plot(second * law.history.time, metre * law.history.contact_radius, **line_of(name))
+    _mark_depth(axes, comparison, second)
+    axes.set(xlabel=f"time, {unit}", ylabel=f"radius, {length_unit}")
+    axes.set_ylim(bottom=0.0)
+    style.label(axes, "b", "contact radius")
+
+
+def _pressure(axes: Axes, comparison: Comparison) -> None:
+    """Pressure at the last of the compared instants of the rebound, where a clipped law and the truth part most."""
+    solved = comparison.solved
+    steps = () if solved is None else rebound_steps(solved)
+    if solved is None or not steps:
+        axes.set_axis_off()
+        axes.text(0.0, 0.9, _without_pressure(solved), transform=axes.transAxes)
+        return
+    truth = felt(solved.certified, steps[-1])
+    radii = surface_radii(solved)
+    metre, length_unit = prefixed(radii[-1], "m")
+    pascal, unit = prefixed(truth.values.max(), "Pa")
+    axes.axhline(0.0, color="#4d4d4d", linewidth=0.5)
+    axes.plot(metre * radii, pascal * truth.at(radii), **REFERENCE)
+    lowest, most = 0.0, pascal * truth.values.max()
+    for name, law in comparison.laws.items():
+        pressure = LawPressure.of(law)
+        if pressure is not None:
+            values = pascal * pressure.at(truth.time, radii)
+            axes.plot(metre * radii, values, **line_of(name))
+            if values.min() < min(lowest, -0.02 * most):
+                lowest = max(float(values.min()), -MOST_TENSION * most)
+                start = metre * radii[np.argmax(values <= 0.8 * lowest)]
+                axes.set_ylim(bottom=1.15 * lowest)
+    if lowest < 0.0:
+        axes.text(start, lowest, "tension  ", ha="right", style="italic", color=style.BLACK)
+    axes.set(xlabel=f"radius, {length_unit}", ylabel=f"pressure, {unit}", xlim=(0.0, metre * radii[-1]))
+    style.label(axes, "d", f"pressure in the rebound, at {readable(truth.time, 's', 3)}")
+
+
+def _without_pressure(solved: Solved | None) -> str:
+    """Why there is no pressure to show."""
+    if solved is None:
+        return "with waves the history alone is compared"
+    told = solved.certified.march.snapshots
+    return "no rebound before the end of the history" if told else "under a flat end: that of the indentation"
+
+
+def _time_axis(axes: Axes, comparison: Comparison) -> tuple[float, str, float]:
+    """Factor and unit of time, and the latest end of any history, s."""
+    histories = [comparison.reference.history, *(law.history for law in comparison.laws.values())]
+    span = max(float(history.time[-1]) for history in histories)
+    factor, unit = prefixed(span, "s")
+    axes.set_xlim(0.0, 1.01 * factor * span)
+    return factor, unit, span
+
+
+def _mark_depth(axes: Axes, comparison: Comparison, second: float) -> None:
+    """A thin line at the reference's maximum depth."""
+    axes.axvline(second * comparison.told.deepest, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)

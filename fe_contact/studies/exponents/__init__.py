@@ -1,0 +1,1 @@
+"""How geometry sets the exponent: study, check, files, chart."""

@@ -1,0 +1,74 @@
+"""How far two equal spheres of their true size are from Hertz's half-spaces: F/F_Hertz - 1 goes as a/R."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fe_contact.indentation import indent
+from fe_contact.progress import Progress, silent
+from fe_contact.studies import journal
+from fe_contact.studies.exponents.study import KEPT
+from lumped.indentation.finite_size import FiniteSize
+from lumped.materials import Material, Relaxation
+from lumped.scene.indenter import Indenter
+from lumped.shapes import sphere
+from lumped.targets import sphere as spheres
+from lumped.targets._round import SUPPORTS
+
+RATIOS, FEW_RATIOS = (0.0, 0.3, 0.49), (0.3,)
+SHARES = np.geomspace(0.01, 0.1, 7)  # a/R
+TOLERANCE = 3e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """Two equal spheres, the struck one `support`-ed; `size`: how far their force is from Hertz's over a/R."""
+
+    support: str
+    nu: float
+    size: FiniteSize
+    converged: bool
+
+    def to_dict(self) -> dict[str, Any]:
+        """Its part of exponents.json."""
+        return {"support": self.support, "nu": self.nu, "converged": self.converged, **self.size.to_dict()}
+
+    def rows(self) -> list[list[Any]]:
+        """Its lines of finite_spheres.csv."""
+        size = self.size
+        columns = zip(size.share.tolist(), size.deviation.tolist(), size.error.tolist(), strict=True)
+        return [[self.support, self.nu, *line] for line in columns]
+
+    @property
+    def told(self) -> str:
+        """One line for a person."""
+        slope, terms = asdict(self.size.slope), self.size.terms
+        formula = f"{terms['c'].value:.4f} {terms['k'].value:+.4f} ln x {terms['d'].value:+.4f} x"
+        return (
+            f"two spheres  {self.support}, nu = {self.nu:g}: F/F_Hertz - 1 = x ({formula}), x = a/R; "
+            f"slope {slope['value']:.4f} +- {slope['error']:.0e} up to x = {self.size.share.max():.2g}"
+        )
+
+
+def pairs(quick: bool, where: Path, progress: Progress = silent) -> tuple[Pair, ...]:
+    """Both supports with each nu; rows are kept in the folder `where`. Raises NotReached."""
+    calls = {
+        f"finite spheres, {support}, nu = {nu:g}": partial(pair, support, nu)
+        for support in SUPPORTS
+        for nu in (FEW_RATIOS if quick else RATIOS)
+    }
+    return tuple(journal.rows(where / KEPT, calls, progress).values())
+
+
+def pair(support: str, nu: float) -> Pair:
+    """Two unit spheres of one material at contact radii `SHARES`; raises NotReached."""
+    alike = Material(Relaxation(1.0), nu)
+    scene = Indenter(sphere.of(1.0), alike, target=spheres.of(1.0, support), striker_material=alike)
+    found = indent(scene, tuple(map(float, 2.0 * SHARES**2)), {"tolerance": TOLERANCE})
+    assert found.finite_size is not None
+    return Pair(support, nu, found.finite_size, found.converged)

@@ -1,0 +1,1 @@
+"""A fitted law: its chart."""

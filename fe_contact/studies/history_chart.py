@@ -1,0 +1,165 @@
+"""The chart of one impact: force with its error band, depth and contact radius, contact pressure at the peak."""
+
+from __future__ import annotations
+
+import textwrap
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fe_contact.reference import Solved
+from fe_contact.results.surface_pressure import Pressure, felt, peak_step
+from fe_contact.studies import style
+from fe_contact.studies.style import prefixed, readable, with_error
+from lumped.result.history import History
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
+from lumped.schema.keys import Key, Number
+
+HEIGHT = 4.35  # in
+BAND_VISIBLE = 0.01  # share of the peak below which the band is a hair line and is drawn magnified
+FLIGHT = -0.1  # share of the largest depth below which a body flies
+HIGHEST = 1.08  # of the axis of shares of the largest
+BELOW = 0.36  # share of that axis left to the names below a flight
+CAPTION_WIDTH = 78  # characters
+
+
+def plot_history(result: Result, where: Path, solved: Solved | None = None) -> tuple[Path, Path]:
+    """Write ``history.svg`` and ``history.png`` into the folder ``where``; their paths.
+
+    The pressure at the peak is drawn where ``solved`` knows one, the march behind a quasi-static result.
+    """
+    with style.look():
+        figure = Figure(figsize=(style.COLUMN, HEIGHT))
+        grid = figure.add_gridspec(2, 2, height_ratios=(1.6, 1.0), hspace=0.5, wspace=0.42)
+        grid.update(left=0.15, right=0.965, top=0.845, bottom=0.175)
+        _force(figure.add_subplot(grid[0, :]), result)
+        if solved is None:
+            _motion(figure.add_subplot(grid[1, :]), result.history)
+        else:
+            _motion(figure.add_subplot(grid[1, 0]), result.history)
+            _pressure(figure.add_subplot(grid[1, 1]), _at_peak(solved))
+        style.heading(figure, result.scene.name, [_subtitle(result)], 100)
+        figure.text(0.023, 0.016, caption(result.scene), fontsize=6.0, color="#4d4d4d", linespacing=1.4)
+        return style.save(figure, where, "history")
+
+
+def caption(scene: Scene) -> str:
+    """The scene's parameters in two lines or more, of a scene with a geometry; else those of its law."""
+    if not scene.has_geometry:
+        return _law_alone(scene)
+    material, shape, young = scene.geometry.material, scene.geometry.shape, scene.geometry.material.young
+    sizes = {key: value for key, value in shape.to_dict().items() if isinstance(value, float)}
+    lengths = ", ".join(f"{key} {_size(shape.keys[key], value)}" for key, value in sizes.items())
+    terms = [readable(young.equilibrium, "Pa")] if young.equilibrium else []
+    pairs = zip(young.moduli, young.times, strict=True)
+    terms += [f"{readable(modulus, 'Pa')} exp(−t/{readable(tau, 's')})" for modulus, tau in pairs]
+    terms += [f"{readable(young.viscosity, 'Pa s')} δ(t)"] if young.viscosity else []
+    bulk = ", bulk modulus constant" if material.constant == "bulk" else ""
+    lines = (
+        f"{shape.name}, {lengths}, {readable(1e3 * scene.mass, 'g')}, {readable(scene.velocity, 'm/s')}",
+        f"on {scene.target.name.replace('_', '-')}: E(t) = {' + '.join(terms)}, ν = {material.nu:g}{bulk}",
+    )
+    return "\n".join(part for line in lines for part in textwrap.wrap(line, CAPTION_WIDTH))
+
+
+def _law_alone(scene: Scene) -> str:
+    """What a scene without a geometry tells: mass, velocity and the law's own parameters."""
+    moving = f"{readable(1e3 * scene.mass, 'g')}, {readable(scene.velocity, 'm/s')}"
+    if scene.law is None:
+        return moving
+    values = ", ".join(f"{key} = {value}" for key, value in scene.law.values.items())
+    return "\n".join(textwrap.wrap(f"{moving}; {scene.law.name.replace('_', ' ')}: {values}", CAPTION_WIDTH))
+
+
+def _size(key: Key, value: float) -> str:
+    """A length with a prefixed unit, anything else as it stands in the scene file."""
+    unit = key.unit if isinstance(key, Number) else ""
+    return readable(value, unit) if unit == "m" else f"{value:.3g} {unit}".rstrip()
+
+
+def _subtitle(result: Result) -> str:
+    """Restitution with its bar, and the tolerance."""
+    e = result.quantities["restitution"]
+    outcome = "no separation" if e.value is None else f"restitution {with_error(e.value, e.error or 0.0)}"
+    method = "finite elements" if result.method == "fe" else result.method.replace("_", " ")
+    return f"{outcome}; {method}, tolerance {result.tolerance:g}"
+
+
+def _force(axes: Axes, result: Result) -> None:
+    history = result.history
+    second, time_unit = prefixed(history.time[-1], "s")
+    newton, force_unit = prefixed(history.force.max(), "N")
+    time, force, error = second * history.time, newton * history.force, newton * history.force_error
+    times = _magnification(float(error.max() / force.max()))
+    low, high = np.maximum(force - times * error, 0.0), force + times * error
+    name = "error band" if times == 1 else f"error band × {times}"
+    axes.plot(time, force, color=style.BLUE, label="force")
+    axes.fill_between(time, low, high, color=style.SKY, alpha=0.55, linewidth=0.0, label=name)
+    _mark_peak(axes, result, second, newton, float(high.max()))
+    axes.set(xlabel=f"time, {time_unit}", ylabel=f"force, {force_unit}", xlim=(0, time[-1]))
+    axes.set_ylim(0, 1.2 * max(high.max(), force.max()))
+    axes.legend(loc="lower right", bbox_to_anchor=(1.02, 1.0), ncols=2, borderaxespad=0.1, columnspacing=1.2)
+    style.label(axes, "a", "contact force")
+
+
+def _magnification(bar: float) -> int:
+    """Power of ten that makes a band of this share of the peak visible."""
+    if bar <= 0.0 or bar >= BAND_VISIBLE:
+        return 1
+    return int(10 ** np.ceil(np.log10(BAND_VISIBLE / bar)))
+
+
+def _mark_peak(axes: Axes, result: Result, second: float, newton: float, above: float) -> None:
+    """The peak with its value and bar, written above the band."""
+    peak, when = result.quantities["peak_force"], result.quantities["peak_time"]
+    if peak.value is None or when.value is None:
+        return
+    x, y = second * when.value, newton * peak.value
+    axes.plot([x], [y], "o", markersize=3.2, color=style.BLUE, markeredgecolor="white", markeredgewidth=0.6)
+    text = with_error(peak.value, peak.error or 0.0, "N")
+    share = x / (second * result.history.time[-1])
+    side = "left" if share < 0.25 else "right" if share > 0.75 else "center"
+    axes.annotate(text, (x, above), (0.0, 4.0), textcoords="offset points", ha=side, va="bottom", color=style.BLUE)
+
+
+def _motion(axes: Axes, history: History) -> None:
+    second, time_unit = prefixed(history.time[-1], "s")
+    columns = (("depth", history.depth, style.VERMILION, "-"), ("radius", history.contact_radius, style.GREEN, "--"))
+    known = [column for column in columns if np.nanmax(column[1], initial=0.0) > 0.0]  # a bare law has no radius
+    for row, (name, values, colour, line) in enumerate(known):
+        axes.plot(second * history.time, values / values.max(), color=colour, linestyle=line)
+        text = f"{name} / {readable(values.max(), 'm', 3)}"
+        axes.text(0.5, 0.21 - 0.13 * row, text, transform=axes.transAxes, color=colour, fontsize=6.2, ha="center")
+    axes.set(xlabel=f"time, {time_unit}", ylabel="share of the largest", xlim=(0, second * history.time[-1]))
+    lowest = min(0.0, float(history.depth.min() / history.depth.max()))
+    below = BELOW / (1.0 - BELOW) * (HIGHEST - lowest) if lowest < FLIGHT else 0.0  # which crosses no text
+    axes.set_ylim(lowest - below, HIGHEST)
+    axes.set_yticks((0.0, 0.5, 1.0) if lowest > -1.0 else (0.0, 1.0))
+    style.label(axes, "b", " and ".join(name for name, *_ in known))
+
+
+def _at_peak(solved: Solved) -> Pressure | None:
+    """Pressure at peak force, None where the march tells none."""
+    certified = solved.certified
+    return felt(certified, peak_step(certified)) if certified.march.snapshots else None
+
+
+def _pressure(axes: Axes, pressure: Pressure | None) -> None:
+    style.label(axes, "c", "pressure at peak")
+    if pressure is None:
+        axes.set_axis_off()
+        axes.text(0.0, 0.8, "under a flat end:\nthat of the indentation", transform=axes.transAxes)
+        return
+    pascal, unit = prefixed(pressure.values.max(), "Pa")
+    edge = pressure.contact_radius
+    metre, length_unit = prefixed(edge, "m")
+    radii = edge * np.append(np.sin(np.linspace(0.0, np.pi / 2, 200)[:-1]), 1.0)
+    values = pascal * pressure.at(radii)
+    values[-1] = 0.0
+    axes.fill_between(metre * radii, values, color=style.SKY, alpha=0.35, linewidth=0.0)
+    axes.plot(metre * radii, values, color=style.BLUE)
+    axes.set(xlabel=f"radius, {length_unit}", ylabel=f"pressure, {unit}", xlim=(0, 1.12 * metre * edge))
+    axes.set_ylim(0, 1.12 * values.max())

@@ -1,0 +1,1 @@
+"""The paper recomputed: files, charts."""

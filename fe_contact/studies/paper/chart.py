@@ -1,0 +1,134 @@
+"""The paper's figures again: Fig. 6, 7 and 8 with the exact law beside the clipped, Fig. 10's cut, Fig. 15."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from fe_contact.studies import style
+from fe_contact.studies.paper.memory_chart import plot_memory
+from lumped.paper.examples.concrete_impacts import cut_at_measured_peak, proposed
+from lumped.paper.examples.given import Steel
+from lumped.paper.examples.steel_impacts import R1_of_peak, damped_of_peak, elastic_of_peak, hertz, solid
+from lumped.paper.study import GridRow, Study
+from lumped.result.result import Result
+
+MICRO = 1e6
+TITLE_WIDTH = 130  # characters
+POINTS = 401  # of a curve
+HEIGHT_6, HEIGHT_GRID, HEIGHT_10 = 3.7, 5.4, 2.9  # in
+THIN: dict[str, Any] = {"linewidth": 0.6, "alpha": 0.75}
+BROAD: dict[str, Any] = {"linewidth": 3.2, "alpha": 0.6}
+DASHED: dict[str, Any] = {"linestyle": (0, (3, 1.6)), "linewidth": 0.8}
+LAW_KEY = (
+    Line2D([], [], color=style.GREY, label="correspondence, cut at zero force"),
+    Line2D([], [], color=style.GREY, label="exact (Ting)", **DASHED),
+)
+
+
+def plot_paper(study: Study, where: Path) -> tuple[Path, ...]:
+    """Write ``fig6``, ``fig7``, ``fig8``, ``fig10`` and ``fig15`` as SVG and PNG into ``where``; their paths."""
+    with style.look():
+        grids = (*_grid(study, 7, where), *_grid(study, 8, where))
+        rest = (*_fig10(study, where), *plot_memory(study.examples, where))
+        return (*_fig6(study, where), *grids, *rest)
+
+
+def _fig6(study: Study, where: Path) -> tuple[Path, Path]:
+    steel = study.examples.steel
+    figure = Figure(figsize=(style.PAGE, HEIGHT_6))
+    axes = figure.add_axes((0.075, 0.13, 0.6, 0.68))
+    for name, result, look in _curves_6(steel):
+        _plot(axes, result, label=name, **look)
+    axes.axhline(steel.measured_peak, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 1.5)))
+    axes.set(xlabel="time, µs", ylabel="force, N", xlim=(0.0, None), ylim=(0.0, 1.08 * steel.measured_peak))
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), labelspacing=0.7)
+    lines = [f"Dotted: the measured peak, {steel.measured_peak:g} N. The e of Kelvin and Jankowski is not printed."]
+    style.heading(figure, "Fig. 6 drawn again: the steel ball", lines, TITLE_WIDTH)
+    return style.save(figure, where, "fig6")
+
+
+def _curves_6(steel: Steel) -> list[tuple[str, Result, dict[str, Any]]]:
+    """Name, impact and look of every curve, those of one family named once."""
+    R1, peak = R1_of_peak(steel).value, steel.measured_peak
+    curves: list[tuple[str, Result, dict[str, Any]]] = [
+        (f"proposed, R1 = {steel.R1:g} as printed", solid(steel, steel.R1, steel.R2), {"color": style.VERMILION}),
+        ("nonlinear elastic, theoretical", hertz(steel, steel.contact_modulus), {"color": style.PURPLE}),
+        ("nonlinear elastic, equal peak", elastic_of_peak(steel, "hertz", peak), {"color": style.SKY, **BROAD}),
+        (f"proposed, R1 = {R1:.3f}, equal peak", solid(steel, R1, steel.R2), {"color": style.VERMILION, **DASHED}),
+        ("linear spring, equal peak", elastic_of_peak(steel, "linear_spring", peak), {"color": style.GREY}),
+    ]
+    for law, colour in (("kelvin", style.ORANGE), ("jankowski", style.GREEN)):
+        ends = f"e = {steel.restitutions[0]:g} to {steel.restitutions[-1]:g}"
+        for i, e in enumerate(steel.restitutions):
+            name = "_" if i else f"{law.capitalize()}, equal peak, {ends}"
+            curves.append((name, damped_of_peak(steel, law, e), {"color": colour, **THIN}))
+    return curves
+
+
+def _grid(study: Study, number: int, where: Path) -> tuple[Path, Path]:
+    rows = [row for row in study.grid if row.figure == number]
+    figure = Figure(figsize=(style.PAGE, HEIGHT_GRID))
+    panels = figure.subplots(2, 2, sharex=True, sharey=number == 8).ravel()
+    figure.subplots_adjust(0.07, 0.125, 0.985, 0.845, hspace=0.26, wspace=0.16)
+    held, varied = ("R2", "R1") if number == 7 else ("R1", "R2")
+    for i, axes in enumerate(panels):
+        _panel(axes, [row for row in rows if row.panel == i], varied)
+        style.label(axes, "abcd"[i], f"{held} = {_named(rows, i, held)}")
+    panels[0].set_xlim(0.0, 1.03 * MICRO * max(row.exact.history.time[-1] for row in rows))
+    for axes in panels[2:]:
+        axes.set_xlabel("time, µs")
+    for axes in panels[::2]:
+        axes.set_ylabel("force, N")
+    figure.legend(handles=LAW_KEY, loc="lower center", ncols=2)
+    lines = ["The law of the paper, and what it approximates in the rebound; until the deepest instant they are one."]
+    style.heading(figure, f"Fig. {number} drawn again: the steel ball, {varied} varied", lines, TITLE_WIDTH)
+    return style.save(figure, where, f"fig{number}")
+
+
+def _panel(axes: Axes, rows: Sequence[GridRow], varied: str) -> None:
+    for row, colour in zip(rows, style.CYCLE, strict=False):
+        _plot(axes, row.clipped, color=colour, label=f"{varied} = {_value(row, varied)}")
+        _plot(axes, row.exact, color=colour, **DASHED)
+    axes.set_ylim(0.0, None)
+    axes.legend(loc="upper right", borderaxespad=0.1, labelspacing=0.3)
+
+
+def _plot(axes: Axes, result: Result, **look: Any) -> None:
+    history = result.history.resampled(np.linspace(0.0, result.history.time[-1], POINTS))
+    axes.plot(MICRO * history.time, history.force, **look)
+
+
+def _named(rows: Sequence[GridRow], panel: int, held: str) -> str:
+    return _value(next(row for row in rows if row.panel == panel), held)
+
+
+def _value(row: GridRow, name: str) -> str:
+    return f"{row.R1:g}" if name == "R1" else style.readable(row.R2, "s", 3)
+
+
+def _fig10(study: Study, where: Path) -> tuple[Path, Path]:
+    """Forces and times over those of the uncut impact at the higher velocity: the assumed radius drops out."""
+    concrete = study.examples.concrete
+    slow, fast = min(concrete.velocities), max(concrete.velocities)
+    whole, cut = proposed(concrete, min(concrete.radii), fast).history, cut_at_measured_peak(concrete)
+    first = proposed(concrete, min(concrete.radii), slow).history
+    figure = Figure(figsize=(style.COLUMN, HEIGHT_10))
+    axes = figure.add_axes((0.13, 0.15, 0.83, 0.6))
+    for curve, name, look in (
+        (whole, f"proposed, {fast:g} m/s", {"color": style.VERMILION}),
+        (first, f"proposed, {slow:g} m/s", {"color": style.BLUE}),
+        (cut.curve, f"{fast:g} m/s, cut", {"color": style.BLACK, **DASHED}),
+    ):
+        axes.plot(curve.time / whole.time[-1], curve.force / whole.force.max(), label=name, **look)
+    axes.set(xlabel="time / contact time", ylabel="force / peak", xlim=(0.0, None), ylim=(0.0, 1.05))
+    axes.legend(loc="upper right")
+    lines = ["Cut at the measured peak until the impulse is the uncut one:", "the striker then loses no velocity."]
+    style.heading(figure, "Fig. 10 drawn again: concrete", lines, TITLE_WIDTH // 2)
+    return style.save(figure, where, "fig10")

@@ -1,0 +1,1 @@
+"""The pounding tuned mass damper: files, chart."""

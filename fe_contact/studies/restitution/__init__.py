@@ -1,0 +1,1 @@
+"""Restitution asked for against obtained: table, files, chart."""

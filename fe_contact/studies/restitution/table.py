@@ -1,0 +1,67 @@
+"""Restitution asked for against obtained, for every law, its exact damping and every published one, at both exits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from lumped import laws, restitution
+from lumped.errors import BadInput
+from lumped.scene.scene import Scene
+from lumped.scene.tables import LawChoice, Motion
+
+ASKED = (0.01, *(round(0.05 * i, 2) for i in range(1, 20)), 0.99, 0.999)
+EXITS = ("force", "depth")
+TOLERANCE = 1e-7
+# The restitution does not depend on mass, stiffness and velocity when it is what the law is given.
+UNIT, LATEST = 1.0, 1e12
+
+
+class Line(NamedTuple):
+    """One law, damping formula and exit: restitution obtained, None where the formula or the law gives none."""
+
+    law: str
+    damping: str
+    exit: str
+    asked: tuple[float, ...]
+    obtained: tuple[float | None, ...]
+
+    @property
+    def worst(self) -> tuple[float, float] | None:
+        """The largest difference, obtained less asked, and at which e; None where nothing was obtained."""
+        pairs = [(got - e, e) for e, got in zip(self.asked, self.obtained, strict=True) if got is not None]
+        return max(pairs, key=lambda pair: abs(pair[0])) if pairs else None
+
+
+def table(asked: Sequence[float] = ASKED) -> tuple[Line, ...]:
+    """A line for every law that takes e, each of its formulas and either exit, found by simulation.
+
+    `asked`: from 1e-4 to 1. Raises BadInput, NotReached.
+    """
+    return tuple(
+        Line(name, formula, exit, tuple(asked), tuple(obtained(name, formula, exit, e) for e in asked))
+        for name, formula in formulas()
+        for exit in EXITS
+    )
+
+
+def formulas() -> Iterator[tuple[str, str]]:
+    """Every law that takes e, with the names of its formulas, the exact one first."""
+    for name in laws.available():
+        keys = laws.get(name).KEYS
+        if "e" in keys:
+            options = keys["damping"].options if "damping" in keys else (restitution.EXACT,)
+            yield from ((name, formula) for formula in options)
+
+
+def obtained(name: str, formula: str, exit: str, e: float) -> float | None:
+    """The restitution of one simulated impact; None where the formula has no damping for e. Raises NotReached."""
+    chosen = {} if formula == restitution.EXACT else {"damping": formula}
+    law = LawChoice(name, {"k": UNIT, "e": e, "exit": exit, **chosen})
+    scene = Scene(None, UNIT, UNIT, law=law, motion=Motion(end_time=LATEST))
+    try:
+        model = laws.get(name).of(scene)
+    except BadInput:
+        return None
+    found: float | None = model.outcome(scene, TOLERANCE).restitution
+    return found

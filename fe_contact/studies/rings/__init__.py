@@ -1,0 +1,1 @@
+"""Rings of polymer: study, verdict, files, chart."""

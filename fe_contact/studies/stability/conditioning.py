@@ -1,0 +1,95 @@
+"""Penalty over conditioning: a sphere on a layer, contact ends anywhere in an element; force and pressure are exact.
+
+A soft penalty lets the surfaces overlap by pressure / penalty; a stiff one drowns in rounding, which its share of the
+stiffness multiplies, and pins a facet at more points than it has nodes.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from itertools import product
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.pressed_surface import PressedSurface
+from fe_contact.bodies.pressing import FixedStill
+from fe_contact.contact.enforcement import is_soft
+from fe_contact.contact.problem import ContactProblem, ContactSolution
+from fe_contact.indentation import settings
+from fe_contact.settings import ENFORCEMENTS, TARGETS
+from fe_contact.studies.stability.base import Case, Chart, Measure
+from lumped.load_curves.base import LoadCurve
+from lumped.scene.indenter import Indenter
+from lumped.schema.members import available, get
+
+TITLE = "Penalty, in units of modulus over contact radius, over conditioning"
+CHART = Chart(
+    rows=("enforcement",),
+    columns=("penalty",),
+    measures={
+        "bias": Measure("error of the force, worst of eight", 1e-3),
+        "ripple": Measure("error of the pressure inside 0.7 a, RMS over the peak", 1e-3),
+        "condition": Measure("condition of the contact's stiffness", 1e8),
+        "unsettled": Measure("contacts not settled, of eight", 0.5),
+    },
+)
+LAYER, NU = "polymer-layer", 0.3
+DEPTHS = np.exp(np.random.default_rng(7).uniform(np.log(1e-4), np.log(2.5e-4), 8))  # m
+INSIDE = 0.7  # of the contact radius
+
+
+class Pressed(NamedTuple):
+    """The layer, its exact curve, and one mesh for all depths."""
+
+    indenter: Indenter
+    curve: LoadCurve
+    body: FixedStill
+
+
+def cases(quick: bool) -> list[Case]:
+    """Penalties over a dozen decades; enforcements that find their own are asked at a few."""
+    few = (1e3,) if quick else (1e1, 1e3, 1e5)
+    many = (1.0, 1e3, 1e9) if quick else (1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e11)
+    every = [product((name,), many if is_soft(name) else few) for name in available(ENFORCEMENTS)]
+    return [{"enforcement": name, "penalty": penalty} for pairs in every for name, penalty in pairs]
+
+
+def measure(case: Case) -> dict[str, Any]:
+    """Worst of some depths; contacts that do not settle are counted, and tell no force."""
+    indenter, curve, body = layer()
+    operator, surface = body.surface.operator, body.surface.pressed
+    enforcement, biases, ripples, conditions, iterations = get(ENFORCEMENTS, case["enforcement"]), [], [], [], 0
+    for depth, radius in zip(DEPTHS, curve.contact_radius(DEPTHS), strict=True):
+        overlap = indenter.target.overlap(indenter.profile, body.stretch * operator.points, depth)
+        problem = ContactProblem(surface, overlap, case["penalty"] * body.reference / radius)
+        found: ContactSolution = enforcement.enforce(problem, overlap > 0.0)
+        iterations += found.iterations
+        conditions.append(condition(surface, problem.penalty, found))
+        if found.converged:
+            places, pressure = body.reference * operator.points, found.pressure / body.reference
+            exact = curve.pressure(places, float(radius))
+            inside = places < INSIDE * radius
+            ripples.append(np.sqrt(np.mean((pressure - exact)[inside] ** 2)) / exact.max())
+            biases.append(abs(operator.force(body.reference, found.pressure) / float(curve.force(depth)) - 1.0))
+    told = {"bias": max(biases), "ripple": float(max(ripples))} if biases else {"bias": None, "ripple": None}
+    return {**told, "condition": max(conditions), "unsettled": len(DEPTHS) - len(biases), "iterations": iterations}
+
+
+def condition(surface: PressedSurface, penalty: float, found: ContactSolution) -> float:
+    """Largest over smallest eigenvalue of the stiffness with the penalty's springs in it."""
+    springs: Array = penalty * surface.weights * found.sets[-1]
+    eigenvalues = np.linalg.eigvalsh(surface.held(springs))
+    return float(eigenvalues[-1] / eigenvalues[0])
+
+
+@lru_cache(maxsize=1)
+def layer() -> Pressed:
+    """Made once a process."""
+    indenter = Indenter.load(LAYER, {"target.material.nu": NU}).elastic(instant=False)
+    curve = indenter.target.load_curve(indenter.profile, NU)
+    numerics = settings({}, indenter.shape)
+    body = get(TARGETS, indenter.target.name).still(indenter, curve.contact_radius(DEPTHS), numerics)
+    assert isinstance(body, FixedStill)
+    return Pressed(indenter, curve, body)

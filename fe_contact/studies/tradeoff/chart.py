@@ -1,0 +1,96 @@
+"""The chart of a trade-off: error over processor time and over counted work, the front, the planned defaults."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from fe_contact.studies import style
+from fe_contact.studies.history_chart import caption
+from fe_contact.studies.tradeoff.front import Measure, finite_elements, front, known_to, verdict
+from fe_contact.studies.tradeoff.point import Point
+from fe_contact.studies.tradeoff.signs_chart import LAWS, STAR, Signs
+from lumped.scene.scene import Scene
+
+PANELS = 3.9  # height of the panels, in
+TITLE_WIDTH = 130  # characters
+LEAST, MOST = 1e-9, 1.0  # what lies beyond is drawn at the ends of the error axis
+COLUMNS, ROW = 4, 0.185  # of the legend; height of a row, in
+
+
+def plot_tradeoff(scene: Scene, points: Sequence[Point], where: Path) -> tuple[Path, Path]:
+    """Write ``tradeoff.svg`` and ``tradeoff.png`` into the folder ``where``; their paths."""
+    lines, signs = list(verdict(points)), Signs.of(points)
+    legend = signs.legend(points)
+    with style.look():
+        above = style.heading_height(lines, TITLE_WIDTH) + 0.3
+        below = 0.61 + ROW * -(-len(legend) // COLUMNS)
+        height = above + PANELS + below
+        figure = Figure(figsize=(style.PAGE, height))
+        grid = figure.add_gridspec(1, 2, wspace=0.24, width_ratios=(1.3, 1.0))
+        grid.update(left=0.082, right=0.985, top=1 - above / height, bottom=below / height)
+        left, right = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1])
+        _every_method(left, points, signs)
+        _finite_elements(right, points, signs, lambda point: point.work["operations"])
+        right.set(xlabel="counted work, operations", ylabel="error")
+        style.label(right, "b", "finite elements: error over counted work")
+        figure.legend(handles=legend, loc="lower left", bbox_to_anchor=(0.075, 0.24 / height), ncols=COLUMNS,
+                      columnspacing=1.6, handletextpad=0.5, labelspacing=0.55, borderaxespad=0.0)  # fmt: skip
+        style.heading(figure, f"What accuracy costs: {scene.name}", lines, TITLE_WIDTH)
+        figure.text(0.011, 0.011, caption(scene).replace("\n", " "), fontsize=6.0, color="#4d4d4d")
+        return style.save(figure, where, "tradeoff")
+
+
+def _every_method(axes: Axes, points: Sequence[Point], signs: Signs) -> None:
+    for method, look in LAWS.items():
+        own = [point for point in points if point.method == method and not point.failure]
+        cost, error = [point.cpu for point in own], [_drawn(point.error) for point in own]
+        axes.plot(cost, error, linestyle="-", linewidth=0.7, markersize=4.0, markeredgewidth=0.0, **look)
+    _finite_elements(axes, points, signs, lambda point: point.cpu)
+    axes.set(xlabel="processor time, s", ylabel="error (the largest of peak, duration, restitution, history)")
+    style.label(axes, "a", "every method: error over processor time")
+
+
+def _finite_elements(axes: Axes, points: Sequence[Point], signs: Signs, cost: Measure) -> None:
+    """Points with a whisker up to the claimed bar; the front, the defaults, what the reference is known to."""
+    tried = finite_elements(points)
+    for point in tried:
+        look, error = signs.of_point(point), _drawn(point.error)
+        if point.bar is not None:
+            axes.vlines(cost(point), error, _drawn(point.bar), color=look["color"], linewidth=0.7, alpha=0.4, zorder=1)
+        axes.plot([cost(point)], [error], linestyle="", markersize=3.6, markeredgewidth=0.8, zorder=3, **look)
+    best = front(tried, cost, lambda point: _drawn(point.error))
+    steps = [cost(p) for p in best], [_drawn(p.error) for p in best]
+    axes.step(*steps, where="post", color=style.GREY, linewidth=0.9, zorder=2)
+    if known_to(points):
+        axes.axhline(known_to(points), color=style.BLACK, linewidth=0.7, linestyle=":", zorder=1)
+    for point in tried:
+        if point.default_for is not None:
+            _default(axes, cost(point), _drawn(point.error), point.default_for)
+    axes.set(xscale="log", yscale="log")
+    axes.margins(y=0.12)
+    axes.grid(which="major", color="#e6e6e6", linewidth=0.5)
+    axes.set_axisbelow(True)
+
+
+def _default(axes: Axes, cost: float, error: float, tolerance: float) -> None:
+    """A star, and away from it the tolerance it is for."""
+    axes.plot([cost], [error], "*", markersize=10.0, zorder=4, **STAR)
+    leader = {"arrowstyle": "-", "linewidth": 0.6, "color": style.BLACK, "shrinkA": 0.0, "shrinkB": 4.0}
+    axes.annotate(_power(tolerance), (cost, error), (-46.0, -16.0), ha="right", textcoords="offset points",
+                  arrowprops=leader, zorder=5)  # fmt: skip
+
+
+def _drawn(error: float) -> float:
+    """An error within the axis."""
+    return min(max(error, LEAST), MOST)
+
+
+def _power(tolerance: float) -> str:
+    """A tolerance as a power of ten where it is one."""
+    exponent = np.log10(tolerance)
+    return f"$10^{{{exponent:.0f}}}$" if abs(exponent - round(exponent)) < 1e-9 else f"{tolerance:g}"

@@ -1,0 +1,74 @@
+"""The Pareto front of a trade-off, and how near to it the planned defaults lie, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from fe_contact.settings import RANGES
+from fe_contact.studies.tradeoff.point import REFERENCE, Point
+
+NEAR = 2.0  # a default that costs at most this multiple of the cheapest setting that does as well is near the front
+WIDEST = RANGES["tolerance"][1]
+
+Measure = Callable[[Point], float]
+
+
+def finite_elements(points: Iterable[Point]) -> tuple[Point, ...]:
+    """The finite-element points that have an answer."""
+    return tuple(point for point in points if point.method == "fe" and not point.failure)
+
+
+def front(points: Iterable[Point], cost: Measure, merit: Measure) -> tuple[Point, ...]:
+    """Points than which none is at once cheaper and better, the cheapest first."""
+    best, found = np.inf, []
+    for point in sorted(points, key=lambda p: (cost(p), merit(p))):
+        if merit(point) < best:
+            best = merit(point)
+            found.append(point)
+    return tuple(found)
+
+
+def excess(point: Point, points: Iterable[Point], merit: Measure, wanted: float) -> float:
+    """Processor time of a point over the least of those whose merit is at most ``wanted``; nan if there is none."""
+    equals = [other.cpu for other in points if merit(other) <= wanted]
+    return point.cpu / min(equals) if equals else np.nan
+
+
+def verdict(points: Iterable[Point]) -> tuple[str, ...]:
+    """A sentence a default: what it costs beside the cheapest setting that does as well; whether bars cover."""
+    tried, known = finite_elements(points), known_to(points)
+    sentences = [_sentence(point, tried) for point in tried if point.default_for is not None]
+    return (*sentences, *([f"the reference is known to {known:.1g}"] if known else []), _covered(tried, known))
+
+
+def known_to(points: Iterable[Point]) -> float:
+    """The bar of the reference that errors are measured from; 0 where that is exact."""
+    return max((point.bar or 0.0 for point in points if point.method == REFERENCE), default=0.0)
+
+
+def _covered(tried: tuple[Point, ...], known: float) -> str:
+    """Of the settings that claim anything: a bar beyond every accepted tolerance says that nothing is known."""
+    claiming = [point for point in tried if (point.bar or 0.0) <= WIDEST]
+    covered = sum(point.error <= (point.bar or 0.0) + known for point in claiming)
+    said = f"the claimed bar covers the error in {covered} of {len(claiming)} settings"
+    silent = len(tried) - len(claiming)
+    return f"{said}; {silent} claim nothing below {WIDEST:g}" if silent else said
+
+
+def _sentence(point: Point, tried: tuple[Point, ...]) -> str:
+    assert point.default_for is not None
+    start = f"default for {point.default_for:g}: error {point.error:.1g}, bar {point.bar:.1g}"
+    if (point.bar or 0.0) > point.default_for:
+        return f"{start}; misses the tolerance, so that a run refines it"
+    claimed = excess(point, tried, lambda p: p.bar or np.inf, point.default_for)
+    true = excess(point, tried, lambda p: p.error, point.error)
+    worst = max(claimed, true)
+    place = "on" if worst == 1.0 else f"within a factor {NEAR:g} of" if worst <= NEAR else "off"
+    return f"{start}; {_times(claimed)} whose bar meets the tolerance, {_times(true)} as accurate: {place} the front"
+
+
+def _times(factor: float) -> str:
+    """Cost beside the least."""
+    return "the cheapest" if factor == 1.0 else f"{factor:.2f} times the cheapest"

@@ -1,0 +1,5 @@
+"""A ball struck by a ball."""
+
+from __future__ import annotations
+
+from fe_contact.studies.tradeoff.targets.half_space import of as of

@@ -1,0 +1,1 @@
+"""Slow indentation: its record, the exact load curves, whole spheres."""

@@ -1,0 +1,149 @@
+"""Slow indentation: force and contact radius over depth, and the power law through them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.indentation.finite_size import FiniteSize, finite_size
+from lumped.result.dimensionless import groups_at_rest
+from lumped.result.folder import RECORD, publish
+from lumped.result.model_ledger import Peak, ledger_at_rest
+from lumped.result.result import Quantity, provenance
+from lumped.result.sufficiency import LedgerEntry, sufficient
+from lumped.scene.indenter import Indenter
+from lumped.schema.csv_file import write_columns
+from lumped.schema.json_file import plain, write_json
+
+Array = NDArray[np.float64]
+SCHEMA = "fe-contact/indentation/1"
+COLUMNS = ("depth_m", "force_N", "contact_radius_m", "force_error_N")
+FEWEST = 3  # depths which a power law with an error bar needs
+
+
+@dataclass(frozen=True, eq=False)
+class Indentation:
+    """Force, N, contact radius, m, and half-width of the force's bar, N, at every asked depth, m; shape (n,).
+
+    `modulus` is the E* of the material at this speed, Pa; `budget` the relative error of the force by cause, (n,).
+    """
+
+    indenter: Indenter
+    method: str
+    modulus: float
+    tolerance: float
+    depth: Array
+    force: Array
+    contact_radius: Array
+    force_error: Array
+    budget: Mapping[str, Array] = field(default_factory=dict)
+    numerics: Mapping[str, Any] = field(default_factory=dict)
+    timing: Mapping[str, float] = field(default_factory=dict)
+    work: Mapping[str, int] = field(default_factory=dict)
+
+    @property
+    def converged(self) -> bool:
+        """Whether every bar lies within the tolerance."""
+        return bool(np.all(self.force_error <= self.tolerance * self.force))
+
+    @property
+    def message(self) -> str:
+        """What was missed."""
+        if self.converged:
+            return ""
+        return f"tolerance {self.tolerance:g} not reached: force to {np.max(self.force_error / self.force):.2g}"
+
+    @property
+    def model_ledger(self) -> tuple[LedgerEntry, ...]:
+        """What the model leaves out, at the largest depth."""
+        deepest = int(self.depth.argmax())
+        force, depth, radius = (float(row[deepest]) for row in (self.force, self.depth, self.contact_radius))
+        return ledger_at_rest(self.indenter, Peak(force, depth, radius, math.inf))
+
+    @property
+    def model_sufficient(self) -> bool:
+        """Whether no known estimate of the model ledger exceeds the tolerance."""
+        return sufficient(self.model_ledger, self.tolerance)
+
+    @property
+    def quantities(self) -> dict[str, Quantity]:
+        """`alpha`, `D`, and `D_at_alpha` with the exponent of Table 1's row held; from three depths on."""
+        row = self.indenter.shape.exponent_of_force
+        if np.unique(self.depth).size < FEWEST:
+            return {}
+        return power_law(self.depth, self.force / self.modulus, self.force_error / self.force, row)
+
+    @property
+    def finite_size(self) -> FiniteSize | None:
+        """How far finite spheres are from Hertz; from three depths on, None before and for all else."""
+        if np.unique(self.depth).size < FEWEST:
+            return None
+        return finite_size(self.indenter, self.depth, self.force / self.modulus, self.force_error / self.modulus)
+
+    def to_json(self) -> dict[str, Any]:
+        """The content of result.json."""
+        content = {
+            "schema": SCHEMA,
+            "method": self.method,
+            "converged": self.converged,
+            "model_sufficient": self.model_sufficient,
+            "tolerance": self.tolerance,
+            "message": self.message,
+            "scene": self.indenter.to_dict(),
+            "contact_modulus": self.modulus,
+            "numerics": self.numerics,
+            "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
+            "deviation": self.finite_size and self.finite_size.to_dict(),
+            "dimensionless": groups_at_rest(self.indenter, self.contact_radius),
+            "error_budget": {cause: float(np.max(error)) for cause, error in self.budget.items()},
+            "model_ledger": [entry.to_json(self.tolerance) for entry in self.model_ledger],
+            "work": self.work,
+            "provenance": provenance(),
+            "timing": self.timing,
+        }
+        found: dict[str, Any] = plain(content)
+        return found
+
+    def write(self, directory: Path) -> None:
+        """Make indentation.csv and result.json the content of a folder of results.
+
+        Raises CannotWrite; what was there stays then, see :mod:`lumped.result.folder`.
+        """
+        publish(directory, self.write_files)
+
+    def write_files(self, folder: Path) -> None:
+        """The same files, one after the other, into a folder that is there."""
+        columns = [self.depth, self.force, self.contact_radius, self.force_error]
+        write_columns(folder / "indentation.csv", COLUMNS, columns)
+        write_json(folder / RECORD, self.to_json())
+
+
+def power_law(depth: Array, force: Array, error: Array, row: float) -> dict[str, Quantity]:
+    """D and alpha of force = D depth^alpha by least squares of ln force on ln depth; `force` is F/E*, m^2.
+
+    `error`: relative half-widths of the force, (n,); bars hold whatever the signs of the errors. `row`: the exponent
+    held for D_at_alpha.
+    """
+    x, y = np.log(depth), np.log(force)
+    centred = x - x.mean()
+    slopes = centred / (centred @ centred)
+    levels = 1.0 / x.size - x.mean() * slopes
+    alpha, level, held = float(slopes @ y), float(levels @ y), float(np.mean(y - row * x))
+    bar = -np.log1p(-np.minimum(error, 0.99))
+    return {
+        "alpha": Quantity(alpha, float(np.abs(slopes) @ bar), "1"),
+        "D": _factor(level, float(np.abs(levels) @ bar), alpha),
+        "D_at_alpha": _factor(held, float(bar.mean()), row),
+    }
+
+
+def _factor(logarithm: float, error: float, alpha: float) -> Quantity:
+    """A geometry factor from its logarithm."""
+    value = math.exp(logarithm)
+    return Quantity(value, value * math.expm1(error), f"m^{round(2.0 - alpha, 4):g}")

@@ -1,0 +1,116 @@
+"""Energy that a force pulse radiates into an elastic half-space."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumped.materials import Material
+from lumped.numbers.quadrature import gauss
+
+# T int (dF/dt)^2 dt / F_max^2 of the Hertz pulse: 4.5 (T v/depth) (2/5) B(4/5, 3/2), T v/depth = 2.943275.
+HERTZ_PULSE = 1.8 * 2.943275 * math.gamma(0.8) * math.gamma(1.5) / math.gamma(2.3)
+# The same of a line's pulse, nearly a sine: (1/2pi) int |w| |F(w)|^2 dw / F_max^2, a number without the duration.
+SINE_PULSE = 1.21532
+GAUSS_POINTS = 64
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """A contact in short: peak force, N; duration, s; mass, kg, and kinetic energy, J, that it turns round.
+
+    `radius`: that of contact at the peak, or the half-width in plane strain, m.
+    """
+
+    force: float
+    duration: float
+    mass: float
+    energy: float
+    radius: float
+
+
+def radiation_coefficient(nu: float) -> float:
+    """A(nu): a normal point force F(t) on a half-space radiates W = A/(density c_s^3) int (dF/dt)^2 dt.
+
+    A = I/(2 pi), I the imaginary part of Lamb's integral of x sqrt(x^2-g^2)/[(2x^2-1)^2 - 4x^2 sqrt(x^2-g^2)
+    sqrt(x^2-1)], g = c_s/c_p: pressure and shear waves (x < 1) and the pole of the Rayleigh wave. A(1/4) is
+    Miller and Pursey 1955, doi 10.1098/rspa.1955.0245: 4.836/(2 pi 3^(3/2)).
+    """
+    g = math.sqrt((1.0 - 2.0 * nu) / (2.0 * (1.0 - nu)))
+    return (_both_waves(g) + _shear_waves(g) + _rayleigh_wave(g)) / (2.0 * math.pi)
+
+
+def line_coefficient(nu: float) -> float:
+    """B(nu): a normal line force on a half-plane, N/m, radiates B/G (1/2pi) int |w| |F(w)|^2 dw, J/m.
+
+    B = I/pi, I Lamb's integral as above without its factor x.
+    """
+    g = math.sqrt((1.0 - 2.0 * nu) / (2.0 * (1.0 - nu)))
+    return (_both_waves(g, -1) + _shear_waves(g, -1) + _rayleigh_wave(g, -1)) / math.pi
+
+
+def pulse_energy(nu: float, density: float, shear_speed: float, peak_force: float, duration: float) -> float:
+    """Energy in J which a Hertz pulse of this peak, N, and duration, s, radiates into the half-space."""
+    rate = HERTZ_PULSE * peak_force**2 / duration
+    return radiation_coefficient(nu) / (density * shear_speed**3) * rate
+
+
+def shear_speed(material: Material) -> float | None:
+    """c_s, m/s, of the relaxed material or of a fluid's glassy one; None without density or without a spring."""
+    shear = material.shear.relaxed or material.shear.glassy
+    return math.sqrt(shear / material.density) if shear and material.density else None
+
+
+def radiated_share(material: Material, pulse: Pulse, length: float | None = None) -> float | None:
+    """Share of the energy which a Hertz pulse radiates into a half-space; None where its waves are not known.
+
+    A solid with memory sends them as fast as what is left of its modulus after half the pulse. A pulse along a line of
+    this `length`, m, is nearly a sine.
+    """
+    speed, density, shear = shear_speed(material), material.density, material.shear
+    if speed is None or density is None or pulse.duration == 0.0:
+        return None
+    if shear.relaxed:
+        speed = math.sqrt(float(shear(0.5 * pulse.duration)) / density)
+    if length is not None:
+        work = line_coefficient(material.nu) / (density * speed**2) * SINE_PULSE * pulse.force**2 / length
+    else:
+        work = pulse_energy(material.nu, density, speed, pulse.force, pulse.duration)
+    return work / pulse.energy
+
+
+def _both_waves(g: float, power: int = 0) -> float:
+    """The part x < g, with x = g sin; times x to this power."""
+    angle, weight = (0.5 * math.pi * part for part in gauss(GAUSS_POINTS))
+    x = g * np.sin(angle)
+    p = g * np.cos(angle)
+    s = np.sqrt(1.0 - x**2)
+    return float(weight @ (x ** (1 + power) * p * p / ((2.0 * x**2 - 1.0) ** 2 + 4.0 * x**2 * p * s)))
+
+
+def _shear_waves(g: float, power: int = 0) -> float:
+    """The part g < x < 1, with x^2 = g^2 cos^2 + sin^2; times x to this power."""
+    angle, weight = (0.5 * math.pi * part for part in gauss(GAUSS_POINTS))
+    p = math.sqrt(1.0 - g * g) * np.sin(angle)
+    s = math.sqrt(1.0 - g * g) * np.cos(angle)
+    x2 = g * g + p * p
+    # x dx = p s d(angle)
+    found = 4.0 * x2 * p**3 * s**2 / ((2.0 * x2 - 1.0) ** 4 + (4.0 * x2 * p * s) ** 2)
+    return float(weight @ (found * x2 ** (0.5 * power)))
+
+
+def _rayleigh_wave(g: float, power: int = 0) -> float:
+    """Half the residue at the root x > 1 of Rayleigh's function, found by bisection on x^2; times x to this power."""
+    low, high = 1.0, 4.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if _rayleigh(middle, g) > 0.0 else (low, middle)
+    p, s = math.sqrt(low - g * g), math.sqrt(low - 1.0)
+    slope = 4.0 * (2.0 * low - 1.0) - 4.0 * p * s - 2.0 * low * (s / p + p / s)
+    return 0.5 * math.pi * p / abs(slope) * math.pow(low, 0.5 * power)
+
+
+def _rayleigh(x2: float, g: float) -> float:
+    return (2.0 * x2 - 1.0) ** 2 - 4.0 * x2 * math.sqrt((x2 - g * g) * (x2 - 1.0))

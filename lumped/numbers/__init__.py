@@ -1,0 +1,1 @@
+"""Peaks between rows, Gauss' points, clocks: numbers that know no physics."""

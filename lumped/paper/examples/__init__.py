@@ -1,0 +1,1 @@
+"""The paper's own examples: what it gives, and what the laws make of it."""

@@ -1,0 +1,120 @@
+"""A case with its ring, without ring, without damper; whether it converged, and what the model leaves out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from lumped.errors import addressed
+from lumped.ptmd.case import Case
+from lumped.ptmd.free_vibration import simulate
+from lumped.ptmd.phase import ROWS_PER_PERIOD
+from lumped.ptmd.result import PtmdResult
+from lumped.ptmd.system import PoundingDamper
+from lumped.result.sufficiency import LedgerEntry, sufficient
+
+FINER = 3 * ROWS_PER_PERIOD // 2
+MOST_CHANGE, MOST_RESIDUAL = 1e-6, 1e-8
+SMALL = 0.1  # a penetration beyond this share of a length of the ring is not small
+FULL, PLAIN, BARE = "pounding damper", "damper without ring", "structure alone"
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """Contacts found on two spacings of rows, the largest relative change of a measure between them, and the energy
+    residual over the initial energy.
+    """
+
+    rows_per_period: tuple[int, int]
+    contacts: tuple[int, int]
+    largest_change: float | None
+    energy_residual: float
+
+    @property
+    def message(self) -> str:
+        """Why the motion has not converged; empty when it has."""
+        if self.largest_change is None:
+            first, second = self.contacts
+            return f"{first} contacts, but {second} on finer rows; cure: a shorter motion.end_time"
+        if self.largest_change > MOST_CHANGE:
+            return f"a measure changes by {self.largest_change:.1e} on finer rows; cure: a shorter motion.end_time"
+        if self.energy_residual > MOST_RESIDUAL:
+            return f"the energy balance is open by {self.energy_residual:.1e}; cure: a shorter motion.end_time"
+        return ""
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """Results by variant: the case itself, named `FULL`, `PLAIN` or `BARE` by what it has, and all simpler ones."""
+
+    case: Case
+    results: dict[str, PtmdResult]
+    convergence: Convergence
+    ledger: tuple[LedgerEntry, ...]
+
+    @property
+    def main(self) -> PtmdResult:
+        """The result of the case as given."""
+        return next(iter(self.results.values()))
+
+    @property
+    def model_sufficient(self) -> bool:
+        """Whether no known penetration exceeds what the contact law can bear."""
+        return sufficient(self.ledger, SMALL)
+
+
+def study(case: Case, progress: Callable[[str], None] = lambda message: None) -> Study:
+    """Simulate the case twice and its simpler variants once. Raises BadInput and NotReached."""
+    results: dict[str, PtmdResult] = {}
+    with addressed(case.source, {"motion": "motion", "ring": "ring", "start": "motion"}):
+        for name, system in variants(case.system).items():
+            progress(name)
+            if system.damper is not None or case.start.x1 or case.start.v1:
+                results[name] = simulate(system, case.start, case.end_time, case.window)
+        progress("finer rows")
+        again = simulate(case.system, case.start, case.end_time, case.window, rows_per_period=FINER)
+    main = next(iter(results.values()))
+    return Study(case, results, convergence(main, again), ledger(case, main))
+
+
+def variants(system: PoundingDamper) -> dict[str, PoundingDamper]:
+    """The system as it is first, then without its ring, then without its damper."""
+    found = {FULL: system, PLAIN: replace(system, ring=None), BARE: PoundingDamper(system.structure)}
+    present = [FULL, PLAIN, BARE][2 if system.damper is None else 1 if system.ring is None else 0 :]
+    return {name: found[name] for name in present}
+
+
+def convergence(main: PtmdResult, again: PtmdResult) -> Convergence:
+    """How the finer rows `again` change the result."""
+    changes: list[float] = []
+    same = len(main.contacts) == len(again.contacts)
+    for name, value in main.measures.to_dict().items():
+        other = again.measures.to_dict()[name]
+        if value is None or other is None:
+            same = same and value is other
+        else:
+            changes.append(abs(value - other) / abs(other) if other else abs(value))
+    return Convergence(
+        rows_per_period=(ROWS_PER_PERIOD, FINER),
+        contacts=(len(main.contacts), len(again.contacts)),
+        largest_change=max(changes) if same else None,
+        energy_residual=abs(main.energy.residual) / main.energy.initial,
+    )
+
+
+def ledger(case: Case, result: PtmdResult) -> tuple[LedgerEntry, ...]:
+    """The paper's first assumption, tiny deformation, against the lengths known; and a start inside the ring."""
+    if case.system.ring is None:
+        return ()
+    depth = result.measures.peak_depth
+    entries = [
+        LedgerEntry(f"penetration over {name}", "small strain", depth / length, "the law holds for small shares")
+        for name, length in (("the ring's thickness", case.thickness), ("the rod's radius", case.rod_radius))
+        if length is not None
+    ]
+    if not entries:
+        unknown = "give ring.thickness or ring.rod_radius"
+        entries = [LedgerEntry("penetration over the ring's thickness", "small strain", None, unknown)]
+    if any(contact.start == 0.0 for contact in result.contacts):
+        entries.append(LedgerEntry("start inside the ring", "relaxed", None, "how long it was held there is not known"))
+    return tuple(entries)

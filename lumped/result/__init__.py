@@ -1,0 +1,1 @@
+"""What every law and every finite-element run returns: history, quantities, score, ledger, folder."""

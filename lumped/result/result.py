@@ -1,0 +1,197 @@
+"""A result: history, quantities with error bars, and the two ledgers."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lumped.numbers.interpolation import peak
+from lumped.result.dimensionless import groups
+from lumped.result.folder import RECORD, publish
+from lumped.result.history import History
+from lumped.result.indentation_left import IndentationLeft
+from lumped.result.sufficiency import LedgerEntry, sufficient
+from lumped.scene.scene import Scene
+from lumped.scene.tables import Model
+from lumped.schema.json_file import plain, write_json
+
+SCHEMA = "fe-contact/result/1"
+UNITS = {
+    "peak_force": "N",
+    "peak_time": "s",
+    "peak_depth": "m",
+    "duration": "s",
+    "restitution": "1",
+    "impulse": "N s",
+    "history_l2": "1",
+}
+# `tolerance` rules these relatively; restitution and history_l2 absolutely; peak_time not at all.
+RULED_RELATIVE = ("peak_force", "peak_depth", "duration", "impulse")
+RULED_ABSOLUTE = ("restitution", "history_l2")
+ENERGY_TERMS = ("in", "out", "stored", "viscous", "radiated", "contact", "numerical", "residual")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number with an absolute half-width: |value - exact| <= error. None where undefined."""
+
+    value: float | None
+    error: float | None
+    unit: str
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What one method says of one scene.
+
+    `error_budget`: relative to peak force, by cause; `error_budget_by_quantity`: the same for every quantity.
+    `model` is the model as resolved, to which every claimed error refers. Energies, and their bars where they are told,
+    in J. `contacts`: start, duration, velocity, restitution, peak_force, peak_time, peak_depth of each, where several
+    were asked for; duration and restitution among the quantities are the first one's. `recovery`: of the surface after
+    separation, None where it is not told.
+    """
+
+    method: str
+    converged: bool
+    separated: bool
+    scene: Scene
+    model: Model
+    tolerance: float
+    history: History
+    quantities: Mapping[str, Quantity]
+    numerics: Mapping[str, Any] = field(default_factory=dict)
+    error_budget: Mapping[str, float] = field(default_factory=dict)
+    error_budget_by_quantity: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    model_ledger: tuple[LedgerEntry, ...] = ()
+    energy: Mapping[str, float | None] = field(default_factory=dict)
+    energy_error: Mapping[str, float] = field(default_factory=dict)
+    provenance: Mapping[str, Any] = field(default_factory=dict)
+    timing: Mapping[str, Any] = field(default_factory=dict)
+    work: Mapping[str, Any] = field(default_factory=dict)
+    message: str = ""
+    contacts: tuple[Mapping[str, float | None], ...] = ()
+    recovery: IndentationLeft | None = None
+
+    @property
+    def model_sufficient(self) -> bool:
+        """Whether no effect that can be judged exceeds the tolerance."""
+        return sufficient(self.model_ledger, self.tolerance)
+
+    def to_json(self) -> dict[str, Any]:
+        """The content of result.json; what is not finite is null."""
+        values = {name: quantity.value for name, quantity in self.quantities.items()}
+        content = {
+            "schema": SCHEMA,
+            "method": self.method,
+            "converged": self.converged,
+            "separated": self.separated,
+            "model_sufficient": self.model_sufficient,
+            "tolerance": self.tolerance,
+            "message": self.message,
+            "scene": self.scene.to_dict(),
+            "model": vars(self.model),
+            "numerics": self.numerics,
+            "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
+            "dimensionless": groups(self.scene, values, self.history),
+            "contacts": list(self.contacts),
+            "recovery": None if self.recovery is None else self.recovery.to_json(),
+            "error_budget": self.error_budget,
+            "error_budget_by_quantity": self.error_budget_by_quantity,
+            "model_ledger": [entry.to_json(self.tolerance) for entry in self.model_ledger],
+            "energy": {name: self.energy.get(name) for name in ENERGY_TERMS},
+            "energy_error": self.energy_error,
+            "work": self.work,
+            "provenance": self.provenance,
+            "timing": self.timing,
+        }
+        found: dict[str, Any] = plain(content)
+        return found
+
+    def write(self, directory: Path) -> None:
+        """Make history.csv, result.json and, where it is told, recovery.csv the content of a folder of results.
+
+        Raises CannotWrite; what was there stays then, see :mod:`lumped.result.folder`.
+        """
+        publish(directory, self.write_files)
+
+    def write_files(self, folder: Path) -> None:
+        """The same files, one after the other, into a folder that is there."""
+        self.history.write_csv(folder / "history.csv")
+        if self.recovery is not None:
+            self.recovery.write_csv(folder / "recovery.csv")
+        write_json(folder / RECORD, self.to_json())
+
+
+def write_failure(directory: Path, scene: Scene, method: str, message: str) -> None:
+    """Write the result.json of an impact that no solve brought to an end: what is known, and null for the rest.
+
+    It takes the place of an older result. Raises CannotWrite.
+    """
+    content = {
+        "schema": SCHEMA,
+        "method": method,
+        "converged": False,
+        "separated": False,
+        "model_sufficient": None,
+        "message": message,
+        "scene": scene.to_dict(),
+        "model": vars(scene.model),
+        "quantities": {name: {"value": None, "error": None, "unit": unit} for name, unit in UNITS.items()},
+        "provenance": provenance(),
+    }
+    publish(directory, lambda folder: write_json(folder / RECORD, plain(content)))
+
+
+def quantities_of(history: History, separated: bool) -> dict[str, float | None]:
+    """The values of UNITS read off the rows of a history; duration and restitution None without separation.
+
+    The peaks are sought between the rows, by local polynomials; the impulse is the trapezoid's.
+    """
+    peak_time, peak_force = peak(history.time, history.force)
+    _, peak_depth = peak(history.time, history.depth)
+    return {
+        "peak_force": peak_force,
+        "peak_time": peak_time,
+        "peak_depth": peak_depth,
+        "duration": float(history.time[-1] - history.time[0]) if separated else None,
+        "restitution": float(-history.velocity[-1] / history.velocity[0]) if separated else None,
+        "impulse": float(np.trapezoid(history.force, history.time)),
+        "history_l2": 0.0,
+    }
+
+
+def meets(quantities: Mapping[str, Quantity], tolerance: float) -> bool:
+    """Whether every error bar that the tolerance rules lies within it."""
+    return not unmet(quantities, tolerance)
+
+
+def unmet(quantities: Mapping[str, Quantity], tolerance: float) -> str:
+    """Which error bars exceed the tolerance, in words; empty when none does."""
+    found = []
+    for name in (*RULED_RELATIVE, *RULED_ABSOLUTE):
+        quantity = quantities[name]
+        scale = abs(quantity.value or 0.0) if name in RULED_RELATIVE else 1.0
+        if quantity.error is not None and not quantity.error <= tolerance * scale:  # a bar that is no number is none
+            reached = f"{quantity.error / scale:.2g}" if scale else f"{quantity.error:.2g} {quantity.unit}"
+            found.append(f"{name} to {reached}")
+    return f"tolerance {tolerance:g} not reached: {', '.join(found)}" if found else ""
+
+
+@cache
+def provenance() -> Mapping[str, str]:
+    """Versions of what computed a result."""
+    from importlib.metadata import PackageNotFoundError, version
+
+    found = {"python": platform.python_version(), "platform": platform.platform(terse=True)}
+    for package in ("fe-contact", "numpy", "scipy"):
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "not installed"
+    return found

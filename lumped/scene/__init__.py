@@ -1,0 +1,1 @@
+"""A scene: its tables and their reader, geometry, pairs of bodies, estimated scales."""

@@ -1,0 +1,114 @@
+"""What a slow indentation needs of a scene: shape, target and material, but no mass and no motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.errors import BadInput, Fault, addressed
+from lumped.materials import Material
+from lumped.scene.file import load_indenter
+from lumped.scene.geometry import Geometry
+from lumped.scene.pair import check_striker_material, contact_modulus, places, tables
+from lumped.scene.tables import Model
+from lumped.schema.keys import Number
+from lumped.shapes import Shape
+from lumped.targets import HalfSpace, Target
+
+DEPTH = Number(1e-15, 1e6, "m")
+MOST_DEPTHS = 10_000
+
+
+@dataclass(frozen=True)
+class Indenter:
+    """A `shape` pressed slowly into a target; `name` and `source` are those of the scene.
+
+    `material` is the target's, or the striker's where the target is rigid; `striker_material` that of a striker
+    on a target which yields too, None: rigid.
+    """
+
+    shape: Shape
+    material: Material
+    target: Target = field(default_factory=HalfSpace)
+    striker_material: Material | None = None
+    model: Model = field(default_factory=Model)
+    name: str = "scene"
+    source: str = "scene"
+
+    def __post_init__(self) -> None:
+        self.target.check_striker(self.source, self.shape)
+        check_striker_material(self.source, self.target, self.shape, self.striker_material, inertia=False)
+        if self.target.only_with_inertia:
+            reason = f"{self.target.name}: made of waves, it has no slow indentation; accepted: another target"
+            raise BadInput(Fault(self.source, "target.shape", reason))
+
+    @classmethod
+    def load(cls, source: str | Path, overrides: Mapping[str, object] | None = None) -> Indenter:
+        """Of a scene file or a packaged scene's name; mass and velocity may be missing. Raises BadInput."""
+        return load_indenter(cls, source, overrides)[0]
+
+    @property
+    def geometry(self) -> Geometry:
+        """What is pressed into what."""
+        return Geometry(self.shape, self.target, self.material, self.striker_material)
+
+    @property
+    def profile(self) -> Shape:
+        """The striker's shape as `model.profile` resolves it."""
+        return self.shape.resolved(self.model.profile)
+
+    def addressed(self) -> AbstractContextManager[None]:
+        """Inside, what a part refuses is said of the file and its keys, or of --depths."""
+        return addressed(self.source, places(self.shape, self.target, "--depths"))
+
+    def elastic(self, instant: bool) -> Indenter:
+        """The same with the elastic materials that a slow or, `instant`, a sudden indentation meets."""
+        striker = None if self.striker_material is None else self.striker_material.elastic(instant)
+        return replace(self, material=self.material.elastic(instant), striker_material=striker)
+
+    def modulus(self, instant: bool) -> float:
+        """E* against a slow or, `instant`, a sudden indentation, Pa. Raises BadInput where there is none."""
+        with self.addressed():
+            contact = contact_modulus(self.shape, self.material, self.striker_material)
+        if instant and contact.viscosity > 0.0:
+            raise self._refused("has a dashpot in parallel: infinitely stiff at once; accepted: leave out --instant")
+        if not instant and contact.relaxed == 0.0:
+            raise self._refused("is a fluid: no force stays; accepted: --instant, or a solid")
+        return contact.glassy if instant else contact.relaxed
+
+    def checked(self, depths: tuple[float, ...]) -> tuple[float, ...]:
+        """The depths, m, as they were given; raises BadInput for one that cannot be."""
+        if not 1 <= len(depths) <= MOST_DEPTHS:
+            raise BadInput(Fault("--depths", "", f"{len(depths)} depths; accepted: 1 to {MOST_DEPTHS}"))
+        faults = [Fault("--depths", "", f"{d:g}: accepted {DEPTH.accepted}") for d in depths if not _accepted(d)]
+        wrong = [(d, self.target.check_depth(self.shape, d)) for d in depths if _accepted(d)]
+        faults += [Fault("--depths", "", f"{d:g}: {reason}") for d, reason in wrong if reason]
+        if faults:
+            raise BadInput(faults)
+        return depths
+
+    def check_contacts(self, depths: NDArray[np.float64], contact_radii: NDArray[np.float64]) -> None:
+        """Raise BadInput for depths, m, whose contacts, m, are too wide for the target."""
+        wrong = [(d, self.target.check_contact(float(a))) for d, a in zip(depths, contact_radii, strict=True)]
+        faults = [Fault("--depths", "", f"{d:g}: {reason}; cure: a smaller depth") for d, reason in wrong if reason]
+        if faults:
+            raise BadInput(faults)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The tables of a scene file that gives it back."""
+        striker, target = tables(self.shape, self.target, self.material, self.striker_material)
+        return {"name": self.name, "striker": striker, "target": target, "model": vars(self.model).copy()}
+
+    def _refused(self, reason: str) -> BadInput:
+        where = "target" if self.target.deformable else "striker"
+        return BadInput(Fault(self.source, f"{where}.material", reason))
+
+
+def _accepted(depth: float) -> bool:
+    return DEPTH.low <= depth <= DEPTH.high

@@ -1,0 +1,208 @@
+"""A scene: who strikes what, how fast, and by which law where it names one. Physics only; frozen."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from lumped.errors import BadInput, Fault, addressed
+from lumped.load_curves.base import LoadCurve
+from lumped.materials import Material, Relaxation
+from lumped.scene.file import load, read
+from lumped.scene.geometry import Geometry
+from lumped.scene.pair import check_striker_material, contact_modulus, flying_faults, places, tables
+from lumped.scene.scales import absurd_depth, relaxed_impact
+from lumped.scene.tables import (
+    LAWS,
+    NAME_KEYS,
+    SECOND_BODY_KEYS,
+    STRIKER_KEYS,
+    LawChoice,
+    Model,
+    Motion,
+    gravity_faults,
+    inertia_faults,
+    mass_faults,
+)
+from lumped.schema.key_table import check_fields
+from lumped.schema.members import get
+from lumped.shapes import Shape
+from lumped.targets import HalfSpace, Target
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One impact: a striker of `shape`, `mass` (kg) and `velocity` (m/s) on a target of `material`.
+
+    Where the target is rigid `material` is the striker's; `striker_material` is that of a striker on a target which
+    yields too, None: rigid.
+    A law with parameters of its own needs neither shape nor material (both None); `law` may name one.
+    `target_mass`: mass of a free second body, kg; None: the target is held. Raises BadInput, naming the key,
+    for what cannot be used.
+    """
+
+    shape: Shape | None
+    mass: float
+    velocity: float
+    material: Material | None = None
+    target: Target = field(default_factory=HalfSpace)
+    model: Model = field(default_factory=Model)
+    motion: Motion = field(default_factory=Motion)
+    target_mass: float | None = None
+    law: LawChoice | None = None
+    striker_material: Material | None = None
+    name: str = "scene"
+    source: str = "scene"
+
+    def __post_init__(self) -> None:
+        check_fields(self.source, self, {**NAME_KEYS, **STRIKER_KEYS, **SECOND_BODY_KEYS})
+        if (self.shape is None) != (self.material is None):
+            missing = "striker.shape" if self.shape is None else "target.material"
+            raise BadInput(Fault(self.source, missing, "missing; shape and material come together"))
+        if self.shape is not None:
+            self.target.check_striker(self.source, self.shape)
+            check_striker_material(self.source, self.target, self.shape, self.striker_material, self.model.inertia)
+        density = None if self.material is None else self.material.density
+        target = self.target if self.has_geometry else None
+        faults = inertia_faults(self.source, self.model.inertia, density, target)
+        faults += mass_faults(self.source, self.mass, self.swinging_mass)
+        faults += gravity_faults(self.source, self.model)
+        if self.model.inertia and self.has_geometry:
+            faults += flying_faults(self.source, self.geometry, self.mass, self.target_mass)
+        if faults:
+            raise BadInput(faults)
+        if self.shape is not None:
+            with self.addressed():
+                modulus = self.contact_modulus
+            reason = absurd_depth(self.shape, modulus, self.swinging_mass, self.velocity)
+            if reason:
+                raise BadInput(Fault(self.source, "striker.velocity", reason))
+
+    @classmethod
+    def load(cls, source: str | Path, overrides: Mapping[str, object] | None = None) -> Scene:
+        """The scene of a file, or a packaged scene by its name. Raises BadInput with every fault."""
+        return load(cls, source, overrides)[0]
+
+    @classmethod
+    def from_dict(cls, table: Mapping[str, object], source: str = "scene") -> Scene:
+        """The scene of a table as in a scene file. Raises BadInput with every fault."""
+        return read(cls, table, source)[0]
+
+    @property
+    def has_geometry(self) -> bool:
+        """Whether the scene has a shape and a material, not a law's parameters alone."""
+        return self.shape is not None
+
+    @property
+    def geometry(self) -> Geometry:
+        """Shape, target and material; raises BadInput where the scene has a law's parameters alone."""
+        if self.shape is None or self.material is None:
+            reason = "missing; only the law of [law] runs without a shape and a material"
+            raise BadInput(Fault(self.source, "striker.shape", reason))
+        return Geometry(self.shape, self.target, self.material, self.striker_material)
+
+    @property
+    def reduced_mass(self) -> float:
+        """m1 m2/(m1 + m2), kg; the striker's mass where the target is held."""
+        return self.mass if self.target_mass is None else self.mass / (1.0 + self.mass / self.target_mass)
+
+    @property
+    def swinging_mass(self) -> float:
+        """What a contact time goes with, kg: a block with inertia counts by a third of its own mass (Rayleigh)."""
+        if not self.model.inertia or self.shape is None or self.material is None:
+            return self.reduced_mass
+        return self.reduced_mass + self.shape.own_mass(self.material.density or 0.0) / 3.0
+
+    @property
+    def gravity(self) -> float:
+        """What drives the approach, m/s2: two free bodies fall alike."""
+        return self.model.gravity if self.target_mass is None else 0.0
+
+    @property
+    def profile(self) -> Shape:
+        """The striker's shape as `model.profile` resolves it. Raises BadInput without geometry."""
+        return self.geometry.shape.resolved(self.model.profile)
+
+    @cached_property
+    def contact_modulus(self) -> Relaxation:
+        """E*(t) of the contact, Pa. Raises BadInput without geometry."""
+        return contact_modulus(self.geometry.shape, self.geometry.material, self.striker_material)
+
+    @property
+    def load_curve(self) -> LoadCurve:
+        """The target's exact elastic answer to the profile, per unit E* (and length). Raises BadInput without one."""
+        self.check_memory()
+        with self.addressed():
+            return self.target.load_curve(self.profile, self.geometry.material.nu)
+
+    @cached_property
+    def elastic_contact_time(self) -> float:
+        """Hertz contact time with the relaxed modulus, or the glassy one of a fluid; or of the bare law, s."""
+        if self.law is not None and not self.has_geometry:
+            law = get(LAWS, self.law.name).of(self)
+            return float(law.elastic_contact_time(self))
+        geometry = self.geometry
+        local = relaxed_impact(geometry.shape, self.contact_modulus, self.swinging_mass, self.velocity).duration
+        return geometry.target.contact_time(local, geometry.material, self.reduced_mass)
+
+    @property
+    def end_time(self) -> float:
+        """When to stop if the bodies have not separated, s."""
+        return self.end_time_of(self.elastic_contact_time)
+
+    def end_time_of(self, contact_time: float) -> float:
+        """That of a law with this elastic contact time, s."""
+        flight = 2.0 * self.velocity / self.gravity if self.gravity > 0.0 else 0.0
+        return self.motion.until(contact_time, flight)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The tables of a scene file that gives this scene back."""
+        striker: dict[str, Any] = {"mass": self.mass, "velocity": self.velocity}
+        target: dict[str, Any] = {} if self.target_mass is None else {"mass": self.target_mass}
+        if self.shape is not None and self.material is not None:
+            own, held = tables(self.shape, self.target, self.material, self.striker_material)
+            striker, target = own | striker, held | target
+        given = {
+            "striker": striker,
+            "target": target,
+            "model": vars(self.model).copy(),
+            "motion": {"impacts": self.motion.impacts} | self._ending(),
+            "law": {} if self.law is None else {"name": self.law.name, **self.law.values},
+        }
+        return {"name": self.name} | {key: table for key, table in given.items() if table}
+
+    def addressed(self) -> AbstractContextManager[None]:
+        """Inside, what a part refuses is said of this scene's file and keys."""
+        known = {} if self.shape is None else places(self.shape, self.target, "striker.velocity")
+        return addressed(self.source, known)
+
+    def check_single(self, method: str) -> None:
+        """Raise BadInput for several impacts, which need a memory that `method` does not have."""
+        if self.motion.impacts > 1:
+            reason = f"{self.motion.impacts}: {method} follows one impact; accepted: 1, or a law between two masses"
+            raise BadInput(Fault(self.source, "motion.impacts", reason))
+
+    def check_memory(self) -> None:
+        """Raise BadInput where no surface alone remembers: of a body with lengths, nu(t) changes the load curve."""
+        if not self.geometry.surface_remembers:
+            reason = '"bulk" changes nu in time, which no load curve follows'
+            raise BadInput(
+                Fault(self.source, "target.material.constant", f'{reason}; accepted: "poisson", or --method fe')
+            )
+
+    def check_sunk(self, depth: float, contact_radius: float = 0.0) -> None:
+        """Raise BadInput where an impact went deeper, m, than target or striker go, or its contact too wide, m."""
+        target = self.geometry.target
+        reason = target.check_depth(self.geometry.shape, depth) or target.check_contact(contact_radius)
+        if reason:
+            told = f"the striker sinks in by {depth:.3g} m: {reason}; cure: a lower velocity, a stiffer material"
+            raise BadInput(Fault(self.source, "striker.velocity", told))
+
+    def _ending(self) -> dict[str, float]:
+        """The end time, where the scene alone tells it."""
+        known = self.motion.end_time is not None or self.has_geometry or self.law is not None
+        return {"end_time": self.end_time} if known else {}

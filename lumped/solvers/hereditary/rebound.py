@@ -1,0 +1,193 @@
+"""Ting's rebound: the contact shrinks back over the places that it passed, doi 10.1115/1.3625192.
+
+At time t the contact radius is what it was at an earlier time t1(t), where int_{t1}^t E(t-s) d depth(s) = 0,
+and the force is F(t) = int_0^{t1} E(t-s) dy(s). The rebound is followed over s = -sqrt(t1), from the turn to
+0, where contact ends: the approach is known at every place, the time is what is sought, and all is smooth.
+
+The depth's memories are split at the turn t_m. With E(t) = sum_j E_j exp(-t/tau_j) + eta delta(t), E_inf among the
+E_j with an endless tau_j, Y_j(t1) of :mod:`lumped.solvers.hereditary.past` and X_j' = depth' - X_j/tau_j from
+X_j(t_m) = 0,
+    0 = sum_j E_j (Y_j(t1) exp(-(t-t_m)/tau_j) + X_j(t)) + eta depth'(t).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.errors import NotReached
+from lumped.result.ending import End
+from lumped.solvers.hereditary import approach as forth
+from lumped.solvers.hereditary.approach import Approach
+from lumped.solvers.hereditary.march import Piece, Settings, Stretch
+from lumped.solvers.hereditary.past import Past
+from lumped.solvers.hereditary.path import Path, falling_zero
+from lumped.solvers.hereditary.problem import Hereditary
+from lumped.solvers.hereditary.radau import Radau
+
+Array = NDArray[np.float64]
+TIME, DEPTH, VELOCITY, WORK, FORCE, EDGE, MEMORIES = range(7)
+NEWTON_STEPS = 16
+CONVERGED, ROUNDING = 1e-8, 1e-14
+FIRST = 0.5
+DIVERGED, TINY = 1e100, 1e-200
+# A turn with a force above the weight by less than this share of it is none: the striker has crept to rest.
+BORNE = 1e-9
+
+
+class Then(NamedTuple):
+    """The approach at times t1 of the nodes: depth (N,), memories of the load, aged to the turn, and Y, both (J, N)."""
+
+    depth: Array
+    loads: Array
+    rises: Array
+
+
+@dataclass(frozen=True)
+class Rebound:
+    """How far it was followed, why it ended, and the Newton steps it took.
+
+    Fields of the path over -sqrt(t1): time, depth, velocity, work done, force, depth at t1, memories X_j and Y_j.
+    """
+
+    path: Path
+    end: End
+    steps: int
+
+
+@dataclass(frozen=True)
+class Retreat:
+    """The pieces of a rebound that follows an approach."""
+
+    problem: Hereditary
+    past: Past
+    table: Radau
+    before: Path | None
+
+    def piece(self, place: float, length: float, state: Array) -> Piece | None:
+        """The piece of a length at a place, from the state there; None where Newton's steps fail."""
+        over, weights = place + length * self.table.nodes, length * self.table.integral
+        then = self._then(place, over, weights, state)
+        tried = (self._solved(weights, state, then, pace) for pace in self._paces(over))
+        return next((found for found in tried if found), None)
+
+    def _solved(self, weights: Array, state: Array, then: Then, pace: Array) -> Piece | None:
+        """Newton's steps for the pace p = dt/ds at the nodes, which lets nothing lack."""
+        for step in range(1, NEWTON_STEPS + 1):
+            now = Trial(self.problem, self.past.turn, weights, state, then, pace)
+            change = np.linalg.solve(now.change_of_lack(), now.lack)
+            pace = pace - change
+            size, scale = float(np.abs(change).max()), float(np.abs(pace).max())
+            if not size < DIVERGED:
+                return None
+            if size <= CONVERGED * scale or float(np.abs(weights @ change).max()) <= ROUNDING * now.time[-1]:
+                values = Trial(self.problem, self.past.turn, weights, state, then, pace).values()
+                forth = bool(np.all(np.diff(values[TIME]) >= -ROUNDING * values[TIME, -1]))
+                return Piece(values, step) if forth else None
+        return None
+
+    def _paces(self, over: Array) -> Iterator[Array]:
+        """Guesses, the best first."""
+        if self.before is not None:
+            yield self.before.field(TIME, np.clip(over, self.before.breaks[0], self.before.breaks[-1]))[1]
+        modulus = self.problem.modulus
+        yield self._pace(over, modulus.glassy, modulus.viscosity)
+        # Fast terms of the relaxation series are dashpots.
+        dashpots = modulus.viscosity + float(self.problem.stiffnesses @ np.array(modulus.times))
+        yield self._pace(over, modulus.equilibrium, dashpots)
+
+    def _pace(self, over: Array, stiffness: float, viscosity: float) -> Array:
+        """The pace on a spring and a dashpot near the turn t_m: E (t - t_m)^2 + 2 eta (t - t_m) = E (t_m - t1)^2."""
+        spring = stiffness * self.past.age(over)
+        return np.asarray(-2.0 * over * spring / np.maximum(np.hypot(viscosity, spring), TINY))
+
+    def _then(self, place: float, over: Array, weights: Array, state: Array) -> Then:
+        problem = self.problem
+        earlier = self.past.path.at(-over)
+        load, _ = problem.loads(earlier[0])
+        loads = np.vstack([load, earlier[forth.MEMORIES :]])
+        aged = np.exp(-problem.fadings[:, None] * self.past.age(over)) * loads
+        known = state[MEMORIES + problem.springs.size :]
+        return Then(earlier[0], aged, self.past.rises(place, over, weights, known))
+
+
+class Trial:
+    """One Newton iterate: times, motion and the lack that should vanish, at the nodes; `turn` is the time t_m."""
+
+    def __init__(self, problem: Hereditary, turn: float, weights: Array, state: Array, then: Then, pace: Array) -> None:
+        self.problem, self.weights, self.state, self.then, self.pace = problem, weights, state, then, pace
+        springs, rates = problem.springs, problem.fadings
+        self.time = state[TIME] + weights @ pace
+        fade = np.exp(-np.maximum(self.time - turn, 0.0) * rates[:, None])
+        self.force, self.forgotten = springs @ (fade * then.loads), (springs * rates) @ (fade * then.loads)
+        self.velocity = state[VELOCITY] + weights @ ((problem.gravity - self.force) * pace)
+        self.rise = weights @ (self.velocity * pace)
+        self.ageing = np.eye(pace.size) + (weights * pace) * rates[:, None, None]
+        held = state[MEMORIES : MEMORIES + rates.size, None] + self.rise
+        self.memories = np.linalg.solve(self.ageing, held[..., None])[..., 0]
+        self.fading = (springs * rates) @ (fade * then.rises)
+        self.lack = springs @ (fade * then.rises + self.memories) + problem.modulus.viscosity * self.velocity
+
+    def change_of_lack(self) -> Array:
+        """d lack / d pace, (N, N)."""
+        problem, weights, pace = self.problem, self.weights, self.pace
+        velocity = weights * (problem.gravity - self.force) + (weights * (pace * self.forgotten)) @ weights
+        depth = weights * self.velocity + (weights * pace) @ velocity
+        aged = depth - weights * (self.memories * problem.fadings[:, None])[:, None, :]
+        memory = np.tensordot(problem.springs, np.linalg.solve(self.ageing, aged), 1)
+        change = memory + problem.modulus.viscosity * velocity
+        return np.asarray(change - self.fading[:, None] * weights)
+
+    def values(self) -> Array:
+        """The fields at the first place and the nodes."""
+        state, values = self.state, np.empty((self.state.size, self.pace.size + 1))
+        values[:, 0] = state
+        values[TIME, 1:], values[VELOCITY, 1:], values[FORCE, 1:] = self.time, self.velocity, self.force
+        values[DEPTH, 1:], values[EDGE, 1:] = state[DEPTH] + self.rise, self.then.depth
+        values[WORK, 1:] = state[WORK] + self.weights @ (self.force * self.velocity * self.pace)
+        values[MEMORIES:, 1:] = np.vstack([self.memories, self.then.rises])
+        return values
+
+
+def rebound(
+    problem: Hereditary, inward: Approach, end_time: float, settings: Settings, before: Rebound | None = None
+) -> Rebound:
+    """Follow the rebound until contact closes, the striker approaches again, or `end_time`. Raises NotReached.
+
+    `before` is the same found with fewer nodes: its pieces are kept, and it is where Newton starts.
+    """
+    known = before.path if before else None
+    end, start = inward.path.end, _turned(problem, inward)
+    if start[FORCE] <= problem.gravity * (1.0 + BORNE):
+        return Rebound(Path.of([-end, -end * (1.0 - 1e-12)], [np.repeat(start[:, None], settings.points + 1, 1)],
+                               settings.table), End.SECOND_APPROACH, 0)  # fmt: skip
+    retreat = Retreat(problem, Past(inward.path, forth.VELOCITY, problem.fadings), settings.table, known)
+
+    def over(values: Array) -> bool:
+        return bool(values[TIME, -1] >= end_time)
+
+    stretch = Stretch(retreat.piece, FORCE, over, TIME)
+    found = stretch.march((-end, 0.0), start, FIRST * end, settings, before=known)
+    path = found.path
+    if found.over:
+        low, high = (float(place) for place in path.breaks[-2:])
+        time, _ = path.curve(TIME, 0.5 * (low + high))
+        path = path.until(falling_zero(lambda place: end_time - time(place), low, high))
+        return Rebound(path, End.TIME, found.steps)
+    if found.stuck:
+        if problem.gravity > 0.0:
+            return Rebound(path, End.SECOND_APPROACH, found.steps)
+        last = float(path.state(path.end)[TIME]) * problem.scales.time
+        raise NotReached(f"the rebound could not be followed beyond {last:.6g} s")
+    return Rebound(path, End.SEPARATED, found.steps)
+
+
+def _turned(problem: Hereditary, inward: Approach) -> Array:
+    """The state at the turn, the force from the memories as everywhere in the rebound."""
+    depth, _, work, _, *memories = inward.path.state(inward.path.end)
+    force = problem.springs @ np.append(problem.loads(depth)[0], memories)
+    return np.array([inward.end, depth, 0.0, work, force, depth, *np.zeros(2 * problem.springs.size)])

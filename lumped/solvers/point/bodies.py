@@ -1,0 +1,140 @@
+"""What moves, what it meets, what the law remembers between two events, and one step of the motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+from lumped.solvers.point.nodes import Nodes
+
+Array = NDArray[np.float64]
+# The least depth a law is asked for: powers below one of it stay finite, as do their slopes.
+TINY = 1e-200
+
+
+class Bodies(NamedTuple):
+    """The relative motion of two masses: reduced mass, kg; velocity at touch, m/s; gravity along it, m/s2."""
+
+    mass: float
+    velocity: float
+    gravity: float = 0.0
+
+
+class Stage(NamedTuple):
+    """Whether the bodies approach, the deepest indentation of this contact so far, m, and its speed at touch, m/s.
+
+    `turn`: the depth where the stage began, m; `kept`: what the law keeps of the stages before.
+    """
+
+    approaching: bool
+    deepest: float
+    speed: float
+    turn: float = 0.0
+    kept: tuple[float, ...] = ()
+
+
+class State(NamedTuple):
+    """Depth, m, its rate, m/s, the work lost since the first touch, J, and what the law remembers."""
+
+    depth: float
+    rate: float
+    lost: float
+    memory: tuple[float, ...] = ()
+
+
+class Step(NamedTuple):
+    """One step from `start`, `length` s long; gains, rates, depths and forces at the points of `nodes`, shape (s,).
+
+    A gain, m/s2, is the acceleration times the pace of the nodes: the rate's slope over the place.
+    """
+
+    start: State
+    length: float
+    nodes: Nodes
+    gain: Array
+    rate: Array
+    depth: Array
+    force: Array
+    end: State
+    iterations: int
+
+    @property
+    def last_acceleration(self) -> float:
+        """At its end, m/s2; not for a step whose nodes are mirrored."""
+        return float(self.gain[-1] / self.nodes.pace[-1])
+
+    def last_slope(self, values: Array) -> float:
+        """The slope over time, at its end, of what has these values at its points; not for mirrored nodes."""
+        return float(self.nodes.leaving @ values / (self.nodes.pace[-1] * self.length))
+
+    def accelerations(self, shares: Array) -> Array:
+        """By its polynomial, m/s2, at shares of its time in (0, 1], shape (n,); not for mirrored nodes."""
+        power, begun = self.nodes.power, self.nodes.begun
+        if power == 1:
+            return np.asarray(legendre.legval(2.0 * shares - 1.0, self.nodes.series @ self.gain))
+        low, high = self.nodes.roots
+        root = (shares + begun) ** (1.0 / power)
+        gains = legendre.legval(2.0 * (root - low) / (high - low) - 1.0, self.nodes.series @ self.gain)
+        return np.asarray(gains / (power * (high - low) * root ** (power - 1)))
+
+
+class PointLaw(Protocol):
+    """A force between two masses, F(depth, rate), N; depths >= 0 in m, rates in m/s, scalars or arrays.
+
+    Within one stage the force is smooth but for its corners. `tensile`: whether it can pull before the depth is zero.
+    """
+
+    @property
+    def tensile(self) -> bool: ...
+
+    def grading(self, stage: Stage) -> int:
+        """The power p for which a stage's force near depth zero is smooth in the p-th root of the time from there."""
+
+    def touch(self, bodies: Bodies) -> State:
+        """The state at first touch."""
+
+    def within(self, start: State, length: float) -> PointLaw:
+        """The law as the Radau points of one step see it, which begins at `start` and is `length` s long.
+
+        Itself without memory. With memory the force at one point depends on the depths at the others too: the
+        slope over depth is then a matrix (s, s).
+        """
+
+    def remembered(self, depth: Array) -> tuple[float, ...]:
+        """The memory at the end of such a step, from the depths at its points, shape (s,)."""
+
+    def force(self, depth: Any, rate: Any, stage: Stage) -> Any:
+        """F, compression positive."""
+
+    def tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+        """dF/d depth, N/m, and dF/d rate, N s/m."""
+
+    def corners(self, stage: Stage) -> tuple[float, ...]:
+        """Depths, m, in the order in which a stage meets them, where the force has a corner."""
+
+    def kept(self, depth: float, stage: Stage) -> tuple[float, ...]:
+        """What the next stage has to know of this one, which ends at `depth`."""
+
+    def between(
+        self, steps: Sequence[Step], place: NDArray[np.intp], share: Array, depth: Array, rate: Array, stage: Stage
+    ) -> Array:
+        """F at places in a row of steps, each shape (n,): which step, what share of it has passed, depth and rate."""
+
+    def returned(self, bodies: Bodies, last: State) -> tuple[float, State] | None:
+        """How long the bodies are apart after a contact, s, and the state when they meet again; None: for ever."""
+
+    def carried(self, depth: float, stage: Stage) -> float:
+        """The weight, N, under which a striker stays at rest at a depth; NaN of what creeps under every one."""
+
+    def lost(self, depth: Any, rate: Any, stage: Stage) -> Any:
+        """The part of the force whose work is not stored, N."""
+
+    def stored(self, depth: float, stage: Stage) -> float:
+        """Energy that the law could still give back at a depth, J."""
+
+    def time_scale(self, bodies: Bodies) -> float:
+        """A time in which an impact changes by its own size, s: about the elastic contact time."""

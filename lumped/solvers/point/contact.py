@@ -1,0 +1,125 @@
+"""One contact: approach and rebound by turns, until the bodies part, rest, or the time is over."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.errors import TooManySteps
+from lumped.result.ending import AT_REST, End
+from lumped.solvers.point.bodies import Bodies, PointLaw, Stage, State, Step
+from lumped.solvers.point.nodes import STAGES
+from lumped.solvers.point.phase import Event, March, Phase
+
+Array = NDArray[np.float64]
+MOST_TURNS = 2000
+# Of the velocity at touch: what leaves so slowly creeps back for ever, but for rounding.
+FAINTEST_EXIT = 1e-20
+
+
+@dataclass(frozen=True)
+class Contact:
+    """The phases of one contact and how it ended."""
+
+    phases: tuple[Phase, ...]
+    end: End
+
+    @property
+    def start_time(self) -> float:
+        """Touch, s."""
+        return self.phases[0].start_time
+
+    @property
+    def end_time(self) -> float:
+        """When it ended, s."""
+        return self.phases[-1].end_time
+
+    @property
+    def first(self) -> State:
+        """The state at touch."""
+        return self.phases[0].steps[0].start
+
+    @property
+    def last(self) -> State:
+        """The state at its end."""
+        return self.phases[-1].last.end
+
+    @property
+    def deepest(self) -> float:
+        """Largest depth, m."""
+        return max(float(step.depth.max()) for phase in self.phases for step in phase.steps)
+
+
+def contact(
+    law: PointLaw, bodies: Bodies, exit_rule: str, start: State, time: float, until: float, tolerance: float
+) -> Contact:
+    """One contact from `start` at `time`, s, to its end or to `until`, s. Raises TooManySteps.
+
+    `exit_rule`: "force", contact ends when the force returns to zero, or "depth", at depth zero.
+    `tolerance`: error of the rate in one step, relative to the velocity at first touch.
+    """
+    scale = law.time_scale(bodies)
+    stage = Stage(start.rate > 0.0, start.depth, abs(start.rate) or bodies.velocity, start.depth)
+    length = tolerance ** (law.grading(stage) / STAGES) * scale
+    corners = law.corners(stage)
+    phases: list[Phase] = []
+    for _ in range(MOST_TURNS):
+        events = _events(law, stage, exit_rule) | _corner(stage, corners)
+        march = March(law, stage, bodies, events, until, tolerance * bodies.velocity)
+        phase = march.phase(start, time, length)
+        phases.append(phase)
+        start, time, length = phase.last.end, phase.end_time, phase.last.length
+        if phase.event is None:
+            return Contact(tuple(phases), End.TIME)
+        if phase.event == "rest":
+            return Contact(tuple(phases), End.REST)
+        if phase.event == "exit":
+            faint = abs(start.rate) < FAINTEST_EXIT * bodies.velocity
+            return Contact(tuple(phases), End.REST if faint else End.SEPARATED)
+        if phase.event == "corner":
+            corners = corners[1:]
+            continue
+        stage = following(law, stage, start.depth)
+        start, corners = start._replace(rate=0.0), law.corners(stage)
+        if abs(phase.last.last_acceleration) * scale < AT_REST * bodies.velocity:
+            return Contact(tuple(phases), End.REST)
+    raise TooManySteps(f"contact: {MOST_TURNS} turns without separation; accepted: an earlier motion.end_time")
+
+
+def following(law: PointLaw, stage: Stage, depth: float) -> Stage:
+    """The stage after one which turns at a depth, m."""
+    deepest, kept = max(stage.deepest, depth), law.kept(depth, stage)
+    return Stage(not stage.approaching, deepest, stage.speed, depth, kept)
+
+
+def leaving(law: PointLaw, exit_rule: str) -> Event:
+    """What ends a contact: the force where the law can pull and must not, else the depth."""
+    return FORCE_LEFT if law.tensile and exit_rule == "force" else DEPTH_LEFT
+
+
+def _events(law: PointLaw, stage: Stage, exit_rule: str) -> dict[str, Event]:
+    """What ends a stage: the turn of the motion, and in the rebound the end of contact."""
+    if stage.approaching:
+        return {"turn": TURN}
+    return {"exit": leaving(law, exit_rule), "turn": TURN_BACK}
+
+
+def _corner(stage: Stage, corners: tuple[float, ...]) -> dict[str, Event]:
+    """The next corner of the force within a stage."""
+    if not corners:
+        return {}
+    sign, depth = (1.0 if stage.approaching else -1.0), corners[0]
+    return {"corner": Event(lambda step: sign * (depth - step.depth), lambda step: -sign * step.end.rate)}
+
+
+def _force_left(step: Step) -> Array:
+    """The force as long as there is depth; above the surface its mean stiffness times the depth goes on."""
+    return np.asarray(np.where(step.depth > 0.0, step.force, step.depth * (step.force.max() / step.depth.max())))
+
+
+TURN = Event(lambda step: step.rate, lambda step: step.last_acceleration)
+TURN_BACK = Event(lambda step: -step.rate, lambda step: -step.last_acceleration)
+DEPTH_LEFT = Event(lambda step: step.depth, lambda step: step.end.rate, surfaces=True)
+FORCE_LEFT = Event(_force_left, lambda step: step.last_slope(step.force), rough=True)

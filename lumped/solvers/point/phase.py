@@ -1,0 +1,177 @@
+"""The motion within one stage: steps as long as their accelerations are smooth, until an event, found exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.errors import TooManySteps
+from lumped.result.ending import AT_REST
+from lumped.solvers.point.bodies import Bodies, PointLaw, Stage, State, Step
+from lumped.solvers.point.nodes import STAGES, Nodes
+from lumped.solvers.point.step import NODES, roughness, solved
+
+Array = NDArray[np.float64]
+MOST_STEPS = 5000
+LOCATIONS = 60
+PRECISE = 1e-14  # of the time reached: where an event lies
+SHORTEST, LONGEST, CAUTION = 0.1, 5.0, 0.8
+# So much rougher than allowed a step need not be located any better to be refused.
+HOPELESS = 2.0
+
+
+class Event(NamedTuple):
+    """An event happens where its value, at the points of a step, is no longer above zero.
+
+    `slope`: the value's slope over time at the end of a step; where it is rough secants take its place. `surfaces`:
+    at depth zero.
+    """
+
+    value: Callable[[Step], Array]
+    slope: Callable[[Step], float]
+    rough: bool = False
+    surfaces: bool = False
+
+
+@dataclass(frozen=True)
+class Phase:
+    """Steps of one stage, beginning at `start_time`, and the name of the event that ended it; None: the time did."""
+
+    stage: Stage
+    start_time: float
+    steps: tuple[Step, ...]
+    event: str | None
+
+    @cached_property
+    def times(self) -> Array:
+        """Where its steps begin, and where the last one ends, s, shape (n + 1,)."""
+        return self.start_time + np.cumsum([0.0, *(step.length for step in self.steps)])
+
+    @property
+    def end_time(self) -> float:
+        return float(self.times[-1])
+
+    @property
+    def last(self) -> Step:
+        return self.steps[-1]
+
+
+@dataclass(frozen=True)
+class March:
+    """What one stage is marched with: the events by name, the last time, s, and the allowed roughness, m/s."""
+
+    law: PointLaw
+    stage: Stage
+    bodies: Bodies
+    events: Mapping[str, Event]
+    until: float
+    allowed: float
+
+    def phase(self, start: State, time: float, length: float) -> Phase:
+        """March from `start` with a first step of about `length`, s. Raises TooManySteps."""
+        steps: list[Step] = []
+        now, state, guess = time, start, np.full(STAGES, self.bodies.gravity)
+        power = self.law.grading(self.stage) if start.depth <= 0.0 else 1
+        for _ in range(MOST_STEPS):
+            length = min(length, self.until - now)
+            nodes = NODES.graded(power, (now - time) / length) if power > 1 else NODES
+            step, event = self._until_event(self._solved(state, length, guess * nodes.pace, nodes), now)
+            if step is None:
+                length *= SHORTEST
+                continue
+            rough = roughness(step) / self.allowed
+            if rough > 1.0:
+                length = step.length * step.nodes.again(_ratio(rough, step.nodes.power))
+                continue
+            steps.append(step)
+            now, state = now + step.length, step.end
+            event = event or ("rest" if self._rests(state) else None)
+            if event is not None or now >= self.until * (1.0 - PRECISE):
+                return Phase(self.stage, time, tuple(steps), event)
+            length = step.length * nodes.following(_ratio(rough, power))
+            guess = step.last_acceleration + step.last_slope(step.gain / step.nodes.pace) * length * NODES.points
+        raise TooManySteps(
+            f"contact: {MOST_STEPS} time steps reach {now:.3g} s of {self.until:.3g} s; "
+            "accepted: an earlier motion.end_time, or a law less stiff"
+        )
+
+    def _rests(self, state: State) -> bool:
+        """Whether gravity has pressed the striker to where the law carries it."""
+        weight = self.bodies.mass * self.bodies.gravity
+        if weight <= 0.0 or state.depth <= 0.0 or abs(state.rate) > AT_REST * self.bodies.velocity:
+            return False
+        return abs(self.law.carried(state.depth, self.stage) - weight) <= AT_REST * weight
+
+    def _solved(self, state: State, length: float, guess: Array, nodes: Nodes) -> Step | None:
+        return solved(self.law, self.stage, self.bodies, state, length, guess, nodes)
+
+    def _until_event(self, step: Step | None, now: float, known: str = "") -> tuple[Step | None, str | None]:
+        """The step, cut short at its first event; and at one before that which only the shorter step shows."""
+        event = None if step is None else self._first(step, known)
+        if step is None or event is None:
+            return step, known or None
+        located = self._located(step, event, now)
+        return (located, event) if known else self._until_event(located, now, event)
+
+    def _first(self, step: Step, beside: str = "") -> str | None:
+        """The event that happens first within a step, `beside` one that is known."""
+        others = {name: event for name, event in self.events.items() if name != beside}
+        places = {name: np.flatnonzero(event.value(step) <= 0.0) for name, event in others.items()}
+        found = {name: int(place[0]) for name, place in places.items() if place.size}
+        return min(found, key=lambda name: found[name]) if found else None
+
+    def _located(self, step: Step, name: str, now: float) -> Step | None:
+        """The step that ends where the event happens: Newton's method on its length, kept between what brackets it.
+
+        Or one near it that is too rough anyway.
+        """
+        event = self.events[name]
+        low, high, length = 0.0, 2.0 * step.length, _expected(step, event.value(step))
+        nodes = self._ending(step, event, length)
+        guess = nodes.pace * step.accelerations(nodes.points * (length / step.length))
+        previous: tuple[float, float] | None = None
+        for _ in range(LOCATIONS):
+            trial = self._solved(step.start, length, guess, nodes)
+            if trial is None:
+                return None
+            if roughness(trial) > HOPELESS * self.allowed:
+                return trial
+            at = float(event.value(trial)[-1])
+            slope = event.slope(trial)
+            if event.rough and previous is not None and previous[0] != length:
+                slope = (at - previous[1]) / (length - previous[0])
+            low, high = (low, length) if at <= 0.0 else (length, high)
+            following = length - at / slope if slope < 0.0 else low
+            if at == 0.0 or abs(following - length) <= PRECISE * (now + length):
+                return trial
+            previous, length = (length, at), following if low < following < high else 0.5 * (low + high)
+            nodes, guess = self._ending(step, event, length), trial.gain
+        return trial
+
+    def _ending(self, step: Step, event: Event, length: float) -> Nodes:
+        """The nodes of a step of another length, s, which ends with an event."""
+        left = self.law.grading(self.stage) if event.surfaces and step.nodes.power == 1 else 1
+        if left > 1:
+            return NODES.graded(left, mirrored=True)
+        power, begun = step.nodes.power, step.nodes.begun * step.length / length
+        return NODES.graded(power, begun) if power > 1 else NODES
+
+
+def _expected(step: Step, values: Array) -> float:
+    """After what time an event should happen, s, from its values at the points of a step: a line between two."""
+    after = int(np.flatnonzero(values <= 0.0)[0])
+    high, at_high = float(step.nodes.points[after]), float(values[after])
+    low, at_low = (float(step.nodes.points[after - 1]), float(values[after - 1])) if after else (0.0, -at_high)
+    share = high - at_high * (high - low) / (at_high - at_low) if at_high != at_low else high
+    return share * step.length
+
+
+def _ratio(rough: float, power: int) -> float:
+    """How much longer the root of the next step may be: the last Legendre terms fall with the power s of it."""
+    ratio = CAUTION * rough ** (-1.0 / STAGES) if rough > 0.0 else LONGEST
+    return float(min(max(ratio, SHORTEST ** (1.0 / power)), LONGEST ** (1.0 / power)))

@@ -1,0 +1,161 @@
+"""Depth, rate and force of a motion at any times, from the polynomials of its steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.result.ending import End
+from lumped.solvers.point.bodies import PointLaw, Step
+from lumped.solvers.point.contact import Contact
+from lumped.solvers.point.motion import Motion
+from lumped.solvers.point.nodes import STAGES, place_of
+from lumped.solvers.point.phase import Phase
+
+Array = NDArray[np.float64]
+# How near to a touch the rows begin, as a power of 1/2, in the length of its step.
+NEAREST = 96.0
+IN_FLIGHT = 17
+# Share of a step within which its first depth and the mean rate tell the depth better than its polynomial.
+EARLY = 1e-6
+
+
+class Row(NamedTuple):
+    """The steps of a stage side by side, n of them: starts and lengths, s, and what their nodes are, shape (n,).
+
+    `depths` and `rates` are those at their starts. `series`, shape (n, 2, s + 1), are the Legendre coefficients of
+    depth and rate over the place.
+    """
+
+    starts: Array
+    lengths: Array
+    depths: Array
+    rates: Array
+    powers: Array
+    begun: Array
+    mirrored: NDArray[np.bool_]
+    series: Array
+    graded: bool
+
+    @classmethod
+    def of(cls, phase: Phase) -> Row:
+        """Those of a phase."""
+        lengths = np.array([step.length for step in phase.steps])
+        starts = phase.times[:-1]
+        depths, rates = np.array([step.start[:2] for step in phase.steps]).T
+        powers = np.array([float(step.nodes.power) for step in phase.steps])
+        begun = np.array([step.nodes.begun for step in phase.steps])
+        mirrored = np.array([step.nodes.mirrored for step in phase.steps])
+        series = np.array([_series(step) for step in phase.steps])
+        return cls(starts, lengths, depths, rates, powers, begun, mirrored, series, bool((powers > 1.0).any()))
+
+
+@dataclass(frozen=True)
+class Track:
+    """A motion under its law, dense in time."""
+
+    law: PointLaw
+    motion: Motion
+
+    @cached_property
+    def times(self) -> Array:
+        """Where its steps begin and end, s, ascending; the force may jump at touch, so the instant before is there."""
+        ends = [phase.times for phase in self._phases]
+        touches = np.array([contact.start_time for contact in self.motion.contacts[1:]])
+        parted = np.array([contact.end_time for contact in self.motion.contacts[:-1]])
+        return np.unique(np.concatenate([*ends, np.nextafter(touches, 0.0), np.nextafter(parted, np.inf)]))
+
+    @cached_property
+    def rows(self) -> Array:
+        """Its times, some of each flight, and ever more towards a touch or an end of depth, where forces are steep."""
+        close = [self.times]
+        for one, following in pairwise(self.motion.contacts):
+            close.append(np.linspace(one.end_time, following.start_time, IN_FLIGHT))
+        for phase in self._phases:
+            for start, step in zip(phase.times, phase.steps, strict=False):
+                power, begun, mirrored = step.nodes.power, step.nodes.begun, step.nodes.mirrored
+                if power > 1 and begun == 0.0:
+                    share = step.length * 2.0 ** (-power * np.arange(1.0, NEAREST / power))
+                    close.append(start + step.length - share if mirrored else start + share)
+        return np.unique(np.concatenate(close))
+
+    def __call__(self, times: Array) -> Array:
+        """Depth, m, rate, m/s, and force, N, at `times`, shape (n,) from zero on: shape (3, n).
+
+        Where two contacts or stages meet the later one speaks, but the end of a contact is its own.
+        """
+        found = np.zeros((3, times.size))
+        for contact in self.motion.contacts:
+            self._fly(found, times, contact)
+        for phase in self._phases:
+            inside = (times >= phase.start_time) & (times <= phase.end_time)
+            if inside.any():
+                found[:, inside] = self.pressed(phase, times[inside])
+        return found
+
+    @cached_property
+    def _phases(self) -> list[Phase]:
+        return [phase for contact in self.motion.contacts for phase in contact.phases]
+
+    def touching(self, one: Contact) -> float:
+        """The force when a contact begins, N."""
+        phase, start = one.phases[0], np.zeros(1)
+        depth, rate = start + max(one.first.depth, 0.0), start + one.first.rate
+        return float(self.law.between(phase.steps, np.zeros(1, dtype=np.intp), start, depth, rate, phase.stage)[0])
+
+    def row(self, phase: Phase) -> Row:
+        """The steps of one of its phases."""
+        return self._rows[id(phase)]
+
+    @cached_property
+    def _rows(self) -> dict[int, Row]:
+        return {id(phase): Row.of(phase) for phase in self._phases}
+
+    def _fly(self, found: Array, times: Array, contact: Contact) -> None:
+        """Free flight, or rest, from the end of a contact on, until a later one overwrites it."""
+        after = times > contact.end_time
+        if not after.any():
+            return
+        elapsed = times[after] - contact.end_time
+        last, gravity = contact.last, self.motion.gravity
+        if contact.end is End.REST:
+            found[:, after] = np.array([[last.depth], [0.0], [contact.phases[-1].last.force[-1]]])
+            return
+        found[0, after] = last.depth + elapsed * (last.rate + 0.5 * gravity * elapsed)
+        found[1, after] = last.rate + gravity * elapsed
+        found[2, after] = 0.0
+
+    def pressed(self, phase: Phase, times: Array) -> Array:
+        """The columns at times within one of its phases, shape (3, n)."""
+        row = self.row(phase)
+        which = np.maximum(np.searchsorted(row.starts, times, side="right") - 1, 0)
+        elapsed = times - row.starts[which]
+        share = np.minimum(elapsed / row.lengths[which], 1.0)
+        place = place_of(share, row.powers[which], row.begun[which], row.mirrored[which]) if row.graded else share
+        depth, rate = np.einsum("kn,njk->jn", legendre_terms(2.0 * place - 1.0), row.series[which])
+        # Forces may rise with a small power of the depth: after a touch all digits of it count.
+        mean = 0.5 * (row.rates[which] + rate)
+        depth = np.where(share < EARLY, row.depths[which] + elapsed * mean, depth)
+        return np.array([depth, rate, self.law.between(phase.steps, which, share, depth, rate, phase.stage)])
+
+
+def legendre_terms(x: Array) -> Array:
+    """P_0 to P_s at places x in [-1, 1], shape (n,): shape (s + 1, n)."""
+    terms = np.empty((STAGES + 1, x.size))
+    terms[0], terms[1] = 1.0, x
+    for k in range(1, STAGES):
+        terms[k + 1] = ((2 * k + 1) * x * terms[k] - k * terms[k - 1]) / (k + 1)
+    return terms
+
+
+def _series(step: Step) -> Array:
+    """The coefficients of depth and rate: their slopes over the place integrated from the start of the step."""
+    slopes = np.array([step.nodes.pace * step.rate, step.gain])
+    series = step.length * (slopes @ step.nodes.series.T @ step.nodes.first)
+    series[:, 0] += step.start.depth, step.start.rate
+    return np.asarray(series)
