@@ -15,10 +15,9 @@ from fe_contact.methods import simulate
 from fe_contact.results.distance import distance
 from fe_contact.settings import RANGES, WAVES
 from fe_contact.studies.tradeoff import study_with_waves as study
-from fe_contact.studies.tradeoff.chart import plot_tradeoff
+from fe_contact.studies.tradeoff.chart import Signs, plot_tradeoff
 from fe_contact.studies.tradeoff.front import finite_elements, known_to, verdict
 from fe_contact.studies.tradeoff.point import REFERENCE, Point
-from fe_contact.studies.tradeoff.signs_chart import Signs
 from fe_contact.studies.tradeoff.targets import _block as block
 from fe_contact.studies.tradeoff.targets import _meshed as meshed
 from fe_contact.studies.tradeoff.targets import _rod as rod

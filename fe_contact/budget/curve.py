@@ -4,6 +4,12 @@ The abscissa is ``x = sqrt(t / duration)``: powers of the square root of time at
 polynomial, and marches whose ends differ a little are compared at equal shares of their contact. The force
 comes from the impulse, the one quantity that a step of any scheme knows exactly, by way of the mean force
 ``G = impulse / t``, which stays regular at touch: ``F = d(t G)/dt = G + x/2 dG/dx``.
+
+Contact radius over time, from the radii found in the steps of a march.
+
+The squared radius is smooth in time but for two corners: where the depth is greatest and, in a viscous contact,
+where the edge leaves the place up to which the surface was pressed down. A line drawn over a corner would cut it;
+a polynomial would swing. So each interval is looked at from both sides, and both must agree which way it bends.
 """
 
 from __future__ import annotations
@@ -15,7 +21,6 @@ import numpy as np
 import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.contact_radius import squared_radius
 from fe_contact.budget.local_polynomial import PLACES, LocalPolynomials, fitted_peak, peak
 from fe_contact.march.account import Energies, balanced
 from fe_contact.steppers.march import March, Strike
@@ -25,6 +30,7 @@ SHARES = np.linspace(0.0, 1.0, 601)
 EARLIEST = 4  # rows after touch that tell whether steps or shares are more crowded there
 LATE = 0.75  # of the contact: from here on path and speed count for those at separation
 DENSE = SHARES**2 * (3 - 2 * SHARES)  # shares of the contact, crowded at its ends, for peaks and norms
+INSIDE = np.arange(1, 8)[:, None] / 8  # places put into every interval
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,3 +230,44 @@ def _onwards(fine: Strike, coarse: Strike, weight: float) -> Strike:
     touches = [np.array([strike.touched_at, strike.depth, strike.velocity]) for strike in (fine, coarse)]
     touched_at, depth, velocity = (touches[0] + weight * (touches[0] - touches[1])).tolist()
     return replace(fine, touched_at=touched_at, depth=depth, velocity=velocity)
+
+
+def squared_radius(march: March) -> tuple[Array, Array]:
+    """Shares of the contact (n,), from touch to the end, and squared radius there, m^2.
+
+    Under a flat end it is the same from the first touch to the last.
+    """
+    if np.ptp(march.radius) == 0.0:
+        return np.array([0.0, 1.0]), np.full(2, march.radius[0] ** 2)
+    duration = float(march.time[-1])
+    keep = march.radius_time < duration * (1 - 1e-9)
+    time, square = march.radius_time[keep], march.radius[keep] ** 2
+    last = 0.0 if march.separated else float(march.radius[-1] ** 2)
+    turn, _ = peak(march.time, march.depth)
+    growing = int(np.searchsorted(time, turn))
+    if 3 <= growing < len(time):
+        before = slice(growing - 3, growing)
+        (at_turn,), _ = LocalPolynomials.through(time[before], square[None, before]).at(np.array([turn]))
+        time, square = np.insert(time, growing, turn), np.insert(square, growing, at_turn[0])
+    shares = np.concatenate([[0.0], time / duration, [1.0]])
+    return seen_from_both_sides(shares, np.concatenate([[0.0], square, [last]]))
+
+
+def seen_from_both_sides(x: Array, y: Array) -> tuple[Array, Array]:
+    """The samples with places in between, on the parabola from the left or the right, whichever bends less.
+
+    Where the two do not lie on the same side of the straight line, the line is kept.
+    """
+    if len(x) < 6:
+        return x, y
+    slope = np.diff(y) / np.diff(x)
+    bend = np.diff(slope) / (x[2:] - x[:-2])
+    start, end = x[2:-3], x[3:-2]
+    places = start + INSIDE * (end - start)
+    line = y[2:-3] + slope[2:-2] * (places - start)
+    left = y[2:-3] + (places - start) * (slope[1:-3] + bend[:-3] * (places - x[1:-4]))
+    right = y[3:-2] + (places - end) * (slope[3:-1] + bend[3:] * (places - x[4:-1]))
+    above, below = np.minimum(left, right), np.maximum(left, right)
+    between = np.where(above > line, above, np.where(below < line, below, line))
+    order = np.argsort(np.concatenate([x, places.ravel()]), kind="stable")
+    return np.concatenate([x, places.ravel()])[order], np.concatenate([y, between.ravel()])[order]

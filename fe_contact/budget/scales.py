@@ -2,11 +2,14 @@
 
 By the exact row of springs, by the target's exact load curve, or, where there is none, by one that a coarse mesh
 answers at a few depths.
+
+A scene of constant Poisson's ratio much like one of constant bulk modulus, of which the plan takes its scales.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -14,7 +17,6 @@ import numpy as np
 
 from fe_contact.assembly.forms import check_compressible
 from fe_contact.bodies.pressing import Still
-from fe_contact.budget.bulk_scales import half_space_stiffness, with_constant_nu
 from fe_contact.settings import TARGETS, Numerics
 from fe_contact.steppers.flat_end import FlatEnd
 from lumped.errors import BadInput
@@ -22,7 +24,7 @@ from lumped.laws import correspondence, mdr
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.sampled import SampledCurve
-from lumped.materials import Material
+from lumped.materials import Material, Relaxation
 from lumped.scene.answered import Answered
 from lumped.scene.indenter import Indenter
 from lumped.scene.scales import stiffest_impact
@@ -84,3 +86,39 @@ def _answer(scene: Scene, numerics: Numerics) -> LoadCurve:
     columns = zip(*((one.force, one.contact_radius) for one in pressed), strict=True)
     forces, widths = (tuple(float(value) for value in column) for column in columns)
     return SampledCurve(tuple(float(depth) for depth in depths), forces, widths)
+
+
+def with_constant_nu(scene: Scene, stiffness: Callable[[Material], float]) -> Scene:
+    """As stiff as the scene at once and, if it is a solid, in the end.
+
+    ``stiffness`` of the target, made of an elastic material, N or any unit; a striker that relaxes counts as the
+    half-space that it is near its contact.
+    """
+    striker = scene.striker_material
+    return replace(
+        scene,
+        material=_alike(scene.geometry.material, stiffness),
+        striker_material=None if striker is None else _alike(striker, half_space_stiffness),
+    )
+
+
+def half_space_stiffness(elastic: Material) -> float:
+    """Contact modulus of an elastic material, Pa."""
+    return elastic.contact_modulus().glassy
+
+
+def _alike(material: Material, stiffness: Callable[[Material], float]) -> Material:
+    """What lies between the stiffness at once and in the end is the network's, and the viscosity counts as a spring."""
+    if material.constant == "poisson":
+        return material
+    sudden = material.elastic(instant=True)
+    slow = material.elastic(instant=False) if material.young.relaxed > 0.0 else None
+    nu = sudden.nu if slow is None else slow.nu
+    young = material.young
+    springs = young.glassy - young.relaxed
+    wanted = stiffness(sudden) / stiffness(Material(Relaxation(1.0), nu))
+    share = (wanted - young.relaxed) / springs if springs > 0.0 else 1.0
+    network = Relaxation(
+        young.equilibrium, tuple(share * modulus for modulus in young.moduli), young.times, share * young.viscosity
+    )
+    return replace(material, young=network, nu=nu, constant="poisson", bulk_modulus=None)

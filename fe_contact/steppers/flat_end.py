@@ -2,26 +2,33 @@
 
 With a constant Poisson's ratio every point remembers in proportion to the depth, so that the force is the stiffness
 times the hereditary depth, exactly (Lee and Radok 1960, doi:10.1115/1.3644020), and it ends everywhere at once.
+
+One time step of an impact by a flat end: its area touches at once, so that depth alone remembers.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from types import ModuleType
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
+from fe_contact.bodies.memory import SurfaceMemory, step_law
 from fe_contact.bodies.pressing import Still
-from fe_contact.settings import TARGETS, Numerics
-from fe_contact.steppers.flat_stepping import FlatStepper
-from fe_contact.steppers.march import Snapshot, Strike
-from fe_contact.steppers.steps import Stepping
+from fe_contact.contact.problem import ContactSolution
+from fe_contact.errors import ContactLost
+from fe_contact.settings import SCHEMES, TARGETS, Numerics
+from fe_contact.steppers.march import Snapshot, Strike, Work
+from fe_contact.steppers.steps import OfSurface, State, Step, Stepping
+from fe_contact.steppers.striker import Inertia
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.schema.members import get
 
 SHALLOW = 1e-3  # depth over radius: every answer is in proportion
+TOUCHING = ContactSolution(np.ones(1), 0, True, (np.ones(1, dtype=bool),))
 
 
 @dataclass(frozen=True)
@@ -57,3 +64,61 @@ class FlatEnd:
     def felt(self, snapshot: Snapshot) -> tuple[Array, Array]:
         """What the snapshot says, of which its stepper takes none."""
         return snapshot.radii, snapshot.pressure
+
+
+class FlatStepper(OfSurface):
+    """Takes steps, each in closed form: the contract of :class:`fe_contact.steppers.steps.Stepping`.
+
+    ``stiffness``: force per depth for unit modulus, m; ``radius`` of the contact, m.
+    """
+
+    shortest = 1e-7  # the force falls straight to zero: what is left of it then is below every tolerance
+
+    def __init__(self, strike: Strike, stiffness: float, radius: float, numerics: Numerics) -> None:
+        self.strike, self.stiffness, self.radius, self.numerics = strike, stiffness, radius, numerics
+        self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
+        self.first_force = stiffness * (strike.relaxation.viscosity * strike.velocity + self._held(self.touch().memory))
+
+    def at_rest(self) -> SurfaceMemory:
+        """Of depth and force, at the one place."""
+        return SurfaceMemory.at_rest(np.ones(1), self.strike.relaxation, fields=2)
+
+    def standing(self) -> int:
+        """The one place there is."""
+        return 0
+
+    def clearance(self, surface: SurfaceMemory, depth: float) -> Array:
+        """Gap of the surfaces, m, (1,)."""
+        return np.asarray(surface.strain[0] - depth)
+
+    def step(self, state: State, steps: Sequence[Step], length: float) -> Step:
+        """The step of a length, s: force = stiffness (now depth + past), depth = free depth - give force.
+
+        Raises ContactLost where the body would have to pull.
+        """
+        strike = self.strike
+        law = step_law(strike.relaxation, self.scheme, length)
+        carried = state.memory.carried(law)
+        inertia = Inertia.of(strike, self.scheme, state, length)
+        yielding = 1.0 + self.stiffness * law.now * inertia.lever / strike.mass
+        response = (law.now * inertia.free_depth + float(carried[0, 0])) / yielding
+        if response <= 0.0:
+            raise ContactLost(state.time)
+        force = self.stiffness * response
+        strain = inertia.depth(force) * np.array([[1.0], [self.stiffness]])
+        moved = inertia.moved(force, state.memory.advanced(law, strain))
+        found_at = state.time + length * self.scheme.SAMPLE
+        return Step(length, moved, force, self.radius, found_at, response, TOUCHING, self.radius, Work(1, 1, 1))
+
+    def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
+        """None: the pressure is that of the indentation, infinite at a rim."""
+        return ()
+
+    def _held(self, memory: SurfaceMemory) -> float:
+        """What the springs press with, Pa m, which a dashpot alone holds back until touch."""
+        relaxation, strain = self.strike.relaxation, memory.strain[0, 0]
+        return float(relaxation.equilibrium * strain + np.array(relaxation.moduli) @ memory.branches[:, 0, 0])
+
+    def between(self, before: State, step: Step) -> float:
+        """None: all places stay in touch, and the penalty's softness is in the stiffness."""
+        return 0.0

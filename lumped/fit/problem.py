@@ -1,18 +1,30 @@
-"""The error of a law over its free parameters, the peak held where that is asked for."""
+"""The error of a law over its free parameters, the peak held where that is asked for.
+
+One impact of a law, as a fit needs it: depth and force at any time, and the peak, at the least cost.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped import laws
 from lumped.errors import BadInput, NotReached
-from lumped.fit.candidate import Candidate, candidate
 from lumped.fit.measured import Measured
 from lumped.fit.space import Space
+from lumped.laws._force_law import ForceLaw
+from lumped.laws._hereditary import Solve, once
+from lumped.laws._impacts import bodies_of
+from lumped.numbers.interpolation import local
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
+from lumped.solvers.point.motion import motion
+from lumped.solvers.point.outcome import peak_of
+from lumped.solvers.point.track import Track
 
 Array = NDArray[np.float64]
 Values = Mapping[str, float]
@@ -20,6 +32,9 @@ Values = Mapping[str, float]
 PEAK_POWER = 0.4
 PEAK_TOLERANCE, MOST_SOLVES = 1e-11, 40
 LARGEST_STEP = 3.0
+# Below what the differences of a Jacobian see.
+STEP_TOLERANCE, INTEGRATOR_TOLERANCE, RESULT_TOLERANCE = 1e-8, 1e-9, 1e-6
+PLACES = 801
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,3 +95,60 @@ class Problem:
             f"no {name} gives the measured peak, {self.measured.peak:.6g} N: at {math.exp(place):.6g} it is "
             f"{100.0 * math.expm1(off):+.3g} % off; cure: free another parameter, or fit without holding the peak"
         )
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """`columns` maps times from zero to `end`, s, to depth, m, and force, N, shape (2, n); `peak` in N."""
+
+    columns: Callable[[Array], Array]
+    peak: float
+    end: float
+
+    def force(self, time: Array) -> Array:
+        """F at any times since touch, N: none before touch and after the end."""
+        inside = (time >= 0.0) & (time <= self.end)
+        return np.where(inside, self.columns(np.clip(time, 0.0, self.end))[1], 0.0)
+
+    def half_depth(self) -> float:
+        """Half of the greatest depth, m."""
+        return 0.5 * float(self.columns(np.linspace(0.0, self.end, PLACES))[0].max())
+
+    def force_at_depth(self, depth: float) -> float:
+        """F in the approach at a depth, N."""
+        inward, force = self.columns(np.linspace(0.0, self.end, PLACES))
+        way = slice(0, int(np.argmax(inward)))
+        return float(local(inward[way], force[way], np.array([depth]))[0])
+
+
+def candidate(name: str, scene: Scene) -> Candidate:
+    """The impact of a scene by the law of this name. Raises BadInput, NotReached."""
+    module = laws.get(name)
+    law = module.of(scene)
+    if isinstance(law, ForceLaw):
+        return _of_force_law(law, scene)
+    if hasattr(module, "solve") and getattr(law, "exit", "force") == "force":
+        return _of_memory(module.solve, scene)
+    return _of_result(law.simulate(scene, RESULT_TOLERANCE))
+
+
+def _of_force_law(law: ForceLaw, scene: Scene) -> Candidate:
+    until = scene.end_time_of(law.elastic_contact_time(scene))
+    track = Track(law, motion(law, bodies_of(scene), law.exit, 1, until, STEP_TOLERANCE))
+    (contact,) = track.motion.contacts
+
+    def columns(time: Array) -> Array:
+        depth, _, force = track(time)
+        return np.array([depth, np.maximum(force, 0.0) if law.exit == "force" else force])
+
+    return Candidate(columns, peak_of(track, contact)[1], contact.end_time)
+
+
+def _of_memory(solve: Solve, scene: Scene) -> Candidate:
+    answer = once(scene, INTEGRATOR_TOLERANCE, solve)
+    return Candidate(lambda time: answer.columns(time)[[0, 2]], answer.values["peak_force"] or 0.0, answer.times[-1])
+
+
+def _of_result(result: Result) -> Candidate:
+    history, peak = result.history, result.quantities["peak_force"].value or 0.0
+    return Candidate(lambda t: np.array([history.resampled(t).depth, history.force_at(t)]), peak, history.time[-1])

@@ -1,6 +1,8 @@
 """A Prony series from a modulus known otherwise: as E(s), as samples of E(t), as storage and loss moduli.
 
 The paper's general route (its Fig. 4): what a material is known by becomes a series, and a series goes into every law.
+
+What is measured of a Prony series: its decay over time, or its answer to oscillations.
 """
 
 from __future__ import annotations
@@ -16,11 +18,9 @@ from lumped.materials.dynamic_moduli import DynamicModuli
 from lumped.materials.fidelity import Fidelity
 from lumped.materials.laplace import Transform, relaxation_modulus
 from lumped.materials.relaxation import Relaxation
-from lumped.materials.responses import Decay, Oscillation, stacked
 from lumped.materials.spectrum import Spectrum, Target, fitted
 
 Array = NDArray[np.float64]
-
 # Candidate times a decade for data: finer than data can tell apart.
 DENSE = 8.0
 # Candidates reach so many decades beyond the window of the data: what relaxes outside is seen as its flank.
@@ -37,6 +37,8 @@ ENOUGH = 0.1
 LAST = 0.1
 # Inversion errs by some 1e-11 of the modulus.
 LEAST_TOLERANCE = 1e-9
+# exp(-x) is zero beyond.
+FADED = 745.0
 
 
 @dataclass(frozen=True)
@@ -186,3 +188,54 @@ def _outside(
     before = math.inf if glassy is None else max(glassy - found[0], series.glassy - known[0]) / known[0]
     after = math.inf if relaxed is None else max(known[-1], found[-1]) / relaxed - 1.0
     return float(before), float(after)
+
+
+@dataclass(frozen=True, eq=False)
+class Decay:
+    """E(t) at `times`, s, shape (m,), of which the first may be 0 and the last infinite."""
+
+    times: Array
+
+    @property
+    def steady(self) -> Array:
+        return np.ones((self.times.size, 1))
+
+    def of(self, taus: Array) -> Array:
+        return np.exp(-self._ages(taus))
+
+    def slope(self, taus: Array) -> Array:
+        ages = self._ages(taus)
+        return np.asarray(ages * np.exp(-ages))
+
+    def _ages(self, taus: Array) -> Array:
+        with np.errstate(over="ignore"):
+            return np.minimum(self.times[:, None] / taus, FADED)
+
+
+@dataclass(frozen=True, eq=False)
+class Oscillation:
+    """Storage modulus and, below it, loss modulus at angular frequencies `omega`, 1/s, (m,): 2m rows."""
+
+    omega: Array
+    viscous: bool = False
+
+    @property
+    def steady(self) -> Array:
+        still, ones = np.zeros_like(self.omega), np.ones_like(self.omega)
+        columns = [np.concatenate([ones, still])]
+        if self.viscous:
+            columns.append(np.concatenate([still, self.omega]))
+        return np.column_stack(columns)
+
+    def of(self, taus: Array) -> Array:
+        turn = 1j * self.omega[:, None] * taus
+        return stacked(turn / (1.0 + turn))
+
+    def slope(self, taus: Array) -> Array:
+        turn = 1j * self.omega[:, None] * taus
+        return stacked(turn / (1.0 + turn) ** 2)
+
+
+def stacked(modulus: NDArray[np.complex128]) -> Array:
+    """Real parts above imaginary parts, (2m, ...) from (m, ...)."""
+    return np.concatenate([modulus.real, modulus.imag])

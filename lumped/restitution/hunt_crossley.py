@@ -5,15 +5,20 @@ nowhere else: both exits are one. v dv/((1 + chi v) depth^n) is exact, whence fo
     ln((1+d)/(1-e d)) = d (1+e).
 With 2s for either side, 1+d = s exp(s)/sinh(s) and 1 - e d = s exp(-s)/sinh(s): in the Langevin function
 L(s) = coth(s) - 1/s the law reads d = s (1 + L), e = (1 - L)/(1 + L), where no digit is lost at either end.
+
+The Langevin function L(s) = coth(s) - 1/s and its inverse, to full precision at both ends.
 """
 
 from __future__ import annotations
 
 import math
 
-from lumped.restitution._langevin import inverse_langevin, langevin, langevin_slope
 from lumped.restitution._newton import newton
 from lumped.restitution.base import check_damping, check_restitution, formulas
+
+# Odd denominators of the continued fraction s/(3 + s^2/(5 + s^2/(7 + ...))); exact to rounding up to s = 1.
+FRACTION = range(21, 1, -2)
+FRACTION_BELOW = 1.0
 
 
 def restitution(damping: float, exit: str = "force") -> float:
@@ -82,3 +87,34 @@ published = formulas(
     gonthier=gonthier,
     hu_guo=hu_guo,
 )
+
+
+def langevin(s: float) -> tuple[float, float]:
+    """L(s) and 1 - L(s), s >= 0, neither from the difference of nearly equal numbers."""
+    if s < FRACTION_BELOW:
+        tail = 0.0
+        for odd in FRACTION:
+            tail = s * s / (odd + tail)
+        rise = tail / s if s else 0.0
+        return rise, 1.0 - rise
+    fading = math.exp(-2.0 * s)
+    rest = 1.0 / s - 2.0 * fading / (1.0 - fading)
+    return 1.0 - rest, rest
+
+
+def langevin_slope(s: float) -> float:
+    """L'(s) = 1 - L^2 - 2 L/s, s > 0."""
+    rise, rest = langevin(s)
+    return rest * (1.0 + rise) - 2.0 * rise / s
+
+
+def inverse_langevin(rise: float, rest: float) -> float:
+    """s with L(s) = rise = 1 - rest, both given so that neither loses digits. Raises NotReached."""
+    if rise == 0.0:
+        return 0.0
+
+    def value_and_slope(s: float) -> tuple[float, float]:
+        found, left = langevin(s)
+        return found - rise if s < FRACTION_BELOW else rest - left, langevin_slope(s)
+
+    return newton(value_and_slope, rise * (3.0 - rise * rise) / (rest * (1.0 + rise)))

@@ -14,10 +14,10 @@ from scipy.integrate import solve_ivp
 import fe_contact
 import lumped
 from fe_contact.bodies.memory import SurfaceMemory, area_weights
-from fe_contact.bodies.released import Released
 from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs
 from fe_contact.cli import main
+from fe_contact.march.flight import Released
 from fe_contact.reference import strike_of
 from lumped.laws import mdr
 from lumped.materials import Relaxation

@@ -12,7 +12,7 @@ import pytest
 import fe_contact
 from fe_contact.reference import solve
 from fe_contact.settings import Numerics
-from fe_contact.steppers.flat_stepping import FlatStepper
+from fe_contact.steppers.flat_end import FlatStepper
 from fe_contact.steppers.march import Strike
 from lumped import BadInput, Material, Model, Relaxation, Result, Scene, laws, simulate
 from lumped.scene.scene import Motion

@@ -16,7 +16,7 @@ from fe_contact.dynamics.march import Choices, Moment
 from fe_contact.dynamics.pressed import Enforced
 from fe_contact.dynamics.schemes import generalised_alpha
 from fe_contact.dynamics.state import State, internal, undeformed
-from fe_contact.waves.flight import Flights
+from fe_contact.waves.bounces import Flights
 from lumped.materials import Relaxation
 
 STEP, PATIENCE = 0.02, 32

@@ -21,8 +21,7 @@ from fe_contact.methods import simulate
 from fe_contact.reference import strike_of
 from fe_contact.steppers.march import March
 from fe_contact.waves.half_space_body import moving
-from fe_contact.waves.impact import motion, record
-from fe_contact.waves.parting import parting
+from fe_contact.waves.impact import motion, parting, record
 from fe_contact.waves.targets import half_space
 from lumped import BadInput, Result, Scene, laws
 from lumped.materials.radiation import radiation_coefficient

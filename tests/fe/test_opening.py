@@ -9,7 +9,7 @@ from scipy.integrate import quad
 from fe_contact.bodies.memory import step_law
 from fe_contact.bodies.pressing import contact_end
 from fe_contact.schemes import galerkin
-from fe_contact.steppers.opening import just_open, opened
+from fe_contact.steppers.fixed_stepping import just_open, opened
 from lumped.materials import Relaxation
 
 SOLID = Relaxation(1.0, (2.0, 0.7), (0.05, 0.6))

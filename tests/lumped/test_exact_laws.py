@@ -19,9 +19,8 @@ from lumped.result.ending import End
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
 from lumped.solvers.mdr.coarse import coarse, problem_of
-from lumped.solvers.mdr.grid import Grid
 from lumped.solvers.mdr.memory import fading
-from lumped.solvers.mdr.nest import Nest, limit, predicted_turn
+from lumped.solvers.mdr.nest import Grid, Nest, limit, predicted_turn
 
 Array = NDArray[np.float64]
 

@@ -21,8 +21,8 @@ from lumped.load_curves import (
     Punch,
     SneddonSphere,
 )
-from lumped.load_curves.dual_equation import DualEquation
 from lumped.load_curves.layer import deficit
+from lumped.load_curves.layer_curve import DualEquation
 from lumped.load_curves.thin_layer import compressible, incompressible
 from lumped.numbers.quadrature import gauss
 

@@ -19,10 +19,9 @@ from lumped import Scene, laws, simulate
 from lumped.errors import BadInput, NotReached
 from lumped.paper import Claim, Examples, Value, assumptions, claims, misprints, recompute, rules
 from lumped.paper.assumptions import FAILS, HOLDS, OPEN, Assumption
-from lumped.paper.examples.concrete_impacts import proposed
+from lumped.paper.examples.concrete_impacts import plateau_cut, proposed
 from lumped.paper.examples.dented_surface import DentedSurface
 from lumped.paper.examples.given import Steel
-from lumped.paper.examples.plateau import plateau_cut
 from lumped.paper.examples.ring_impact import impact
 from lumped.paper.examples.steel_impacts import R1_of_peak, damped_of_peak, elastic_of_peak, solid
 from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNJUDGED, UNKNOWN, UNPRINTED, Rule, half_unit

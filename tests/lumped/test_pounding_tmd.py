@@ -22,8 +22,7 @@ from lumped.ptmd import Memory, Oscillator, PoundingDamper, PtmdResult, Ring, St
 from lumped.ptmd import exact as exact_route
 from lumped.ptmd.crossing import first_fall
 from lumped.ptmd.equations import Equations, Stages
-from lumped.ptmd.exact import Flow
-from lumped.ptmd.exponential import exponential
+from lumped.ptmd.exact import Flow, exponential
 from lumped.ptmd.integrated import Rates
 from lumped.ptmd.march import most_rows
 from lumped.ptmd.phase import ROWS_PER_PERIOD

@@ -9,9 +9,8 @@ from scipy.special import j1
 
 from lumped.errors import BadInput, NotReached
 from lumped.load_curves import Cylinder, Layer, LineLayer, Ring
-from lumped.load_curves.annulus import compliances, hole
 from lumped.load_curves.plane_contact import collocation
-from lumped.load_curves.ring_kernel import ring_compliance
+from lumped.load_curves.ring_contact import compliances, hole, ring_compliance
 from lumped.numbers.quadrature import gauss
 
 RINGS = [Ring(0.006, 0.010, 0.003, 0.3), Ring(0.0099, 0.010, 0.003, 0.49), Ring(0.006, 0.010, 0.003, 0.5)]

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lumped import BadInput, History
-from lumped.result import score
+from lumped import BadInput, History, score
 from lumped.result.score import Curve, normalized_error, read_curve
 
 

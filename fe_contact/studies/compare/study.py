@@ -1,4 +1,7 @@
-"""Lumped laws and a measured curve against the finite-element reference: scores, errors and error bars."""
+"""Lumped laws and a measured curve against the finite-element reference: scores, errors and error bars.
+
+A load curve by slow indentation, for the laws, where the target has none in closed form.
+"""
 
 from __future__ import annotations
 
@@ -7,23 +10,31 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.budget.scales import has_curve
+from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.reference import Solved
 from fe_contact.studies.compare.deviations import force_bars, force_errors, pressure_error, radius_error
 from fe_contact.studies.compare.nested_areas import NestedAreas, nested_areas
-from fe_contact.studies.compare.slow_curve import known
 from fe_contact.studies.compare.told import Told
 from lumped import simulate
 from lumped.errors import FeContactError
 from lumped.laws import get
+from lumped.load_curves.sampled import SampledCurve
 from lumped.result.result import RULED_RELATIVE, Result
 from lumped.result.score import Curve as Measured
 from lumped.result.score import score
+from lumped.scene.answered import Answered
+from lumped.scene.indenter import Indenter
+from lumped.scene.scene import Scene
 
 DEFAULT_LAWS = ("hertz", "correspondence", "ting", "mdr")
 LAW_TOLERANCE = 1e-6  # of a law's own integration: far below any reference's bar
 QUANTITIES = (*RULED_RELATIVE, "peak_time", "restitution")
 DISTANCES = ("work", "loss", "shape", "peak_shift")  # of the two curves, without a bar
+DEPTHS = 16
+SHALLOWEST, DEEPEST = 1e-2, 1.02  # over the depth of the impact
+TOLERANCE = 3e-4
 
 
 @dataclass(frozen=True)
@@ -130,3 +141,20 @@ def _bar(result: Result, name: str) -> float:
     if not quantity.value or quantity.error is None:
         return 0.0
     return quantity.error if name == "restitution" else quantity.error / abs(quantity.value)
+
+
+def known(scene: Scene, depth: float) -> tuple[Scene, float]:
+    """The scene on a curve that finite elements found down to a depth, m, and the force's relative error on it.
+
+    As it is, and 0, where the curve is known in closed form or no slow indentation is. Raises NotReached.
+    """
+    if scene.target.only_with_inertia or not scene.geometry.surface_remembers or has_curve(scene):
+        return scene, 0.0
+    asked = tuple(float(one) for one in np.geomspace(SHALLOWEST * depth, DEEPEST * depth, DEPTHS))
+    slow = Indenter(scene.profile, scene.geometry.material, scene.target, scene.striker_material)
+    pressed = indent(slow, asked, {"tolerance": TOLERANCE})
+    forces = pressed.force / (pressed.modulus * scene.geometry.shape.total)
+    curve = SampledCurve(
+        asked, tuple(float(force) for force in forces), tuple(float(radius) for radius in pressed.contact_radius)
+    )
+    return Answered.by(scene, curve), float(np.max(pressed.force_error / pressed.force))

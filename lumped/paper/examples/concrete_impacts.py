@@ -1,16 +1,25 @@
-"""Impacts of the paper's concrete striker, whose head and pole are not printed: radius and section are assumed."""
+"""Impacts of the paper's concrete striker, whose head and pole are not printed: radius and section are assumed.
+
+Section 4.3: a force cut at a plateau, which lasts until the impulse is the uncut one's.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.errors import BadInput, Fault
 from lumped.laws import correspondence
 from lumped.materials import Material
 from lumped.materials.networks import sls
 from lumped.paper.examples.given import Concrete
-from lumped.paper.examples.plateau import PlateauCut, plateau_cut
 from lumped.paper.examples.value import read
+from lumped.result.history import History
 from lumped.result.result import Result
+from lumped.result.score import Curve
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.shapes import Sphere
@@ -18,6 +27,7 @@ from lumped.shapes import Sphere
 TOLERANCE = 1e-6
 # The fit takes the printed moduli as contact moduli, so Poisson's ratio plays no part.
 NU = 0.0
+Array = NDArray[np.float64]
 
 
 @cache
@@ -37,3 +47,36 @@ def cut_at_measured_peak(concrete: Concrete) -> PlateauCut:
     """
     impact = proposed(concrete, min(concrete.radii), max(concrete.velocities))
     return plateau_cut(impact.history, read(impact, "peak_force").value / (1.0 + concrete.peak_error))
+
+
+@dataclass(frozen=True, eq=False)
+class PlateauCut:
+    """The cut force, and what the cut changes: duration, s, and impulse, N s, before and after."""
+
+    curve: Curve
+    duration: tuple[float, float]
+    impulse: tuple[float, float]
+
+
+def plateau_cut(history: History, plateau: float) -> PlateauCut:
+    """The force of `history` until it first reaches `plateau`, N, then flat until the areas are equal.
+
+    The area is the impulse, so the striker leaves as fast as without the cut. Raises BadInput for a plateau that
+    the force does not reach.
+    """
+    time, force = np.asarray(history.time), np.asarray(history.force)
+    if not force[0] < plateau < force.max():
+        accepted = f"accepted: between the first force {force[0]:.6g} N and the peak {force.max():.6g} N"
+        raise BadInput(Fault("plateau cut", "plateau", f"{plateau:.6g} N; {accepted}"))
+    i = int(np.argmax(force >= plateau))
+    reached = float(np.interp(plateau, force[i - 1 : i + 1], time[i - 1 : i + 1]))
+    rising = np.append(time[:i], reached), np.append(force[:i], plateau)
+    whole, before = _impulse(time, force), _impulse(*rising)
+    end = reached + (whole - before) / plateau
+    curve = Curve(np.append(rising[0], [end, end]), np.append(rising[1], [plateau, 0.0]))
+    durations = float(time[-1] - time[0]), end - float(time[0])
+    return PlateauCut(curve, durations, (whole, _impulse(curve.time, curve.force)))
+
+
+def _impulse(time: Array, force: Array) -> float:
+    return float(np.trapezoid(force, time))

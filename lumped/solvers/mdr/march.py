@@ -1,15 +1,33 @@
-"""One impact of the row of springs: approach, then rebound."""
+"""One impact of the row of springs: approach, then rebound.
+
+One phase of an impact, the approach or the rebound, followed to its exact end.
+
+One step of the approach: the edge stands where the profile meets the surface.
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
+from lumped.errors import NotReached, TooManySteps
 from lumped.result.ending import AT_REST, End
-from lumped.solvers.mdr.growing import grown
+from lumped.solvers.mdr.memory import Fading, fadings
 from lumped.solvers.mdr.pace import Pace
-from lumped.solvers.mdr.phase import Phase
 from lumped.solvers.mdr.retreat import retreat
-from lumped.solvers.mdr.row import Instant, Problem, Row
+from lumped.solvers.mdr.row import Instant, Place, Problem, Row, Step, followed, followed_bend
+from lumped.solvers.mdr.springs import Springs, Values, stretched, yielding
+
+LOCATING_STEPS = 60
+CLOSE = 1e-13
+SHORTEST = 1e-14
+AT_END = 1.0 - 1e-12
+SECANTS = 60
+# The last correction of the rate; what is left after it is the product of two such.
+CONVERGED = 1e-9
+# Gauss' two points on (0, 1).
+GAUSS = (0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0))
 
 
 @dataclass(frozen=True)
@@ -70,3 +88,134 @@ def _track(inward: Inward, outward: list[Instant], end: End, beyond: list[Instan
     row, last = inward.row, (outward or inward.instants)[-1]
     held = row.springs.held(row.problem.modulus, last.depth, row.even)
     return Track(inward.instants, outward, end, 2.0 * row.spent, 2.0 * (row.released + held), beyond or [])
+
+
+@dataclass(frozen=True)
+class Phase:
+    """How to try a step, how to take it, and what is `left` of the phase after it: at zero it is over."""
+
+    attempt: Callable[[Instant, float], Step]
+    take: Callable[[Step], None]
+    left: Callable[[Step], float]
+
+    def run(
+        self, start: Instant, pace: Pace, end_time: float, slow: float, most: int
+    ) -> tuple[list[Instant], Step | None]:
+        """Steps until nothing is left, until `end_time`, or until the velocity has died away below `slow`.
+
+        Returns the instants, and the step after which nothing was left (None in the other cases). Raises
+        NotReached, and TooManySteps after `most` of them.
+        """
+        track, level = [start], start.velocity  # which is zero at the turn: what is left there is not known
+        for _ in range(most):
+            now = track[-1]
+            h = min(pace.propose(now), end_time - now.time)
+            if h <= SHORTEST * now.time:
+                raise NotReached(f"the steps became too short at {now.time:.6g} s")
+            step = self.attempt(now, h)
+            if not pace.accepts(now, step.now):
+                continue
+            over = self.left(step) <= 0.0
+            if over:
+                step = self._located(now, step, level)
+            self.take(step)
+            track.append(step.now)
+            level = self.left(step)
+            if over or step.now.time >= AT_END * end_time or 0.0 < step.now.velocity < slow:
+                return track, step if over else None
+        raise TooManySteps(
+            f"contact had not ended after {most} steps: accepted: a looser tolerance, an earlier end_time"
+        )
+
+    def _located(self, now: Instant, beyond: Step, level: float) -> Step:
+        """The step from `now`, with `level` left, that ends with nothing left: secant in a bracket, Illinois."""
+        low, high = 0.0, beyond.now.time - now.time
+        miss_high = self.left(beyond)
+        miss_low = level if level > 0.0 else -miss_high
+        step, close, side = beyond, CLOSE * max(miss_low, -miss_high), 0
+        for _ in range(LOCATING_STEPS):
+            if -miss_high <= close:
+                break
+            h = high - miss_high * (high - low) / (miss_high - miss_low)
+            if not low < h < high:
+                h = 0.5 * (low + high)
+            step = self.attempt(now, h)
+            miss = self.left(step)
+            if abs(miss) <= close:
+                break
+            if miss > 0.0:
+                low, miss_low = h, miss
+                miss_high *= 0.5 if side == 1 else 1.0
+                side = 1
+            else:
+                high, miss_high = h, miss
+                miss_low *= 0.5 if side == -1 else 1.0
+                side = -1
+        return step
+
+
+def grown(row: Row, now: Instant, h: float) -> Step:
+    """A step of length h, s, not yet taken. Raises NotReached."""
+    modulus = row.problem.modulus
+    faded = fadings(modulus, h)
+    rate, width, pressed = _rate(row, now, h, faded)
+    rest = now.depth + rate * (h - pressed)
+    shortly, fresh = fadings(modulus, pressed), [0.0] * len(faded)
+    even, own = stretched(modulus, row.even, faded, rate), stretched(modulus, fresh, shortly, rate)
+    joined = Springs.one(width, rest, [z - mine for z, mine in zip(even, own, strict=True)])
+    springs = row.springs.aged([fade.left for fade in faded]).plus(joined)
+    spent = row.springs.spent(modulus, row.even, faded, h, rate)
+    spent += Springs(width, 0.0, 0.0, fresh, fresh).spent(modulus, fresh, shortly, pressed, rate)
+    velocity, depth, edge = 2.0 * rate - now.velocity, now.depth + h * rate, now.edge + width
+    axis = followed(modulus, row.axis, faded, now.velocity, velocity, h)
+    kept = _kept(row, now, (velocity, edge, now.edge * rate + width * (depth - rest) / h), axis, faded, h)
+    lately = [k - before * fade.left for k, before, fade in zip(kept, row.kept, faded, strict=True)]
+    instant = row.instant(now.time + h, depth, velocity, edge, springs, axis, kept)
+    place = Place(instant.time, depth, edge, axis, joined, lately)
+    return Step(instant, springs, even, axis, kept, spent, 0.0, place)
+
+
+def _kept(
+    row: Row, now: Instant, after: tuple[float, float, float], axis: Values, faded: list[Fading], h: float
+) -> Values:
+    """What all pressed springs lack, after a step, to as many like the one at the axis; with `after` the velocity and
+    the edge then, and the mean of their product over the step: by so much the springs are stretched.
+    """
+    modulus, (velocity, edge, mean) = row.problem.modulus, after
+    load = [now.edge * z - k for z, k in zip(row.axis, row.kept, strict=True)]
+    load = followed_bend(modulus, load, faded, now.edge * now.velocity, mean, edge * velocity, h)
+    return [edge * z - y for z, y in zip(axis, load, strict=True)]
+
+
+def _rate(row: Row, now: Instant, h: float, faded: list[Fading]) -> tuple[float, float, float]:
+    """The rate at which the depth grows: m (v1 - v0) = m g h - int F dt with v0 + v1 twice the rate.
+
+    With it what `_touched` says.
+    """
+    modulus, mass, width = row.problem.modulus, row.problem.mass, row.springs.width
+    coasting = now.velocity + 0.5 * h * row.problem.gravity
+    coasting -= row.springs.impulse(modulus, now.depth, row.even, faded, h) / mass
+    give = yielding(modulus, faded, h) / mass
+    rate, before, missed = now.velocity + 0.5 * h * now.acceleration, 0.0, 0.0
+    for secant in range(SECANTS):
+        wider, pressed = _touched(row, now, h, rate)
+        own = wider * yielding(modulus, fadings(modulus, pressed), pressed) / mass if wider else 0.0
+        miss = rate * (1.0 + width * give + own) - coasting
+        slope = 1.0 + (width + wider) * give
+        if secant and rate != before:
+            slope = max((miss - missed) / (rate - before), 0.1 * slope)
+        before, missed = rate, miss
+        rate -= miss / slope
+        if abs(rate - before) <= CONVERGED * (abs(now.velocity) + abs(rate)):
+            return rate, wider, pressed
+    raise NotReached("the velocity within one step of the spring row did not converge")
+
+
+def _touched(row: Row, now: Instant, h: float, rate: float) -> tuple[float, float]:
+    """Width of the springs that a step touches, m, and for how long they are pressed, s, by their mean profile."""
+    curve, depth = row.problem.shape.load_curve, now.depth + h * rate
+    width = float(curve.contact_radius(depth)) - now.edge if rate > 0.0 else 0.0
+    if width <= 0.0:
+        return 0.0, 0.0
+    low, high = (float(curve.depth(now.edge + share * width)) for share in GAUSS)
+    return width, min(max((depth - 0.5 * (low + high)) / rate, 0.0), h)
