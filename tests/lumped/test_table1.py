@@ -31,7 +31,8 @@ def test_depths_are_compared_with_the_length_that_is_named(row: Row) -> None:
     """Two bodies: the radius of the gap between them, 1/R = 1/R1 + 1/R2."""
     own = row.to_dict()
     if row.bodies == 2:
-        assert row.length == pytest.approx(1.0 / sum(1.0 / radius for name, radius in own.items() if "radius" in name), rel=1e-14)
+        curvature = sum(1.0 / size for name, size in own.items() if "radius" in name)
+        assert row.length == pytest.approx(1.0 / curvature, rel=1e-14)
     elif row.length_name:
         assert row.length == own[row.length_name]
 
