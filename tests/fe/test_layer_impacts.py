@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import fe_contact
+from fe_contact.reference import strike_of
 from lumped import BadInput, Material, Model, Relaxation, Result, Scene, Sphere, laws, simulate
 from lumped.result.score import normalized_error
 from lumped.shapes.cone import Cone
@@ -66,6 +67,20 @@ def test_a_rod_in_a_ring_agrees_with_ting(campaign_size: Callable[[int], int], a
         found, truth = fe_contact.run(scene, TOLERANCE), exact(scene)
         agree(found, truth)
         check_histories(found, truth)
+
+
+def test_a_march_overlaps_a_rod_with_its_ring_as_circles_do() -> None:
+    """From the ring's middle a ray at an angle leaves the rod, pushed out by clearance and depth, beyond the ring."""
+    scene, rng = Scene.load("rod-in-ring"), np.random.default_rng(5)
+    overlap, ring = strike_of(scene).overlap, scene.target
+    assert isinstance(ring, Ring)
+    assert overlap is not None
+    radius, inner = scene.geometry.shape.tip_radius, ring.inner_radius
+    assert radius is not None
+    for angle, depth in zip(rng.uniform(-0.5, 0.5, 20), inner * 10 ** rng.uniform(-4, -1, 20), strict=True):
+        middle = inner - radius + depth
+        leaves = middle * np.cos(angle) + np.sqrt(radius**2 - (middle * np.sin(angle)) ** 2)
+        assert overlap(inner * angle, depth) == pytest.approx(leaves - inner, abs=1e-12 * inner)
 
 
 def check_histories(found: Result, truth: Result) -> None:

@@ -56,12 +56,16 @@ def settings(hertz_strike: Callable[..., Strike], settings_of: Settings) -> Nume
 
 
 def judged(
-    settings: Numerics, error: Terms, phase: float, late: Terms | None = None, relaxation: Relaxation | None = None
+    settings: Numerics,
+    error: Terms,
+    phase: float,
+    late: Terms | None = None,
+    relaxation: Relaxation | None = None,
+    flat: bool = False,
 ) -> Budget:
     """Three runs with such errors, extrapolated and judged as the time steps of an impact are.
 
-    Of ever another ``phase`` along the contact, so that no quantity is right by chance in every case. Under a flat
-    end where a ``relaxation`` is given.
+    Of ever another ``phase`` along the contact, so that no quantity is right by chance in every case.
     """
     strike = STRIKE if relaxation is None else replace(STRIKE, relaxation=relaxation)
 
@@ -73,7 +77,7 @@ def judged(
         found = made_up(numerics.steps, lambda share: wrong * share * (1.5 + np.cos(2.0 * share + phase)), ends)
         return replace(found, strike=strike)
 
-    steps = _time_steps(run, settings, flat=relaxation is not None)
+    steps = _time_steps(run, settings, flat)
     changes: dict[str, Causes] = dict.fromkeys(CAUSES, ())
     nothing: Any = None
     return Budget(steps.value, nothing, changes | {"time_step": (*steps.changes, *steps.jitter)}, nothing)
@@ -92,10 +96,13 @@ def sizes(seed: int) -> list[tuple[float, float]]:
 
 
 @pytest.mark.parametrize("steps", [STEPS, 16])
-def test_errors_that_halve_with_the_step_are_covered_and_no_more(settings: Numerics, steps: int) -> None:
+@pytest.mark.parametrize("relaxation", [None, Relaxation(1.0, (1.0,), (0.3,))])
+def test_errors_that_halve_with_the_step_are_covered_and_no_more(
+    settings: Numerics, steps: int, relaxation: Relaxation | None
+) -> None:
     """Extrapolation by order two gains little on them: half of the scheme's order is missing."""
     for size, phase in sizes(1):
-        found = over(judged(settings.varied(steps=steps), {1: size}, phase), *RULED)
+        found = over(judged(settings.varied(steps=steps), {1: size}, phase, relaxation=relaxation), *RULED)
         assert 0.25 < min(found.values()) <= max(found.values()) <= 1.0, (size, phase, found)
 
 
@@ -123,12 +130,14 @@ def test_two_finest_runs_that_agree_by_chance_are_not_believed(settings: Numeric
 
 
 @pytest.mark.parametrize("order", [0.6, 1.0, 1.5, 2.0])
+@pytest.mark.parametrize("step", [1.0 / STEPS, 1.0 / STEPS**2])
 def test_a_relaxation_as_long_as_the_steps_under_a_flat_end_is_covered_whatever_order_it_leaves(
-    settings: Numerics, order: float
+    settings: Numerics, order: float, step: float
 ) -> None:
-    as_long = Relaxation(1.0, (1.0,), (1.0 / STEPS,))
+    """As long as the mean one, as the first one."""
+    as_long = Relaxation(1.0, (1.0,), (step,))
     for size, phase in sizes(7):
-        found = over(judged(settings, {order: size}, phase, relaxation=as_long), *RULED)
+        found = over(judged(settings, {order: size}, phase, relaxation=as_long, flat=True), *RULED)
         assert max(found.values()) <= 1.0, (size, phase, found)
 
 

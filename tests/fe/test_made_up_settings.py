@@ -124,6 +124,14 @@ def test_an_entry_covers_its_own_setting_where_there_are_waves(cause: str, power
         assert found.error(name, cause) < 3.0 * errors[name], name
 
 
+@pytest.mark.parametrize("steps", [20, 160])
+def test_the_squared_radius_is_known_between_the_steps_up_to_both_ends(steps: int) -> None:
+    """Linear beyond the last step, 2/steps long: off by its square times an eighth of the bend there."""
+    times = np.linspace(0.0, 1.0, 501)
+    found = Curve.of(march(steps, 0.0), STRIKE).radius_at(times) ** 2
+    np.testing.assert_allclose(found, times * (1.0 - times), atol=1.1 / steps**2)
+
+
 def test_chatter_at_the_end_moves_the_end_and_not_the_speed_after_it() -> None:
     """Two marches of one motion, which part a hundredth of the contact apart: what has parted presses no more."""
     early, by = march(STEPS, 0.0), 0.01

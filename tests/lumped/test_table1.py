@@ -27,6 +27,17 @@ def test_eight_rows_in_their_order() -> None:
 
 
 @pytest.mark.parametrize("row", examples(), ids=lambda row: row.name)
+def test_depths_are_compared_with_the_length_that_is_named(row: Row) -> None:
+    """Two bodies: the radius of the gap between them, 1/R = 1/R1 + 1/R2."""
+    own = row.to_dict()
+    if row.bodies == 2:
+        curvature = sum(1.0 / size for name, size in own.items() if "radius" in name)
+        assert row.length == pytest.approx(1.0 / curvature, rel=1e-14)
+    elif row.length_name:
+        assert row.length == own[row.length_name]
+
+
+@pytest.mark.parametrize("row", examples(), ids=lambda row: row.name)
 def test_a_correction_is_explained_and_nothing_else_is(row: Row) -> None:
     assert bool(row.correction) == (row.printed != row.corrected)
     assert row.validity
