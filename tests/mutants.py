@@ -74,7 +74,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/runs.py", "PLACED", ""): BEGINS,
     ("fe_contact/budget/runs.py", "Runs._piloted", ""): BEGINS,
     ("fe_contact/steppers/fixed_stepping.py", "FixedContact._solved", "self.numerics.penalty"): BEGINS,
-    ("fe_contact/march/time_grid.py", "share_of_rest", ""): BEGINS,
+    ("fe_contact/march/impact.py", "share_of_rest", ""): BEGINS,
     ("fe_contact/budget/certify.py", "_time_steps", "4 * numerics.steps -> numerics.steps"): BEGINS,
     ("fe_contact/budget/certify.py", "_time_steps", "4 -> 5"): BEGINS,
     ("fe_contact/waves/plan.py", "DEFAULT_TOLERANCE", ""): BEGINS,

@@ -1,19 +1,43 @@
-"""A scene from a TOML file, from a packaged one by its name, or from a table; with its raw [numerics]."""
+"""A scene from a TOML file, from a packaged one by its name, or from a table; with its raw [numerics].
+
+The tables of a scene file: the scene that they describe, every fault reported at once.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TypeVar
+from types import ModuleType
+from typing import Any, Protocol, TypeVar
 
-from lumped.scene.reader import Described, SceneReader
-from lumped.scene.table_reader import Table
+from lumped.errors import BadInput, Fault
+from lumped.materials import Material
+from lumped.scene.table_reader import Table, TableReader
+from lumped.scene.tables import (
+    LAWS,
+    MODEL_KEYS,
+    MOTION_KEYS,
+    SECOND_BODY_KEYS,
+    STRIKER_KEYS,
+    TARGETS,
+    LawChoice,
+    Model,
+    Motion,
+    inertia_faults,
+)
 from lumped.schema import data
+from lumped.schema.alternatives import alternatives
 from lumped.schema.bounded_file import exists
+from lumped.schema.key_table import optional
+from lumped.schema.keys import Key
+from lumped.schema.members import Member, get
 from lumped.schema.toml_file import overridden, parsed
+from lumped.shapes import Shape
+from lumped.targets import Target
 
-Impact = TypeVar("Impact", bound=Described)
-Pressed = TypeVar("Pressed")
+SHAPES = "lumped.shapes"
+TARGET_KEYS: Mapping[str, Key] = {"mass": SECOND_BODY_KEYS["target_mass"]}
 
 
 def load(
@@ -59,3 +83,135 @@ def _reader(source: str | Path, overrides: Mapping[str, object] | None) -> Scene
     """What reads the file of a path or a packaged name. Raises BadInput."""
     path = resolved(source)
     return SceneReader(path.name, overridden(parsed(path), overrides or {}, path.name), path.parent)
+
+
+class Described(Protocol):
+    """What a scene file describes: inside `addressed`, what a part refuses is said of that file and its keys."""
+
+    def addressed(self) -> AbstractContextManager[None]: ...
+
+
+Impact = TypeVar("Impact", bound=Described)
+
+
+Pressed = TypeVar("Pressed")
+
+
+class SceneReader(TableReader):
+    """Makes a scene, or what a slow indentation needs of it, of the tables of a scene file."""
+
+    TABLES = ("striker", "target", "model", "motion", "law", "numerics")
+
+    def scene(self, kind: Callable[..., Impact], law_known: bool = True) -> tuple[Impact, Table]:
+        """The scene and the raw numerics; raises BadInput when anything is wrong.
+
+        Without geometry a law has to be known, unless it is yet to be found.
+        """
+        name, law = self.name(), self.law()
+        lawful = "law" in self.raw or not law_known
+        alone = lawful and "shape" not in self.table("striker", required=False, quiet=True)
+        bodies = self.masses_alone() if alone else self.bodies()
+        model = self.checked("model", self.table("model", required=False), MODEL_KEYS)
+        motion = self.checked("motion", self.table("motion", required=False), MOTION_KEYS)
+        numerics = self.table("numerics", required=False)
+        if alone or bodies["target"] is not None:
+            self.inertia(model, bodies.get("target"))
+        if self.faults:
+            raise BadInput(self.faults)
+        built = kind(**bodies, law=law, model=Model(**model), motion=Motion(**motion), name=name, source=self.source)
+        if law is not None and law_known:
+            with built.addressed():
+                get(LAWS, law.name).of(built)
+        return built, numerics
+
+    def indenter(self, kind: Callable[..., Pressed]) -> tuple[Pressed, Table]:
+        """The scene without its motion; raises BadInput when anything is wrong."""
+        name = self.name()
+        bodies = self.bodies(optional(STRIKER_KEYS))
+        model = self.checked("model", self.table("model", required=False), MODEL_KEYS)
+        numerics = self.table("numerics", required=False)
+        if self.faults:
+            raise BadInput(self.faults)
+        own = {key: bodies[key] for key in ("shape", "material", "target", "striker_material")}
+        return kind(**own, model=Model(**model), name=name, source=self.source), numerics
+
+    def bodies(self, striker_keys: Mapping[str, Key] = STRIKER_KEYS) -> Table:
+        """Striker, target and material of a scene with geometry; None for what has a fault."""
+        striker, shape = self.body("striker", SHAPES, striker_keys)
+        held, target = self.body("target", TARGETS, TARGET_KEYS)
+        own = {"shape": shape, "target": target, "target_mass": held.get("mass")}
+        return {**striker, **own, **self.materials(target, shape)}
+
+    def materials(self, target: Target | None, shape: Shape | None) -> dict[str, Material | None]:
+        """The target's material, or the striker's where the target is rigid, and that of a striker that yields too."""
+        if target is None or target.deformable:
+            yields = self.striker_yields(target, shape)
+            own = self.material("target")
+            return {"material": own, "striker_material": self.material("striker") if yields else None}
+        if "material" in self.table("target", required=False, quiet=True):
+            self.faults.append(Fault(self.source, "target.material", f"a {target.name} is rigid; leave it out"))
+        return {"material": self.material("striker"), "striker_material": None}
+
+    def striker_yields(self, target: Target | None, shape: Shape | None) -> bool:
+        """Whether a striker on a target that yields has a material too, and may."""
+        given = "material" in self.table("striker", required=False, quiet=True)
+        if not given or target is None or shape is None:
+            return False
+        inertia = bool(self.table("model", required=False, quiet=True).get("inertia"))
+        refused = target.yielding_faults(self.source, shape, inertia)
+        self.faults += refused
+        return not refused
+
+    def masses_alone(self) -> Table:
+        """The masses of a scene that has a law of its own and no geometry."""
+        striker = self.checked("striker", self.table("striker"), STRIKER_KEYS)
+        held = self.checked("target", self.table("target", required=False), TARGET_KEYS)
+        return {**striker, "shape": None, "target_mass": held.get("mass")}
+
+    def law(self) -> LawChoice | None:
+        """The law with its parameters; None without one, or with a fault noted."""
+        table = self.table("law", required=False)
+        if not table:
+            return None
+        (own,) = alternatives(LAWS, table.get("name"))
+        values = self.checked("law", table, {"name": Member(LAWS), **own})
+        return LawChoice(values.pop("name").__name__.rpartition(".")[2], values) if not self.faults else None
+
+    def body(self, part: str, package: str, common: Mapping[str, Key]) -> tuple[Table, Any]:
+        """A body's checked common values, and what the member of `package` makes of its own keys."""
+        table = self.table(part)
+        rest = {key: value for key, value in table.items() if key != "material"}
+        if part not in self.raw:
+            return {}, None
+        (own,) = alternatives(package, table.get("shape"))
+        values = self.checked(part, rest, {"shape": Member(package), **common, **own})
+        kind: ModuleType | None = values.pop("shape", None)
+        shared = {key: values.pop(key) for key in common if key in values}
+        complete = kind is not None and values.keys() >= {key for key in own if own[key].required}
+        return shared, self.made(part, kind.of, values, str(table["shape"])) if kind is not None and complete else None
+
+    def material(self, part: str) -> Material | None:
+        """The material of a body, None with a fault noted."""
+        body = self.table(part, required=False, quiet=True)
+        if not body:
+            return None
+        path, table = f"{part}.material", self.table("material", inside=part)
+        return self.network(path, table) if table else None
+
+    def inertia(self, model: Table, target: Target | None) -> None:
+        """Whether the target can have the inertia asked for, and a density for it."""
+        part = "striker" if target is not None and not target.deformable else "target"
+        material = self.table(part, required=False, quiet=True).get("material")
+        density = material.get("density") if isinstance(material, Mapping) else None
+        self.faults += inertia_faults(self.source, model.get("inertia", False), density, target)
+
+    def table(self, key: str, inside: str = "", required: bool = True, quiet: bool = False) -> Table:
+        """The table `key`, empty when it is missing or no table: a fault if required, unless `quiet`."""
+        place = self.raw[inside] if inside else self.raw
+        value = place.get(key, None if required else {})
+        if isinstance(value, Mapping):
+            return dict(value)
+        if not quiet:
+            message = "not a table" if key in place else "missing; a scene needs this table"
+            self.faults.append(Fault(self.source, f"{inside}.{key}".lstrip("."), message))
+        return {}

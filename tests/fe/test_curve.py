@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from fe_contact.budget.curve import seen_from_both_sides
 from fe_contact.budget.local_polynomial import PLACES, LocalPolynomials, fitted_peak, peak
-from fe_contact.march.impact import STEPS_ALLOWED, time_left
-from fe_contact.march.time_grid import share_of_rest, step_length
+from fe_contact.march.impact import STEPS_ALLOWED, share_of_rest, step_length, time_left
 
 SEEDS = st.integers(0, 2**32 - 1)
 

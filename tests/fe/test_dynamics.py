@@ -18,9 +18,8 @@ from fe_contact.bodies.bar import Bar, falling
 from fe_contact.contact.enforcement import augmented, corrected, exact, penalty
 from fe_contact.dynamics import explicit, implicit, mass, schemes
 from fe_contact.dynamics.body import Body, Part, Pressing
-from fe_contact.dynamics.march import Choices, Motion, march
+from fe_contact.dynamics.march import Choices, Motion, march, safe_step
 from fe_contact.dynamics.pressed import Enforced
-from fe_contact.dynamics.stages import safe_step
 from fe_contact.errors import MotionUnbounded
 from lumped.errors import BadInput
 from lumped.materials import Relaxation

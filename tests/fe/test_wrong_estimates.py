@@ -13,7 +13,7 @@ import fe_contact
 from fe_contact.budget import plan as planning
 from fe_contact.budget.runs import PILOT_STEPS, PLACED, Runs
 from fe_contact.budget.scales import scales
-from fe_contact.march.time_grid import share_of_rest, step_length
+from fe_contact.march.impact import share_of_rest, step_length
 from fe_contact.reference import strike_of
 from lumped import Result, Scene, laws, simulate
 
