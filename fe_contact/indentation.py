@@ -42,7 +42,7 @@ LEAST_SHARE, LARGEST_SHARE = 0.4, 2.0  # contact radius over the one at which th
 
 
 @dataclass(frozen=True, eq=False)
-class Pressing:
+class PressedDepths:
     """Force over modulus, m^2, and contact radius, m, at every depth, (n,); counted work.
 
     ``mesh_order``: the most that the mesh's order can be, where the contact ends; ``ends``: whether the body does.
@@ -138,7 +138,7 @@ def settings(given: Mapping[str, Any], shape: Shape) -> Numerics:
     return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
 
 
-def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) -> Pressing:
+def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) -> PressedDepths:
     """Every depth, m, with one setting of everything, from the largest to the smallest; ``radii`` to begin with, m."""
     body: Still = get(TARGETS, indenter.target.name).still(indenter, radii, numerics)
     force, radius = np.empty_like(depth), np.empty_like(depth)
@@ -148,10 +148,10 @@ def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) ->
         force[i], radius[i], growth = found.force, found.contact_radius, found.contact_radius / radii[i]
         problems, iterations = problems + found.problems, iterations + found.iterations
     work = {"degrees_of_freedom": body.degrees_of_freedom, "contact_problems": problems, "iterations": iterations}
-    return Pressing(force, radius, work, body.mesh_order, body.ends)
+    return PressedDepths(force, radius, work, body.mesh_order, body.ends)
 
 
-def _budget(base: Pressing, run: Callable[[Numerics], Pressing], numerics: Numerics) -> dict[str, Array]:
+def _budget(base: PressedDepths, run: Callable[[Numerics], PressedDepths], numerics: Numerics) -> dict[str, Array]:
     """Relative error of the force by cause, at every depth.
 
     The far field is varied on the other mesh, which as a rule is the cheaper one, unless the body ends before; the
@@ -169,7 +169,7 @@ def _budget(base: Pressing, run: Callable[[Numerics], Pressing], numerics: Numer
     }
 
 
-def _error(trusted: float, first: Pressing, second: Pressing) -> Array:
+def _error(trusted: float, first: PressedDepths, second: PressedDepths) -> Array:
     """Error by a cause: what its other setting changes, ``trusted`` so many times, (n,).
 
     A body without a length of its own answers alike at every depth, so the largest change speaks for all.

@@ -62,7 +62,7 @@ def uncounted(parts: float = 1.0) -> None:
 
 
 @dataclass
-class Pace:
+class ProgressPace:
     """Since when the work, and the part of it that is counted now, goes on; ``pause``, s, between words of the same."""
 
     clock: Callable[[], float]
@@ -95,7 +95,7 @@ class Pace:
         return passed * (total - done) / done if 0 < done <= total and passed > 0.0 else None
 
 
-class Line:
+class ProgressLine:
     """The last line of a terminal, rewritten in place, never longer than it is wide."""
 
     def __init__(
@@ -104,7 +104,7 @@ class Line:
         clock: Callable[[], float] = time.monotonic,
         width: Callable[[], int] = lambda: shutil.get_terminal_size().columns,
     ) -> None:
-        self._stream, self._pace, self._width, self._shown = stream, Pace(clock, OFTEN), width, 0
+        self._stream, self._pace, self._width, self._shown = stream, ProgressPace(clock, OFTEN), width, 0
 
     def __call__(self, message: str, done: float = 0, total: float = 0) -> None:
         """Tell; see :class:`Progress`."""
@@ -129,7 +129,7 @@ class Line:
         self._shown = len(text)
 
 
-_line: Line | None = None  # the one that stands on the terminal
+_line: ProgressLine | None = None  # the one that stands on the terminal
 
 
 def clear() -> None:
@@ -149,7 +149,7 @@ class Log:
         clock: Callable[[], float] = time.monotonic,
         today: Callable[[], datetime] = lambda: datetime.now(UTC),
     ) -> None:
-        self._write, self._pace, self._today = write, Pace(clock, SELDOM), today
+        self._write, self._pace, self._today = write, ProgressPace(clock, SELDOM), today
 
     def __call__(self, message: str, done: float = 0, total: float = 0) -> None:
         """Tell; see :class:`Progress`."""
@@ -172,9 +172,9 @@ def log_to(path: Path) -> Log:
     return Log(write)
 
 
-def terminal() -> Line:
+def terminal() -> ProgressLine:
     """The line of the terminal that stderr is."""
-    return Line(sys.stderr)
+    return ProgressLine(sys.stderr)
 
 
 def _share(done: float, total: float) -> str:

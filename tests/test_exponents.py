@@ -15,8 +15,8 @@ from fe_contact.studies.exponents.chart import plot_exponents
 from fe_contact.studies.exponents.check import TOLERANCE, Check, check
 from fe_contact.studies.exponents.files import COLUMNS, write_exponents
 from fe_contact.studies.exponents.finite_spheres import SHARES, Pair, pairs
-from fe_contact.studies.exponents.study import PROFILES, Curve, Profile, curve, curves
-from lumped.load_curves.layer import Layer
+from fe_contact.studies.exponents.study import PROFILES, ExponentCurve, Profile, curve, curves
+from lumped.load_curves.layer import PointLayer
 from lumped.load_curves.thin_layer import compressible, incompressible
 
 CONE, SPHERE, PUNCH, CYLINDER = (
@@ -26,7 +26,7 @@ ENDS = np.array([1e-4, 18.0])
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory: pytest.TempPathFactory) -> tuple[Curve, ...]:
+def found(tmp_path_factory: pytest.TempPathFactory) -> tuple[ExponentCurve, ...]:
     return curves(True, tmp_path_factory.mktemp("exponents"))
 
 
@@ -55,8 +55,8 @@ def test_limits_of_the_thin_layer() -> None:
 @pytest.mark.parametrize("plane", [False, True], ids=["sphere", "cylinder"])
 def test_the_limits_are_the_thin_layers_own(plane: bool) -> None:
     profile = CYLINDER if plane else SPHERE
-    assert profile.thin("bonded", 0.3) == compressible(1.0, Layer(0.1, 0.3), plane=plane).exponent
-    assert profile.thin("bonded", 0.5) == incompressible(1.0, Layer(0.1, 0.5), plane=plane).exponent
+    assert profile.thin("bonded", 0.3) == compressible(1.0, PointLayer(0.1, 0.3), plane=plane).exponent
+    assert profile.thin("bonded", 0.5) == incompressible(1.0, PointLayer(0.1, 0.5), plane=plane).exponent
 
 
 @pytest.mark.parametrize("profile", [one for one in PROFILES if not one.plane], ids=lambda one: one.label)
@@ -106,7 +106,7 @@ def test_the_punch_is_hayes() -> None:
         assert curve(PUNCH, "bonded", nu, np.array([1.0])).factor[0] == pytest.approx(kappa, abs=1e-4)
 
 
-def test_every_profile_has_every_layer(found: tuple[Curve, ...]) -> None:
+def test_every_profile_has_every_layer(found: tuple[ExponentCurve, ...]) -> None:
     layers = [("bonded", 0.3), ("bonded", 0.5), ("sliding", None)]
     assert [(one.profile, one.base, one.nu) for one in found] == [(p, *layer) for p in PROFILES for layer in layers]
 
@@ -125,7 +125,9 @@ def test_a_check_off_its_bar_is_told(checked: tuple[Check, ...]) -> None:
     assert not replace(checked[0], exact_exponent=1.01 * checked[0].exact_exponent).covered
 
 
-def test_files(tmp_path: Path, found: tuple[Curve, ...], checked: tuple[Check, ...], spheres: tuple[Pair, ...]) -> None:
+def test_files(
+    tmp_path: Path, found: tuple[ExponentCurve, ...], checked: tuple[Check, ...], spheres: tuple[Pair, ...]
+) -> None:
     content = write_exponents(found, checked, spheres, tmp_path)
     with (tmp_path / "exponents.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -156,7 +158,9 @@ def test_free_spheres_leave_hertz_by_the_share_of_their_radius(spheres: tuple[Pa
     assert free.slope.value != pytest.approx(held.slope.value, rel=0.02)
 
 
-def test_the_chart_is_the_same_every_time(tmp_path: Path, found: tuple[Curve, ...], checked: tuple[Check, ...]) -> None:
+def test_the_chart_is_the_same_every_time(
+    tmp_path: Path, found: tuple[ExponentCurve, ...], checked: tuple[Check, ...]
+) -> None:
     first = [path.read_bytes() for path in plot_exponents(found, checked, tmp_path / "one")]
     assert first == [path.read_bytes() for path in plot_exponents(found, checked, tmp_path / "two")]
 
@@ -164,7 +168,7 @@ def test_the_chart_is_the_same_every_time(tmp_path: Path, found: tuple[Curve, ..
 @pytest.mark.parametrize(("converged", "code"), [(True, 0), (False, 3)], ids=["reached", "missed"])
 def test_the_command(
     tmp_path: Path,
-    found: tuple[Curve, ...],
+    found: tuple[ExponentCurve, ...],
     checked: tuple[Check, ...],
     spheres: tuple[Pair, ...],
     monkeypatch: pytest.MonkeyPatch,

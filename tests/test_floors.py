@@ -242,3 +242,9 @@ def named(node: ast.Assign) -> Iterator[ast.Name]:
     constants = [part.value for part in ast.walk(node.value) if isinstance(part, ast.Constant)]
     if any(isinstance(value, float | int) for value in constants):
         yield from (target for target in node.targets if isinstance(target, ast.Name) and target.id.isupper())
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_one_name_is_one_class(package: str) -> None:
+    names = [node.name for path in sources(package) for node in tree(path).body if isinstance(node, ast.ClassDef)]
+    assert not {name for name in names if names.count(name) > 1}

@@ -11,18 +11,18 @@ import pytest
 from fe_contact.cli import main
 from fe_contact.studies.restitution.chart import plot_restitution
 from fe_contact.studies.restitution.files import write_restitution
-from fe_contact.studies.restitution.table import EXITS, Line, formulas, table
+from fe_contact.studies.restitution.table import EXITS, RestitutionLine, formulas, table
 from lumped import restitution
 
 ASKED = (0.1, 0.5, 0.9)
 
 
 @pytest.fixture(scope="module")
-def lines() -> tuple[Line, ...]:
+def lines() -> tuple[RestitutionLine, ...]:
     return table(ASKED)
 
 
-def test_every_family_and_formula_has_a_line_at_either_exit(lines: tuple[Line, ...]) -> None:
+def test_every_family_and_formula_has_a_line_at_either_exit(lines: tuple[RestitutionLine, ...]) -> None:
     present = {(line.law, line.damping) for line in lines}
     for name in restitution.available():
         assert {(name, formula) for formula in (restitution.EXACT, *restitution.get(name).published)} <= present
@@ -32,7 +32,7 @@ def test_every_family_and_formula_has_a_line_at_either_exit(lines: tuple[Line, .
 
 
 def test_exact_dampings_lie_on_the_diagonal_and_published_ones_where_their_families_say(
-    lines: tuple[Line, ...],
+    lines: tuple[RestitutionLine, ...],
 ) -> None:
     for line in lines:
         if line.damping == restitution.EXACT:
@@ -45,12 +45,12 @@ def test_exact_dampings_lie_on_the_diagonal_and_published_ones_where_their_famil
                     assert got == pytest.approx(expected, abs=1e-8)
 
 
-def test_a_formula_without_a_damping_for_e_leaves_a_gap(lines: tuple[Line, ...]) -> None:
+def test_a_formula_without_a_damping_for_e_leaves_a_gap(lines: tuple[RestitutionLine, ...]) -> None:
     series = next(line for line in lines if line.damping == "series")
     assert [got is None for got in series.obtained] == [True, True, False]
 
 
-def test_files_hold_every_impact(tmp_path: Path, lines: tuple[Line, ...]) -> None:
+def test_files_hold_every_impact(tmp_path: Path, lines: tuple[RestitutionLine, ...]) -> None:
     content = write_restitution(lines, tmp_path)
     with (tmp_path / "restitution.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -59,13 +59,16 @@ def test_files_hold_every_impact(tmp_path: Path, lines: tuple[Line, ...]) -> Non
     assert len(content["lines"]) == len(lines)
 
 
-def test_the_chart_is_the_same_every_time(tmp_path: Path, lines: tuple[Line, ...]) -> None:
+def test_the_chart_is_the_same_every_time(tmp_path: Path, lines: tuple[RestitutionLine, ...]) -> None:
     first = [path.read_bytes() for path in plot_restitution(lines, tmp_path / "one")]
     assert first == [path.read_bytes() for path in plot_restitution(lines, tmp_path / "two")]
 
 
 def test_the_command_says_a_line_each(
-    tmp_path: Path, lines: tuple[Line, ...], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path,
+    lines: tuple[RestitutionLine, ...],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
     monkeypatch.setattr("fe_contact.studies.restitution.table.table", lambda: lines)
     assert main(["restitution", "--out", str(tmp_path / "out"), "--quiet"]) == 0

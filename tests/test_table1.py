@@ -24,7 +24,7 @@ from fe_contact.studies.table1.reach import LIMIT, Reach
 from fe_contact.studies.table1.study import RATIOS, Trial, bodies, table1
 from fe_contact.studies.table1.verdict import HOLDS, RANGE, UNDECIDED, UNTRIED, WRONG, deviations, verdict
 from lumped.load_curves import Hertz, SneddonSphere
-from lumped.paper.table1 import Elastic, Row, cone, cylinder, examples, prism, punch, sphere, two_cylinders
+from lumped.paper.table1 import Elastic, TableRow, cone, cylinder, examples, prism, punch, sphere, two_cylinders
 from lumped.result.result import Quantity
 
 ROUNDING = 1e-9
@@ -196,7 +196,7 @@ def test_verdicts(trials: Mapping[str, Trial]) -> None:
         assert verdict(trials[name]).sentence.startswith("no half-space answer; D depends on the datum")
 
 
-def made_up(row: Row, alpha: float = 0.0, factor: float = 1.0, bar: float = 1e-5, held: float = 0.5) -> Trial:
+def made_up(row: TableRow, alpha: float = 0.0, factor: float = 1.0, bar: float = 1e-5, held: float = 0.5) -> Trial:
     """A trial that differs from the corrected row by so much."""
     share = np.array([1e-3, 0.5])
     moduli = {nu: row.modulus(*bodies(row, nu)) for nu in RATIOS}
@@ -292,7 +292,7 @@ def test_two_cylinders_vary_both_materials() -> None:
 
 @pytest.mark.parametrize("off", [-0.005, 0.002, 0.03])
 @pytest.mark.parametrize("row", [punch.EXAMPLE, sphere.EXAMPLE, prism.EXAMPLE], ids=lambda row: row.name)
-def test_a_modulus_that_is_not_the_rows_is_never_said_to_hold(row: Row, off: float) -> None:
+def test_a_modulus_that_is_not_the_rows_is_never_said_to_hold(row: TableRow, off: float) -> None:
     """E* by finite elements that no row explains, at one Poisson's ratio of several."""
     found = made_up(row)
     nu = RATIOS[1]

@@ -113,9 +113,7 @@ def test_every_default_keeps_its_promise(points: tuple[Point, ...]) -> None:
         assert one.cpu > 0.0
 
 
-def test_every_point_builds_its_operators_again(
-    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_every_point_builds_its_operators_again(scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What a user pays holds the factorizations, and no point lives on those of another."""
     built = []
 

@@ -24,7 +24,7 @@ import numpy as np
 import scipy.sparse as sparse
 
 from fe_contact.assembly.forms import Array, scatter
-from fe_contact.dynamics.body import Body, Part, Pressing
+from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
 from lumped.materials import Relaxation
 
 TIP = 0.5**0.5  # first element over the others, for a surface without mass
@@ -73,13 +73,15 @@ def line_elements(bar: Bar, elements: int, tip: float = 1.0) -> LineElements:
     )
 
 
-def falling(bar: Bar, elements: int, mass: ModuleType, gravity: float, gap: float = 0.0, tip: float = 1.0) -> Body:
+def falling(
+    bar: Bar, elements: int, mass: ModuleType, gravity: float, gap: float = 0.0, tip: float = 1.0
+) -> BodyWithMass:
     """A bar that moves freely towards a rigid plane, ``gap``, m, away; displacements count away from the plane."""
     line = line_elements(bar, elements, tip)
     size = line.nodes.size
     rigid = np.zeros(size)
     rigid[-1] = bar.end_mass
-    return Body(
+    return BodyWithMass(
         mass=mass.of(line.mass, line.dofs, size, np.array([0])),
         rigid=rigid,
         parts=(Part(line.stiffness, bar.relaxation),),

@@ -11,7 +11,7 @@ from lumped.result.folder import publish
 
 if TYPE_CHECKING:
     from fe_contact.studies.exponents.check import Check
-    from fe_contact.studies.exponents.study import Curve
+    from fe_contact.studies.exponents.study import ExponentCurve
 
 SUMMARY = (
     "local exponent and D from the half-space to the thin layer, every profile, base and nu, checked by finite "
@@ -51,7 +51,7 @@ def execute(args: argparse.Namespace) -> int:
     return base.NOT_REACHED if missed else base.DONE
 
 
-def _curve(curve: Curve) -> str:
+def _curve(curve: ExponentCurve) -> str:
     layer = f"{curve.base}, " + ("any nu" if curve.nu is None else f"nu = {curve.nu:g}")
     ends = f"alpha {curve.exponent[0]:.3f} to {curve.exponent[-1]:.3f} at a/h = {curve.ratio[-1]:g}"
     return f"{curve.profile.label:12s} {layer:18s} {ends}, thin limit {curve.thin:.3f}"

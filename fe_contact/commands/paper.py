@@ -11,8 +11,8 @@ from fe_contact.commands import base
 from lumped.result.folder import publish
 
 if TYPE_CHECKING:
-    from lumped.paper import Judged, Value
-    from lumped.paper.study import Study
+    from lumped.paper import JudgedClaim, Value
+    from lumped.paper.study import PaperStudy
 
 SUMMARY = "the source paper's claims: printed, recomputed, deviation, verdict; its figures drawn again"
 
@@ -45,7 +45,7 @@ def execute(args: argparse.Namespace) -> int:
     return base.DONE
 
 
-def _lines(found: Study) -> list[str]:
+def _lines(found: PaperStudy) -> list[str]:
     """One line a claim, one an assumption, then the counts."""
     from lumped.paper.claims import counts
     from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNKNOWN, UNPRINTED, VERDICTS
@@ -63,7 +63,7 @@ def _lines(found: Study) -> list[str]:
     return lines
 
 
-def _line(one: Judged) -> str:
+def _line(one: JudgedClaim) -> str:
     from lumped.paper.rules import UNJUDGED, UNKNOWN
 
     claim, share = one.claim, "" if one.deviation is None else f"{round(100.0 * one.deviation, 2) + 0.0:+.2f} %"

@@ -12,7 +12,7 @@ from lumped.result.folder import publish
 from lumped.result.sufficiency import worst
 
 if TYPE_CHECKING:
-    from lumped.ptmd.study import Study
+    from lumped.ptmd.study import PtmdStudy
 
 SUMMARY = "free vibration of a pounding tuned mass damper: motion, contacts, energies, chart"
 
@@ -51,7 +51,7 @@ def execute(args: argparse.Namespace) -> int:
     return base.NOT_REACHED if found.convergence.message else base.DONE
 
 
-def _lines(found: Study) -> list[str]:
+def _lines(found: PtmdStudy) -> list[str]:
     """The measures of every variant, then the energies, one a line."""
     lines = []
     for name, result in found.results.items():
@@ -70,7 +70,7 @@ def _lines(found: Study) -> list[str]:
     return lines
 
 
-def _warnings(found: Study) -> list[str]:
+def _warnings(found: PtmdStudy) -> list[str]:
     """What did not converge, and an assumption of the contact law that does not hold."""
     lines = [found.convergence.message] if found.convergence.message else []
     if not found.model_sufficient:

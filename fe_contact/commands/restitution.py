@@ -10,7 +10,7 @@ from fe_contact.commands import base
 from lumped.result.folder import publish
 
 if TYPE_CHECKING:
-    from fe_contact.studies.restitution.table import Line
+    from fe_contact.studies.restitution.table import RestitutionLine
 
 SUMMARY = "restitution asked for against obtained: every law, exact and published dampings, both exits"
 
@@ -41,7 +41,7 @@ def execute(args: argparse.Namespace) -> int:
     return base.DONE
 
 
-def _said(line: Line) -> str:
+def _said(line: RestitutionLine) -> str:
     worst = line.worst
     off = "nothing obtained" if worst is None else f"{worst[0]:+.1e} at most, at e = {worst[1]:g}"
     return f"{line.law:16s} {line.damping:20s} exit {line.exit:6s} {off}"

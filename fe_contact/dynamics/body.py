@@ -64,7 +64,7 @@ class Pressing:
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class BodyWithMass:
     """Everything that moves in one scene, N degrees of freedom, SI units.
 
     ``mass`` (N, N) of the deformable bodies, sparse, may have zero rows; ``rigid`` (N,) that of rigid bodies;

@@ -19,17 +19,17 @@ from fe_contact.assembly.forms import Array
 from fe_contact.assembly.interior import factorized
 from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.dynamics import memory
-from fe_contact.dynamics.body import Body
+from fe_contact.dynamics.body import BodyWithMass
 from fe_contact.dynamics.pressed import Enforced, Found, surface_of
 from fe_contact.dynamics.schemes.base import Scheme
-from fe_contact.dynamics.state import State, internal
+from fe_contact.dynamics.state import BodyState, internal
 from lumped.errors import BadInput, Fault
 
 
 class ExplicitStepper:
     """Takes steps of one length, s, of one body. Raises BadInput for a material with a parallel viscosity."""
 
-    def __init__(self, body: Body, scheme: Scheme, enforced: Enforced, step: float) -> None:
+    def __init__(self, body: BodyWithMass, scheme: Scheme, enforced: Enforced, step: float) -> None:
         if any(part.relaxation.viscosity > 0.0 for part in body.parts):
             reason = "an explicit scheme has no answer to a parallel viscosity; accepted: an implicit one"
             raise BadInput(Fault("numerics", "scheme", reason))
@@ -39,7 +39,7 @@ class ExplicitStepper:
         self._surfaces: dict[float, PressedSurface] = {}  # by lever: one, and at first another
         self.accelerate = factorized(inertia[body.massive][:, body.massive])
 
-    def begun(self, state: State) -> State:
+    def begun(self, state: BodyState) -> BodyState:
         """The first state with the pressure that a constraint on a surface with mass needs at once."""
         if self.body.massless.size or self.enforced.is_law:
             return state
@@ -48,7 +48,7 @@ class ExplicitStepper:
         pushed = state.acceleration + self._accelerated(self.body.pressing.load(found.pressure))
         return state._replace(acceleration=pushed, signed_pressure=found.signed_pressure)
 
-    def advance(self, state: State) -> tuple[State, Found]:
+    def advance(self, state: BodyState) -> tuple[BodyState, Found]:
         """The state a step later; raises ContactNotSettled."""
         body, dt = self.body, self.step
         middle = state.velocity + dt / 2 * state.acceleration  # half a step on
@@ -70,7 +70,7 @@ class ExplicitStepper:
         velocity = middle + dt / 2 * acceleration
         velocity[body.massless] = change[body.massless] / dt
         pressure = found.signed_pressure
-        return State(state.time + dt, displacement, velocity, acceleration, branches, forces, pressure), found
+        return BodyState(state.time + dt, displacement, velocity, acceleration, branches, forces, pressure), found
 
     def _accelerated(self, forces: Array) -> Array:
         """Acceleration (N,) under forces (N,) or of several, (N, m); zero without mass."""
@@ -78,14 +78,14 @@ class ExplicitStepper:
         found[self.body.massive] = self.accelerate(forces[self.body.massive])
         return found
 
-    def _pressed(self, state: State, displacement: Array, middle: Array, driving: Array) -> Found:
+    def _pressed(self, state: BodyState, displacement: Array, middle: Array, driving: Array) -> Found:
         """Pressure on a surface with mass."""
         if self.enforced.is_law:
             return self.enforced.known(self.body.pressing.overlap(displacement))
         ahead = displacement + self.step * (middle + self.step * self._accelerated(driving))
         return self._constrained(state, ahead, self.step**2)
 
-    def _constrained(self, state: State, ahead: Array, lever: float) -> Found:
+    def _constrained(self, state: BodyState, ahead: Array, lever: float) -> Found:
         """Pressure that keeps the next displacement closed, which it moves by ``lever``, s^2, times acceleration."""
         overlap = self.body.pressing.overlap(ahead)
         return self.enforced.found(self._heavy(lever), overlap, state.signed_pressure > 0.0, state.time)
@@ -97,7 +97,7 @@ class ExplicitStepper:
             self._surfaces[lever] = surface_of(lever * (pressing.push.T @ moved), pressing)
         return self._surfaces[lever]
 
-    def _settled(self, state: State, change: Array) -> tuple[Array, Found]:
+    def _settled(self, state: BodyState, change: Array) -> tuple[Array, Found]:
         """The increment with that of the surface without mass, and the pressure on it."""
         body, pressing = self.body, self.body.pressing
         forces = body.weight.copy()

@@ -21,21 +21,21 @@ from fe_contact.assembly.forms import Array
 from fe_contact.assembly.interior import factorized
 from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.dynamics import memory
-from fe_contact.dynamics.body import Body
+from fe_contact.dynamics.body import BodyWithMass
 from fe_contact.dynamics.pressed import Enforced, Found, surface_of
 from fe_contact.dynamics.schemes.base import Scheme
-from fe_contact.dynamics.state import State, internal
+from fe_contact.dynamics.state import BodyState, internal
 
 
 class ImplicitStepper:
     """Takes steps of one length, s, of one body by one scheme."""
 
-    def __init__(self, body: Body, scheme: Scheme, enforced: Enforced, step: float) -> None:
+    def __init__(self, body: BodyWithMass, scheme: Scheme, enforced: Enforced, step: float) -> None:
         self.body, self.scheme, self.enforced, self.step = body, scheme, enforced, step
         self.laws = [memory.part_law(part, step) for part in body.parts]
         self.solve = factorized(self._effective())
 
-    def begun(self, state: State) -> State:
+    def begun(self, state: BodyState) -> BodyState:
         """The first state: the pressure of a first step belongs to its end."""
         return state
 
@@ -50,7 +50,7 @@ class ImplicitStepper:
         pressing = self.body.pressing
         return surface_of(pressing.push.T @ self.moved, pressing)
 
-    def advance(self, state: State) -> tuple[State, Found]:
+    def advance(self, state: BodyState) -> tuple[BodyState, Found]:
         """The state a step later; raises ContactNotSettled."""
         pressing = self.body.pressing
         change = self._free(state)
@@ -59,13 +59,13 @@ class ImplicitStepper:
         change += self.moved @ pressing.forces(found.pressure)
         return self._moved(state, change, found), found
 
-    def flown(self, state: State) -> State:
+    def flown(self, state: BodyState) -> BodyState:
         """The state a step later if nothing presses in it, its signed pressure that of the overlap."""
         change = self._free(state)
         overlap = self.body.pressing.overlap(state.displacement + change)
         return self._moved(state, change, Found(self.enforced.penalty * overlap, 0))
 
-    def _free(self, state: State) -> Array:
+    def _free(self, state: BodyState) -> Array:
         """The increment (N,) without new pressure."""
         return self.solve(self._known(state) + self.scheme.alpha_f * self.body.pressing.load(state.pressure))
 
@@ -78,7 +78,7 @@ class ImplicitStepper:
             matrix = matrix + (1 - alpha_f) * gamma / (beta * dt) * body.damping
         return matrix
 
-    def _known(self, state: State) -> Array:
+    def _known(self, state: BodyState) -> Array:
         """Forces that the past fixes, (N,)."""
         body, (alpha_m, alpha_f, _, _) = self.body, self.scheme
         v, a = self._newmark(state, np.zeros(body.size))  # at the end of a step in which nothing moves
@@ -92,21 +92,21 @@ class ImplicitStepper:
             forces -= body.damping @ ((1 - alpha_f) * v + alpha_f * state.velocity)
         return np.asarray(forces)
 
-    def _newmark(self, state: State, change: Array) -> tuple[Array, Array]:
+    def _newmark(self, state: BodyState, change: Array) -> tuple[Array, Array]:
         """Velocity and acceleration at the end of a step with an increment of displacement."""
         (_, _, beta, gamma), dt = self.scheme, self.step
         v, a = state.velocity, state.acceleration
         late = (change - dt * v - dt**2 * (0.5 - beta) * a) / (beta * dt**2)
         return v + dt * ((1 - gamma) * a + gamma * late), late
 
-    def _moved(self, state: State, change: Array, found: Found) -> State:
+    def _moved(self, state: BodyState, change: Array, found: Found) -> BodyState:
         velocity, acceleration = self._newmark(state, change)
         displacement = state.displacement + change
         branches = tuple(
             law.decay[:, None] * own + law.gain[:, None] * change
             for law, own in zip(self.laws, state.branches, strict=True)
         )
-        return State(
+        return BodyState(
             time=state.time + self.step,
             displacement=displacement,
             velocity=velocity,

@@ -16,9 +16,9 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.dynamics import memory
-from fe_contact.dynamics.body import Body
+from fe_contact.dynamics.body import BodyWithMass
 from fe_contact.dynamics.schemes.base import Scheme
-from fe_contact.dynamics.state import State
+from fe_contact.dynamics.state import BodyState
 
 
 class Energies(NamedTuple):
@@ -46,13 +46,13 @@ class Energies(NamedTuple):
         return self.work - self.total - self.viscous - self.radiated - self.numerical
 
 
-def opened(body: Body, state: State) -> Energies:
+def opened(body: BodyWithMass, state: BodyState) -> Energies:
     """The ledger of a body about to move."""
     standing = _standing(body, state)
     return Energies(sum(standing), *standing, 0.0, 0.0, 0.0)
 
 
-def entered(ledger: Energies, body: Body, scheme: Scheme, before: State, after: State) -> Energies:
+def entered(ledger: Energies, body: BodyWithMass, scheme: Scheme, before: BodyState, after: BodyState) -> Energies:
     """The ledger one step later."""
     step = after.time - before.time
     change = after.displacement - before.displacement
@@ -70,7 +70,7 @@ def entered(ledger: Energies, body: Body, scheme: Scheme, before: State, after: 
     )
 
 
-def _standing(body: Body, state: State) -> tuple[float, float, float, float]:
+def _standing(body: BodyWithMass, state: BodyState) -> tuple[float, float, float, float]:
     """Energy in rigid and deformable motion, strain, contact."""
     v = state.velocity
     overlap = np.maximum(body.pressing.overlap(state.displacement), 0.0)
@@ -82,7 +82,7 @@ def _standing(body: Body, state: State) -> tuple[float, float, float, float]:
     return 0.5 * float(body.rigid @ v**2), 0.5 * float(v @ (body.mass @ v)), strain, springs
 
 
-def _of_inertia(body: Body, scheme: Scheme, before: State, after: State, step: float) -> float:
+def _of_inertia(body: BodyWithMass, scheme: Scheme, before: BodyState, after: BodyState, step: float) -> float:
     """Loss by the balance of inertia."""
     alpha_m, _, beta, gamma = scheme
     change, mean = after.acceleration - before.acceleration, (after.acceleration + before.acceleration) / 2
@@ -92,7 +92,9 @@ def _of_inertia(body: Body, scheme: Scheme, before: State, after: State, step: f
     return first + step**2 * (beta - gamma / 2) * float(pushed @ (mean + (0.5 - alpha_m) * change))
 
 
-def _of_stress(body: Body, scheme: Scheme, before: State, after: State, step: float, change: Array) -> float:
+def _of_stress(
+    body: BodyWithMass, scheme: Scheme, before: BodyState, after: BodyState, step: float, change: Array
+) -> float:
     """Loss by stress and damping that are not averages over the step."""
     late, early = 1 - scheme.alpha_f, scheme.alpha_f
     forces = late * after.internal + early * before.internal - _average(body, before, after, step, change)
@@ -104,7 +106,7 @@ def _of_stress(body: Body, scheme: Scheme, before: State, after: State, step: fl
     return float(change @ forces)
 
 
-def _average(body: Body, before: State, after: State, step: float, change: Array) -> Array:
+def _average(body: BodyWithMass, before: BodyState, after: BodyState, step: float, change: Array) -> Array:
     """Nodal forces (N,) of the stress, over a step in which the displacement changes linearly."""
     if body.is_elastic:
         return 0.5 * (before.internal + after.internal)
@@ -113,7 +115,7 @@ def _average(body: Body, before: State, after: State, step: float, change: Array
     return np.asarray(sum(means, np.zeros(body.size)))
 
 
-def _contact_work(body: Body, scheme: Scheme, before: State, after: State, change: Array) -> float:
+def _contact_work(body: BodyWithMass, scheme: Scheme, before: BodyState, after: BodyState, change: Array) -> float:
     """Work that the contact takes from the bodies."""
     pressure = (1 - scheme.alpha_f) * after.pressure + scheme.alpha_f * before.pressure
     return -float(change @ body.pressing.load(pressure))

@@ -16,13 +16,13 @@ import scipy.sparse as sparse
 
 from fe_contact.assembly.forms import Array
 from fe_contact.dynamics import events, ledger
-from fe_contact.dynamics.body import Body
+from fe_contact.dynamics.body import BodyWithMass
 from fe_contact.dynamics.explicit import ExplicitStepper
 from fe_contact.dynamics.implicit import ImplicitStepper
 from fe_contact.dynamics.ledger import Energies
 from fe_contact.dynamics.pressed import Enforced
 from fe_contact.dynamics.schemes.base import Scheme
-from fe_contact.dynamics.state import State, undeformed
+from fe_contact.dynamics.state import BodyState, undeformed
 from fe_contact.errors import ContactLost, MotionUnbounded, TooManySteps
 from lumped.errors import BadInput, Fault
 
@@ -50,7 +50,7 @@ class Choices:
 class Moment(NamedTuple):
     """A body in motion at an instant, and its ledger so far."""
 
-    state: State
+    state: BodyState
     energies: Energies
 
 
@@ -76,7 +76,7 @@ class Motion:
     """A march from its first sample, at the start, to its last; ``final`` state; ``stages`` of every step."""
 
     samples: tuple[Sample, ...]
-    final: State
+    final: BodyState
     stages: int
 
     @cached_property
@@ -115,7 +115,7 @@ class Motion:
 
 
 def march(
-    body: Body,
+    body: BodyWithMass,
     velocity: Array,
     choices: Choices,
     end_time: float,
@@ -133,7 +133,12 @@ def march(
 
 
 def onwards(
-    body: Body, begun: Moment, choices: Choices, end_time: float, watch: Array, finished: Callable[[Sample], bool]
+    body: BodyWithMass,
+    begun: Moment,
+    choices: Choices,
+    end_time: float,
+    watch: Array,
+    finished: Callable[[Sample], bool],
 ) -> Motion:
     """The same from a moment on, with which another ``end_time``, s, and the lengths of the steps begin anew."""
     parts = stages(body, choices.enforced, choices.step) if choices.scheme.staged else 1
@@ -162,17 +167,19 @@ def onwards(
     return Motion(tuple(samples), state, parts)
 
 
-def _stepper(body: Body, choices: Choices, step: float) -> ExplicitStepper | ImplicitStepper:
+def _stepper(body: BodyWithMass, choices: Choices, step: float) -> ExplicitStepper | ImplicitStepper:
     kind: type[ExplicitStepper | ImplicitStepper] = ExplicitStepper if choices.scheme.explicit else ImplicitStepper
     return kind(body, choices.scheme, choices.enforced, step)
 
 
-def _impulse(body: Body, before: State, after: State) -> float:
+def _impulse(body: BodyWithMass, before: BodyState, after: BodyState) -> float:
     """N s from one state to the next, by the forces there."""
     return (after.time - before.time) * 0.5 * float(body.pressing.weights @ (before.pressure + after.pressure))
 
 
-def _sample(body: Body, state: State, impulse: float, watch: Array, energies: Energies, iterations: int) -> Sample:
+def _sample(
+    body: BodyWithMass, state: BodyState, impulse: float, watch: Array, energies: Energies, iterations: int
+) -> Sample:
     return Sample(
         time=state.time,
         force=float(body.pressing.weights @ state.pressure),
@@ -187,12 +194,12 @@ def _sample(body: Body, state: State, impulse: float, watch: Array, energies: En
     )
 
 
-def stages(body: Body, enforced: Enforced, step: float) -> int:
+def stages(body: BodyWithMass, enforced: Enforced, step: float) -> int:
     """Equal parts of a ``step``, s, none longer than :func:`safe_step`. Raises BadInput as that does."""
     return max(math.ceil(step / safe_step(body, enforced) * (1 - JUST_SAFE)), 1)
 
 
-def safe_step(body: Body, enforced: Enforced) -> float:
+def safe_step(body: BodyWithMass, enforced: Enforced) -> float:
     """s, at most 2/omega_max, where omega_max^2 <= max_i sum_j |K_ij| / m_i (Gershgorin), K with every contact closed.
 
     A mass that couples its nodes stands for the diagonal m_i = M_ii - sum of |M_ij|, which it exceeds; degrees of

@@ -9,10 +9,10 @@ import numpy as np
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.interior import factorized
 from fe_contact.dynamics import memory
-from fe_contact.dynamics.body import Body
+from fe_contact.dynamics.body import BodyWithMass
 
 
-class State(NamedTuple):
+class BodyState(NamedTuple):
     """A body at an instant, s, with N degrees of freedom and q points of contact, SI units.
 
     ``displacement``, ``velocity``, ``acceleration`` (N,); ``branches`` of every part, (k, N); ``internal`` (N,) nodal
@@ -33,7 +33,7 @@ class State(NamedTuple):
         return np.maximum(self.signed_pressure, 0.0)
 
 
-def undeformed(body: Body, velocity: Array) -> State:
+def undeformed(body: BodyWithMass, velocity: Array) -> BodyState:
     """A relaxed body about to touch, moving with ``velocity`` (N,); its acceleration balances gravity and damping."""
     displacement = np.zeros(body.size)
     branches = tuple(np.zeros((len(part.relaxation.moduli), body.size)) for part in body.parts)
@@ -42,12 +42,12 @@ def undeformed(body: Body, velocity: Array) -> State:
     free = body.massive
     acceleration[free] = factorized(body.inertia[free][:, free])(forces[free])
     open_points = -np.ones(body.pressing.weights.size)
-    return State(
+    return BodyState(
         0.0, displacement, velocity, acceleration, branches, internal(body, displacement, branches), open_points
     )
 
 
-def internal(body: Body, displacement: Array, branches: tuple[Array, ...]) -> Array:
+def internal(body: BodyWithMass, displacement: Array, branches: tuple[Array, ...]) -> Array:
     """Nodal forces of the stress, (N,), N."""
     parts = zip(body.parts, branches, strict=True)
     forces = [part.stiffness @ memory.stressed(part, displacement, own) for part, own in parts]

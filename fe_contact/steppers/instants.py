@@ -33,7 +33,7 @@ GAUSS = np.polynomial.legendre.leggauss(8)
 SHARES, WEIGHTS = (GAUSS[0] + 1) / 2, GAUSS[1] / 2  # of a step
 
 
-class Stepper(Protocol):
+class SteppedBy(Protocol):
     """What took the steps: its memory's ``radii`` and the profile's ``heights`` there, m, each (r,)."""
 
     strike: Strike
@@ -48,7 +48,7 @@ class Stepper(Protocol):
         """The state at first touch."""
 
 
-def read(stepper: Stepper, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
+def read(stepper: SteppedBy, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
     """One snapshot a step, when its contact radius was: pressure (q,), Pa, at the mesh's points, zero outside."""
     operator = stepper.surface.operator
     zone = int(operator.nodes.searchsorted(EDGE)) + 1
@@ -76,7 +76,7 @@ def _pressures(operator: SurfaceOperator, stresses: Array) -> Array:
     return found
 
 
-def _stresses(stepper: Stepper, steps: Sequence[Step], places: Array) -> Array:
+def _stresses(stepper: SteppedBy, steps: Sequence[Step], places: Array) -> Array:
     """w at places (m, s), m, one column a step; Pa m."""
     times = np.array(stepper.strike.relaxation.times)
     missed = np.zeros((len(times), len(stepper.radii)))
@@ -91,7 +91,7 @@ def _stresses(stepper: Stepper, steps: Sequence[Step], places: Array) -> Array:
     return found
 
 
-def _stress(stepper: Stepper, before: State, step: Step, missed: Array, places: Array) -> Array:
+def _stress(stepper: SteppedBy, before: State, step: Step, missed: Array, places: Array) -> Array:
     """w at places (m,), m, when the contact radius was that of a step; ``missed`` (k, r) goes to the branches."""
     relaxation, after = stepper.strike.relaxation, step.state
     share = (step.radius_time - before.time) / step.length
@@ -104,7 +104,7 @@ def _stress(stepper: Stepper, before: State, step: Step, missed: Array, places: 
     return np.asarray(now + interpolate(np.asarray(relaxation.moduli) @ branches, stepper.radii[-1], places))
 
 
-def _missed(stepper: Stepper, before: State, step: Step, edge: float) -> Array:
+def _missed(stepper: SteppedBy, before: State, step: Step, edge: float) -> Array:
     """What the branches (k, r) miss, m, of a step in which the contact grew from ``edge``, m.
 
     Of a detour from the straight line, dz/dt = du/dt - z/tau leaves -1/tau times its faded integral.

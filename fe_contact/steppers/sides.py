@@ -25,7 +25,7 @@ from lumped.materials import Relaxation
 
 
 @dataclass(frozen=True, eq=False)
-class Side(Condensed):
+class BodySide(Condensed):
     """One body: its ``operator``, its own contact modulus ``relaxation``, Pa (times a length in plane strain).
 
     ``trace`` (q, n): displacement at the common points from that of its n nodes in the contact zone; ``share``: its
@@ -61,7 +61,7 @@ class Side(Condensed):
 
 
 @dataclass(frozen=True, eq=False)
-class BulkSide(ByModes, Side):
+class BulkSide(ByModes, BodySide):
     """The same of a body whose bulk remembers; ``operator`` is one of its ``modes``', which count with the share."""
 
     modes: Modes = field(kw_only=True)
@@ -95,7 +95,7 @@ class BulkSide(ByModes, Side):
         return self.modes.stiffer(self.share)
 
 
-def stacked(operator: SurfaceOperator, sides: tuple[Side, ...], weights: tuple[float, ...]) -> PressedSurface:
+def stacked(operator: SurfaceOperator, sides: tuple[BodySide, ...], weights: tuple[float, ...]) -> PressedSurface:
     """The sides under one pressure at the operator's points; ``weights``: modulus of each over the common one."""
     blocks = (weight * side.stiffness for side, weight in zip(sides, weights, strict=True))
     trace = np.hstack([side.trace for side in sides])
@@ -111,6 +111,6 @@ def stacked(operator: SurfaceOperator, sides: tuple[Side, ...], weights: tuple[f
     )
 
 
-def carriers(operator: SurfaceOperator, sides: tuple[Side, ...]) -> Array | None:
+def carriers(operator: SurfaceOperator, sides: tuple[BodySide, ...]) -> Array | None:
     """What two meshes that do not match can both follow: of a facet of the first its mean and its tilt."""
     return operator.hat_shapes if len(sides) > 1 else None

@@ -21,7 +21,7 @@ from fe_contact.assembly.operators import SurfaceOperator
 from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.bodies.offer import Half, Offer, Recalled
 from fe_contact.steppers.march import Snapshot
-from fe_contact.steppers.sides import Side, carriers, stacked
+from fe_contact.steppers.sides import BodySide, carriers, stacked
 from fe_contact.steppers.struck import Deformable
 from lumped.materials import Relaxation
 
@@ -33,7 +33,7 @@ class Stacked(Deformable):
     """One body or two before the impact; ``operator`` of the one that has the points, angles on its ``radius``, m."""
 
     operator: SurfaceOperator
-    sides: tuple[Side, ...]
+    sides: tuple[BodySide, ...]
     radius: float
     breathes: bool = False
 
@@ -87,7 +87,7 @@ class StackedBody:
     """The contract of :class:`fe_contact.bodies.offer.Body`; the memory is one for each of the ``halves``."""
 
     operator: SurfaceOperator
-    sides: tuple[Side, ...]
+    sides: tuple[BodySide, ...]
     halves: tuple[Half, ...]
 
     def at_rest(self) -> Memory:

@@ -29,14 +29,14 @@ from fe_contact.bodies.zone import (
 )
 from fe_contact.settings import Numerics
 from fe_contact.steppers.bulk_surface import Pace
-from fe_contact.steppers.sides import BulkSide, Side, stacked
+from fe_contact.steppers.sides import BodySide, BulkSide, stacked
 from fe_contact.steppers.stacked import Stacked
 from fe_contact.targets._body import BodyStill, trace_at
 from lumped.materials import Material
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.shapes import Shape
-from lumped.targets._round import Round
+from lumped.targets._round import RoundTarget
 
 SPARE = 1.05  # the larger body's fine mesh over what the contact may reach on the smaller
 
@@ -112,19 +112,19 @@ def _together(
     return Stacked(own.operator, tuple(sides), first.radius)
 
 
-def _side(body: _Body, meshed: ElasticBody, shape: Shape, pace: Pace | None) -> Side:
+def _side(body: _Body, meshed: ElasticBody, shape: Shape, pace: Pace | None) -> BodySide:
     """One of the bodies under a pressure at its own points."""
     material, relaxation = body.material, shape.modulus(body.material).scaled(shape.total)
     if pace is not None and material.constant == "bulk" and not material.young.is_elastic:
         return BulkSide.of(meshed, Moduli.of(material, shape.total), pace, relaxation)
     operator = _operator(meshed, material.nu)
-    return Side(operator, relaxation, operator.trace)
+    return BodySide(operator, relaxation, operator.trace)
 
 
 def _bodies(geometry: Geometry) -> list[_Body]:
     """The bodies that yield, the smaller one first: its surface ends first."""
     target, own, bodies = geometry.target, geometry.shape.tip_radius, list[_Body]()
-    if isinstance(target, Round):
+    if isinstance(target, RoundTarget):
         bodies.append(_Body(target.radius, geometry.material, target.support == "held"))
     if geometry.striking is not None and own is not None:
         bodies.append(_Body(own, geometry.striking, False))

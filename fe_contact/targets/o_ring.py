@@ -25,7 +25,7 @@ from fe_contact.bodies.zone import (
 )
 from fe_contact.settings import Numerics
 from fe_contact.steppers.bulk_surface import Pace
-from fe_contact.steppers.sides import BulkSide, Side
+from fe_contact.steppers.sides import BodySide, BulkSide
 from fe_contact.steppers.stacked import Stacked
 from fe_contact.targets._body import BodyStill
 from lumped.materials import Relaxation
@@ -92,7 +92,7 @@ def _sizes(geometry: Geometry, numerics: Numerics) -> tuple[ORing, Sizes]:
 @kept
 def _struck(poisson: float, relaxation: Relaxation, target: ORing, sizes: Sizes) -> Stacked:
     operator = _body(*sizes).operator(poisson)
-    return Stacked(operator, (Side(operator, relaxation, operator.trace, target.lead),), target.section_radius)
+    return Stacked(operator, (BodySide(operator, relaxation, operator.trace, target.lead),), target.section_radius)
 
 
 @kept

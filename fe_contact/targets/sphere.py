@@ -9,7 +9,7 @@ from fe_contact.steppers.struck import Deformable
 from fe_contact.targets import _round, half_space
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
-from lumped.targets.sphere import Sphere
+from lumped.targets.sphere import SphereTarget
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
@@ -17,7 +17,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 
     The surface of a half-space knows its E* alone, so one of the common modulus stands for two.
     """
-    assert isinstance(indenter.target, Sphere)
+    assert isinstance(indenter.target, SphereTarget)
     if indenter.target.support is not None:
         return _round.still(indenter, radii, numerics)
     return ScaledStill(half_space.surface(indenter.material.nu, numerics), indenter, numerics)
@@ -25,7 +25,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 
 def struck(geometry: Geometry, numerics: Numerics) -> Deformable:
     """Both bodies in an impact: one half-space of the common modulus, or each of its true size."""
-    assert isinstance(geometry.target, Sphere)
+    assert isinstance(geometry.target, SphereTarget)
     if geometry.target.support is not None:
         return _round.struck(geometry, numerics)
     return half_space.surface(geometry.material.nu, numerics)

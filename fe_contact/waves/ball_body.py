@@ -20,7 +20,7 @@ from fe_contact.dynamics.mass.consistent import Nodes
 from fe_contact.settings import MASSES
 from fe_contact.waves.half_space_body import SMALLEST
 from fe_contact.waves.numerics import WaveNumerics
-from fe_contact.waves.sides import Side
+from fe_contact.waves.sides import WaveSide
 from lumped.materials import Material
 from lumped.schema.members import get
 
@@ -80,12 +80,12 @@ class Ball:
         angles, weights = self._unit(numerics).quadrature
         return self.radius * np.sin(angles), self.radius**2 * weights
 
-    def side(self, numerics: WaveNumerics, places: Array) -> Side:
+    def side(self, numerics: WaveNumerics, places: Array) -> WaveSide:
         """In SI units, under points, m from the axis."""
         unit, modulus = self._unit(numerics), self.material.contact_modulus()
         push, trace = unit.seen(np.arcsin(np.minimum(places / self.radius, 1.0)))
         part = Part(self.radius * unit.stiffness, modulus)
-        return Side(self.mass / unit.volume * unit.mass, (part,), None, push, trace, unit.axial)
+        return WaveSide(self.mass / unit.volume * unit.mass, (part,), None, push, trace, unit.axial)
 
     def _unit(self, numerics: WaveNumerics) -> UnitBall:
         contact = min(float(np.arcsin(min(numerics.contact_radius / self.radius, 1.0))), WIDEST)

@@ -9,7 +9,7 @@ import numpy as np
 from fe_contact.assembly.forms import Array
 from fe_contact.dynamics.march import Motion, Sample
 from fe_contact.waves.fronts import DEPTH, FORCE, TIME, VELOCITY, with_fronts
-from fe_contact.waves.rod_reading import Contacts, Reading, stopped
+from fe_contact.waves.rod_reading import Contacts, RodReading, stopped
 from lumped.scene.scene import Scene
 
 SPOILED, TELLING = 8, 8  # steps at the ends of a contact in which its element rings, and those beside them
@@ -36,7 +36,7 @@ class Ending:
         return self.open and self.begun == self.impacts and away > self.pause
 
 
-def read(found: Motion, total: float, scene: Scene, pause: float, echo: int | None) -> tuple[Reading, Contacts]:
+def read(found: Motion, total: float, scene: Scene, pause: float, echo: int | None) -> tuple[RodReading, Contacts]:
     """Rows up to the last separation and every contact; ``total`` mass, kg; those within a ``pause``, s, are one.
 
     ``echo``: steps after which a front comes back, None where steps do not follow it.
@@ -68,7 +68,7 @@ def read(found: Motion, total: float, scene: Scene, pause: float, echo: int | No
         "impulse": float(np.interp(rows[TIME, -1], found.time, impulses)),
         "history_l2": 0.0,
     }
-    return Reading(rows, total, separated, quantities), contacts
+    return RodReading(rows, total, separated, quantities), contacts
 
 
 def clustered(contacts: tuple[tuple[float, float], ...], pause: float) -> list[tuple[float, float]]:

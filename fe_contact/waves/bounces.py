@@ -17,11 +17,11 @@ import numpy as np
 
 from fe_contact.assembly.cache import Store
 from fe_contact.dynamics import events, ledger
-from fe_contact.dynamics.body import Body
+from fe_contact.dynamics.body import BodyWithMass
 from fe_contact.dynamics.implicit import ImplicitStepper
 from fe_contact.dynamics.march import MOST_WORK, Choices, Moment, Motion, Sample, onwards
 from fe_contact.dynamics.schemes import generalised_alpha
-from fe_contact.dynamics.state import State, undeformed
+from fe_contact.dynamics.state import BodyState, undeformed
 from fe_contact.errors import TooManySteps
 from fe_contact.march.flight import FAINTEST, Grounded
 from fe_contact.march.impacts import Contact, Followed
@@ -120,7 +120,7 @@ class Flights:
     ``steps`` taken, ``factorizations`` made so far, of which the last ones used are kept; steps are ``counted``.
     """
 
-    def __init__(self, body: Body, choices: Choices, patience: int, counted: Counted = uncounted) -> None:
+    def __init__(self, body: BodyWithMass, choices: Choices, patience: int, counted: Counted = uncounted) -> None:
         self._counted, self._most = counted, MOST_WORK / body.size
         self._body, self._choices, self._patience = body, choices, patience
         self._steppers = Store(KEPT)
@@ -153,7 +153,7 @@ class Flights:
         open_yet = np.minimum(touch.signed_pressure, 0.0)
         return self._entered(moment, touch._replace(signed_pressure=open_yet))
 
-    def _flown(self, moment: Moment, stepper: ImplicitStepper) -> State:
+    def _flown(self, moment: Moment, stepper: ImplicitStepper) -> BodyState:
         """A step later, whether or not anything meets in it. Raises TooManySteps."""
         if self.steps >= self._most:
             raise TooManySteps(self.steps, moment.state.time)
@@ -161,7 +161,7 @@ class Flights:
         self._counted(1.0)
         return stepper.flown(moment.state)
 
-    def _entered(self, moment: Moment, state: State) -> Moment:
+    def _entered(self, moment: Moment, state: BodyState) -> Moment:
         """A step further in the ledger too."""
         return Moment(state, ledger.entered(moment.energies, self._body, DAMPED, moment.state, state))
 
@@ -174,6 +174,6 @@ class Flights:
         return ImplicitStepper(self._body, DAMPED, self._choices.enforced, step)
 
 
-def _met(state: State) -> bool:
+def _met(state: BodyState) -> bool:
     """Whether the surfaces overlap anywhere."""
     return bool(state.signed_pressure.max() > 0.0)

@@ -33,7 +33,7 @@ ORDER = {"mesh": 1, "penalty": 1, "time_step": 1, "far_field": 2}
 LEAST_NODES = 24.0
 
 
-class Runs:
+class WaveRuns:
     """Marches of one scene with different settings, each run once, and a count of what they cost.
 
     ``cheap``: steps of those in which another setting is varied, whose effect does not depend on the step.
@@ -100,7 +100,7 @@ def _lengths(march: March, settings: WaveNumerics) -> int:
     return 1 + sum(at < end for at in graded(settings)[1])
 
 
-def certify(runs: Runs, numerics: WaveNumerics) -> Several:
+def certify(runs: WaveRuns, numerics: WaveNumerics) -> Several:
     """March with ``numerics`` and with each setting varied; raises where the march itself fails.
 
     The budget is that of the first contact, those of the ``later`` ones, judged from the same runs, stand in it.
@@ -114,7 +114,7 @@ def certify(runs: Runs, numerics: WaveNumerics) -> Several:
     return Several(row[0].curve, row[0].march, row[0].changes, row[0].work, followed, tuple(row[1:]))
 
 
-def _judged(runs: Runs, number: int, numerics: WaveNumerics) -> Mapping[str, Causes]:
+def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Mapping[str, Causes]:
     """What the settings change of one contact."""
     contact = runs.follow(numerics).contacts[number]
     cheap, changed = numerics.varied(steps=runs.cheap), partial(_changed, partial(runs.curve, number))

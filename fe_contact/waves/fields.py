@@ -9,7 +9,7 @@ import numpy as np
 from fe_contact.assembly.forms import Array, isotropic
 from fe_contact.dynamics import memory
 from fe_contact.dynamics.march import march
-from fe_contact.dynamics.state import State
+from fe_contact.dynamics.state import BodyState
 from fe_contact.fields import Fields, nodal_stress, subdivided, written
 from fe_contact.waves.half_space_body import UnitBody, moving, unit_of
 from fe_contact.waves.impact import choices_of
@@ -54,7 +54,7 @@ def fields_at(scene: Scene, numerics: WaveNumerics, time: float) -> tuple[Fields
     return found, _everywhere(unit, state.velocity).reshape(-1, 2)
 
 
-def _stressed(moving: Moving, state: State) -> Array:
+def _stressed(moving: Moving, state: BodyState) -> Array:
     """Modulus times displacement, of all that it remembers, (N,), N/m."""
     (part,), (branches,) = moving.body.parts, state.branches
     return memory.stressed(part, state.displacement, branches) + part.relaxation.viscosity * state.velocity

@@ -14,10 +14,10 @@ from fe_contact.waves.ball_body import Ball
 from fe_contact.waves.half_space_body import BEYOND
 from fe_contact.waves.moving import Flying
 from fe_contact.waves.numerics import WaveNumerics
-from fe_contact.waves.sides import Side, together
+from fe_contact.waves.sides import WaveSide, together
 from lumped.scene.scene import Scene
 from lumped.shapes import Sphere
-from lumped.targets.sphere import Sphere as Struck
+from lumped.targets.sphere import SphereTarget as Struck
 
 
 def on_plane(scene: Scene, numerics: WaveNumerics) -> Flying:
@@ -30,7 +30,7 @@ def on_plane(scene: Scene, numerics: WaveNumerics) -> Flying:
 def on_half_space(scene: Scene, numerics: WaveNumerics) -> Flying:
     """The ball of a scene and the half-space, which has the points."""
     struck = half_space_body.moving(replace(scene, striker_material=None), numerics)
-    sides = [ball_of(scene).side(numerics, struck.places), Side.struck(struck.body)]
+    sides = [ball_of(scene).side(numerics, struck.places), WaveSide.struck(struck.body)]
     weights = struck.body.pressing.weights
     return _moving(scene, numerics, sides, struck.places, weights, (1.0, 0.0), endless=struck.endless)
 
@@ -58,7 +58,7 @@ def ball_of(scene: Scene) -> Ball:
 def _moving(
     scene: Scene,
     numerics: WaveNumerics,
-    sides: Sequence[Side],
+    sides: Sequence[WaveSide],
     places: Array,
     weights: Array,
     shares: Sequence[float],

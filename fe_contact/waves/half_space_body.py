@@ -16,7 +16,7 @@ from fe_contact.assembly.forms import Array, mass, vector_dofs
 from fe_contact.assembly.operators import basis_on, made, system_matrix
 from fe_contact.assembly.surface import flat
 from fe_contact.assembly.trace import contact_quadrature
-from fe_contact.dynamics.body import Body, Part, Pressing
+from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
 from fe_contact.dynamics.mass.consistent import Nodes
 from fe_contact.settings import MASSES
 from fe_contact.waves.moving import Moving, with_striker
@@ -57,7 +57,7 @@ def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
     heights = np.minimum(scene.profile.height(a * unit.points), BEYOND * a)
     # a dashpot in parallel has no wave speed of its own
     impedance = None if modulus.viscosity else (a**2 * np.sqrt(modulus.glassy * density)) * unit.dashpots
-    body = Body(
+    body = BodyWithMass(
         mass=density * a**3 * unit.mass,
         rigid=rigid,
         parts=(Part(a * unit.stiffness, modulus),),

@@ -18,7 +18,7 @@ from fe_contact.assembly.operators import basis_on, made
 from fe_contact.assembly.surface import flat
 from fe_contact.assembly.trace import contact_quadrature
 from fe_contact.bodies.zone import held, thickness_over
-from fe_contact.dynamics.body import Body, Part, Pressing
+from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
 from fe_contact.dynamics.mass.consistent import Nodes
 from fe_contact.settings import MASSES
 from fe_contact.targets.layer import matrix
@@ -61,7 +61,7 @@ def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
     rigid, gravity = np.zeros(unit.mass.shape[0]), np.zeros(unit.mass.shape[0])
     rigid[-1], gravity[-1] = scene.reduced_mass, scene.gravity
     heights = np.minimum(scene.profile.height(a * unit.points), BEYOND * a)
-    body = Body(
+    body = BodyWithMass(
         mass=(scene.geometry.material.density or 0.0) * total * a ** (3 - plane) * unit.mass,
         rigid=rigid,
         parts=_parts(scene, unit, total * a ** (1 - plane)),

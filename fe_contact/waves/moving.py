@@ -10,9 +10,9 @@ import scipy.sparse as sparse
 
 from fe_contact.assembly.forms import Array
 from fe_contact.dynamics import memory
-from fe_contact.dynamics.body import Body
+from fe_contact.dynamics.body import BodyWithMass
 from fe_contact.dynamics.mass.consistent import Nodes
-from fe_contact.dynamics.state import State
+from fe_contact.dynamics.state import BodyState
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +22,7 @@ class Moving:
     ``places`` (q,) of the points that may touch, m from the axis; ``endless``: nothing comes back of its waves.
     """
 
-    body: Body
+    body: BodyWithMass
     speed: float
     places: Array
     endless: bool
@@ -39,7 +39,7 @@ class Moving:
         """Picks the depth, sparse (1, N)."""
         return sparse.csr_matrix(([1.0], ([0], [self.body.size - 1])), shape=(1, self.body.size))
 
-    def in_striker(self, state: State) -> tuple[float, float]:
+    def in_striker(self, state: BodyState) -> tuple[float, float]:
         """Energy in the motion and in the strain of the striker, J."""
         return 0.5 * float(self.body.rigid @ state.velocity**2), 0.0
 
@@ -65,7 +65,7 @@ class Flying(Moving):
         """The approach of the centres of mass, sparse (1, N)."""
         return sparse.csr_matrix(self.approach[None])
 
-    def in_striker(self, state: State) -> tuple[float, float]:
+    def in_striker(self, state: BodyState) -> tuple[float, float]:
         """All its motion, and its springs."""
         own = np.where(np.arange(self.body.size) < self.yielding, state.velocity, 0.0)
         strain = memory.stored(self.body.parts[0], state.displacement, state.branches[0])

@@ -21,7 +21,7 @@ from fe_contact.progress import Count, Progress
 from fe_contact.reference import result_of, strike_of
 from fe_contact.results.told import quantities_of, shares_of
 from fe_contact.settings import RANGES, Numerics
-from fe_contact.waves.certify import ORDER, Runs, certify, other_mesh
+from fe_contact.waves.certify import ORDER, WaveRuns, certify, other_mesh
 from fe_contact.waves.cost import Cost
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.numerics import WaveNumerics
@@ -38,7 +38,7 @@ MOST = {"mesh": 2.0, "penalty": 8.0, "time_step": 4.0, "far_field": 4.0}  # in o
 
 
 @dataclass(frozen=True, eq=False)
-class Solved:
+class SolvedWaves:
     """A certified impact with the plan it began from and the settings it ended with; CPU and wall time, s."""
 
     plan: Plan
@@ -60,7 +60,7 @@ def refined_to_tolerance(
     cpu, wall = time.process_time(), time.perf_counter()
     assert isinstance(chosen.numerics, WaveNumerics)
     numerics, certified, outgrown = chosen.numerics, None, None
-    runs = Runs(scene, strike_of(scene), moving, numerics.steps // 2)
+    runs = WaveRuns(scene, strike_of(scene), moving, numerics.steps // 2)
     finer = numerics
     for attempt in range(ROUNDS + 1):
         try:
@@ -83,7 +83,7 @@ def refined_to_tolerance(
     if certified is None:
         raise outgrown or MemoryTooSmall(numerics.contact_radius)
     scene.check_sunk(max(budget.curve.quantities["peak_depth"] or 0.0 for budget in certified.row))
-    solved = Solved(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall)
+    solved = SolvedWaves(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall)
     return result_of(scene, solved)
 
 

@@ -7,7 +7,7 @@ import scipy.sparse as sparse
 
 import meshes
 from fe_contact.assembly.forms import scatter
-from fe_contact.dynamics.body import Body, Part, Pressing
+from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
 from fe_contact.settings import MASSES
 from fe_contact.waves.moving import Moving, with_striker
 from fe_contact.waves.numerics import WaveNumerics
@@ -56,7 +56,7 @@ def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
     mass = get(MASSES, numerics.mass).of(np.tile(of_element, (len(dofs), 1, 1)), dofs, size, np.array([0]))
     rigid, gravity = np.zeros(len(free) + 1), np.zeros(len(free) + 1)
     rigid[-1], gravity[-1] = scene.reduced_mass, scene.gravity
-    body = Body(
+    body = BodyWithMass(
         mass=with_striker(mass, free),
         rigid=rigid,
         parts=(Part(with_striker(scatter(np.tile(springs, (len(dofs), 1, 1)), dofs, size), free), modulus),),

@@ -25,7 +25,7 @@ Contacts = tuple[Mapping[str, float | None], ...]
 
 
 @dataclass(frozen=True, eq=False)
-class Reading:
+class RodReading:
     """``rows`` (5, n): time, s, never decreasing; depth, m; velocity, m/s, of a ``mass``, kg; force, N; dent, m. Did
     contact end?
     """
@@ -40,7 +40,7 @@ class Reading:
         return np.asarray(np.interp(time, self.rows[TIME], self.rows[FORCE]))
 
 
-def read(found: Motion, scene: Scene, elements: int, separated: bool) -> Reading:
+def read(found: Motion, scene: Scene, elements: int, separated: bool) -> RodReading:
     """From the samples of a march; ``elements`` of the rod; whether it has ``separated``. Raises ContactLost."""
     jumping = scene.profile.fixed_radius is not None
     rows = np.array([_row(sample) for sample in found.samples]).T
@@ -65,7 +65,7 @@ def read(found: Motion, scene: Scene, elements: int, separated: bool) -> Reading
         "impulse": float(scene.reduced_mass * (scene.velocity - velocity + scene.gravity * time)),
         "history_l2": 0.0,
     }
-    return Reading(rows, scene.reduced_mass, separated, quantities)
+    return RodReading(rows, scene.reduced_mass, separated, quantities)
 
 
 def _row(sample: Sample) -> tuple[float, ...]:

@@ -17,7 +17,7 @@ from fe_contact.reference import CURE
 from fe_contact.results.distance import distance
 from fe_contact.settings import Numerics
 from fe_contact.waves.fronts import DENT, DEPTH, FORCE, TIME, VELOCITY
-from fe_contact.waves.rod_reading import Contacts, Reading
+from fe_contact.waves.rod_reading import Contacts, RodReading
 from lumped.result.history import LEAST_ROWS, History
 from lumped.result.result import RULED_ABSOLUTE, UNITS, Quantity, Result, meets, provenance, unmet
 from lumped.scene.scene import Scene
@@ -36,7 +36,7 @@ AWAY = 0.02  # share of the contact within which a change counts as the error of
 class Run:
     """One march: what was read off it, its energies, J, its steps and unknowns; every contact, where several may be."""
 
-    reading: Reading
+    reading: RodReading
     energy: Mapping[str, float]
     steps: int
     unknowns: int
@@ -100,7 +100,7 @@ class Bars:
         return {n: nothing | {c: own[n].error or 0.0 for c, own in self.by_cause.items()} for n in UNITS}
 
 
-def bars(fine: Reading, coarse: Reading, least: Mapping[str, float], safety: float) -> dict[str, Quantity]:
+def bars(fine: RodReading, coarse: RodReading, least: Mapping[str, float], safety: float) -> dict[str, Quantity]:
     """Quantities with ``safety`` times what twice the steps change as bars: order one, as at the fronts.
 
     At the ``least`` so much changes: at one instant two histories may cross, and by chance two steps may agree. A norm
@@ -118,7 +118,7 @@ def bars(fine: Reading, coarse: Reading, least: Mapping[str, float], safety: flo
     return found
 
 
-def _changes(fine: Reading, coarse: Reading) -> dict[str, float]:
+def _changes(fine: RodReading, coarse: RodReading) -> dict[str, float]:
     """How far two marches are apart, by quantity that the fine one has, infinite where the coarse one has it not.
 
     The impulse has the striker's momentum and its weight to answer for: both count, as by chance they may cancel.
@@ -133,12 +133,12 @@ def _changes(fine: Reading, coarse: Reading) -> dict[str, float]:
     return found | {"impulse": abs(turned) + abs(pressed + turned)}
 
 
-def _halved(coarse: Reading, coarser: Reading) -> dict[str, float]:
+def _halved(coarse: RodReading, coarser: RodReading) -> dict[str, float]:
     """At least half of what doubling the steps before changed, by quantity that both have: order one."""
     return {name: 0.5 * change for name, change in _changes(coarse, coarser).items() if np.isfinite(change)}
 
 
-def _nearby(fine: Reading, coarse: Reading) -> dict[str, float]:
+def _nearby(fine: RodReading, coarse: RodReading) -> dict[str, float]:
     """The largest changes of force and depth near their peaks, of motion late in the contact; at times of both."""
     force, change = _compared(fine, coarse)
     end, start = fine.rows[TIME, -1], abs(fine.rows[VELOCITY, 0])
@@ -194,7 +194,7 @@ def _ended_later(fine: Run, coarse: Run) -> dict[str, float]:
     return {"duration": later, "restitution": float(faster * max(later, abs(moved) / UNSHOWN))}
 
 
-def _lately(fine: Reading) -> float:
+def _lately(fine: RodReading) -> float:
     """From when on motion counts for that at the end, s: the last of it; but not a front's arrival, if enough follows.
 
     There velocities turn so fast that those of two marches differ by half a step's.
@@ -205,7 +205,7 @@ def _lately(fine: Reading) -> float:
     return max(LATE * end, float(behind))
 
 
-def _between_rows(fine: Reading) -> float:
+def _between_rows(fine: RodReading) -> float:
     """How much deeper than its deepest row a motion that turns may have been, m: half a step at that row's speed."""
     deepest = int(np.argmax(fine.rows[DEPTH]))
     if deepest in (0, fine.rows.shape[1] - 1):
@@ -214,18 +214,18 @@ def _between_rows(fine: Reading) -> float:
     return float(0.5 * np.diff(around).max() * abs(fine.rows[VELOCITY, deepest]))
 
 
-def _distance(fine: Reading, coarse: Reading) -> float:
+def _distance(fine: RodReading, coarse: RodReading) -> float:
     """Norm of the change of the force over that of the force, until both have ended."""
     return distance(fine.force_at, coarse.force_at, np.union1d(fine.rows[TIME], coarse.rows[TIME]))
 
 
-def _compared(fine: Reading, coarse: Reading) -> tuple[Array, Array]:
+def _compared(fine: RodReading, coarse: RodReading) -> tuple[Array, Array]:
     places = _places(fine)
     force = fine.force_at(places)
     return force, np.abs(force - coarse.force_at(places))
 
 
-def _largest(fine: Reading, coarse: Reading) -> Array:
+def _largest(fine: RodReading, coarse: RodReading) -> Array:
     """The largest change of the force about each of the places, N, at the last one also of what follows.
 
     Between two rows of either both forces are straight lines: their ends tell, however little a jump is displaced.
@@ -241,7 +241,7 @@ def _largest(fine: Reading, coarse: Reading) -> Array:
     return found
 
 
-def _places(fine: Reading) -> Array:
+def _places(fine: RodReading) -> Array:
     """Times up to just before the end of contact, s, where a force may jump to zero."""
     return np.linspace(0.0, fine.rows[TIME, -1] * (1.0 - ROUNDING), COMPARED)
 

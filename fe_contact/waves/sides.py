@@ -11,11 +11,11 @@ import numpy as np
 import scipy.sparse as sparse
 
 from fe_contact.assembly.forms import Array
-from fe_contact.dynamics.body import Body, Part, Pressing
+from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
 
 
 @dataclass(frozen=True, eq=False)
-class Side:
+class WaveSide:
     """One of the bodies, n degrees of freedom of its own, SI units; its axis points out of it at the first touch.
 
     ``mass``, ``dashpots`` (or None) and the stiffness of its ``parts`` sparse (n, n); ``push`` (n, m) nodal forces of
@@ -31,7 +31,7 @@ class Side:
     axial: Array
 
     @classmethod
-    def struck(cls, body: Body) -> Side:
+    def struck(cls, body: BodyWithMass) -> WaveSide:
         """All of a body but the rigid striker, its last degree of freedom and the last of its surface."""
         rest = slice(None, -1)
         return cls(
@@ -54,7 +54,7 @@ class Side:
         carried = (self.mass @ self.axial) * self.axial
         return np.asarray(carried / (carried.sum() or 1.0))
 
-    def among(self, before: int, after: int) -> Side:
+    def among(self, before: int, after: int) -> WaveSide:
         """The same among so many degrees of freedom of others, which it does not feel."""
         return replace(
             self,
@@ -66,7 +66,9 @@ class Side:
         )
 
 
-def together(sides: Sequence[Side], gravity: float, weights: Array, clearance: Array, carriers: Array | None) -> Body:
+def together(
+    sides: Sequence[WaveSide], gravity: float, weights: Array, clearance: Array, carriers: Array | None
+) -> BodyWithMass:
     """One body of all sides, one after the other; ``gravity``, m/s2, pulls the first; areas and overlaps (q,).
 
     ``carriers``: what the pressure between two of them is made of, as in Pressing.
@@ -74,7 +76,7 @@ def together(sides: Sequence[Side], gravity: float, weights: Array, clearance: A
     ends = np.cumsum([side.size for side in sides])
     placed = [side.among(end - side.size, ends[-1] - end) for side, end in zip(sides, ends, strict=True)]
     dashpots = [side.dashpots for side in placed if side.dashpots is not None]
-    return Body(
+    return BodyWithMass(
         mass=sum(side.mass for side in placed).tocsc(),
         rigid=np.zeros(ends[-1]),
         parts=tuple(part for side in placed for part in side.parts),

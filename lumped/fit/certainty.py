@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import BadInput, NotReached
-from lumped.fit.problem import Problem
+from lumped.fit.problem import FitProblem
 from lumped.fit.record import Estimate
 from lumped.fit.space import TOUCH
 from lumped.schema.keys import Number
@@ -45,7 +45,7 @@ class Certainty:
         return correlation_of(self.covariance)
 
 
-def certainty_of(problem: Problem, values: Mapping[str, float], guess: Mapping[str, float]) -> Certainty:
+def certainty_of(problem: FitProblem, values: Mapping[str, float], guess: Mapping[str, float]) -> Certainty:
     """At the solution `values`, by central differences around it. Raises NotReached."""
     names = tuple(problem.space.free)
     found = problem.candidate(values)
@@ -82,7 +82,7 @@ def correlation_of(covariance: Array) -> Array:
     return np.asarray(matrix)
 
 
-def _scales(problem: Problem, values: Mapping[str, float], guess: Mapping[str, float]) -> Array:
+def _scales(problem: FitProblem, values: Mapping[str, float], guess: Mapping[str, float]) -> Array:
     """The size of every parameter searched."""
     return np.array(
         [
@@ -92,7 +92,7 @@ def _scales(problem: Problem, values: Mapping[str, float], guess: Mapping[str, f
     )
 
 
-def _slopes(problem: Problem, values: Mapping[str, float], guess: Mapping[str, float], depth: float) -> Array:
+def _slopes(problem: FitProblem, values: Mapping[str, float], guess: Mapping[str, float], depth: float) -> Array:
     """How all free values, the force at `depth` and the residuals change with each parameter searched."""
     names = problem.searched
 
@@ -147,7 +147,7 @@ def _estimate(value: float, width: float, key: Number) -> Estimate:
 
 
 def _parameter_warnings(
-    problem: Problem, parameters: Mapping[str, Estimate], guess: Mapping[str, float], unfelt: Set[str]
+    problem: FitProblem, parameters: Mapping[str, Estimate], guess: Mapping[str, float], unfelt: Set[str]
 ) -> Iterator[str]:
     for name, estimate in parameters.items():
         low, high = problem.space.limits(name, guess[name])
@@ -160,7 +160,7 @@ def _parameter_warnings(
             yield f"the interval of {name} reaches the least value it can have: the curve does not tell it from none"
 
 
-def _pair_warnings(problem: Problem, covariance: Array, told: bool) -> Iterator[str]:
+def _pair_warnings(problem: FitProblem, covariance: Array, told: bool) -> Iterator[str]:
     names = tuple(problem.space.free)
     if not told:
         yield f"{', '.join(names)} are not told apart by this curve: hold one of them; intervals are left out"

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import BadInput, NotReached
-from lumped.fit.problem import Problem
+from lumped.fit.problem import FitProblem
 from lumped.fit.space import REACH, TOUCH
 
 Array = NDArray[np.float64]
@@ -45,7 +45,7 @@ class Descent:
     `known` keeps the errors of places that have been computed, for the slopes there begin with them.
     """
 
-    problem: Problem
+    problem: FitProblem
     start: Found
     known: dict[bytes, Array] = field(default_factory=dict)
 

@@ -24,7 +24,7 @@ from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.solvers.point.motion import motion
 from lumped.solvers.point.outcome import peak_of
-from lumped.solvers.point.track import Track
+from lumped.solvers.point.track import PointTrack
 
 Array = NDArray[np.float64]
 Values = Mapping[str, float]
@@ -38,7 +38,7 @@ PLACES = 801
 
 
 @dataclass(frozen=True, eq=False)
-class Problem:
+class FitProblem:
     """`dependent` is the free parameter that holds the peak, "(26)"; None: least squares in all of them."""
 
     space: Space
@@ -134,7 +134,7 @@ def candidate(name: str, scene: Scene) -> Candidate:
 
 def _of_force_law(law: ForceLaw, scene: Scene) -> Candidate:
     until = scene.end_time_of(law.elastic_contact_time(scene))
-    track = Track(law, motion(law, bodies_of(scene), law.exit, 1, until, STEP_TOLERANCE))
+    track = PointTrack(law, motion(law, bodies_of(scene), law.exit, 1, until, STEP_TOLERANCE))
     (contact,) = track.motion.contacts
 
     def columns(time: Array) -> Array:

@@ -10,7 +10,7 @@ from lumped.errors import BadInput, Fault, NotReached
 from lumped.fit.certainty import certainty_of
 from lumped.fit.descent import Descent, Found
 from lumped.fit.measured import Measured
-from lumped.fit.problem import Problem
+from lumped.fit.problem import FitProblem
 from lumped.fit.record import Fit
 from lumped.fit.space import Bounds, space_of
 from lumped.fit.starts import starts
@@ -44,7 +44,7 @@ def search(
         reason = f"{measured.points} points for {len(space.free)} parameters; accepted: more points than parameters"
         raise BadInput(Fault("curve", "", reason))
     stiff = [name for name in STIFFNESSES if name in space.free] or list(space.free)
-    problem = Problem(space, measured, stiff[0] if peak else None)
+    problem = FitProblem(space, measured, stiff[0] if peak else None)
     found = best(problem)
     certainty = certainty_of(problem, found.values, found.guess)
     fitted = space.scene_at(found.values)
@@ -79,7 +79,7 @@ def delayed(history: History, touch: float) -> History:
     return replace(history, time=history.time + touch)
 
 
-def best(problem: Problem) -> Found:
+def best(problem: FitProblem) -> Found:
     """The nearest of the searches from the best starts. Raises NotReached, BadInput."""
     begun = sorted(_begun(problem), key=lambda found: found.norm)
     ended: list[Found] = []
@@ -94,7 +94,7 @@ def best(problem: Problem) -> Found:
     return min(ended, key=lambda found: found.norm)
 
 
-def _begun(problem: Problem) -> list[Found]:
+def _begun(problem: FitProblem) -> list[Found]:
     """The starts from which an impact exists, within the bounds; raises the failure of the first if of all."""
     found, failures = [], []
     for guess in starts(problem.space, problem.measured):
@@ -109,7 +109,7 @@ def _begun(problem: Problem) -> list[Found]:
     return found
 
 
-def _inside(problem: Problem, name: str, guess: float) -> float:
+def _inside(problem: FitProblem, name: str, guess: float) -> float:
     """A guess within the bounds, less a hair: a search begins inside them."""
     low, high = problem.space.limits(name, guess)
     hair = HAIR * min(high - low, abs(guess) or 1.0)

@@ -28,7 +28,7 @@ Values = dict[str, float]
 
 def starts(space: Space, measured: Measured) -> list[Values]:
     """First guesses of the free parameters, the best founded one first."""
-    pulse = Pulse(space, measured)
+    pulse = CurvePulse(space, measured)
     own = set(own_keys(space.law)) | {TOUCH}
     names = [name for name in (*space.free, *space.held) if name in own]
     of_network = [name for name in (*space.free, *space.held) if name not in own]
@@ -38,7 +38,7 @@ def starts(space: Space, measured: Measured) -> list[Values]:
 
 
 @dataclass(frozen=True)
-class Pulse:
+class CurvePulse:
     """The curve seen as an impact of the scene's bodies."""
 
     space: Space

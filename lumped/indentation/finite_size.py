@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
-from lumped.targets.sphere import Sphere
+from lumped.targets.sphere import SphereTarget
 
 Array = NDArray[np.float64]
 TERMS = ("c", "k", "d")
@@ -64,8 +64,8 @@ class FiniteSize:
 def finite_size(indenter: Indenter, depth: Array, force: Array, error: Array) -> FiniteSize | None:
     """Of force over modulus, m^2, with its half-width, at depths, m; each (n,). None for all but finite spheres."""
     target = indenter.target
-    if not isinstance(target, Sphere) or target.support is None:
+    if not isinstance(target, SphereTarget) or target.support is None:
         return None
-    curve = Sphere(target.radius, None).load_curve(indenter.profile, indenter.material.nu)
+    curve = SphereTarget(target.radius, None).load_curve(indenter.profile, indenter.material.nu)
     hertz, share = np.asarray(curve.force(depth)), np.asarray(curve.contact_radius(depth)) / target.radius
     return FiniteSize(share, force / hertz - 1.0, error / hertz)

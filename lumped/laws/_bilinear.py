@@ -17,7 +17,7 @@ from lumped.solvers.point.bodies import Bodies
 YIELD_SHARE = 0.1
 
 
-class Numbers(NamedTuple):
+class LoopNumbers(NamedTuple):
     """k1 and k2, N/m, and the yield depth, m."""
 
     k1: float
@@ -25,7 +25,7 @@ class Numbers(NamedTuple):
     yield_depth: float
 
 
-def exact(k: float, alpha: float, bodies: Bodies, e: float) -> Numbers:
+def exact(k: float, alpha: float, bodies: Bodies, e: float) -> LoopNumbers:
     """The loop that meets e and has the elastic law's force at its largest depth.
 
     k2 stays positive where a < 2 e^2/(1 + e^2): for e below 1/3 a is half of that.
@@ -36,14 +36,14 @@ def exact(k: float, alpha: float, bodies: Bodies, e: float) -> Numbers:
     return recipe(k * depth ** (alpha - 1.0), depth, (1.0 - e) * (1.0 + e) * kinetic, share)
 
 
-def published(k: float, alpha: float, bodies: Bodies, e: float) -> Numbers:
+def published(k: float, alpha: float, bodies: Bodies, e: float) -> LoopNumbers:
     """The recipe at the depth of the elastic impact."""
     kinetic = 0.5 * bodies.mass * bodies.velocity**2
     depth = ((alpha + 1.0) * kinetic / k) ** (1.0 / (alpha + 1.0))
     return recipe(k * depth ** (alpha - 1.0), depth, (1.0 - e) * (1.0 + e) * kinetic, YIELD_SHARE)
 
 
-def recipe(stiffness: float, depth: float, loss: float, share: float) -> Numbers:
+def recipe(stiffness: float, depth: float, loss: float, share: float) -> LoopNumbers:
     """From the secant stiffness, N/m, at a depth, m, the loss, J, and the yield depth's share of the depth."""
     k1, k2 = stiffness + loss / (share * depth**2), stiffness - loss / ((1.0 - share) * depth**2)
-    return Numbers(k1, k2, share * depth)
+    return LoopNumbers(k1, k2, share * depth)

@@ -19,7 +19,7 @@ from lumped.scene.scene import Scene
 from lumped.solvers.hereditary.approach import Approach
 from lumped.solvers.hereditary.closing import Closing
 from lumped.solvers.hereditary.march import Settings
-from lumped.solvers.hereditary.phase import Phase
+from lumped.solvers.hereditary.phase import HereditaryPhase
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.hereditary.rebound import Rebound
 
@@ -40,7 +40,7 @@ class Course:
     `inward` and `outward` are what it was made of, for a second one with more nodes.
     """
 
-    phases: tuple[Phase, ...]
+    phases: tuple[HereditaryPhase, ...]
     end: End
     steps: int
     inward: Approach
@@ -71,7 +71,7 @@ class Course:
         found[self._rested(times)] = 0.0
         return found
 
-    def _shared(self, times: Array) -> Iterator[tuple[Phase, NDArray[np.bool_]]]:
+    def _shared(self, times: Array) -> Iterator[tuple[HereditaryPhase, NDArray[np.bool_]]]:
         """The phases, and which of the times each knows; where two meet the later one speaks."""
         which = np.searchsorted(self._ends[:-1], times, side="right")
         for i, phase in enumerate(self.phases):
@@ -142,12 +142,12 @@ def answer_of(scene: Scene, problem: Hereditary, course: Course) -> Answer:
         "impulse": impulse_of(scene, course.end, velocity, duration, scene.end_time),
     }
     said = "" if separated else course.end.value
-    columns = _Columns(problem, course)
+    columns = _HereditaryColumns(problem, course)
     return Answer(course.times * scales.time, columns, values, course.end, _energy(scene, problem, last.last), said)
 
 
 @dataclass(frozen=True, eq=False)
-class _Columns:
+class _HereditaryColumns:
     """Depth, velocity, force and contact radius at times (n,), s; shape (4, n), SI."""
 
     problem: Hereditary

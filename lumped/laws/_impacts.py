@@ -18,10 +18,10 @@ from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.solvers.point.bodies import Bodies, PointLaw, State
 from lumped.solvers.point.half_widths import half_widths
-from lumped.solvers.point.motion import Motion, motion
+from lumped.solvers.point.motion import PointMotion, motion
 from lumped.solvers.point.outcome import Outcome, outcome_of
-from lumped.solvers.point.phase import Phase
-from lumped.solvers.point.track import Track
+from lumped.solvers.point.phase import PointPhase
+from lumped.solvers.point.track import PointTrack
 
 Array = NDArray[np.float64]
 # Errors of the rate allowed in one step, relative to the velocity at touch: the history errs far less, its end less
@@ -71,7 +71,7 @@ class SceneLaw(PointLaw, Protocol):
         """The scene's model as this law has it."""
 
 
-class Judged(NamedTuple):
+class JudgedImpact(NamedTuple):
     """A march: what it says, its quantities with bars, the bar of the force, N, and how many steps it took."""
 
     answer: Answer
@@ -113,7 +113,7 @@ def _first(tolerance: float) -> float:
     return min(max(tolerance, FINEST), COARSEST)
 
 
-def _estimated(law: SceneLaw, scene: Scene, step_tolerance: float) -> Judged:
+def _estimated(law: SceneLaw, scene: Scene, step_tolerance: float) -> JudgedImpact:
     """One contact, whose bars are what its march still lacks, estimated from its defect."""
     track = _track(law, scene, 1, step_tolerance)
     said = outcome_of(track, track.motion.contacts[0])
@@ -124,14 +124,14 @@ def _estimated(law: SceneLaw, scene: Scene, step_tolerance: float) -> Judged:
         name: Quantity(values[name], None if values[name] is None else getattr(widths, name), unit)
         for name, unit in UNITS.items()
     }
-    return Judged(answer, quantities, widths.force, track.motion.steps)
+    return JudgedImpact(answer, quantities, widths.force, track.motion.steps)
 
 
-def _compared(marched: Callable[[float], tuple[Answer, int]], step_tolerance: float) -> Judged:
+def _compared(marched: Callable[[float], tuple[Answer, int]], step_tolerance: float) -> JudgedImpact:
     """Contacts whose bars are their distance from those of a march a hundred times less fine."""
     fine, steps = marched(max(step_tolerance * FINER, FINEST))
     coarse, _ = marched(max(step_tolerance, FINEST / FINER))
-    return Judged(fine, *bars(fine, coarse, SAFETY), steps)
+    return JudgedImpact(fine, *bars(fine, coarse, SAFETY), steps)
 
 
 def _marched(law: SceneLaw, scene: Scene, step_tolerance: float) -> tuple[Answer, int]:
@@ -151,17 +151,17 @@ def _until(law: SceneLaw, scene: Scene) -> float:
     return scene.end_time_of(law.elastic_contact_time(scene))
 
 
-def _track(law: SceneLaw, scene: Scene, impacts: int, step_tolerance: float) -> Track:
-    return Track(law, motion(law, bodies_of(scene), law.exit, impacts, _until(law, scene), step_tolerance))
+def _track(law: SceneLaw, scene: Scene, impacts: int, step_tolerance: float) -> PointTrack:
+    return PointTrack(law, motion(law, bodies_of(scene), law.exit, impacts, _until(law, scene), step_tolerance))
 
 
-def _answer(law: SceneLaw, scene: Scene, track: Track, outcomes: Sequence[Outcome]) -> Answer:
+def _answer(law: SceneLaw, scene: Scene, track: PointTrack, outcomes: Sequence[Outcome]) -> Answer:
     """What a march says."""
     moved, until = track.motion, _until(law, scene)
     said = _fewer(scene, len(outcomes)) if moved.end is End.SEPARATED else moved.end.value
     return Answer(
         track.rows,
-        _Columns(law, track),
+        _ImpactColumns(law, track),
         _values(scene, moved, outcomes, until),
         moved.end,
         _energy(law, scene, moved),
@@ -177,11 +177,11 @@ def _fewer(scene: Scene, contacts: int) -> str:
     return "" if contacts == asked else f"{contacts} of {asked} impacts: the bodies did not meet again before the end"
 
 
-class _Columns(NamedTuple):
+class _ImpactColumns(NamedTuple):
     """Depth, velocity, force and contact radius at times (n,), shape (4, n); no tension where contact ends by force."""
 
     law: SceneLaw
-    track: Track
+    track: PointTrack
 
     def __call__(self, times: Array) -> Array:
         depth, rate, force = self.track(times)
@@ -198,7 +198,7 @@ class _Columns(NamedTuple):
         return np.maximum(force, 0.0) if self.law.exit == "force" else force
 
 
-def _values(scene: Scene, moved: Motion, outcomes: Sequence[Outcome], until: float) -> Mapping[str, float | None]:
+def _values(scene: Scene, moved: PointMotion, outcomes: Sequence[Outcome], until: float) -> Mapping[str, float | None]:
     # of peaks as high as one another, but for rounding, the first
     most = max(outcome.peak_force for outcome in outcomes)
     highest = next(outcome for outcome in outcomes if outcome.peak_force >= (1.0 - EQUAL) * most)
@@ -213,7 +213,7 @@ def _values(scene: Scene, moved: Motion, outcomes: Sequence[Outcome], until: flo
     }
 
 
-def _energy(law: SceneLaw, scene: Scene, moved: Motion) -> dict[str, float | None]:
+def _energy(law: SceneLaw, scene: Scene, moved: PointMotion) -> dict[str, float | None]:
     """Energies at the end of the last contact, J, each on its own."""
     last, mass = moved.contacts[-1].last, scene.reduced_mass
     given = 0.5 * mass * scene.velocity**2 + mass * scene.gravity * last.depth
@@ -226,6 +226,6 @@ def _energy(law: SceneLaw, scene: Scene, moved: Motion) -> dict[str, float | Non
     return {"in": given, "out": out, "stored": stored[-1], law.loss: lost, "residual": residual}
 
 
-def _stored(law: SceneLaw, state: State, phase: Phase) -> float:
+def _stored(law: SceneLaw, state: State, phase: PointPhase) -> float:
     """What is stored where a phase begins or ends, J."""
     return float(law.stored(max(state.depth, 0.0), phase.stage))

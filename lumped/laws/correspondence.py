@@ -24,7 +24,7 @@ from lumped.solvers.hereditary.approach import DEPTH, approach
 from lumped.solvers.hereditary.closing import Closing, close
 from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.path import Path
-from lumped.solvers.hereditary.phase import Phase, SinceTouch, UntilEnd
+from lumped.solvers.hereditary.phase import HereditaryPhase, SinceTouch, UntilEnd
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.point import memory
 
@@ -91,9 +91,9 @@ def solve(problem: Hereditary, end_time: float, settings: Settings, before: Cour
     phases = (_phase(closing.path),) if closing.path else ()
     if closing.last is None:
         return Course(phases, End.TIME, steps, inward, closing)
-    last = Phase(closing.last, UntilEnd(closing.end), DEPTH, DEPTH)
+    last = HereditaryPhase(closing.last, UntilEnd(closing.end), DEPTH, DEPTH)
     return Course((*phases, last), End.SEPARATED, steps, inward, closing)
 
 
-def _phase(path: Path) -> Phase:
-    return Phase(path, SinceTouch(), DEPTH, DEPTH)
+def _phase(path: Path) -> HereditaryPhase:
+    return HereditaryPhase(path, SinceTouch(), DEPTH, DEPTH)

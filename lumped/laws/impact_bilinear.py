@@ -117,12 +117,12 @@ def of(scene: Scene) -> ImpactBilinear:
     return ImpactBilinear(**numbers._asdict(), **given.common())
 
 
-def _given(given: Parameters) -> _bilinear.Numbers:
+def _given(given: Parameters) -> _bilinear.LoopNumbers:
     """k1, k2 and yield_depth of the scene file, all three."""
     for key, accepted in LOOP.items():
         if key not in given.values:
             given.missing(key, f"{accepted.accepted}; k1, k2 and yield_depth come together")
-    numbers = _bilinear.Numbers(*(given.get(key, 1.0) for key in LOOP))
+    numbers = _bilinear.LoopNumbers(*(given.get(key, 1.0) for key in LOOP))
     others = sorted(set(given.values) & {"k", "alpha", "e", "damping"})
     if others:
         reason = f"{', '.join(others)} beside k1, k2 and yield_depth; accepted: either, not both"
@@ -133,7 +133,7 @@ def _given(given: Parameters) -> _bilinear.Numbers:
     return numbers
 
 
-def _derived(given: Parameters) -> _bilinear.Numbers:
+def _derived(given: Parameters) -> _bilinear.LoopNumbers:
     """From the stiffness of an elastic law and e."""
     alpha = given.exponent()
     k, (_, e) = given.stiffness(alpha), given.damping(())

@@ -20,7 +20,7 @@ from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.schema.keys import Key
 from lumped.solvers.rod.flat import FlatImpact
-from lumped.solvers.rod.tipped import LONGEST, Scales, TippedImpact
+from lumped.solvers.rod.tipped import LONGEST, RodScales, TippedImpact
 from lumped.solvers.rod.waves import Waves
 from lumped.targets.rod import Rod
 
@@ -83,7 +83,7 @@ def _answer(scene: Scene, rtol: float, longest: float = LONGEST) -> Answer:
         "restitution": -float(velocity[-1]) / scene.velocity if separated else None,
         "impulse": impulse_of(scene, ending, float(velocity[-1]), end, scene.end_time),
     }
-    columns = _Columns(scene, impact, end if separated else np.inf)
+    columns = _RodColumns(scene, impact, end if separated else np.inf)
     energy = _energy(scene, impact, rows, float(depth[-1]), float(velocity[-1]))
     return Answer(rows, columns, values, ending, energy, "" if separated else ending.value)
 
@@ -102,14 +102,14 @@ def _impact(scene: Scene, rtol: float, longest: float) -> FlatImpact | TippedImp
         velocity=velocity,
         gravity=scene.gravity,
         until=until,
-        scales=Scales(scales.depth, scales.duration),
+        scales=RodScales(scales.depth, scales.duration),
         rtol=rtol,
         longest=longest,
     )
 
 
 @dataclass(frozen=True)
-class _Columns:
+class _RodColumns:
     """Depth, velocity, force, contact radius at times (n,), shape (4, n); nothing presses from the end on."""
 
     scene: Scene

@@ -17,7 +17,7 @@ from lumped.scene.scene import Scene
 from lumped.solvers.hereditary import rebound as back
 from lumped.solvers.hereditary.approach import DEPTH, approach
 from lumped.solvers.hereditary.march import Settings
-from lumped.solvers.hereditary.phase import ByField, Phase, SinceTouch
+from lumped.solvers.hereditary.phase import ByField, HereditaryPhase, SinceTouch
 from lumped.solvers.hereditary.problem import Hereditary
 
 
@@ -42,10 +42,10 @@ def of(scene: Scene) -> Ting:
 def solve(problem: Hereditary, end_time: float, settings: Settings, before: Course | None = None) -> Course:
     """One integration from touch to the end of contact, or to `end_time` in its own units. Raises NotReached."""
     inward = approach(problem, end_time, settings, before.inward if before else None)
-    growing = Phase(inward.path, SinceTouch(), DEPTH, DEPTH)
+    growing = HereditaryPhase(inward.path, SinceTouch(), DEPTH, DEPTH)
     if not inward.turned:
         return Course((growing,), End.REST if inward.rests else End.TIME, inward.steps, inward)
     known = before.outward if before and isinstance(before.outward, back.Rebound) else None
     outward = back.rebound(problem, inward, end_time, settings, known)
-    shrinking = Phase(outward.path, ByField(outward.path), back.DEPTH, back.EDGE)
+    shrinking = HereditaryPhase(outward.path, ByField(outward.path), back.DEPTH, back.EDGE)
     return Course((growing, shrinking), outward.end, inward.steps + outward.steps, inward, outward)

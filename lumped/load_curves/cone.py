@@ -14,7 +14,7 @@ from lumped.load_curves.half_space import HalfSpaceCurve
 
 
 @dataclass(frozen=True)
-class Cone(HalfSpaceCurve):
+class ConeCurve(HalfSpaceCurve):
     """depth = (pi/2) a tan(theta), F = (2/pi) E* depth^2/tan(theta).
 
     `angle` theta lies between the face and the undeformed surface, degrees, above 0 and below 90; raises BadInput.

@@ -63,7 +63,7 @@ class FixedArea(LoadCurve):
 
 
 @dataclass(frozen=True)
-class Punch(FixedArea):
+class PunchCurve(FixedArea):
     """The half-space under a flat-ended cylinder of this radius: F = 2 E* a depth (Boussinesq 1885)."""
 
     radius: float

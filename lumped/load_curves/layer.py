@@ -19,7 +19,7 @@ WAVE_POINTS = 24
 
 
 @dataclass(frozen=True)
-class Layer:
+class PointLayer:
     """Thickness in m, Poisson's ratio in (-1, 0.5] and `base`: "bonded" or "sliding" (held normally, both ways).
 
     A pressure cos(k x) on its surface raises the displacement 2 L(k thickness) cos(k x)/(E* k): L -> 1 on the

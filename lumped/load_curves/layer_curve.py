@@ -22,8 +22,8 @@ from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.fixed_area import FixedArea, under_flat_end
 from lumped.load_curves.half_space import HalfSpaceCurve
-from lumped.load_curves.layer import Array, Layer, deficit, waves
-from lumped.load_curves.tabulated import REACH, State, TabulatedCurve, growing_edges
+from lumped.load_curves.layer import Array, PointLayer, deficit, waves
+from lumped.load_curves.tabulated import REACH, TabulatedCurve, TabulatedState, growing_edges
 from lumped.numbers.quadrature import gauss
 
 
@@ -36,7 +36,7 @@ class LayerCurve(TabulatedCurve):
     """
 
     half_space: LoadCurve
-    layer: Layer
+    layer: PointLayer
 
     def __post_init__(self) -> None:
         if not isinstance(self.half_space, HalfSpaceCurve):
@@ -59,11 +59,11 @@ class LayerCurve(TabulatedCurve):
         stiffness = 2.0 * h * (weights @ punch)
         return np.array([depth / own, force / self._own_force(contact_radius), stiffness / (2.0 * contact_radius)])
 
-    def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> State:
+    def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> TabulatedState:
         """The half-space's values times the tabulated ratios."""
         a, own = contact_radius, self.half_space.depth(contact_radius)
         slope = self.half_space.depth_slope(a) * smooth[0] + own * slopes[0]
-        return State(own * smooth[0], slope, self._own_force(a) * smooth[1], 2.0 * a * smooth[2])
+        return TabulatedState(own * smooth[0], slope, self._own_force(a) * smooth[1], 2.0 * a * smooth[2])
 
     def contact_radius(self, depth: ArrayLike) -> NDArray[np.float64]:
         """Contact radius a at a depth below the thickness, m; raises BadInput for deeper ones."""
@@ -95,7 +95,7 @@ class LayerPunch(FixedArea):
     """
 
     radius: float
-    layer: Layer
+    layer: PointLayer
     accuracy: ClassVar[float] = 1e-10
 
     def __post_init__(self) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.load_curves.plane_contact import Array, Grown
-from lumped.load_curves.tabulated import State, TabulatedCurve
+from lumped.load_curves.tabulated import TabulatedCurve, TabulatedState
 
 
 class LineCurve(TabulatedCurve):
@@ -38,7 +38,7 @@ class LineCurve(TabulatedCurve):
         hertz = np.pi * contact_radius**2 / (4.0 * self.curvature_radius)
         return np.array([hertz / here.force, here.depth / here.force - logarithm, here.compliance - logarithm])
 
-    def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> State:
+    def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> TabulatedState:
         """The curve from f, d and c; at b = 0 all is 0."""
         b, touched = np.where(contact_radius > 0.0, contact_radius, self.length), contact_radius > 0.0
         logarithm = 2.0 / np.pi * np.log(self.length / b)
@@ -47,7 +47,7 @@ class LineCurve(TabulatedCurve):
         compliance = logarithm + smooth[1]
         slope = force_slope * compliance + force * (slopes[1] - 2.0 / (np.pi * b))
         values = (force * compliance, slope, force, 1.0 / (logarithm + smooth[2]))
-        return State(*(np.where(touched, value, 0.0) for value in values))
+        return TabulatedState(*(np.where(touched, value, 0.0) for value in values))
 
     def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
         """p/E* at distances from the middle of the contact, from the equation itself; zero at first touch."""

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.load_curves.layer import Array, Layer, deficit, waves
+from lumped.load_curves.layer import Array, PointLayer, deficit, waves
 from lumped.load_curves.line_curve import LineCurve
 from lumped.load_curves.line_profile import LineProfile
 from lumped.load_curves.plane_contact import Grown, collocation, folded, grown
@@ -23,7 +23,7 @@ class LineLayer(LineCurve):
     """
 
     profile: LineProfile
-    layer: Layer
+    layer: PointLayer
 
     @property
     def curvature_radius(self) -> float:

@@ -33,7 +33,7 @@ class LineProfile(ABC):
 
 
 @dataclass(frozen=True)
-class Cylinder(LineProfile):
+class CylinderProfile(LineProfile):
     """The true cylinder."""
 
     @property
@@ -48,7 +48,7 @@ class Cylinder(LineProfile):
 
 
 @dataclass(frozen=True)
-class ParabolicCylinder(LineProfile):
+class ParabolaProfile(LineProfile):
     """The parabola of the same curvature."""
 
     @property

@@ -23,7 +23,7 @@ ACCURACY, REFINEMENT = 1e-8, 1.5
 
 
 @dataclass(frozen=True)
-class Ring(RingContact, LoadCurve):
+class RodInRing(RingContact, LoadCurve):
     """F is the component along the motion, the contact radius the half-length of the inner arc that is touched.
 
     While the cylinder's arc is the exact one, F is not the slope of a stored energy: the motion turns the overlap a
@@ -96,7 +96,7 @@ class Ring(RingContact, LoadCurve):
 
 
 @lru_cache(maxsize=256)
-def _panel(ring: Ring, index: int) -> Array:
+def _panel(ring: RodInRing, index: int) -> Array:
     """Logarithms of half-length, F/E* and dF/d depth over ln(depth/limit), shape (POINTS, 2, 3), certified."""
 
     def sample(place: float, refinement: float = 1.0) -> Array:

@@ -27,7 +27,7 @@ REACH, SHARE_OF_EXTENT = 20.0, 0.85
 FIRST_PANEL, FIRST_OF_EXTENT, GROWTH = 0.3, 0.3, 1.6
 
 
-class State(NamedTuple):
+class TabulatedState(NamedTuple):
     """A curve at contact radii: depth, its slope over the radius, F/E* and dF/d depth, of one shape."""
 
     depth: Any
@@ -54,17 +54,17 @@ class TabulatedCurve(LoadCurve):
         """The smooth functions at one contact radius, shape (3,)."""
 
     @abstractmethod
-    def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> State:
+    def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> TabulatedState:
         """The curve from its smooth functions and their slopes, shapes (m,), (3, m) and (3, m)."""
 
-    def at(self, contact_radius: ArrayLike) -> State:
+    def at(self, contact_radius: ArrayLike) -> TabulatedState:
         """The curve at contact radii up to the last edge, m."""
         a = np.asarray(contact_radius, dtype=float)
         panels = int(np.searchsorted(self.edges, a.max(initial=0.0)))
         if panels > len(self.edges) - 1:
             raise NotReached(f"the load curve serves contact radii up to {self.edges[-1]:g} m, not {a.max():g}")
-        flat = State(*(np.asarray(part) for part in self._at(a.ravel(), max(panels, 1))))
-        return State(*(part.reshape(a.shape) for part in flat))
+        flat = TabulatedState(*(np.asarray(part) for part in self._at(a.ravel(), max(panels, 1))))
+        return TabulatedState(*(part.reshape(a.shape) for part in flat))
 
     def depth(self, contact_radius: ArrayLike) -> Any:
         """Depth at a contact radius, m."""
@@ -119,7 +119,7 @@ class TabulatedCurve(LoadCurve):
         reason = f"the contact grows beyond {self.edges[-1]:g} m; cure: a smaller depth, a lower velocity"
         raise NotReached(f"the load curve at a depth of {depth:g} m: {reason}")
 
-    def _at(self, radius: Array, panels: int) -> State:
+    def _at(self, radius: Array, panels: int) -> TabulatedState:
         edges = np.array(self.edges[: panels + 1])
         return self.state(radius, *evaluate(_tables(self, panels), edges, radius))
 

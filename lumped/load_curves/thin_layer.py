@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
-from lumped.load_curves.layer import Layer
+from lumped.load_curves.layer import PointLayer
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class ThinLayer(LoadCurve):
         return self.hardness * geometry * (depth / self.thickness) ** self.power
 
 
-def compressible(radius: float, layer: Layer, *, plane: bool) -> ThinLayer:
+def compressible(radius: float, layer: PointLayer, *, plane: bool) -> ThinLayer:
     """Winkler's foundation: confined modulus on a bonded base, E* itself on a sliding one; a^2 = 2 R depth.
 
     Raises BadInput for a bonded layer with nu = 0.5.
@@ -88,7 +88,7 @@ def compressible(radius: float, layer: Layer, *, plane: bool) -> ThinLayer:
     return ThinLayer(radius, layer.thickness, plane, 2.0, 1, hardness)
 
 
-def incompressible(radius: float, layer: Layer, *, plane: bool) -> ThinLayer:
+def incompressible(radius: float, layer: PointLayer, *, plane: bool) -> ThinLayer:
     """nu = 0.5 on a bonded base, free to slip under the indenter: a^2 = 4 R depth, in plane strain 6 R depth.
 
     The layer is pushed outwards between its faces like a fluid: p'' + p'/r = -3 G (depth - r^2/(2R))/h^3, p = p' = 0 at

@@ -18,7 +18,7 @@ from lumped.materials.dynamic_moduli import DynamicModuli
 from lumped.materials.fidelity import Fidelity
 from lumped.materials.laplace import Transform, relaxation_modulus
 from lumped.materials.relaxation import Relaxation
-from lumped.materials.spectrum import Spectrum, Target, fitted
+from lumped.materials.spectrum import AskedResponse, Spectrum, fitted
 
 Array = NDArray[np.float64]
 # Candidate times a decade for data: finer than data can tell apart.
@@ -75,7 +75,9 @@ def of_operational(
     density, best = FEWEST * math.log(10.0) * math.log(2.0 / tolerance) / math.pi**2, math.inf
     for _ in range(ROUNDS):
         candidates = _candidates(*window, BEYOND_WINDOW, density)
-        spectrum = fitted(Target(Decay(times), modulus - (relaxed or 0.0), modulus), candidates, ENOUGH * tolerance)
+        spectrum = fitted(
+            AskedResponse(Decay(times), modulus - (relaxed or 0.0), modulus), candidates, ENOUGH * tolerance
+        )
         series = _relaxation(spectrum, viscosity, relaxed, last=window[1] / (LAST * tolerance))
         deviation = RIPPLE * np.abs(series(checked) / truth - 1.0) + unsure / truth
         best = min(best, float(deviation.max()))
@@ -100,7 +102,9 @@ def of_samples(times: ArrayLike, moduli: ArrayLike) -> PronyFit:
         )
     if not np.all(np.isfinite(values)) or np.any(values <= 0.0):
         raise BadInput(Fault("samples", "moduli", "accepted: finite values above zero, in Pa"))
-    spectrum = fitted(Target(Decay(t), values, values), _candidates(inner.min(), inner.max(), BEYOND_DATA, DENSE))
+    spectrum = fitted(
+        AskedResponse(Decay(t), values, values), _candidates(inner.min(), inner.max(), BEYOND_DATA, DENSE)
+    )
     return _told(_relaxation(spectrum), np.abs(spectrum.residual), (inner.min(), inner.max()))
 
 
@@ -112,7 +116,7 @@ def of_dynamic(data: DynamicModuli, *, viscous: bool = False) -> PronyFit:
     """
     magnitude = np.tile(np.abs(data.modulus), 2)
     shortest, longest = 1.0 / float(data.omega.max()), 1.0 / float(data.omega.min())
-    target = Target(Oscillation(data.omega, viscous), stacked(data.modulus), magnitude)
+    target = AskedResponse(Oscillation(data.omega, viscous), stacked(data.modulus), magnitude)
     spectrum = fitted(target, _candidates(shortest, longest, BEYOND_DATA, DENSE))
     series = _relaxation(spectrum, *spectrum.steady[1:].tolist())
     return _told(series, np.hypot(*np.split(spectrum.residual, 2)), (shortest, longest))

@@ -36,7 +36,7 @@ class Response(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Target:
+class AskedResponse:
     """What the response should be, `values` (m,), and what each residual is divided by, `scale` (m,)."""
 
     response: Response
@@ -72,7 +72,7 @@ class Spectrum:
         return float(np.sqrt(np.mean(self.residual**2)))
 
 
-def fitted(target: Target, candidates: Array, enough: float = EXACT) -> Spectrum:
+def fitted(target: AskedResponse, candidates: Array, enough: float = EXACT) -> Spectrum:
     """The spectrum whose response comes closest to the target, from candidate times, shape (n,), ascending.
 
     Non-negative least squares on the candidate times, then on times which have moved to the least residual: of
@@ -88,7 +88,7 @@ def fitted(target: Target, candidates: Array, enough: float = EXACT) -> Spectrum
     return _pruned(target, fewest, enough)
 
 
-def _weighed(target: Target, taus: Array) -> Spectrum:
+def _weighed(target: AskedResponse, taus: Array) -> Spectrum:
     """Non-negative least squares (Lawson and Hanson 1974, doi 10.1137/1.9781611971217) at given times."""
     from scipy.optimize import nnls
 
@@ -115,7 +115,7 @@ def _merged(spectrum: Spectrum, candidates: Array) -> Array:
     return np.asarray(np.exp(logs))
 
 
-def _moved(target: Target, start: Array, candidates: Array) -> Array:
+def _moved(target: AskedResponse, start: Array, candidates: Array) -> Array:
     """The times near those of `start` with the least residual, moduli eliminated; `start` if the rows are too few.
 
     Variable projection with Kaufman's gradient (Golub and Pereyra 2003, doi 10.1088/0266-5611/19/2/201).
@@ -147,7 +147,7 @@ def _moved(target: Target, start: Array, candidates: Array) -> Array:
         return np.clip(np.exp(found.x), candidates[0], candidates[-1])
 
 
-def _pruned(target: Target, spectrum: Spectrum, enough: float) -> Spectrum:
+def _pruned(target: AskedResponse, spectrum: Spectrum, enough: float) -> Spectrum:
     """Without terms that do not show, and in order of time."""
     shown = np.abs(target.rows(spectrum.taus)[:, spectrum.steady.size :] * spectrum.weights).max(axis=0, initial=0.0)
     kept = np.flatnonzero(shown > NEGLIGIBLE * max(enough, np.abs(spectrum.residual).max()))

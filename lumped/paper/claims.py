@@ -34,7 +34,7 @@ class Claim:
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedClaim:
     """A claim with its recomputed values and the verdict of its rule."""
 
     claim: Claim
@@ -57,13 +57,13 @@ def load() -> tuple[Claim, ...]:
     return tuple(Claim(rule=rules.get(known, row.pop("rule"), row["id"]), **row) for row in cells)
 
 
-def judge(claim: Claim, examples: Examples) -> Judged:
+def judge(claim: Claim, examples: Examples) -> JudgedClaim:
     """Recompute one claim. Raises BadInput, and NotReached where a number did not converge."""
     values = recompute.get(claim.recompute)(examples) if claim.recompute else ()
-    return Judged(claim, values, claim.rule.verdict(claim.printed, values))
+    return JudgedClaim(claim, values, claim.rule.verdict(claim.printed, values))
 
 
-def counts(judged: Sequence[Judged]) -> dict[str, int]:
+def counts(judged: Sequence[JudgedClaim]) -> dict[str, int]:
     """How many claims have each verdict, and how many cannot be computed by which rule."""
     found = Counter(one.verdict for one in judged)
     by_rule = Counter(one.claim.rule.name for one in judged if one.verdict == rules.UNKNOWN)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from lumped.paper import assumptions, claims, misprints
 from lumped.paper.assumptions import JudgedAssumption
-from lumped.paper.claims import Judged
+from lumped.paper.claims import JudgedClaim
 from lumped.paper.examples.given import Examples
 from lumped.paper.examples.steel_impacts import solid
 from lumped.paper.examples.value import Values
@@ -30,17 +30,17 @@ class GridRow:
 
 
 @dataclass(frozen=True, eq=False)
-class Study:
+class PaperStudy:
     """Everything recomputed of one set of examples."""
 
     examples: Examples
-    claims: tuple[Judged, ...]
+    claims: tuple[JudgedClaim, ...]
     assumptions: tuple[JudgedAssumption, ...]
     misprints: tuple[tuple[Misprint, Values], ...]
     grid: tuple[GridRow, ...]
 
 
-def study(examples: Examples, listen: Callable[[str], None]) -> Study:
+def study(examples: Examples, listen: Callable[[str], None]) -> PaperStudy:
     """Recompute and judge; `listen` hears what is being done. Raises BadInput and NotReached."""
     listen("claims")
     judged = tuple(claims.judge(claim, examples) for claim in claims.load())
@@ -48,7 +48,7 @@ def study(examples: Examples, listen: Callable[[str], None]) -> Study:
     assumed = tuple(assumptions.judge(one, examples) for one in assumptions.load())
     printed = tuple((one, one.values(examples)) for one in misprints.load())
     listen("grids of Fig. 7 and 8")
-    return Study(examples, judged, assumed, printed, grid(examples))
+    return PaperStudy(examples, judged, assumed, printed, grid(examples))
 
 
 def grid(examples: Examples) -> tuple[GridRow, ...]:

@@ -19,7 +19,7 @@ from lumped.ptmd.system import (
     Memory,
     Oscillator,
     PoundingDamper,
-    Ring,
+    PtmdRing,
     Start,
 )
 from lumped.scene.table_reader import Table, TableReader
@@ -93,7 +93,7 @@ class _Reader(TableReader):
         values = {} if table is None else self.checked(part, table, OSCILLATOR_KEYS)
         return Oscillator(**values) if values.keys() == OSCILLATOR_KEYS.keys() else None
 
-    def ring(self) -> tuple[Table, Ring | None]:
+    def ring(self) -> tuple[Table, PtmdRing | None]:
         """Lengths for the ledger, and the ring; None when it is absent or has a fault."""
         table = self.table("ring", required=False)
         if table is None:
@@ -106,7 +106,7 @@ class _Reader(TableReader):
         if material is None or len(self.faults) > known:
             return {}, None
         memory, modulus = Memory(values.pop("memory", Memory.RECOVERING.value)), material.contact_modulus()
-        make = Ring.struck_by_rod if "length" in values else Ring
+        make = PtmdRing.struck_by_rod if "length" in values else PtmdRing
         return sizes, make(**values, modulus=modulus, memory=memory)
 
     def material(self, table: object) -> Material | None:

@@ -18,7 +18,7 @@ NEAREST = 40  # halvings of a row in which a contact that has just begun is look
 STILL = 1e-7  # of the steepest slope of a row: less takes a level 1e-14 of its change below zero, which is rounding
 
 
-class Row(Protocol):
+class PtmdRow(Protocol):
     """One level from one row to the next, `length` s later, at any `offset` between them, s."""
 
     @property
@@ -44,7 +44,7 @@ def suspect(lengths: Array, levels: Array, slopes: Array) -> Flags:
     return np.asarray(np.any(below | (turns & near), axis=0))
 
 
-def first_fall(rows: Sequence[Row], begun: Sequence[bool]) -> tuple[float, int] | None:
+def first_fall(rows: Sequence[PtmdRow], begun: Sequence[bool]) -> tuple[float, int] | None:
     """Offset, s, and index of the level that falls first; None where none does.
 
     `begun`: a phase begins here and the level is zero, but for the rounding of the switch before.
@@ -53,7 +53,7 @@ def first_fall(rows: Sequence[Row], begun: Sequence[bool]) -> tuple[float, int] 
     return min(((offset, index) for index, offset in enumerate(found) if offset is not None), default=None)
 
 
-def _from_above(row: Row) -> float | None:
+def _from_above(row: PtmdRow) -> float | None:
     """Offset of the first fall of a level that starts above zero. Rows are so close that it turns but once."""
     if row.value(row.length) <= 0.0:
         return _root(row, row.value, 0.0, row.length)
@@ -63,7 +63,7 @@ def _from_above(row: Row) -> float | None:
     return _root(row, row.value, 0.0, lowest) if row.value(lowest) < 0.0 else None
 
 
-def _from_zero(row: Row) -> float | None:
+def _from_zero(row: PtmdRow) -> float | None:
     """Offset of the first fall of a level that starts at zero: none, at once, or after a rise, however short."""
     start, end = row.slope(0.0), row.slope(row.length)
     if start < -STILL * max(abs(start), abs(end)):
@@ -76,7 +76,7 @@ def _from_zero(row: Row) -> float | None:
     return 0.0
 
 
-def _root(row: Row, function: Callable[[float], float], low: float, high: float) -> float:
+def _root(row: PtmdRow, function: Callable[[float], float], low: float, high: float) -> float:
     """Where a function falls through zero that is above it at `low` and not at `high`, as far as rounding lets it."""
     from scipy.optimize import brentq
 

@@ -13,11 +13,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.ptmd.surface import Stage, Surface
+from lumped.ptmd.surface import SideStage, Surface
 from lumped.ptmd.system import SIDES, PoundingDamper, Start
 
 Array = NDArray[np.float64]
-Stages = tuple[Stage, ...]
+Stages = tuple[SideStage, ...]
 SURFACES = 4  # the first row of the surfaces
 # What is integrated over time: rows of `integrands`.
 DISPLACEMENT, ACCELERATION, LOST_STRUCTURE, LOST_DAMPER, LOST_RING, CUT_TENSION = range(6)
@@ -61,11 +61,11 @@ class Equations:
         exponent = self.system.ring.exponent if self.system.ring else 1.0
         return np.asarray(np.sign(depth) * np.abs(depth) ** exponent)
 
-    def speed(self, index: int, stage: Stage, y: Array) -> Array:
+    def speed(self, index: int, stage: SideStage, y: Array) -> Array:
         """Speed dq/dt of the surface of a side."""
-        if self.surface is None or stage is Stage.HELD:
+        if self.surface is None or stage is SideStage.HELD:
             return np.zeros_like(y[0])
-        if stage is Stage.RECOVERING:
+        if stage is SideStage.RECOVERING:
             return self.surface.recovery(y[self.side(index)])
         approach = SIDES[index] * (y[3] - y[1])
         if self.linear or self.system.ring is None:
@@ -89,14 +89,14 @@ class Equations:
 
     def driven(self, stages: Stages) -> list[int]:
         """The sides whose surfaces go with the damper, and not linearly: else a motion is linear."""
-        going = (Stage.PRESSED, Stage.FOLLOWED)
+        going = (SideStage.PRESSED, SideStage.FOLLOWED)
         return [] if self.linear else [index for index, stage in enumerate(stages) if stage in going]
 
-    def side_force(self, index: int, stage: Stage, y: Array) -> Array:
+    def side_force(self, index: int, stage: SideStage, y: Array) -> Array:
         """Force of a side if nothing were cut off, N, positive in compression."""
         if self.surface is None:
             return np.zeros_like(y[0])
-        return self._pressed(index, self.moving(tuple(stage if i == index else Stage.HELD for i in range(2)), y))
+        return self._pressed(index, self.moving(tuple(stage if i == index else SideStage.HELD for i in range(2)), y))
 
     def _pressed(self, index: int, moving: Array) -> Array:
         if self.surface is None:
@@ -107,11 +107,11 @@ class Equations:
         """Force of a held side that the damper just meets, N: there the depth is zero, whatever rounding left of it."""
         if self.surface is None:
             return 0.0
-        return float(self.surface.force(y[self.side(index)], self.speed(index, Stage.PRESSED, y)))
+        return float(self.surface.force(y[self.side(index)], self.speed(index, SideStage.PRESSED, y)))
 
     def force(self, stages: Stages, moving: Array) -> Array:
         """f of "(33)", N: positive at x2 - x1 > gap, where it pushes the damper back and the structure along."""
-        pressed = [index for index, stage in enumerate(stages) if stage is Stage.PRESSED]
+        pressed = [index for index, stage in enumerate(stages) if stage is SideStage.PRESSED]
         forces = (SIDES[index] * self._pressed(index, moving) for index in pressed)
         return np.asarray(sum(forces, start=np.zeros_like(moving[0])))
 
@@ -156,7 +156,7 @@ class Equations:
         for index, stage in enumerate(stages):
             speed = moving[self.size + index]
             lost = lost + self.surface.lost(moving[self.side(index)], speed)
-            if stage is Stage.FOLLOWED:
+            if stage is SideStage.FOLLOWED:
                 cut = cut + self._pressed(index, moving) * speed
         return lost, cut
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from lumped.ptmd.crossing import first_fall, suspect
 from lumped.ptmd.equations import SURFACES, Equations, Stages
-from lumped.ptmd.phase import Follow, Phase
+from lumped.ptmd.phase import Follow, PtmdPhase
 from lumped.ptmd.switches import Switch, switches
 
 Array = NDArray[np.float64]
@@ -128,7 +128,7 @@ def route(equations: Equations, spacing: float, end_time: float) -> Follow:
     """How a phase is followed: each motion's exponentials are found once."""
     flows: dict[Stages, Flow] = {}
 
-    def next_phase(stages: Stages, state: Array, time: float) -> tuple[Phase, Switch | None]:
+    def next_phase(stages: Stages, state: Array, time: float) -> tuple[PtmdPhase, Switch | None]:
         flow = flows.setdefault(stages, Flow(equations, stages, spacing))
         return follow(flow, state, time, end_time)
 
@@ -136,7 +136,7 @@ def route(equations: Equations, spacing: float, end_time: float) -> Follow:
 
 
 @dataclass(frozen=True)
-class LevelRow:
+class ExactLevelRow:
     """One level between two rows: `state` at the first, `length` seconds to the second."""
 
     flow: Flow
@@ -178,7 +178,7 @@ def first_of(flow: Flow, time: float, state: Array, times: Array, states: Array,
     suspects = suspect(lengths, levels, rows @ flow.matrix @ states)
     suspects[0] |= begun.any()
     for i in np.flatnonzero(suspects):
-        here = [LevelRow(flow, level, states[:, i], float(lengths[i])) for level in range(constants.size)]
+        here = [ExactLevelRow(flow, level, states[:, i], float(lengths[i])) for level in range(constants.size)]
         found = first_fall(here, (begun & (i == 0)).tolist())
         if found is not None:
             offset, level = found
@@ -186,7 +186,7 @@ def first_of(flow: Flow, time: float, state: Array, times: Array, states: Array,
     return None
 
 
-def follow(flow: Flow, state: Array, time: float, end_time: float) -> tuple[Phase, Switch | None]:
+def follow(flow: Flow, state: Array, time: float, end_time: float) -> tuple[PtmdPhase, Switch | None]:
     """One phase, and the switch that ends it; None at `end_time`."""
     times, columns, switch = [np.array([time])], [state[:, None]], None
     for block_times, block in _blocks(flow, state, time, end_time):
@@ -215,7 +215,7 @@ def _blocks(flow: Flow, state: Array, time: float, end_time: float) -> Iterator[
     yield np.array([end_time]), (flow.propagator(end_time - time) @ state)[:, None]
 
 
-def _phase(flow: Flow, times: Array, states: Array) -> Phase:
+def _phase(flow: Flow, times: Array, states: Array) -> PtmdPhase:
     def at(time: float) -> Array:
         i = int(np.clip(np.searchsorted(times, time, side="right") - 1, 0, times.size - 1))
         return np.asarray(flow.propagator(time - times[i]) @ states[:, i])
@@ -224,7 +224,7 @@ def _phase(flow: Flow, times: Array, states: Array) -> Phase:
         before = times < time
         return flow.integrals(np.append(times[before], time), states[:, before]) if before.any() else np.zeros(6)
 
-    return Phase(flow.stages, times, states, at, integrals)
+    return PtmdPhase(flow.stages, times, states, at, integrals)
 
 
 def exponential(matrices: Array) -> Array:

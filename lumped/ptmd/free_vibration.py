@@ -9,7 +9,7 @@ from lumped.ptmd.march import march, most_rows, route_of
 from lumped.ptmd.phase import ROWS_PER_PERIOD, row_spacing
 from lumped.ptmd.result import PtmdResult
 from lumped.ptmd.system import PoundingDamper, Start
-from lumped.ptmd.track import Track
+from lumped.ptmd.track import PtmdTrack
 from lumped.schema.key_table import read_table
 from lumped.schema.keys import Number
 
@@ -43,7 +43,7 @@ def simulate(
         raise BadInput(faults)
     spacing = row_spacing(equations, start, end_time, rows_per_period, most_rows(route))
     follow = route_of(route, equations, start, spacing, end_time)
-    track = Track(equations, march(equations, start, end_time, follow))
+    track = PtmdTrack(equations, march(equations, start, end_time, follow))
     found = reading.contacts(track)
     return PtmdResult(
         system=system,

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from lumped.errors import NotReached
 from lumped.ptmd.crossing import first_fall, suspect
 from lumped.ptmd.equations import Equations, Stages
-from lumped.ptmd.phase import Follow, Phase, fastest
-from lumped.ptmd.surface import Stage
+from lumped.ptmd.phase import Follow, PtmdPhase, fastest
+from lumped.ptmd.surface import SideStage
 from lumped.ptmd.switches import Switch, switches
 from lumped.ptmd.system import Start
 
@@ -46,7 +46,7 @@ class Rates:
     @cached_property
     def _followed(self) -> Array:
         """The linear part of `Equations.moving`, shape (size + 2, size)."""
-        stages = tuple(Stage.HELD if index in self._driven else stage for index, stage in enumerate(self.stages))
+        stages = tuple(SideStage.HELD if index in self._driven else stage for index, stage in enumerate(self.stages))
         return self.equations.moving(stages, np.eye(self.equations.size))
 
     def _moving(self, y: Array) -> Array:
@@ -76,9 +76,9 @@ def route(equations: Equations, start: Start, spacing: float, end_time: float) -
     ringless = Equations(replace(equations.system, ring=None))
     flying = spacing * fastest(equations, start) / fastest(ringless, start)
 
-    def next_phase(stages: Stages, state: Array, time: float) -> tuple[Phase, Switch | None]:
+    def next_phase(stages: Stages, state: Array, time: float) -> tuple[PtmdPhase, Switch | None]:
         rates = known.setdefault(stages, Rates(equations, stages))
-        longest = spacing if Stage.PRESSED in stages else flying
+        longest = spacing if SideStage.PRESSED in stages else flying
         return _follow(rates, state, (time, end_time), longest, scales)
 
     return next_phase
@@ -86,7 +86,7 @@ def route(equations: Equations, start: Start, spacing: float, end_time: float) -
 
 def _follow(
     rates: Rates, state: Array, span: tuple[float, float], spacing: float, scales: Array
-) -> tuple[Phase, Switch | None]:
+) -> tuple[PtmdPhase, Switch | None]:
     """One phase, and the switch that ends it; None at the end of the span. The integrals are states too."""
     from scipy import integrate
 
@@ -96,7 +96,7 @@ def _follow(
         rates, span[0], np.concatenate([state, np.zeros(INTEGRALS)]), span[1],
         rtol=RTOL, atol=ATOL * scales, max_step=spacing,
     )  # fmt: skip
-    levels = [Level(switch.level, rates.of, NEAR * spacing) for switch in known]
+    levels = [PtmdLevel(switch.level, rates.of, NEAR * spacing) for switch in known]
     times, states, pieces, switch = [span[0]], [solver.y], [], None
     before = _asked(levels, state, solver.f[:size])
     while solver.status == "running" and switch is None:
@@ -116,7 +116,7 @@ def _follow(
     return _phase(rates.stages, np.array(times), np.column_stack(states), pieces, size), switch
 
 
-class Level(NamedTuple):
+class PtmdLevel(NamedTuple):
     """A level as a function of states, with `rates` of states; a slope is a difference over `near`, s, both ways."""
 
     of: Callable[[Array], Array]
@@ -132,7 +132,7 @@ class Level(NamedTuple):
 class LevelRow(NamedTuple):
     """A level over one step, from its interpolant; `length` in s."""
 
-    level: Level
+    level: PtmdLevel
     piece: Any
     length: float
 
@@ -154,12 +154,12 @@ class LevelRow(NamedTuple):
         return np.asarray(self.piece(self.piece.t_old + offset)[:-INTEGRALS])
 
 
-def _asked(levels: list[Level], y: Array, rates: Array) -> Array:
+def _asked(levels: list[PtmdLevel], y: Array, rates: Array) -> Array:
     """Every level and its slope at a state, shape (2, m)."""
     return np.array([[float(level.of(y)) for level in levels], [level.slope(y, rates) for level in levels]])
 
 
-def _fall(levels: list[Level], piece: Any, ends: Array, fresh: bool) -> tuple[float, int] | None:
+def _fall(levels: list[PtmdLevel], piece: Any, ends: Array, fresh: bool) -> tuple[float, int] | None:
     """Offset, s, and index of the first fall within a step; `ends` (2, 2, m): level and slope before and after it."""
     length = float(piece.t - piece.t_old)
     values, slopes = ends[:, 0].T, ends[:, 1].T
@@ -170,7 +170,7 @@ def _fall(levels: list[Level], piece: Any, ends: Array, fresh: bool) -> tuple[fl
     return first_fall([LevelRow(level, piece, length) for level in levels], begun.tolist())
 
 
-def _phase(stages: Stages, times: Array, states: Array, pieces: list[Any], size: int) -> Phase:
+def _phase(stages: Stages, times: Array, states: Array, pieces: list[Any], size: int) -> PtmdPhase:
     def solution(time: float) -> Array:
         i = int(np.clip(np.searchsorted(times, time, side="right") - 1, 0, len(pieces) - 1))
         return np.asarray(pieces[i](time))
@@ -181,7 +181,7 @@ def _phase(stages: Stages, times: Array, states: Array, pieces: list[Any], size:
     def integrals(time: float) -> Array:
         return solution(time)[size:]
 
-    return Phase(stages, times, states[:size], at, integrals)
+    return PtmdPhase(stages, times, states[:size], at, integrals)
 
 
 def _scales(equations: Equations, start: Start) -> Array:

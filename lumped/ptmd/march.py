@@ -5,7 +5,7 @@ from __future__ import annotations
 from lumped.errors import NotReached
 from lumped.ptmd import exact, integrated
 from lumped.ptmd.equations import Equations
-from lumped.ptmd.phase import Follow, Phase
+from lumped.ptmd.phase import Follow, PtmdPhase
 from lumped.ptmd.switches import after, first_stages
 from lumped.ptmd.system import Start
 
@@ -24,9 +24,9 @@ def most_rows(name: str) -> int:
     return exact.MOST_ROWS if name == "exact" else integrated.MOST_ROWS
 
 
-def march(equations: Equations, start: Start, end_time: float, follow: Follow) -> tuple[Phase, ...]:
+def march(equations: Equations, start: Start, end_time: float, follow: Follow) -> tuple[PtmdPhase, ...]:
     """The phases from t = 0 to `end_time`, s. Raises NotReached when the ring switches without end."""
-    phases: list[Phase] = []
+    phases: list[PtmdPhase] = []
     state, time = equations.initial(start), 0.0
     stages = first_stages(equations, state)
     for _ in range(MOST_SWITCHES):

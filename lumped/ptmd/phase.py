@@ -20,7 +20,7 @@ STIFFEST = 1e5
 
 
 @dataclass(frozen=True, eq=False)
-class Phase:
+class PtmdPhase:
     """Rows of time, s, shape (k,), and of the state, shape (size, k), from the start to the end of a phase.
 
     `at` maps a time inside to the state there; `integrals` maps it to the integrals of the equations'
@@ -44,7 +44,7 @@ class Phase:
         return float(self.times[-1])
 
 
-Follow = Callable[[Stages, Array, float], tuple[Phase, Switch | None]]
+Follow = Callable[[Stages, Array, float], tuple[PtmdPhase, Switch | None]]
 
 
 def row_spacing(equations: Equations, start: Start, end_time: float, rows: int, most: int) -> float:

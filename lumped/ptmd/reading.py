@@ -8,27 +8,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.ptmd.equations import ACCELERATION, DISPLACEMENT, LOST_STRUCTURE, Equations
-from lumped.ptmd.phase import Phase
-from lumped.ptmd.result import Contact, Energy, Measures, Motion
-from lumped.ptmd.surface import Stage
+from lumped.ptmd.phase import PtmdPhase
+from lumped.ptmd.result import Energy, Measures, PtmdContact, PtmdMotion
+from lumped.ptmd.surface import SideStage
 from lumped.ptmd.system import SIDES
-from lumped.ptmd.track import Track, highest_of
+from lumped.ptmd.track import PtmdTrack, highest_of
 
 Array = NDArray[np.float64]
 
 
-def motion(track: Track) -> Motion:
+def motion(track: PtmdTrack) -> PtmdMotion:
     """The rows of the phases."""
     equations, y = track.equations, track.states
     absent = np.full(track.times.size, np.nan)
     damped, ringed = equations.system.damper is not None, equations.surface is not None
 
-    def second(phase: Phase, states: Array) -> Array:
+    def second(phase: PtmdPhase, states: Array) -> Array:
         found = _accelerations(equations, phase, states)[1]
         return np.full(phase.times.size, np.nan) if found is None else found
 
     deepest = np.max([equations.depth(side, y) for side in range(len(SIDES))], axis=0) if ringed else absent * 0.0
-    return Motion(
+    return PtmdMotion(
         time=track.times,
         x1=y[0],
         v1=y[1],
@@ -41,18 +41,18 @@ def motion(track: Track) -> Motion:
     )
 
 
-def _accelerations(equations: Equations, phase: Phase, states: Array) -> tuple[Array, Array | None]:
+def _accelerations(equations: Equations, phase: PtmdPhase, states: Array) -> tuple[Array, Array | None]:
     """Of both bodies in states of a phase, (size, ...), m/s2."""
     return equations.accelerations(phase.stages, equations.moving(phase.stages, states))
 
 
-def contacts(track: Track) -> tuple[Contact, ...]:
+def contacts(track: PtmdTrack) -> tuple[PtmdContact, ...]:
     """Every phase in which a side is pressed, phases of one contact joined."""
-    found: list[Contact] = []
+    found: list[PtmdContact] = []
     for index, side in enumerate(SIDES):
-        run: list[Phase] = []
+        run: list[PtmdPhase] = []
         for phase in track.phases:
-            if index < len(phase.stages) and phase.stages[index] is Stage.PRESSED:
+            if index < len(phase.stages) and phase.stages[index] is SideStage.PRESSED:
                 run.append(phase)
             elif run:
                 found.append(_contact(track, index, side, run))
@@ -61,21 +61,21 @@ def contacts(track: Track) -> tuple[Contact, ...]:
     return tuple(sorted(found, key=lambda contact: contact.start))
 
 
-def _contact(track: Track, index: int, side: int, run: list[Phase]) -> Contact:
+def _contact(track: PtmdTrack, index: int, side: int, run: list[PtmdPhase]) -> PtmdContact:
     equations = track.equations
 
-    def force(phase: Phase, states: Array) -> Array:
-        return equations.side_force(index, Stage.PRESSED, states)
+    def force(phase: PtmdPhase, states: Array) -> Array:
+        return equations.side_force(index, SideStage.PRESSED, states)
 
-    def depth(phase: Phase, states: Array) -> Array:
+    def depth(phase: PtmdPhase, states: Array) -> Array:
         return equations.depth(index, states)
 
     end = run[-1].end if run[-1] is not track.phases[-1] else None
     peak_force, peak_depth = (max(highest_of(phase, reading) for phase in run) for reading in (force, depth))
-    return Contact(side, run[0].start, end, peak_force, peak_depth)
+    return PtmdContact(side, run[0].start, end, peak_force, peak_depth)
 
 
-def energy(track: Track) -> Energy:
+def energy(track: PtmdTrack) -> Energy:
     """Each term on its own: the first and the last state, and the integrated losses."""
     equations, integrals = track.equations, track.integrals(track.end)
     first, last = track.phases[0].states[:, 0], track.phases[-1].states[:, -1]
@@ -111,13 +111,13 @@ def _relaxed_work(equations: Equations, y: Array) -> float:
     return float(sum(ring.stiffness.relaxed * depth**power / power for depth in depths))
 
 
-def _forgotten(track: Track) -> float:
+def _forgotten(track: PtmdTrack) -> float:
     """Energy that the ring loses at once where its memory is reset, J."""
     ends = ((a.states[:, -1], b.states[:, 0]) for a, b in pairwise(track.phases))
     return sum(_stored(track.equations, end) - _stored(track.equations, start) for end, start in ends)
 
 
-def measures(track: Track, found: tuple[Contact, ...], window: float) -> Measures:
+def measures(track: PtmdTrack, found: tuple[PtmdContact, ...], window: float) -> Measures:
     """The measures, with the contacts of the same track."""
     equations, span = track.equations, min(window, track.end)
     squares = track.integrals(span) / span

@@ -25,7 +25,7 @@ COLUMNS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class PtmdMotion:
     """Columns of one length, SI; 1 is the structure, 2 the damper (not a number without one).
 
     `force` is f of "(33)", with the sign of x2 - x1; `depth` the penetration of the undeformed ring, >= 0. Two
@@ -44,7 +44,7 @@ class Motion:
 
 
 @dataclass(frozen=True)
-class Contact:
+class PtmdContact:
     """One contact: side of the ring (1 at x2 - x1 > 0, else -1), times, s, largest force, N, and penetration, m.
 
     `end` is None when it still lasts at the end of the motion.
@@ -120,8 +120,8 @@ class PtmdResult:
 
     system: PoundingDamper
     start: Start
-    motion: Motion
-    contacts: tuple[Contact, ...]
+    motion: PtmdMotion
+    contacts: tuple[PtmdContact, ...]
     energy: Energy
     measures: Measures
 

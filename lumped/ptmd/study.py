@@ -44,7 +44,7 @@ class Convergence:
 
 
 @dataclass(frozen=True, eq=False)
-class Study:
+class PtmdStudy:
     """Results by variant: the case itself, named `FULL`, `PLAIN` or `BARE` by what it has, and all simpler ones."""
 
     case: Case
@@ -63,7 +63,7 @@ class Study:
         return sufficient(self.ledger, SMALL)
 
 
-def study(case: Case, progress: Callable[[str], None] = lambda message: None) -> Study:
+def study(case: Case, progress: Callable[[str], None] = lambda message: None) -> PtmdStudy:
     """Simulate the case twice and its simpler variants once. Raises BadInput and NotReached."""
     results: dict[str, PtmdResult] = {}
     with addressed(case.source, {"motion": "motion", "ring": "ring", "start": "motion"}):
@@ -74,7 +74,7 @@ def study(case: Case, progress: Callable[[str], None] = lambda message: None) ->
         progress("finer rows")
         again = simulate(case.system, case.start, case.end_time, case.window, rows_per_period=FINER)
     main = next(iter(results.values()))
-    return Study(case, results, convergence(main, again), ledger(case, main))
+    return PtmdStudy(case, results, convergence(main, again), ledger(case, main))
 
 
 def variants(system: PoundingDamper) -> dict[str, PoundingDamper]:

@@ -17,7 +17,7 @@ from lumped.materials import Relaxation
 Array = NDArray[np.float64]
 
 
-class Stage(Enum):
+class SideStage(Enum):
     """What one side of the ring does."""
 
     PRESSED = "the damper presses the surface and feels its force"

@@ -47,7 +47,7 @@ class Oscillator:
 
 
 @dataclass(frozen=True)
-class Ring:
+class PtmdRing:
     """The lining of both stops, `gap` metres from the damper at rest.
 
     Force F = coefficient * int E*(t-s) d(depth^exponent), the correspondence law "(29)" to "(32)" read as a
@@ -64,7 +64,9 @@ class Ring:
         check_fields("ring", self, RING_KEYS)
 
     @classmethod
-    def struck_by_rod(cls, gap: float, modulus: Relaxation, length: float, memory: Memory = Memory.RECOVERING) -> Ring:
+    def struck_by_rod(
+        cls, gap: float, modulus: Relaxation, length: float, memory: Memory = Memory.RECOVERING
+    ) -> PtmdRing:
         """The paper's ring, F = (pi/4) l E* depth, "(27)"; length l along the rod, m."""
         return cls(gap, modulus, 0.25 * np.pi * length, 1.0, memory)
 
@@ -83,7 +85,7 @@ class PoundingDamper:
 
     structure: Oscillator
     damper: Oscillator | None = None
-    ring: Ring | None = None
+    ring: PtmdRing | None = None
 
     def __post_init__(self) -> None:
         if self.ring is not None and self.damper is None:

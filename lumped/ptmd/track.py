@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.ptmd.equations import Equations
-from lumped.ptmd.phase import Phase
+from lumped.ptmd.phase import PtmdPhase
 
 Array = NDArray[np.float64]
 # Rows miss the top of a vibration by no more than this share of it.
@@ -19,11 +19,11 @@ NEAREST = 1e-7  # share of two rows to which a top is located; its height errs b
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
+class PtmdTrack:
     """Phases that follow one another from t = 0."""
 
     equations: Equations
-    phases: tuple[Phase, ...]
+    phases: tuple[PtmdPhase, ...]
 
     @property
     def end(self) -> float:
@@ -44,7 +44,7 @@ class Track:
     def _starts(self) -> Array:
         return np.array([phase.start for phase in self.phases])
 
-    def rows(self, reading: Callable[[Phase, Array], Array]) -> Array:
+    def rows(self, reading: Callable[[PtmdPhase, Array], Array]) -> Array:
         """A reading of every row: `reading` maps a phase and its states (size, ...) to (...)."""
         return np.concatenate([reading(phase, phase.states) for phase in self.phases])
 
@@ -57,7 +57,7 @@ class Track:
         parts = [phase.integrals(min(time, phase.end)) for phase in self.phases if phase.start < time]
         return np.asarray(np.sum(parts, axis=0))
 
-    def highest(self, reading: Callable[[Phase, Array], Array]) -> float:
+    def highest(self, reading: Callable[[PtmdPhase, Array], Array]) -> float:
         """The largest value of a reading of all phases, between the rows too."""
         tops = [float(np.max(reading(phase, phase.states))) for phase in self.phases]
         least = max(tops) - ROW_LOSS * abs(max(tops))
@@ -88,7 +88,7 @@ class Track:
         return float(brentq(lambda time: sign * self.at(time)[0] - level, after, before, xtol=1e-13))
 
 
-def highest_of(phase: Phase, reading: Callable[[Phase, Array], Array]) -> float:
+def highest_of(phase: PtmdPhase, reading: Callable[[PtmdPhase, Array], Array]) -> float:
     """The largest value of a reading of one phase, between the rows too."""
     from scipy.optimize import minimize_scalar
 

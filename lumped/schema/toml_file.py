@@ -14,7 +14,7 @@ from lumped.schema.bounded_file import content
 # No scene needs as much; what tomllib takes for a key of n parts or n brackets grows by n^2 or ends its recursion.
 MOST_BYTES, MOST_DEPTH = 100_000, 16
 TEXT_OR_COMMENT = re.compile(
-    r'''"{3}(?:[^\\]|\\.)*?(?:"{3,5}|\Z)|'{3}.*?(?:'{3,5}|\Z)|"(?:[^"\\\n]|\\.)*"?|'[^'\n]*'?|\#[^\n]*''', re.DOTALL
+    r""""{3}(?:[^\\]|\\.)*?(?:"{3,5}|\Z)|'{3}.*?(?:'{3,5}|\Z)|"(?:[^"\\\n]|\\.)*"?|'[^'\n]*'?|\#[^\n]*""", re.DOTALL
 )
 DEEP_KEY = re.compile(rf"(?<![\w-])(?:[\w-]+[ \t]*\.[ \t]*){{{MOST_DEPTH}}}")
 TOO_DEEP = f"nested too deep; accepted: dotted keys, tables and lists up to {MOST_DEPTH} deep"

@@ -10,12 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.load_curves.hertz import Hertz
 from lumped.shapes._outlines import parabola, parabola_slope
-from lumped.shapes._round import Round
+from lumped.shapes._round import RoundShape
 from lumped.shapes.base import Shape
 
 
 @dataclass(frozen=True)
-class Parabola(Round):
+class Parabola(RoundShape):
     """h(r) = r^2/(2R), R in m: no shape of a scene file, but what its sphere may resolve to."""
 
     name: ClassVar[str] = "parabola"

@@ -15,7 +15,7 @@ KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}
 
 
 @dataclass(frozen=True)
-class Round(Shape):
+class RoundShape(Shape):
     """A profile with this radius at its tip, m. Raises BadInput for a radius out of range."""
 
     radius: float

@@ -48,9 +48,9 @@ class Cone(Shape):
         return 2.0
 
     @property
-    def load_curve(self) -> cone.Cone:
+    def load_curve(self) -> cone.ConeCurve:
         """Sneddon's closed form, F = (2/pi) E* depth^2/tan(angle)."""
-        return cone.Cone(self.angle)
+        return cone.ConeCurve(self.angle)
 
     def resolved(self, profile: str) -> Shape:
         """Itself: it has no other profile."""

@@ -61,7 +61,7 @@ class Cylinder(Shape):
     @property
     def line_profile(self) -> line_profile.LineProfile:
         """The true cylinder."""
-        return line_profile.Cylinder(self.radius)
+        return line_profile.CylinderProfile(self.radius)
 
     @property
     def total(self) -> float:
@@ -103,7 +103,7 @@ class ParabolicCylinder(Cylinder):
     @property
     def line_profile(self) -> line_profile.LineProfile:
         """The parabola."""
-        return line_profile.ParabolicCylinder(self.radius)
+        return line_profile.ParabolaProfile(self.radius)
 
     def resolved(self, profile: str) -> Cylinder:
         """Itself."""

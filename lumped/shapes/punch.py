@@ -52,9 +52,9 @@ class Punch(Shape):
         return self.radius
 
     @property
-    def load_curve(self) -> fixed_area.Punch:
+    def load_curve(self) -> fixed_area.PunchCurve:
         """Boussinesq's closed form."""
-        return fixed_area.Punch(self.radius)
+        return fixed_area.PunchCurve(self.radius)
 
     def resolved(self, profile: str) -> Shape:
         """Itself: it has no other profile."""

@@ -19,7 +19,7 @@ KEYS = _round.KEYS
 
 
 @dataclass(frozen=True)
-class Sphere(_round.Round):
+class Sphere(_round.RoundShape):
     """A sphere of this radius, m. Raises BadInput for a radius out of range."""
 
     name: ClassVar[str] = "sphere"

@@ -47,7 +47,7 @@ class StraightBar:
         return 0.5 * self.impedance * self.echo
 
 
-class Piece(NamedTuple):
+class BarPiece(NamedTuple):
     """From ``start``, s, on: the wave ``value`` + ``slope`` (t - start), m/s, the gap and whether it is closed."""
 
     start: float
@@ -65,7 +65,7 @@ class Bounces:
     velocity: float
     gravity: float
     end: float
-    pieces: tuple[Piece, ...]
+    pieces: tuple[BarPiece, ...]
 
     def fall(self, time: ArrayLike) -> Array:
         """V(t), m/s."""
@@ -142,7 +142,7 @@ def bounces(bar: StraightBar, velocity: float, gravity: float, gap: float, end: 
 
     Raises NotReached where contacts grow too many to be followed.
     """
-    pieces = list[Piece]()
+    pieces = list[BarPiece]()
     time, closed = 0.0, False
     while time < end:
         if len(pieces) > MOST_PIECES:
@@ -152,17 +152,17 @@ def bounces(bar: StraightBar, velocity: float, gravity: float, gap: float, end: 
         pressing, rate = velocity + gravity * time - 2.0 * value, gravity - 2.0 * slope  # F/Z and its slope
         gap, closed = _decided(gap, closed, pressing, rate, velocity + abs(gravity) * bar.echo, bar.echo)
         if closed:
-            pieces.append(Piece(time, velocity + gravity * time - value, gravity - slope, 0.0, True))
+            pieces.append(BarPiece(time, velocity + gravity * time - value, gravity - slope, 0.0, True))
             until = min(until, time + _falls(pressing, rate))
         else:
-            pieces.append(Piece(time, value, slope, gap, False))
+            pieces.append(BarPiece(time, value, slope, gap, False))
             until = min(until, time + _closes(gap, pressing, rate))
             gap += -pressing * (until - time) - 0.5 * rate * (until - time) ** 2
         time = until
     return Bounces(bar, velocity, gravity, end, tuple(pieces))
 
 
-def _echo(pieces: list[Piece], time: float, known: float) -> tuple[float, float, float]:
+def _echo(pieces: list[BarPiece], time: float, known: float) -> tuple[float, float, float]:
     """Value and slope of the wave from a time on, and until when; zero before the start, ``known`` up to a time."""
     later = bisect_right(pieces, time + ROUNDING * known, key=lambda piece: piece.start)
     if time < -ROUNDING * known or not later:

@@ -20,7 +20,7 @@ SUPPORTS = ("free", "held")
 
 
 @dataclass(frozen=True)
-class Round(Target):
+class RoundTarget(Target):
     """A body of this radius, m; places are distances from the line of motion, m.
 
     `strikers`: names of its like, exact and a parabola.

@@ -7,12 +7,12 @@ from typing import ClassVar
 
 from lumped.schema.keys import Choice, Key, Number
 from lumped.shapes.cylinder import Cylinder as Profile
-from lumped.targets._round import SUPPORTS, Round
+from lumped.targets._round import SUPPORTS, RoundTarget
 
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "support": Choice(SUPPORTS)}
 
 
-class Cylinder(Round):
+class CylinderTarget(RoundTarget):
     """A cylinder of this radius, m: finite, since in plane strain two half-spaces have no finite approach."""
 
     name: ClassVar[str] = "cylinder"
@@ -25,6 +25,6 @@ class Cylinder(Round):
         return Profile(self.radius, 1.0)
 
 
-def of(radius: float, support: str) -> Cylinder:
+def of(radius: float, support: str) -> CylinderTarget:
     """A cylinder of `radius`, m."""
-    return Cylinder(radius, support)
+    return CylinderTarget(radius, support)

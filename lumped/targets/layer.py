@@ -49,7 +49,7 @@ class Layer(Target):
 
     def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
         """By the layer's integral equation."""
-        from lumped.load_curves.layer import Layer as Elastic
+        from lumped.load_curves.layer import PointLayer as Elastic
         from lumped.load_curves.layer_curve import LayerCurve, LayerPunch
         from lumped.load_curves.line_layer import LineLayer
 

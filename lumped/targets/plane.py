@@ -16,7 +16,7 @@ from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.schema.keys import Key
 from lumped.shapes._block import Block
-from lumped.shapes._round import Round
+from lumped.shapes._round import RoundShape
 from lumped.shapes.base import Shape
 from lumped.targets.base import NEEDS_DENSITY, Target, vibrations
 
@@ -60,7 +60,7 @@ class Plane(Target):
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is neither a block nor a sphere."""
-        if not isinstance(shape, Block | Round):
+        if not isinstance(shape, Block | RoundShape):
             reason = f"{shape.name}: a rigid plane is struck by what has a material; accepted: prism, plate, sphere"
             raise BadInput(Fault(source, "striker.shape", reason))
 

@@ -62,7 +62,7 @@ class Ring(Target):
 
     def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
         """By the Fourier series of the annulus."""
-        from lumped.load_curves.ring import Ring as Elastic
+        from lumped.load_curves.ring import RodInRing as Elastic
 
         return Elastic(shape.tip_radius or 0.0, self.inner_radius, self.thickness, nu)
 

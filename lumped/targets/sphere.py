@@ -12,12 +12,12 @@ from lumped.materials import Material
 from lumped.schema.keys import Choice, Key, Number
 from lumped.shapes import Sphere as Profile
 from lumped.shapes.base import Shape
-from lumped.targets._round import SUPPORTS, Round
+from lumped.targets._round import SUPPORTS, RoundTarget
 
 KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "support": Choice(SUPPORTS, required=False)}
 
 
-class Sphere(Round):
+class SphereTarget(RoundTarget):
     """A sphere of this radius, m: a half-space under the gap of two spheres, finite where its support is said."""
 
     name: ClassVar[str] = "sphere"
@@ -58,6 +58,6 @@ class Sphere(Round):
         return TwoProfiles(shape.load_curve, self.matching(shape).load_curve)
 
 
-def of(radius: float, support: str | None = None) -> Sphere:
+def of(radius: float, support: str | None = None) -> SphereTarget:
     """A sphere of `radius`, m."""
-    return Sphere(radius, support)
+    return SphereTarget(radius, support)

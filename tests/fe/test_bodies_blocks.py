@@ -9,7 +9,7 @@ import pytest
 
 from fe_contact.indentation import indent, press, settings
 from lumped import BadInput, Material, Relaxation
-from lumped.load_curves.layer import Layer
+from lumped.load_curves.layer import PointLayer
 from lumped.load_curves.layer_curve import LayerPunch
 from lumped.scene.indenter import Indenter
 from lumped.shapes import plate, prism
@@ -132,7 +132,7 @@ def test_a_wide_washer_with_a_needle_hole_is_the_layer(base: str, outer_radius: 
     """What a free rim far away takes falls with its distance squared if the base slides, else like e^-x."""
     wide = Washer(1e-6, outer_radius, 0.01, base)
     found = indent(Indenter(Punch(0.01), polymer(), wide), (DEPTH,), {})
-    exact = found.modulus * float(LayerPunch(0.01, Layer(0.01, 0.3, base)).force(DEPTH))
+    exact = found.modulus * float(LayerPunch(0.01, PointLayer(0.01, 0.3, base)).force(DEPTH))
     assert found.force[0] == pytest.approx(exact, rel=3e-5)
 
 

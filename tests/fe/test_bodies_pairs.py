@@ -14,8 +14,8 @@ from lumped.scene.indenter import Indenter
 from lumped.scene.tables import Model
 from lumped.shapes.cylinder import Cylinder as Roller
 from lumped.shapes.punch import Punch
-from lumped.targets.cylinder import Cylinder
-from lumped.targets.sphere import Sphere as Ball
+from lumped.targets.cylinder import CylinderTarget
+from lumped.targets.sphere import SphereTarget as Ball
 
 SOFT = Material(Relaxation(1e6), 0.3)
 STIFF = Material(Relaxation(3e6), 0.45)
@@ -29,7 +29,7 @@ def balls(striker: Material | None, target: Material = SOFT, support: str | None
 
 
 def rollers(striker: Material | None, support: str = "free") -> Indenter:
-    return Indenter(Roller(0.01, 0.05), SOFT, Cylinder(0.02, support), striker_material=striker)
+    return Indenter(Roller(0.01, 0.05), SOFT, CylinderTarget(0.02, support), striker_material=striker)
 
 
 @pytest.mark.parametrize("instant", [False, True])
@@ -155,7 +155,7 @@ def test_bodies_that_trade_places_answer_alike() -> None:
     [
         ("striker.shape", lambda: Indenter(Punch(0.01), SOFT, Ball(0.02, "free"))),
         ("striker.shape", lambda: Indenter(Roller(0.01, 0.05), SOFT, Ball(0.02, None))),
-        ("striker.shape", lambda: Indenter(Sphere(0.01), SOFT, Cylinder(0.02, "free"))),
+        ("striker.shape", lambda: Indenter(Sphere(0.01), SOFT, CylinderTarget(0.02, "free"))),
         ("support", lambda: Ball(0.02, "glued")),
         ("striker.material", lambda: Indenter(Sphere(0.01), SOFT, striker_material=STIFF)),
         ("--depths", lambda: indent(balls(STIFF), (0.01,), {})),

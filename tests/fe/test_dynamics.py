@@ -17,7 +17,7 @@ from fe_contact.assembly.interior import factorized
 from fe_contact.bodies.bar import Bar, falling
 from fe_contact.contact.enforcement import augmented, corrected, exact, penalty
 from fe_contact.dynamics import explicit, implicit, mass, schemes
-from fe_contact.dynamics.body import Body, Part, Pressing
+from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
 from fe_contact.dynamics.march import Choices, Motion, march, safe_step
 from fe_contact.dynamics.pressed import Enforced
 from fe_contact.errors import MotionUnbounded
@@ -32,14 +32,14 @@ IMPLICIT = [name for name in available(SCHEMES) if not get(SCHEMES, name).of(0.8
 AWAY = -1e9  # clearance of a body that never touches
 
 
-def oscillator(relaxation: Relaxation, clearance: float = AWAY, dashpot: float = 0.0) -> Body:
+def oscillator(relaxation: Relaxation, clearance: float = AWAY, dashpot: float = 0.0) -> BodyWithMass:
     """A mass of one on a spring."""
     one = sparse.csc_matrix([[1.0]])
     pressing = Pressing(one, np.ones((1, 1)), np.ones(1), np.array([clearance]))
-    return Body(one, np.zeros(1), (Part(one, relaxation),), dashpot * one, np.zeros(1), pressing)
+    return BodyWithMass(one, np.zeros(1), (Part(one, relaxation),), dashpot * one, np.zeros(1), pressing)
 
 
-def moved(body: Body, scheme: str, step: float, end: float, rho: float = 0.8, hard: float = 1.0) -> Motion:
+def moved(body: BodyWithMass, scheme: str, step: float, end: float, rho: float = 0.8, hard: float = 1.0) -> Motion:
     choices = Choices(get(SCHEMES, scheme).of(rho), Enforced(penalty, hard), step)
     return march(body, np.ones(body.size), choices, end, np.eye(body.size))
 
@@ -186,7 +186,7 @@ def test_only_the_contact_is_without_mass(name: str, seed: int) -> None:
 # the ledger
 
 
-def chain(seed: int, name: str, viscous: bool) -> tuple[Body, np.ndarray]:
+def chain(seed: int, name: str, viscous: bool) -> tuple[BodyWithMass, np.ndarray]:
     """A random elastic chain with memory, dashpots, gravity and a rigid mass, about to touch; its velocity."""
     rng = np.random.default_rng(seed)
     count = int(rng.integers(3, 9))
@@ -195,7 +195,7 @@ def chain(seed: int, name: str, viscous: bool) -> tuple[Body, np.ndarray]:
     dashpots = sparse.diags(np.append(rng.uniform(0, 0.2, count), 0.0)[::-1]).tocsc()
     relaxation = Relaxation(1.0, (0.3,), (0.2,), viscosity=0.01 if viscous else 0.0)
     parts = (*body.parts, Part(body.parts[0].stiffness, relaxation))
-    whole = Body(body.mass, body.rigid, parts, dashpots, body.gravity, body.pressing)
+    whole = BodyWithMass(body.mass, body.rigid, parts, dashpots, body.gravity, body.pressing)
     return whole, -rng.uniform(0.1, 1, whole.size)
 
 
@@ -291,7 +291,7 @@ def test_a_striker_is_one_more_degree_of_freedom() -> None:
     size, line = 11, falling(Bar(1.0, 1.0, 1.0, Relaxation(1.0)), 10, get(MASSES, "consistent"), gravity=0.0)
     push = sparse.lil_matrix((size + 1, 2))
     push[0, 0], push[size, 1] = 1.0, -1.0
-    whole = Body(
+    whole = BodyWithMass(
         mass=sparse.block_diag([line.mass, sparse.csc_matrix((1, 1))]).tocsc(),
         rigid=np.append(np.zeros(size), 1e9),
         parts=(Part(sparse.block_diag([line.parts[0].stiffness, sparse.csc_matrix((1, 1))]).tocsc(), Relaxation(1.0)),),

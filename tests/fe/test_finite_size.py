@@ -13,7 +13,7 @@ from lumped.indentation.finite_size import FiniteSize
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Model
-from lumped.targets.sphere import Sphere as Ball
+from lumped.targets.sphere import SphereTarget as Ball
 
 
 def balls(nu: float, length: float = 1.0, modulus: float = 1e6, support: str | None = "free") -> Indenter:

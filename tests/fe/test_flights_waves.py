@@ -11,11 +11,11 @@ from scipy.optimize import brentq
 
 from fe_contact.contact.enforcement import penalty
 from fe_contact.dynamics import ledger
-from fe_contact.dynamics.body import Body, Part, Pressing
+from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
 from fe_contact.dynamics.march import Choices, Moment
 from fe_contact.dynamics.pressed import Enforced
 from fe_contact.dynamics.schemes import generalised_alpha
-from fe_contact.dynamics.state import State, internal, undeformed
+from fe_contact.dynamics.state import BodyState, internal, undeformed
 from fe_contact.waves.bounces import Flights
 from lumped.materials import Relaxation
 
@@ -40,11 +40,11 @@ class Case:
         return 2.0 * self.speed / self.gravity
 
     @property
-    def body(self) -> Body:
+    def body(self) -> BodyWithMass:
         plate = sparse.csc_matrix(np.diag([1.0, 0.0]))
         pressing = Pressing(-sparse.eye(2, format="csc"), np.ones((1, 2)), np.ones(1), np.zeros(1))
         rigid, gravity = np.array([0.0, 1.0]), np.array([0.0, self.gravity])
-        return Body(plate, rigid, (Part(plate, RELAXATION),), self.dashpot * plate, gravity, pressing)
+        return BodyWithMass(plate, rigid, (Part(plate, RELAXATION),), self.dashpot * plate, gravity, pressing)
 
     @property
     def parted(self) -> Moment:
@@ -53,7 +53,7 @@ class Case:
         forces = internal(body, displacement, branches)
         velocity = np.array([self.rising, -self.speed])
         acceleration = np.array([-forces[0] - self.dashpot * self.rising, self.gravity])
-        state = State(0.0, displacement, velocity, acceleration, branches, forces, at_rest.signed_pressure)
+        state = BodyState(0.0, displacement, velocity, acceleration, branches, forces, at_rest.signed_pressure)
         return Moment(state, ledger.opened(body, state))
 
     def touch(self) -> float:

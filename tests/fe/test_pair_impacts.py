@@ -21,9 +21,9 @@ from lumped import Material, Relaxation, Result, Scene, Sphere, laws, simulate
 from lumped.shapes.cylinder import Cylinder as Roller
 from lumped.shapes.punch import Punch
 from lumped.targets import HalfSpace
-from lumped.targets.cylinder import Cylinder
+from lumped.targets.cylinder import CylinderTarget
 from lumped.targets.o_ring import ORing
-from lumped.targets.sphere import Sphere as Ball
+from lumped.targets.sphere import SphereTarget as Ball
 
 TOLERANCE, YOUNG = 1e-3, 1e6
 IMPACTS = 30
@@ -75,9 +75,9 @@ def random_true_size(seed: int) -> Scene:
     scenes = (
         (Punch(0.05), 0.05, ORing(radius, 0.003), None),
         (Sphere(0.01), 0.005, Ball(0.01, "free"), solid(rng, 5e-3, nu)),
-        (Roller(0.01, 0.02), 0.02, Cylinder(0.01, "free"), solid(rng, 5e-3, nu)),
+        (Roller(0.01, 0.02), 0.02, CylinderTarget(0.01, "free"), solid(rng, 5e-3, nu)),
         (Sphere(0.01), 0.005, Ball(radius, support), None),
-        (Roller(0.01, 0.02), 0.02, Cylinder(radius, support), None),
+        (Roller(0.01, 0.02), 0.02, CylinderTarget(radius, support), None),
     )
     shape, mass, target, striker = scenes[seed % len(scenes)]
     return Scene(shape, mass, velocity, solid(rng, 5e-3, nu), target=target, striker_material=striker)
@@ -100,7 +100,7 @@ def test_two_materials_of_different_nu_agree_with_finer_settings(
     """No law knows bodies of two shapes that remember differently: the bars must cover what finer settings find."""
     for seed in range(campaign_size(IMPACTS) // 3):
         rng = np.random.default_rng([20261127, seed])
-        round_ones = ((Ball(0.017, "held"), Sphere(0.01)), (Cylinder(0.017, "held"), Roller(0.01, 0.02)))
+        round_ones = ((Ball(0.017, "held"), Sphere(0.01)), (CylinderTarget(0.017, "held"), Roller(0.01, 0.02)))
         target, shape = round_ones[seed % 2]
         scene = Scene(shape, 0.01, 0.05, solid(rng, 5e-3), target=target, striker_material=solid(rng, 5e-3))
         finer = {"elements_per_contact": 3.3, "penalty": 4e3, "steps": 80, "tolerance": 0.1}

@@ -9,7 +9,7 @@ import pytest
 
 from fe_contact import cli
 from fe_contact.methods import simulate
-from fe_contact.progress import OFTEN, Count, Line, Log, clear
+from fe_contact.progress import OFTEN, Count, Log, ProgressLine, clear
 from fe_contact.reference import solve
 from lumped import Scene
 
@@ -34,7 +34,7 @@ def screen(written: str) -> str:
 
 def test_a_terminal_shows_one_line_never_wider_than_itself() -> None:
     stream, clock = io.StringIO(), Clock()
-    line = Line(stream, clock, lambda: 30)
+    line = ProgressLine(stream, clock, lambda: 30)
     for done in range(5):
         clock.now += 1.0
         line("a message that is longer than the terminal is wide" if done % 2 else "short", done, 4)
@@ -51,7 +51,7 @@ def test_a_terminal_shows_one_line_never_wider_than_itself() -> None:
 
 def test_the_time_left_is_that_of_the_rest_at_the_same_pace() -> None:
     stream, clock = io.StringIO(), Clock()
-    line = Line(stream, clock, lambda: 80)
+    line = ProgressLine(stream, clock, lambda: 80)
     line("steps", 0, 10)
     clock.now += 6.0
     line("steps", 2, 10)
@@ -66,7 +66,7 @@ def test_the_time_left_is_that_of_the_rest_at_the_same_pace() -> None:
 def test_ten_thousand_steps_write_a_few_words(expected: int) -> None:
     """Told at every step, at a rate that costs nothing: five words a second, and the end, wherever it was expected."""
     stream, clock = io.StringIO(), Clock()
-    count = Count(Line(stream, clock, lambda: 80), "steps", expected)
+    count = Count(ProgressLine(stream, clock, lambda: 80), "steps", expected)
     for _ in range(10_000):
         clock.now += 1e-3
         count()
@@ -76,7 +76,7 @@ def test_ten_thousand_steps_write_a_few_words(expected: int) -> None:
 
 def test_more_steps_than_expected_are_no_more_than_all() -> None:
     stream, clock = io.StringIO(), Clock()
-    count = Count(Line(stream, clock, lambda: 80), "steps", 2)
+    count = Count(ProgressLine(stream, clock, lambda: 80), "steps", 2)
     for _ in range(3):
         clock.now += 1.0
         count()

@@ -18,7 +18,7 @@ from fe_contact.bodies.zone import held
 from fe_contact.methods import simulate
 from lumped import Scene, laws
 from lumped.result.model_ledger.kinematics import ROD_END
-from lumped.solvers.rod.tipped import Scales, TippedImpact
+from lumped.solvers.rod.tipped import RodScales, TippedImpact
 from lumped.solvers.rod.waves import Waves
 
 LONG = 3.0  # radii of the rod, behind which its section moves as one
@@ -99,7 +99,7 @@ def peak(scene: Scene, less: float) -> float:
         velocity=velocity,
         gravity=0.0,
         until=3.0 * known.duration,
-        scales=Scales(known.depth, known.duration),
+        scales=RodScales(known.depth, known.duration),
         rtol=1e-7,
     )
     times = np.linspace(0.0, impact.pieces[1], ROWS)

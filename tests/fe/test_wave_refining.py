@@ -16,7 +16,7 @@ from fe_contact.budget.plan import EARLY_PEAK
 from fe_contact.reference import strike_of
 from fe_contact.steppers.march import March, Strike, Work
 from fe_contact.waves import refining
-from fe_contact.waves.certify import ORDER, Runs, certify
+from fe_contact.waves.certify import ORDER, WaveRuns, certify
 from fe_contact.waves.half_space_body import moving
 from fe_contact.waves.plan import viscous_share
 from fe_contact.waves.reading import AT, ROWS, curve_of, reading
@@ -127,7 +127,7 @@ def test_what_could_not_be_varied_is_refined_as_far_as_there_is_room() -> None:
 def test_twice_the_steps_take_one_march_more() -> None:
     scene = Scene.load("steel-ball-waves")
     numerics = half_space.plan(scene, {"elements_per_contact": 3.0, "steps": 48, "tolerance": 0.05}).numerics
-    runs = Runs(scene, strike_of(scene), moving, 24)
+    runs = WaveRuns(scene, strike_of(scene), moving, 24)
     first = certify(runs, numerics)
     assert first.work.marches == 5
     second = certify(runs, numerics.varied(steps=96))
@@ -171,7 +171,7 @@ def test_counted_factorisations_are_those_of_every_length_of_step(monkeypatch: p
     coarse = {"elements_per_contact": 3.0, "steps": 40, "far_radius": 4.0, "penalty": 20.0}
     numerics = half_space.plan(scene, coarse).numerics.varied(peak_share=0.05)
     assert len(graded(numerics)[1]) > 1
-    runs = Runs(scene, strike_of(scene), moving, 20)
+    runs = WaveRuns(scene, strike_of(scene), moving, 20)
     certify(runs, numerics)
     work = runs.work()
     assert work.marches == 5

@@ -20,7 +20,7 @@ from fe_contact.methods import simulate
 from fe_contact.settings import WAVES
 from fe_contact.steppers.chosen import struck
 from fe_contact.waves import cost, doubling
-from fe_contact.waves.certify import Runs
+from fe_contact.waves.certify import WaveRuns
 from lumped import Scene
 from lumped.result.result import meets
 from lumped.scene.file import load
@@ -127,14 +127,14 @@ def test_a_row_of_contacts_ends_by_name(monkeypatch: pytest.MonkeyPatch) -> None
 def test_the_cost_of_waves_is_known_before(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Within a factor of two: what is counted is unknowns times steps."""
     spent = list[float]()
-    follow = Runs.follow
+    follow = WaveRuns.follow
 
-    def followed(runs: Runs, settings: Any) -> Any:
+    def followed(runs: WaveRuns, settings: Any) -> Any:
         found = follow(runs, settings)
         spent.append(runs.spent)
         return found
 
-    monkeypatch.setattr(Runs, "follow", followed)
+    monkeypatch.setattr(WaveRuns, "follow", followed)
     monkeypatch.setattr("fe_contact.waves.refining.ROUNDS", 0)
     scene = Scene.load(name)
     target = get(WAVES, scene.target.name)
@@ -146,7 +146,7 @@ def test_the_cost_of_waves_is_known_before(name: str, monkeypatch: pytest.Monkey
 
 def test_waves_that_cost_too_much_are_refused_before_the_first_step(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cost, "MOST_WORK", 1e3)
-    monkeypatch.setattr(Runs, "follow", lambda *_: pytest.fail("marched"))
+    monkeypatch.setattr(WaveRuns, "follow", lambda *_: pytest.fail("marched"))
     with pytest.raises(WavesTooDear, match=r"unknowns, \d+ steps: about .* s of one core .*cure: a larger tolerance"):
         simulate(Scene.load("polymer-sphere-waves"), "fe", COARSE)
 

@@ -10,15 +10,15 @@ from scipy.special import ellipe, ellipk, j0, j1
 
 from lumped.errors import BadInput, NotReached
 from lumped.load_curves import (
-    Cone,
+    ConeCurve,
     FixedArea,
     HalfSpaceCurve,
     Hertz,
-    Layer,
     LayerCurve,
     LayerPunch,
+    PointLayer,
     Power,
-    Punch,
+    PunchCurve,
     SneddonSphere,
 )
 from lumped.load_curves.layer import deficit
@@ -27,8 +27,15 @@ from lumped.load_curves.thin_layer import compressible, incompressible
 from lumped.numbers.quadrature import gauss
 
 H = 0.002
-LAYERS = [Layer(H, 0.3), Layer(H, 0.5), Layer(H, 0.3, "sliding")]
-PROFILES = [Hertz(0.006), SneddonSphere(0.006), SneddonSphere(0.001), Cone(20.0), Power(30.0, 1.6), Power(1e5, 3.5)]
+LAYERS = [PointLayer(H, 0.3), PointLayer(H, 0.5), PointLayer(H, 0.3, "sliding")]
+PROFILES = [
+    Hertz(0.006),
+    SneddonSphere(0.006),
+    SneddonSphere(0.001),
+    ConeCurve(20.0),
+    Power(30.0, 1.6),
+    Power(1e5, 3.5),
+]
 CURVES = [LayerCurve(profile, layer) for profile in PROFILES for layer in LAYERS]
 DEPTHS = H * np.array([1e-9, 1e-4, 0.01, 0.09, 0.31])
 
@@ -65,20 +72,22 @@ def name(curve: object) -> str:
 def test_deep_layer_is_the_half_space_and_approaches_it_at_first_order(profile: HalfSpaceCurve) -> None:
     depth = 1e-6
     own = float(profile.force(depth))
-    excess = [float(LayerCurve(profile, Layer(h, 0.3)).force(depth)) / own - 1.0 for h in (1e6, 0.1, 1.0, 10.0)]
+    excess = [float(LayerCurve(profile, PointLayer(h, 0.3)).force(depth)) / own - 1.0 for h in (1e6, 0.1, 1.0, 10.0)]
     assert abs(excess[0]) < 1e-8
     assert np.diff(np.log10(excess[1:])) == pytest.approx([-1.0, -1.0], abs=0.01)
 
 
 def test_punch_on_a_deep_layer_is_boussinesqs() -> None:
-    stiffness = [LayerPunch(1e-3, Layer(h, 0.3)).stiffness / Punch(1e-3).stiffness - 1.0 for h in (1e7, 0.1, 1.0, 10.0)]
+    stiffness = [
+        LayerPunch(1e-3, PointLayer(h, 0.3)).stiffness / PunchCurve(1e-3).stiffness - 1.0 for h in (1e7, 0.1, 1.0, 10.0)
+    ]
     assert abs(stiffness[0]) < 1e-9
     assert np.diff(np.log10(stiffness[1:])) == pytest.approx([-1.0, -1.0], abs=0.01)
 
 
 @pytest.mark.parametrize("ratio", HAYES)
 def test_punch_has_hayes_kappa(ratio: float) -> None:
-    kappas = [LayerPunch(ratio, Layer(1.0, nu)).stiffness / (2.0 * ratio) for nu in NUS]
+    kappas = [LayerPunch(ratio, PointLayer(1.0, nu)).stiffness / (2.0 * ratio) for nu in NUS]
     assert kappas == pytest.approx(HAYES[ratio], abs=0.6e-4)
 
 
@@ -86,14 +95,14 @@ def test_punch_has_hayes_kappa(ratio: float) -> None:
 def test_sphere_has_the_values_of_the_literature(ratio: float) -> None:
     hertz = Hertz(1e3)
     for nu, chi, excess in ((0.5, *SPHERE[ratio][:2]), (0.3, *SPHERE[ratio][2:])):
-        here = LayerCurve(hertz, Layer(1.0, nu)).at(ratio)
+        here = LayerCurve(hertz, PointLayer(1.0, nu)).at(ratio)
         assert math.sqrt(1e3 * here.depth) == pytest.approx(chi, abs=0.6e-4)
         assert here.force / hertz.force(here.depth) == pytest.approx(excess, abs=0.6e-4)
 
 
 def test_cone_has_the_values_of_the_literature() -> None:
-    cone = Cone(1e-3)
-    curve = LayerCurve(cone, Layer(1.0, 0.5))
+    cone = ConeCurve(1e-3)
+    curve = LayerCurve(cone, PointLayer(1.0, 0.5))
     for sharpness, excess in ((0.1483, 1.1223), (0.2803, 1.2643), (0.5059, 1.6113), (0.6996, 2.0508), (1.0478, 3.2389)):
         depth = sharpness * cone.steepness
         # the abscissa has four digits, and the slope over it is 3 at the last place
@@ -101,7 +110,7 @@ def test_cone_has_the_values_of_the_literature() -> None:
 
 
 @pytest.mark.parametrize("layer", LAYERS, ids=name)
-def test_first_order_in_the_thickness_is_one_constant_for_every_profile(layer: Layer) -> None:
+def test_first_order_in_the_thickness_is_one_constant_for_every_profile(layer: PointLayer) -> None:
     # phi = depth - g + k(0, 0) F/2 to first order: the half-space's curve, deeper by k(0, 0) F/(2 E*)
     nodes, weights = gauss(200)
     constant = 2.0 / np.pi * 25.0 * weights @ deficit(layer.nu, layer.base, 25.0 * nodes)
@@ -153,7 +162,9 @@ def test_pressure_integrates_to_the_force(curve: LayerCurve) -> None:
     assert curve.pressure(np.array([a, 2.0 * a]), a) == pytest.approx([0.0, 0.0], abs=1e-12)
 
 
-@pytest.mark.parametrize("punch", [Punch(1e-3), LayerPunch(1e-3, LAYERS[0]), LayerPunch(9e-3, LAYERS[1])], ids=name)
+@pytest.mark.parametrize(
+    "punch", [PunchCurve(1e-3), LayerPunch(1e-3, LAYERS[0]), LayerPunch(9e-3, LAYERS[1])], ids=name
+)
 def test_punch_is_linear_and_its_pressure_carries_the_force(punch: FixedArea) -> None:
     nodes, weights = gauss(300)
     angle = 0.5 * np.pi * nodes
@@ -169,13 +180,13 @@ def test_punch_is_linear_and_its_pressure_carries_the_force(punch: FixedArea) ->
 
 @pytest.mark.parametrize("profile", PROFILES, ids=name)
 def test_bonded_layer_stiffens_with_nu_and_is_stiffer_than_a_sliding_one(profile: HalfSpaceCurve) -> None:
-    bonded = [float(LayerCurve(profile, Layer(H, nu)).force(0.2 * H)) for nu in (0.0, 0.2, 0.4, 0.49, 0.4999, 0.5)]
+    bonded = [float(LayerCurve(profile, PointLayer(H, nu)).force(0.2 * H)) for nu in (0.0, 0.2, 0.4, 0.49, 0.4999, 0.5)]
     assert np.all(np.diff(bonded) > 0.0)
-    sliding = [float(LayerCurve(profile, Layer(H, nu, "sliding")).force(0.2 * H)) for nu in (0.1, 0.5)]
+    sliding = [float(LayerCurve(profile, PointLayer(H, nu, "sliding")).force(0.2 * H)) for nu in (0.1, 0.5)]
     assert float(profile.force(0.2 * H)) < sliding[0] == sliding[1] < bonded[0]
 
 
-def disc(r: np.ndarray, radius: float, layer: Layer) -> np.ndarray:
+def disc(r: np.ndarray, radius: float, layer: PointLayer) -> np.ndarray:
     """Surface displacement (E* = 1) at r under unit pressure on a disc: Love's on the half-space less the layer's."""
     inside, outside = np.minimum(r / radius, 1.0) ** 2, np.minimum(radius / r, 1.0) ** 2
     outer = r * (ellipe(outside) - (1.0 - outside) * ellipk(np.minimum(outside, 1.0 - 1e-15)))
@@ -186,8 +197,10 @@ def disc(r: np.ndarray, radius: float, layer: Layer) -> np.ndarray:
     return np.asarray(love - 2.0 * j0(np.outer(r, u) / layer.thickness) @ held)
 
 
-@pytest.mark.parametrize("layer", [Layer(1.0, 0.3), Layer(1.0, 0.5), Layer(1.0, 0.3, "sliding")], ids=name)
-def test_rings_of_pressure_in_equilibrium_with_the_profile_carry_the_same_force(layer: Layer) -> None:
+@pytest.mark.parametrize(
+    "layer", [PointLayer(1.0, 0.3), PointLayer(1.0, 0.5), PointLayer(1.0, 0.3, "sliding")], ids=name
+)
+def test_rings_of_pressure_in_equilibrium_with_the_profile_carry_the_same_force(layer: PointLayer) -> None:
     curve, a, errors = LayerCurve(Hertz(10.0), layer), 1.3, []
     for rings in (40, 80, 160):
         edges = a * np.arange(rings + 1) / rings
@@ -213,18 +226,18 @@ def test_nystrom_converges_faster_than_any_power(ratio: float) -> None:
 
 
 def test_thin_compressible_layer_is_winklers() -> None:
-    thin, curve = compressible(1e3, Layer(1.0, 0.3), plane=False), LayerCurve(Hertz(1e3), Layer(1.0, 0.3))
+    thin, curve = compressible(1e3, PointLayer(1.0, 0.3), plane=False), LayerCurve(Hertz(1e3), PointLayer(1.0, 0.3))
     gaps = [1.0 - float(curve.force_at(a) / thin.force(curve.depth(a))) for a in (5.0, 10.0, 20.0)]
     assert float(curve.force_at(8.0) / thin.force(curve.depth(8.0))) == pytest.approx(0.9969, abs=0.6e-4)
     assert np.all(np.array(gaps[:-1]) / gaps[1:] > 2.5)
-    sliding = LayerCurve(Hertz(1e3), Layer(1.0, 0.3, "sliding"))
-    winkler = compressible(1e3, Layer(1.0, 0.3, "sliding"), plane=False)
+    sliding = LayerCurve(Hertz(1e3), PointLayer(1.0, 0.3, "sliding"))
+    winkler = compressible(1e3, PointLayer(1.0, 0.3, "sliding"), plane=False)
     excess = [float(sliding.force_at(a) / winkler.force(sliding.depth(a))) - 1.0 for a in (5.0, 10.0, 20.0)]
     assert np.log2(np.array(excess[:-1]) / excess[1:]) == pytest.approx([3.0, 3.0], abs=0.1)
 
 
 def test_thin_incompressible_layer_is_squeezed_like_a_fluid() -> None:
-    thin, curve = incompressible(1e3, Layer(1.0, 0.5), plane=False), LayerCurve(Hertz(1e3), Layer(1.0, 0.5))
+    thin, curve = incompressible(1e3, PointLayer(1.0, 0.5), plane=False), LayerCurve(Hertz(1e3), PointLayer(1.0, 0.5))
     ratios = [float(curve.force_at(a) / thin.force(curve.depth(a))) for a in (2.0, 4.0, 8.0)]
     assert ratios == pytest.approx([2.93, 1.65, 1.21], abs=0.006)
     excess = [float(curve.force_at(a) / thin.force(curve.depth(a))) - 1.0 for a in (5.0, 10.0, 20.0)]
@@ -233,7 +246,10 @@ def test_thin_incompressible_layer_is_squeezed_like_a_fluid() -> None:
 
 @pytest.mark.parametrize("plane", [False, True], ids=["point", "line"])
 def test_thin_limits_are_powers_whose_pressure_carries_the_force(plane: bool) -> None:
-    thins = compressible(0.01, Layer(1e-3, 0.3), plane=plane), incompressible(0.01, Layer(1e-3, 0.5), plane=plane)
+    thins = (
+        compressible(0.01, PointLayer(1e-3, 0.3), plane=plane),
+        incompressible(0.01, PointLayer(1e-3, 0.5), plane=plane),
+    )
     assert [thin.exponent for thin in thins] == ([1.5, 2.5] if plane else [2.0, 3.0])
     nodes, weights = gauss(40)
     for thin in thins:
@@ -253,12 +269,12 @@ def test_known_panels_are_not_solved_again(monkeypatch: pytest.MonkeyPatch) -> N
     solved: list[float] = []
     answer = DualEquation.answer
     monkeypatch.setattr(DualEquation, "answer", lambda self, source: solved.append(self.ratio) or answer(self, source))
-    layer = Layer(H, 0.2718)
+    layer = PointLayer(H, 0.2718)
     LayerCurve(Hertz(0.006), layer).force(1e-3 * H)
     first = len(solved)
     assert first <= 2 * 15
     LayerCurve(Hertz(0.006), layer).force(np.linspace(0.0, 1e-3 * H, 1000))
-    LayerCurve(Cone(30.0), layer).force(1e-3 * H)
+    LayerCurve(ConeCurve(30.0), layer).force(1e-3 * H)
     assert len(solved) == first
 
 
@@ -273,22 +289,22 @@ def test_known_panels_are_not_solved_again(monkeypatch: pytest.MonkeyPatch) -> N
 )
 def test_impossible_layer_is_named(thickness: float, nu: float, base: str, key: str) -> None:
     with pytest.raises(BadInput) as caught:
-        Layer(thickness, nu, base)
+        PointLayer(thickness, nu, base)
     assert [fault.key for fault in caught.value.faults] == [key]
 
 
 def test_impossible_indenters_and_depths_are_named() -> None:
-    for build in (lambda: Cone(0.0), lambda: Cone(90.0), lambda: Power(0.0, 2.0), lambda: Power(1.0, 0.9)):
+    for build in (lambda: ConeCurve(0.0), lambda: ConeCurve(90.0), lambda: Power(0.0, 2.0), lambda: Power(1.0, 0.9)):
         with pytest.raises(BadInput):
             build()
     with pytest.raises(BadInput, match="half_space"):
-        LayerCurve(Punch(0.001), LAYERS[0])
+        LayerCurve(PunchCurve(0.001), LAYERS[0])
     with pytest.raises(BadInput, match="thickness"):
         LayerCurve(Hertz(0.006), LAYERS[0]).force(H)
     with pytest.raises(BadInput, match="radius"):
         LayerPunch(21.0 * H, LAYERS[0])
     with pytest.raises(NotReached, match="contact"):
         LayerCurve(Hertz(1e3), LAYERS[0]).force(0.9 * H)
-    for layer in (Layer(H, 0.5), Layer(H, 0.3, "sliding")):
+    for layer in (PointLayer(H, 0.5), PointLayer(H, 0.3, "sliding")):
         with pytest.raises(BadInput) if layer.base == "bonded" else pytest.raises(BadInput, match="incompressible"):
             (compressible if layer.base == "bonded" else incompressible)(1.0, layer, plane=True)

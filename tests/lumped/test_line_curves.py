@@ -8,13 +8,13 @@ from scipy.optimize import brentq
 
 from lumped.errors import BadInput, NotReached
 from lumped.load_curves import (
-    Cylinder,
+    CylinderProfile,
     HalfPlane,
     Johnson,
-    Layer,
     LineLayer,
     LoadCurve,
-    ParabolicCylinder,
+    ParabolaProfile,
+    PointLayer,
     Popov,
 )
 from lumped.load_curves.layer import deficit
@@ -25,11 +25,11 @@ from lumped.numbers.quadrature import gauss
 
 R, DATUM = 0.006, 0.1
 CURVES: list[LoadCurve] = [
-    LineLayer(ParabolicCylinder(R), Layer(0.003, 0.3)),
-    LineLayer(Cylinder(R), Layer(0.003, 0.5)),
-    LineLayer(Cylinder(R), Layer(0.003, 0.3, "sliding")),
-    HalfPlane(ParabolicCylinder(R), DATUM, 0.3),
-    HalfPlane(Cylinder(R), DATUM, 0.5),
+    LineLayer(ParabolaProfile(R), PointLayer(0.003, 0.3)),
+    LineLayer(CylinderProfile(R), PointLayer(0.003, 0.5)),
+    LineLayer(CylinderProfile(R), PointLayer(0.003, 0.3, "sliding")),
+    HalfPlane(ParabolaProfile(R), DATUM, 0.3),
+    HalfPlane(CylinderProfile(R), DATUM, 0.5),
     Johnson(R, DATUM, 0.3),
     Popov(R),
 ]
@@ -58,14 +58,14 @@ LITERATURE = {
     4.0: (8.52852, 57.300, 6.98021, 91.539, 5.13133, 130.93, 4.21449, 150.58),
 }
 NUS = (0.3, 0.45, 0.49, 0.5)
-FLAT = ParabolicCylinder(1e4)
+FLAT = ParabolaProfile(1e4)
 
 
 @pytest.mark.parametrize("sharpness", AUDIT)
 def test_layer_has_the_ratios_and_exponents_of_the_audit(sharpness: float) -> None:
     depth = sharpness / FLAT.radius
     for nu, ratio, exponent in zip(NUS, AUDIT[sharpness][::2], AUDIT[sharpness][1::2], strict=True):
-        force, slope = LineLayer(FLAT, Layer(1.0, nu)).force_and_slope(depth)
+        force, slope = LineLayer(FLAT, PointLayer(1.0, nu)).force_and_slope(depth)
         assert force / (np.pi / 4.0 * depth) == pytest.approx(ratio, abs=1.2e-3, rel=1e-4)
         # the audit's exponents are differences over its grid: the last digit may be off by one
         assert depth * slope / force == pytest.approx(exponent, abs=0.0085)
@@ -74,14 +74,14 @@ def test_layer_has_the_ratios_and_exponents_of_the_audit(sharpness: float) -> No
 @pytest.mark.parametrize("ratio", LITERATURE)
 def test_layer_has_the_depths_and_forces_of_the_literature(ratio: float) -> None:
     for nu, depth, force in zip(NUS, LITERATURE[ratio][::2], LITERATURE[ratio][1::2], strict=True):
-        here = LineLayer(FLAT, Layer(1.0, nu)).at(ratio)
+        here = LineLayer(FLAT, PointLayer(1.0, nu)).at(ratio)
         assert FLAT.radius * here.depth == pytest.approx(depth, rel=6e-4)
         assert FLAT.radius * here.force == pytest.approx(force, rel=8e-4)
 
 
 def test_popovs_row_meets_the_layer_at_one_depth_only() -> None:
     for nu, printed in zip(NUS, (0.075, 0.042, 0.032, 0.030), strict=True):
-        curve = LineLayer(FLAT, Layer(1.0, nu))
+        curve = LineLayer(FLAT, PointLayer(1.0, nu))
 
         def excess(x: float, curve: LineLayer = curve) -> float:
             return float(curve.force(x / FLAT.radius) / Popov(FLAT.radius).force(x / FLAT.radius)) - 1.0
@@ -119,7 +119,7 @@ def test_force_is_the_slope_of_energy_and_the_sum_of_pressure(curve: LoadCurve) 
     assert list(curve.pressure(np.array([b, 2.0 * b]), float(b))) == [0.0, 0.0]
 
 
-def strips(edges: np.ndarray, layer: Layer) -> np.ndarray:
+def strips(edges: np.ndarray, layer: PointLayer) -> np.ndarray:
     """Displacement (E* = 1, thickness 1) at the middles by unit pressure on mirrored pairs of strips, shape (n, n)."""
     nodes, weights = gauss(20)
     last = 30.0 / np.diff(edges).min()
@@ -132,9 +132,11 @@ def strips(edges: np.ndarray, layer: Layer) -> np.ndarray:
     return np.asarray(np.cos(np.outer(0.5 * (edges[1:] + edges[:-1]), u)) * density @ transforms)
 
 
-@pytest.mark.parametrize("layer", [Layer(1.0, 0.3), Layer(1.0, 0.5), Layer(1.0, 0.3, "sliding")], ids=repr)
-def test_strips_of_pressure_in_equilibrium_with_the_profile_carry_the_same_force(layer: Layer) -> None:
-    curve, b, errors = LineLayer(ParabolicCylinder(10.0), layer), 1.3, []
+@pytest.mark.parametrize(
+    "layer", [PointLayer(1.0, 0.3), PointLayer(1.0, 0.5), PointLayer(1.0, 0.3, "sliding")], ids=repr
+)
+def test_strips_of_pressure_in_equilibrium_with_the_profile_carry_the_same_force(layer: PointLayer) -> None:
+    curve, b, errors = LineLayer(ParabolaProfile(10.0), layer), 1.3, []
     for count in (20, 40, 80):
         edges = b * np.arange(count + 1) / count
         middles = 0.5 * (edges[1:] + edges[:-1])
@@ -146,8 +148,8 @@ def test_strips_of_pressure_in_equilibrium_with_the_profile_carry_the_same_force
 
 def test_deep_layer_presses_as_hertz_does() -> None:
     b = 1e-5
-    for layer in (Layer(1.0, 0.3), Layer(1.0, 0.5), Layer(1.0, 0.3, "sliding")):
-        curve = LineLayer(ParabolicCylinder(R), layer)
+    for layer in (PointLayer(1.0, 0.3), PointLayer(1.0, 0.5), PointLayer(1.0, 0.3, "sliding")):
+        curve = LineLayer(ParabolaProfile(R), layer)
         assert float(curve.force_at(b)) == pytest.approx(np.pi * b**2 / (4.0 * R), rel=1e-9)
         x = b * np.array([0.0, 0.5, 0.9, 0.999])
         assert curve.pressure(x, b) == pytest.approx(hertz_pressure(x, b, R), rel=1e-8)
@@ -155,7 +157,7 @@ def test_deep_layer_presses_as_hertz_does() -> None:
 
 def test_half_plane_has_the_closed_form_of_hertz_pressure_down_to_the_datum() -> None:
     nu, b = 0.3, np.array([1e-5, 1e-3, 0.02, 0.09])
-    curve = HalfPlane(ParabolicCylinder(R), DATUM, nu)
+    curve = HalfPlane(ParabolaProfile(R), DATUM, nu)
     # strain below the middle of Hertz' pressure, integrated from the surface to the datum
     side = nu / (1.0 - nu) * DATUM / b * (np.hypot(b, DATUM) - DATUM)
     exact = b / (2.0 * R) * (b * np.arcsinh(DATUM / b) - side)
@@ -167,30 +169,34 @@ def test_half_plane_has_the_closed_form_of_hertz_pressure_down_to_the_datum() ->
 
 def test_johnson_errs_with_the_square_of_half_width_over_datum() -> None:
     b = DATUM * np.array([1e-3, 1e-2, 1e-1])
-    exact = HalfPlane(ParabolicCylinder(R), DATUM, 0.45).depth(b)
+    exact = HalfPlane(ParabolaProfile(R), DATUM, 0.45).depth(b)
     errors = np.abs(Johnson(R, DATUM, 0.45).depth(b) - exact) / b**2
     assert np.diff(np.log10(errors)) == pytest.approx([2.0, 2.0], abs=0.01)
 
 
 def test_true_cylinder_differs_from_the_parabola_with_the_square_of_its_size() -> None:
     b = R * np.array([0.003, 0.03, 0.3])
-    true, parabola = (LineLayer(shape(R), Layer(0.003, 0.4)).force_at(b) for shape in (Cylinder, ParabolicCylinder))
+    true, parabola = (
+        LineLayer(shape(R), PointLayer(0.003, 0.4)).force_at(b) for shape in (CylinderProfile, ParabolaProfile)
+    )
     assert np.diff(np.log10(true / parabola - 1.0)) == pytest.approx([2.0, 2.0], abs=0.06)
 
 
 def test_force_grows_with_nu_on_a_bonded_layer_and_sinks_with_the_datum() -> None:
-    bonded = [float(LineLayer(Cylinder(R), Layer(0.003, nu)).force(5e-4)) for nu in (0.0, 0.3, 0.45, 0.49, 0.5)]
+    bonded = [
+        float(LineLayer(CylinderProfile(R), PointLayer(0.003, nu)).force(5e-4)) for nu in (0.0, 0.3, 0.45, 0.49, 0.5)
+    ]
     assert np.all(np.diff(bonded) > 0.0)
-    deep = [float(HalfPlane(Cylinder(R), datum, 0.3).force(5e-4)) for datum in (0.02, 0.1, 1.0)]
+    deep = [float(HalfPlane(CylinderProfile(R), datum, 0.3).force(5e-4)) for datum in (0.02, 0.1, 1.0)]
     assert np.all(np.diff(deep) < 0.0)
 
 
 def test_thin_layers_are_winklers_or_squeezed() -> None:
-    thin, curve = compressible(1e4, Layer(1.0, 0.3), plane=True), LineLayer(FLAT, Layer(1.0, 0.3))
+    thin, curve = compressible(1e4, PointLayer(1.0, 0.3), plane=True), LineLayer(FLAT, PointLayer(1.0, 0.3))
     gaps = np.array([1.0 - float(curve.force_at(b) / thin.force(curve.depth(b))) for b in (5.0, 10.0, 20.0)])
     assert abs(gaps[-1]) < 3e-4
     assert np.all(gaps[:-1] / gaps[1:] > 3.0)
-    thin, curve = incompressible(1e4, Layer(1.0, 0.5), plane=True), LineLayer(FLAT, Layer(1.0, 0.5))
+    thin, curve = incompressible(1e4, PointLayer(1.0, 0.5), plane=True), LineLayer(FLAT, PointLayer(1.0, 0.5))
     ratios = [float(curve.force_at(b) / thin.force(curve.depth(b))) for b in (2.0, 4.0)]
     assert ratios == pytest.approx([2.12, 1.40], abs=0.006)
     excess = np.array([float(curve.force_at(b) / thin.force(curve.depth(b))) - 1.0 for b in (5.0, 10.0, 20.0)])
@@ -199,7 +205,7 @@ def test_thin_layers_are_winklers_or_squeezed() -> None:
 
 @pytest.mark.parametrize("ratio", [0.1, 2.0, 20.0])
 def test_collocation_converges_faster_than_any_power(ratio: float) -> None:
-    curve = LineLayer(FLAT, Layer(1.0, 0.45))
+    curve = LineLayer(FLAT, PointLayer(1.0, 0.45))
     exact = curve.grown(ratio, 2.0)
     errors = [abs(curve.grown(ratio, refinement).force / exact.force - 1.0) for refinement in (0.3, 0.5, 1.0)]
     assert errors[2] < 1e-10
@@ -224,14 +230,14 @@ def test_weights_of_the_singular_kernels_are_exact_for_polynomials(order: int) -
 
 def test_impossible_line_contacts_are_named() -> None:
     with pytest.raises(BadInput, match="datum_depth"):
-        HalfPlane(Cylinder(R), 0.0, 0.3)
+        HalfPlane(CylinderProfile(R), 0.0, 0.3)
     with pytest.raises(BadInput, match="nu"):
         Johnson(R, DATUM, 0.6)
     with pytest.raises(BadInput, match="radius"):
-        Cylinder(-1.0)
+        CylinderProfile(-1.0)
     with pytest.raises(BadInput, match="thickness"):
-        LineLayer(Cylinder(R), Layer(0.003, 0.3)).force(0.003)
+        LineLayer(CylinderProfile(R), PointLayer(0.003, 0.3)).force(0.003)
     with pytest.raises(NotReached, match="datum"):
         Johnson(R, 0.01, 0.3).force(0.05)
     with pytest.raises(NotReached, match="grows beyond"):
-        LineLayer(FLAT, Layer(1.0, 0.3)).force(0.9)
+        LineLayer(FLAT, PointLayer(1.0, 0.3)).force(0.9)

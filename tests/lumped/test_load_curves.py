@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from lumped.load_curves import Cone, Hertz, LoadCurve, Power, SneddonSphere
+from lumped.load_curves import ConeCurve, Hertz, LoadCurve, Power, SneddonSphere
 from lumped.shapes import Parabola, Shape, Sphere
 from lumped.targets import HalfSpace
 
 RADIUS = 0.006
 SHAPES = [Sphere(RADIUS), Parabola(RADIUS)]
-CURVES = [Hertz(RADIUS), SneddonSphere(RADIUS), Cone(35.0), Power(40.0, 1.7), Power(5e4, 3.5)]
+CURVES = [Hertz(RADIUS), SneddonSphere(RADIUS), ConeCurve(35.0), Power(40.0, 1.7), Power(5e4, 3.5)]
 DEPTHS = RADIUS * np.array([1e-12, 1e-6, 1e-3, 0.01, 0.1, 0.4, 1.0])
 
 

@@ -303,7 +303,7 @@ def test_verdict_of_a_made_up_claim(
 
 def test_deviation_is_the_largest_share() -> None:
     claim = Claim("X1", "", "", "N", "100; 10", Rule("about", "relative", "", 0.05), "", "", "")
-    judged = claims.Judged(claim, (Value(101.0), Value(9.7)), AGREES)
+    judged = claims.JudgedClaim(claim, (Value(101.0), Value(9.7)), AGREES)
     assert judged.deviation == pytest.approx(-0.03)
     assert replace(judged, claim=replace(claim, rule=Rule("rises", "above", ""))).deviation is None
 

@@ -18,7 +18,7 @@ from scipy.special import gamma
 
 from lumped import BadInput, Relaxation
 from lumped.materials.networks import sls
-from lumped.ptmd import Memory, Oscillator, PoundingDamper, PtmdResult, Ring, Start, simulate
+from lumped.ptmd import Memory, Oscillator, PoundingDamper, PtmdResult, PtmdRing, Start, simulate
 from lumped.ptmd import exact as exact_route
 from lumped.ptmd.crossing import first_fall
 from lumped.ptmd.equations import Equations, Stages
@@ -26,7 +26,7 @@ from lumped.ptmd.exact import Flow, exponential
 from lumped.ptmd.integrated import Rates
 from lumped.ptmd.march import most_rows
 from lumped.ptmd.phase import ROWS_PER_PERIOD
-from lumped.ptmd.surface import Stage
+from lumped.ptmd.surface import SideStage
 
 POLE, DAMPER = Oscillator(20.0, 7248.9, 7.615), Oscillator(1.67, 592.9, 0.6312)
 SOLID = sls.of(E0=0.6e6, R1=0.5, R2=0.01)
@@ -34,11 +34,11 @@ GAP, LENGTH = 0.02, 0.003
 BOTH, STRUCTURE = Start.both(0.05), Start.structure(0.05)
 
 
-def lining(nu: float = 0.45, young: Relaxation = SOLID, length: float = LENGTH, **more: Any) -> Ring:
-    return Ring.struck_by_rod(GAP, young.scaled(1.0 / (1.0 - nu**2)), length, **more)
+def lining(nu: float = 0.45, young: Relaxation = SOLID, length: float = LENGTH, **more: Any) -> PtmdRing:
+    return PtmdRing.struck_by_rod(GAP, young.scaled(1.0 / (1.0 - nu**2)), length, **more)
 
 
-def with_ring(ring: Ring) -> PoundingDamper:
+def with_ring(ring: PtmdRing) -> PoundingDamper:
     return PoundingDamper(POLE, DAMPER, ring)
 
 
@@ -137,7 +137,7 @@ LOOSE = 1e-9  # a spring too soft to matter within one impact, N/m
 REDUCED = 20.0 * 1.67 / 21.67
 
 
-def one_impact(ring: Ring, end: float = 0.15) -> PtmdResult:
+def one_impact(ring: PtmdRing, end: float = 0.15) -> PtmdResult:
     """Two masses without springs worth the name: the damper flies through the gap into the ring, at 1 m/s."""
     bodies = PoundingDamper(Oscillator(20.0, LOOSE, 0.0), Oscillator(1.67, LOOSE, 0.0), ring)
     return simulate(bodies, Start(0.0, 0.0, 0.0, 1.0), end)
@@ -176,7 +176,7 @@ def test_a_kelvin_ring_leaves_at_zero_force(ratio: float) -> None:
     """e = exp(-2 xi arccos xi/sqrt(1 - xi^2)), and the force jumps to c v at touch."""
     stiffness = 2000.0
     viscosity = 2.0 * ratio * np.sqrt(stiffness * REDUCED)
-    result = one_impact(Ring(GAP, Relaxation(stiffness, viscosity=viscosity), 1.0))
+    result = one_impact(PtmdRing(GAP, Relaxation(stiffness, viscosity=viscosity), 1.0))
     exact = np.exp(-2.0 * ratio * np.arccos(ratio) / np.sqrt(1.0 - ratio**2))
     assert restitution(result) == pytest.approx(exact, rel=1e-9)
     at_touch = result.motion.force[result.motion.time == result.contacts[0].start]
@@ -185,7 +185,7 @@ def test_a_kelvin_ring_leaves_at_zero_force(ratio: float) -> None:
 
 def test_a_hertz_ring_has_the_hertz_impact() -> None:
     stiffness = 1e5
-    result = one_impact(Ring(GAP, Relaxation(stiffness), 1.0, 1.5), 0.08)
+    result = one_impact(PtmdRing(GAP, Relaxation(stiffness), 1.0, 1.5), 0.08)
     contact = result.contacts[0]
     duration = 0.8 * np.sqrt(np.pi) * gamma(0.4) / gamma(0.9)  # in peak depth over velocity
     peak = stiffness**0.4 * (1.25 * REDUCED) ** 0.6
@@ -468,7 +468,7 @@ def test_any_exponent_costs_about_what_hertz_does(monkeypatch: pytest.MonkeyPatc
     def ask(each: Rates, time: float, y: Any) -> Any:
         exponent = each.equations.system.ring.exponent
         kinds[exponent].add(each.stages)
-        asked[exponent, Stage.PRESSED in each.stages] += 1
+        asked[exponent, SideStage.PRESSED in each.stages] += 1
         return rates(each, time, y)
 
     monkeypatch.setattr(Equations, "linear_forms", form)
@@ -557,8 +557,8 @@ def test_exponentials_with_a_closed_form() -> None:
     [
         (lambda: Oscillator(-1.0, 1.0, 0.0), "mass"),
         (lambda: Oscillator(1.0, float("nan"), 0.0), "stiffness"),
-        (lambda: Ring(-0.01, SOLID, 1.0), "gap"),
-        (lambda: Ring(0.01, SOLID, 1.0, 0.5), "exponent"),
+        (lambda: PtmdRing(-0.01, SOLID, 1.0), "gap"),
+        (lambda: PtmdRing(0.01, SOLID, 1.0, 0.5), "exponent"),
         (lambda: PoundingDamper(POLE, None, lining()), "ring"),
         (lambda: Start(0.0), "x1"),
         (lambda: Start(float("inf")), "x1"),

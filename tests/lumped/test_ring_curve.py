@@ -8,12 +8,16 @@ from scipy.optimize import nnls
 from scipy.special import j1
 
 from lumped.errors import BadInput, NotReached
-from lumped.load_curves import Cylinder, Layer, LineLayer, Ring
+from lumped.load_curves import CylinderProfile, LineLayer, PointLayer, RodInRing
 from lumped.load_curves.plane_contact import collocation
 from lumped.load_curves.ring_contact import compliances, hole, ring_compliance
 from lumped.numbers.quadrature import gauss
 
-RINGS = [Ring(0.006, 0.010, 0.003, 0.3), Ring(0.0099, 0.010, 0.003, 0.49), Ring(0.006, 0.010, 0.003, 0.5)]
+RINGS = [
+    RodInRing(0.006, 0.010, 0.003, 0.3),
+    RodInRing(0.0099, 0.010, 0.003, 0.49),
+    RodInRing(0.006, 0.010, 0.003, 0.5),
+]
 SHARES = np.array([1e-9, 1e-3, 0.04, 0.2, 0.49])
 
 # Facts on finite elements, section 4: R = 6, inner radius 10, thickness 3; F/((pi/4) E* depth) at depths 0.001, 0.01.
@@ -77,7 +81,7 @@ def test_kernel_is_the_series_it_sums() -> None:
 
 
 @pytest.mark.parametrize("ring", RINGS, ids=repr)
-def test_slopes_energy_and_inverse(ring: Ring) -> None:
+def test_slopes_energy_and_inverse(ring: RodInRing) -> None:
     depths = ring.depth_limit * SHARES
     step = 1e-5 * depths
     force, slope = ring.force_and_slope(depths)
@@ -94,7 +98,7 @@ def test_slopes_energy_and_inverse(ring: Ring) -> None:
 
 
 @pytest.mark.parametrize("ring", RINGS, ids=repr)
-def test_pressure_carries_the_force_and_fits_the_surface_to_the_cylinder(ring: Ring) -> None:
+def test_pressure_carries_the_force_and_fits_the_surface_to_the_cylinder(ring: RodInRing) -> None:
     depth = 0.2 * ring.thickness
     half = float(ring.contact_radius(depth)) / ring.inner_radius
     nodes, weights = gauss(400)
@@ -119,7 +123,7 @@ def test_pressure_carries_the_force_and_fits_the_surface_to_the_cylinder(ring: R
     assert np.all(gap(half * np.array([1.05, 1.2, 1.4])) > 1e-3 * depth)
 
 
-def elements(ring: Ring, depth: float, count: int) -> float:
+def elements(ring: RodInRing, depth: float, count: int) -> float:
     """F/E* with constant pressure on equal arcs, none of it negative, by the Fourier series at their middles."""
     widest = 1.6 * float(ring.contact_radius(depth)) / ring.inner_radius
     theta, width = widest * (np.arange(count) + 0.5) / count, widest / count
@@ -138,7 +142,7 @@ def elements(ring: Ring, depth: float, count: int) -> float:
 
 
 @pytest.mark.parametrize("ring", RINGS, ids=repr)
-def test_elements_of_pressure_carry_the_same_force(ring: Ring) -> None:
+def test_elements_of_pressure_carry_the_same_force(ring: RodInRing) -> None:
     depth = 0.1 * ring.thickness
     errors = [abs(elements(ring, depth, count) / float(ring.force(depth)) - 1.0) for count in (60, 120, 240)]
     assert errors[-1] < 2e-3
@@ -148,23 +152,25 @@ def test_elements_of_pressure_carry_the_same_force(ring: Ring) -> None:
 def test_ring_of_little_curvature_is_a_layer() -> None:
     depth, gaps = 2e-5, []
     for inner in (0.01, 0.03, 0.09):
-        ring = Ring(0.0006, inner, 0.0003, 0.4)
+        ring = RodInRing(0.0006, inner, 0.0003, 0.4)
         effective = ring.radius * inner / ring.clearance
-        gaps.append(float(ring.force(depth) / LineLayer(Cylinder(effective), Layer(0.0003, 0.4)).force(depth)) - 1.0)
+        gaps.append(
+            float(ring.force(depth) / LineLayer(CylinderProfile(effective), PointLayer(0.0003, 0.4)).force(depth)) - 1.0
+        )
     assert np.diff(np.log10(np.abs(gaps))) == pytest.approx([-np.log10(3.0)] * 2, abs=0.05)
 
 
 @pytest.mark.parametrize("nu", ELEMENTS)
 def test_shallow_contacts_agree_with_the_finite_elements_of_the_facts(nu: float) -> None:
     depths = np.array([1e-3, 1e-2])
-    ratios = Ring(6.0, 10.0, 3.0, nu).force(depths) / (np.pi / 4.0 * depths)
+    ratios = RodInRing(6.0, 10.0, 3.0, nu).force(depths) / (np.pi / 4.0 * depths)
     assert ratios == pytest.approx(ELEMENTS[nu], abs=6e-3)
 
 
 def test_force_grows_with_nu_and_as_the_clearance_closes() -> None:
-    by_nu = [float(Ring(6.0, 10.0, 3.0, nu).force(0.1)) for nu in (0.0, 0.3, 0.45, 0.49, 0.5)]
+    by_nu = [float(RodInRing(6.0, 10.0, 3.0, nu).force(0.1)) for nu in (0.0, 0.3, 0.45, 0.49, 0.5)]
     assert np.all(np.diff(by_nu) > 0.0)
-    by_radius = [float(Ring(radius, 10.0, 3.0, 0.3).force(0.1)) for radius in (3.0, 6.0, 9.0, 9.9)]
+    by_radius = [float(RodInRing(radius, 10.0, 3.0, 0.3).force(0.1)) for radius in (3.0, 6.0, 9.0, 9.9)]
     assert np.all(np.diff(by_radius) > 0.0)
 
 
@@ -175,11 +181,11 @@ def test_impossible_rings_are_named() -> None:
         ((6.0, 10.0, 0.0), "thickness"),
     ):
         with pytest.raises(BadInput) as caught:
-            Ring(*sizes, nu=0.3)
+            RodInRing(*sizes, nu=0.3)
         assert [fault.key for fault in caught.value.faults] == [key]
     with pytest.raises(BadInput, match="nu"):
-        Ring(6.0, 10.0, 3.0, 0.6)
+        RodInRing(6.0, 10.0, 3.0, 0.6)
     with pytest.raises(BadInput, match="thickness"):
         RINGS[0].force(0.003)
     with pytest.raises(NotReached, match="no end"):
-        Ring(9.99, 10.0, 3.0, 0.5).force(2.0)
+        RodInRing(9.99, 10.0, 3.0, 0.5).force(2.0)

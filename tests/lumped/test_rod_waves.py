@@ -12,7 +12,7 @@ import pytest
 
 from lumped import BadInput, Result, Scene, laws, simulate
 from lumped.solvers.rod.flat import FlatImpact
-from lumped.solvers.rod.tipped import Scales, TippedImpact
+from lumped.solvers.rod.tipped import RodScales, TippedImpact
 from lumped.solvers.rod.waves import Waves
 
 # Mass over that of the rod, contact time over the transit of a wave: Timoshenko and Goodier, Theory of Elasticity,
@@ -35,7 +35,7 @@ def tipped(
 ) -> TippedImpact:
     depth = (0.5 * (power + 1.0) * mass / stiffness) ** (1.0 / (power + 1.0))
     force = lambda dent: stiffness * dent**power  # noqa: E731  # a law of one line
-    return TippedImpact(Waves(1.0, echo, 1.0), force, mass, 1.0, gravity, 8.0, Scales(depth, depth), rtol)
+    return TippedImpact(Waves(1.0, echo, 1.0), force, mass, 1.0, gravity, 8.0, RodScales(depth, depth), rtol)
 
 
 def run(scene: Scene, tolerance: float = 1e-6) -> Result:
@@ -109,7 +109,7 @@ def test_a_stiff_rod_is_the_half_space_it_is_dented_like() -> None:
     """Hertz's impact as the impedance grows; the loss falls as its inverse."""
     losses = []
     for impedance in (1e3, 1e4):
-        waves, scales = Waves(impedance, 0.0, 1.0), Scales(1.0, 1.0)
+        waves, scales = Waves(impedance, 0.0, 1.0), RodScales(1.0, 1.0)
         impact = TippedImpact(waves, lambda d: d**1.5, 1.0, 1.0, 0.0, 50.0, scales, 1e-11)
         _, end, _ = impact.pieces
         columns = impact.columns(np.linspace(0.0, end, 2001))

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from lumped.errors import BadInput
-from lumped.load_curves import Cone, Hertz, Punch
-from lumped.paper.table1 import Elastic, Row, cone, contact_modulus, examples, prism, punch, sphere, two_spheres
+from lumped.load_curves import ConeCurve, Hertz, PunchCurve
+from lumped.paper.table1 import Elastic, TableRow, cone, contact_modulus, examples, prism, punch, sphere, two_spheres
 
 STEEL = Elastic(2.0e11, 0.23)
 SOFT = Elastic(1.0e6, 0.45)
 
 
-def bodies(row: Row) -> tuple[Elastic, ...]:
+def bodies(row: TableRow) -> tuple[Elastic, ...]:
     return (STEEL, SOFT)[: row.bodies]
 
 
@@ -27,7 +27,7 @@ def test_eight_rows_in_their_order() -> None:
 
 
 @pytest.mark.parametrize("row", examples(), ids=lambda row: row.name)
-def test_depths_are_compared_with_the_length_that_is_named(row: Row) -> None:
+def test_depths_are_compared_with_the_length_that_is_named(row: TableRow) -> None:
     """Two bodies: the radius of the gap between them, 1/R = 1/R1 + 1/R2."""
     own = row.to_dict()
     if row.bodies == 2:
@@ -38,24 +38,28 @@ def test_depths_are_compared_with_the_length_that_is_named(row: Row) -> None:
 
 
 @pytest.mark.parametrize("row", examples(), ids=lambda row: row.name)
-def test_a_correction_is_explained_and_nothing_else_is(row: Row) -> None:
+def test_a_correction_is_explained_and_nothing_else_is(row: TableRow) -> None:
     assert bool(row.correction) == (row.printed != row.corrected)
     assert row.validity
 
 
 @pytest.mark.parametrize(
     ("row", "curve"),
-    [(sphere.Sphere(0.02), Hertz(0.02)), (cone.Cone(30.0), Cone(30.0)), (punch.Punch(0.03), Punch(0.03))],
+    [
+        (sphere.SphereRow(0.02), Hertz(0.02)),
+        (cone.ConeRow(30.0), ConeCurve(30.0)),
+        (punch.PunchRow(0.03), PunchCurve(0.03)),
+    ],
     ids=["sphere", "cone", "punch"],
 )
-def test_corrected_rows_are_the_exact_load_curves(row: Row, curve: Hertz | Cone | Punch) -> None:
+def test_corrected_rows_are_the_exact_load_curves(row: TableRow, curve: Hertz | ConeCurve | PunchCurve) -> None:
     depth = np.array([-1e-4, 0.0, 1e-5, 1e-3])
     modulus = STEEL.young / (1.0 - STEEL.nu**2)
     assert row.force(depth, STEEL) == pytest.approx(modulus * np.asarray(curve.force(depth)), rel=1e-13)
 
 
 @pytest.mark.parametrize("row", examples(), ids=lambda row: row.name)
-def test_the_scene_has_the_corrected_modulus_and_the_exponent(row: Row) -> None:
+def test_the_scene_has_the_corrected_modulus_and_the_exponent(row: TableRow) -> None:
     """Two routes to E*: the row's formula, and the materials of the scene that is pressed."""
     for scene in (row.scene(*bodies(row)), row.whole_scene(*bodies(row))):
         assert scene.modulus(instant=False) == pytest.approx(row.modulus(*bodies(row)), rel=1e-12)
@@ -78,7 +82,7 @@ def test_two_bodies_of_steel_have_the_modulus_of_23() -> None:
 def test_a_sphere_on_one_far_larger_and_stiffer_is_a_rigid_sphere_on_a_plane() -> None:
     rigid = Elastic(1e20, 0.3)
     pair = two_spheres.TwoSpheres(1e-3, 1e4)
-    assert pair.force(1e-5, rigid, SOFT) == pytest.approx(sphere.Sphere(1e-3).force(1e-5, SOFT), rel=1e-6)
+    assert pair.force(1e-5, rigid, SOFT) == pytest.approx(sphere.SphereRow(1e-3).force(1e-5, SOFT), rel=1e-6)
 
 
 def test_a_confined_plate_is_a_prism_without_poisson() -> None:
@@ -99,7 +103,7 @@ def test_line_contact_has_no_d_of_its_own() -> None:
 
 def test_impossible_geometry_names_its_key() -> None:
     with pytest.raises(BadInput, match="angle"):
-        cone.Cone(90.0)
+        cone.ConeRow(90.0)
     with pytest.raises(BadInput, match="height"):
         replace(prism.EXAMPLE, height=0.0)
 

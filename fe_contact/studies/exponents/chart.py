@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from fe_contact.studies import style
 from fe_contact.studies.exponents.check import Check
-from fe_contact.studies.exponents.study import Curve
+from fe_contact.studies.exponents.study import ExponentCurve
 
 PANEL = 2.35  # height of a panel, in
 TITLE_WIDTH = 132  # characters
@@ -35,7 +35,7 @@ LINES = [
 ]
 
 
-def plot_exponents(curves: Sequence[Curve], checks: Sequence[Check], where: Path) -> tuple[Path, Path]:
+def plot_exponents(curves: Sequence[ExponentCurve], checks: Sequence[Check], where: Path) -> tuple[Path, Path]:
     """Write ``exponents.svg`` and ``exponents.png`` into the folder ``where``; their paths."""
     rows = len(ROWS) + 1
     with style.look():
@@ -63,7 +63,7 @@ def plot_exponents(curves: Sequence[Curve], checks: Sequence[Check], where: Path
         return style.save(figure, where, "exponents")
 
 
-def _exponents(axes: Axes, curves: Sequence[Curve], checks: Sequence[Check]) -> None:
+def _exponents(axes: Axes, curves: Sequence[ExponentCurve], checks: Sequence[Check]) -> None:
     """One profile, a line a layer, named beside; its limits at the right end."""
     for curve in curves:
         axes.plot(curve.ratio, curve.exponent, **_look(curve))
@@ -72,7 +72,7 @@ def _exponents(axes: Axes, curves: Sequence[Curve], checks: Sequence[Check]) -> 
     axes.set(xscale="log", ylabel="d ln F/d ln depth")
 
 
-def _families(axes: Axes, curves: Sequence[Curve], checks: Sequence[Check]) -> None:
+def _families(axes: Axes, curves: Sequence[ExponentCurve], checks: Sequence[Check]) -> None:
     """All axisymmetric profiles on one layer, coloured by their exponent."""
     chosen = [curve for curve in curves if not curve.profile.plane]
     for colour, curve in zip((*style.CYCLE, style.BLACK), chosen, strict=False):
@@ -101,7 +101,7 @@ def _spots(axes: Axes, checks: Sequence[Check], name: str, colour: str | None = 
                       markersize=3.6, markerfacecolor="white", linewidth=0.9, zorder=4)  # fmt: skip
 
 
-def _limits(axes: Axes, curves: Sequence[Curve]) -> None:
+def _limits(axes: Axes, curves: Sequence[ExponentCurve]) -> None:
     """The row's exponent dotted, the thin layer's dashed, each with its number at the end."""
     row = curves[0].profile.row
     limits = sorted({curve.thin for curve in curves})
@@ -112,12 +112,12 @@ def _limits(axes: Axes, curves: Sequence[Curve]) -> None:
     axes.set(ylim=(row - 0.06 * span, row + 1.1 * span))
 
 
-def _look(curve: Curve) -> dict[str, Any]:
+def _look(curve: ExponentCurve) -> dict[str, Any]:
     sliding = curve.base == "sliding"
     return {"color": COLOURS[curve.nu], "linewidth": 1.0, "linestyle": (0, (1.2, 1.0)) if sliding else "-"}
 
 
-def _layer(curve: Curve) -> str:
+def _layer(curve: ExponentCurve) -> str:
     return "sliding, any ν" if curve.nu is None else f"{curve.base}, ν = {curve.nu:g}"
 
 

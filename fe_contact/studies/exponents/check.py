@@ -13,7 +13,7 @@ from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.studies import journal
 from fe_contact.studies.exponents.study import KEPT, PROFILES, SMALL, Profile, named
-from lumped.load_curves.layer import Layer
+from lumped.load_curves.layer import PointLayer
 from lumped.load_curves.layer_curve import LayerPunch
 from lumped.materials import Material, Relaxation
 from lumped.result.result import Quantity
@@ -66,7 +66,7 @@ def checks(quick: bool, where: Path, progress: Progress = silent) -> tuple[Check
 
 def check(profile: Profile, base: str, nu: float | None, ratio: float) -> Check:
     """One point; raises NotReached."""
-    layer = Layer(1.0, ANY if nu is None else nu, base)
+    layer = PointLayer(1.0, ANY if nu is None else nu, base)
     depth, force, exponent = _exact(profile, layer, ratio)
     around = depth * np.array(AROUND)
     shape = punch.of(ratio) if np.isinf(profile.n) else profile.shape
@@ -98,7 +98,7 @@ def _local(depth: Array, force: Array, error: Array) -> Quantity:
     return Quantity(float(slopes[1] + bent), float((4.0 * errors[1] + errors[0]) / 3.0 + abs(bent)), "1")
 
 
-def _exact(profile: Profile, layer: Layer, ratio: float) -> tuple[float, float, float]:
+def _exact(profile: Profile, layer: PointLayer, ratio: float) -> tuple[float, float, float]:
     """The depth with this contact radius, in thicknesses, the force there over E*, and the local exponent."""
     if np.isinf(profile.n):
         return SMALL, float(LayerPunch(ratio, layer).stiffness) * SMALL, 1.0

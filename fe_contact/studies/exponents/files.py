@@ -11,7 +11,7 @@ import numpy as np
 
 from fe_contact.studies.exponents.check import Check
 from fe_contact.studies.exponents.finite_spheres import Pair
-from fe_contact.studies.exponents.study import Curve, Profile
+from fe_contact.studies.exponents.study import ExponentCurve, Profile
 from lumped.schema.csv_file import write_csv
 from lumped.schema.json_file import plain, write_json
 
@@ -24,7 +24,7 @@ SPHERE_COLUMNS = ("support", "nu", "a_over_R", "F_over_Hertz_minus_1", "error")
 
 
 def write_exponents(
-    curves: Sequence[Curve], checks: Sequence[Check], pairs: Sequence[Pair], where: Path
+    curves: Sequence[ExponentCurve], checks: Sequence[Check], pairs: Sequence[Pair], where: Path
 ) -> dict[str, Any]:
     """Write ``exponents.csv``, ``finite_spheres.csv`` and ``exponents.json`` into a folder; the content of the last."""
     where.mkdir(parents=True, exist_ok=True)
@@ -44,7 +44,7 @@ def write_exponents(
     return content
 
 
-def _points(curve: Curve) -> list[list[Any]]:
+def _points(curve: ExponentCurve) -> list[list[Any]]:
     """Exact points; a depth under the flat end says nothing."""
     flat = np.isinf(curve.profile.n)
     columns = np.column_stack([curve.ratio, curve.exponent, curve.factor, curve.depth, curve.force]).tolist()
@@ -67,7 +67,7 @@ def _layer(profile: Profile, base: str, nu: float | None) -> list[Any]:
     return [profile.name, profile.n, base, nu]
 
 
-def _described(curve: Curve) -> dict[str, Any]:
+def _described(curve: ExponentCurve) -> dict[str, Any]:
     return {
         "shape": curve.profile.name,
         "profile_exponent": curve.profile.n,

@@ -18,10 +18,10 @@ from fe_contact.assembly.forms import Array
 from fe_contact.progress import Progress, silent
 from fe_contact.studies import journal
 from lumped.load_curves.half_space import HalfSpaceCurve
-from lumped.load_curves.layer import Layer
+from lumped.load_curves.layer import PointLayer
 from lumped.load_curves.layer_curve import LayerCurve, LayerPunch
 from lumped.load_curves.line_layer import LineLayer
-from lumped.load_curves.line_profile import ParabolicCylinder
+from lumped.load_curves.line_profile import ParabolaProfile
 from lumped.load_curves.tabulated import TabulatedCurve
 from lumped.shapes import Shape, cone, cylinder, power, sphere
 
@@ -79,10 +79,10 @@ class Profile:
         """D of the row."""
         return 0.25 * np.pi if self.plane else float(self._half_space.force(1.0))
 
-    def on(self, layer: Layer) -> TabulatedCurve:
+    def on(self, layer: PointLayer) -> TabulatedCurve:
         """The profile, a parabola where it is round, on a layer."""
         if self.plane:
-            return LineLayer(ParabolicCylinder(0.5 / self.coefficient), layer)
+            return LineLayer(ParabolaProfile(0.5 / self.coefficient), layer)
         return LayerCurve(self._half_space, layer)
 
     @property
@@ -105,7 +105,7 @@ PROFILES = (
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class ExponentCurve:
     """Local exponent d ln F/d ln depth and `factor`, F/(E* depth^alpha) over D of Table 1's row, at `ratio` a/h.
 
     `depth` over the profile's height at r = h, `force` over E* h times that height (in plane strain over E* and the
@@ -127,7 +127,7 @@ class Curve:
         return self.profile.thin(self.base, self.nu)
 
 
-def curves(quick: bool, where: Path, progress: Progress = silent) -> tuple[Curve, ...]:
+def curves(quick: bool, where: Path, progress: Progress = silent) -> tuple[ExponentCurve, ...]:
     """Every profile on every layer: bonded with each nu, and sliding, where nothing but E* knows nu.
 
     Rows are kept in the folder `where`. Raises NotReached.
@@ -152,15 +152,15 @@ def named(base: str, nu: float | None) -> str:
     return f"{base}, " + ("any nu" if nu is None else f"nu = {nu:g}")
 
 
-def curve(profile: Profile, base: str, nu: float | None, ratio: Sequence[float] | Array) -> Curve:
+def curve(profile: Profile, base: str, nu: float | None, ratio: Sequence[float] | Array) -> ExponentCurve:
     """One profile on one layer at contact radii over thickness, shape (n,). Raises NotReached."""
     ratio = np.asarray(ratio)
-    layer = Layer(1.0, INCOMPRESSIBLE if nu is None else nu, base)
+    layer = PointLayer(1.0, INCOMPRESSIBLE if nu is None else nu, base)
     if np.isinf(profile.n):
         kappa = np.array([LayerPunch(float(a), layer).stiffness for a in ratio]) / (2.0 * ratio)
         one = np.ones_like(ratio)
-        return Curve(profile, base, nu, ratio, one, kappa, one, 2.0 * ratio * kappa)
+        return ExponentCurve(profile, base, nu, ratio, one, kappa, one, 2.0 * ratio * kappa)
     here = profile.on(layer).at(ratio)
     factor = here.force / (profile.factor * here.depth**profile.row)
     exponent, height = here.stiffness * here.depth / here.force, profile.coefficient
-    return Curve(profile, base, nu, ratio, exponent, factor, here.depth / height, here.force / height)
+    return ExponentCurve(profile, base, nu, ratio, exponent, factor, here.depth / height, here.force / height)

@@ -16,7 +16,7 @@ from fe_contact.studies.paper.memory_chart import plot_memory
 from lumped.paper.examples.concrete_impacts import cut_at_measured_peak, proposed
 from lumped.paper.examples.given import Steel
 from lumped.paper.examples.steel_impacts import R1_of_peak, damped_of_peak, elastic_of_peak, hertz, solid
-from lumped.paper.study import GridRow, Study
+from lumped.paper.study import GridRow, PaperStudy
 from lumped.result.result import Result
 
 MICRO = 1e6
@@ -32,7 +32,7 @@ LAW_KEY = (
 )
 
 
-def plot_paper(study: Study, where: Path) -> tuple[Path, ...]:
+def plot_paper(study: PaperStudy, where: Path) -> tuple[Path, ...]:
     """Write ``fig6``, ``fig7``, ``fig8``, ``fig10`` and ``fig15`` as SVG and PNG into ``where``; their paths."""
     with style.look():
         grids = (*_grid(study, 7, where), *_grid(study, 8, where))
@@ -40,7 +40,7 @@ def plot_paper(study: Study, where: Path) -> tuple[Path, ...]:
         return (*_fig6(study, where), *grids, *rest)
 
 
-def _fig6(study: Study, where: Path) -> tuple[Path, Path]:
+def _fig6(study: PaperStudy, where: Path) -> tuple[Path, Path]:
     steel = study.examples.steel
     figure = Figure(figsize=(style.PAGE, HEIGHT_6))
     axes = figure.add_axes((0.075, 0.13, 0.6, 0.68))
@@ -72,7 +72,7 @@ def _curves_6(steel: Steel) -> list[tuple[str, Result, dict[str, Any]]]:
     return curves
 
 
-def _grid(study: Study, number: int, where: Path) -> tuple[Path, Path]:
+def _grid(study: PaperStudy, number: int, where: Path) -> tuple[Path, Path]:
     rows = [row for row in study.grid if row.figure == number]
     figure = Figure(figsize=(style.PAGE, HEIGHT_GRID))
     panels = figure.subplots(2, 2, sharex=True, sharey=number == 8).ravel()
@@ -113,7 +113,7 @@ def _value(row: GridRow, name: str) -> str:
     return f"{row.R1:g}" if name == "R1" else style.readable(row.R2, "s", 3)
 
 
-def _fig10(study: Study, where: Path) -> tuple[Path, Path]:
+def _fig10(study: PaperStudy, where: Path) -> tuple[Path, Path]:
     """Forces and times over those of the uncut impact at the higher velocity: the assumed radius drops out."""
     concrete = study.examples.concrete
     slow, fast = min(concrete.velocities), max(concrete.velocities)

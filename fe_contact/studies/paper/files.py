@@ -7,9 +7,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from lumped.paper.claims import Judged, counts
+from lumped.paper.claims import JudgedClaim, counts
 from lumped.paper.examples.value import Value
-from lumped.paper.study import GridRow, Study
+from lumped.paper.study import GridRow, PaperStudy
 from lumped.result.result import provenance
 from lumped.schema.csv_file import write_csv
 from lumped.schema.json_file import plain, write_json
@@ -31,7 +31,7 @@ GRID_QUANTITIES = {
 }
 
 
-def write_study(study: Study, where: Path) -> dict[str, Any]:
+def write_study(study: PaperStudy, where: Path) -> dict[str, Any]:
     """Write ``paper.csv``, three more tables and ``paper.json`` into a folder, made when it is not there.
 
     Returns the content of the last.
@@ -50,7 +50,7 @@ def write_study(study: Study, where: Path) -> dict[str, Any]:
     return content
 
 
-def study_content(study: Study) -> dict[str, Any]:
+def study_content(study: PaperStudy) -> dict[str, Any]:
     """The content of ``paper.json``: plain numbers, null where undefined."""
     content: dict[str, Any] = plain(
         {
@@ -70,7 +70,7 @@ def study_content(study: Study) -> dict[str, Any]:
     return content
 
 
-def _claim(one: Judged) -> dict[str, Any]:
+def _claim(one: JudgedClaim) -> dict[str, Any]:
     claim = {name: value for name, value in vars(one.claim).items() if name != "rule"}
     judged = {"deviation": one.deviation, "verdict": one.verdict, "rule": one.claim.rule.name}
     return claim | _numbers(one.values) | judged

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from fe_contact.studies import style
 from fe_contact.studies.style import prefixed, readable
-from lumped.ptmd.study import BARE, FULL, PLAIN, Study
+from lumped.ptmd.study import BARE, FULL, PLAIN, PtmdStudy
 
 PANEL = 1.35  # height of a panel, in
 TITLE_WIDTH = 130  # characters
@@ -22,7 +22,7 @@ LINES: dict[str, dict[str, Any]] = {
 }
 
 
-def plot_study(study: Study, where: Path) -> tuple[Path, Path]:
+def plot_study(study: PtmdStudy, where: Path) -> tuple[Path, Path]:
     """Write ``ptmd.svg`` and ``ptmd.png`` into the folder ``where``; their paths."""
     drawings = [_displacement]
     if study.case.system.damper is not None:
@@ -43,7 +43,7 @@ def plot_study(study: Study, where: Path) -> tuple[Path, Path]:
         return style.save(figure, where, "ptmd")
 
 
-def _lines(study: Study) -> list[str]:
+def _lines(study: PtmdStudy) -> list[str]:
     """Measures of every variant, in words."""
     lines = []
     for name, result in study.results.items():
@@ -58,7 +58,7 @@ def _lines(study: Study) -> list[str]:
     return lines
 
 
-def _displacement(axes: Axes, study: Study, letter: str) -> None:
+def _displacement(axes: Axes, study: PtmdStudy, letter: str) -> None:
     largest = max(float(np.abs(result.motion.x1).max()) for result in study.results.values())
     metre, unit = prefixed(largest, "m")
     for name in (BARE, PLAIN, FULL):
@@ -70,7 +70,7 @@ def _displacement(axes: Axes, study: Study, letter: str) -> None:
     style.label(axes, letter, "displacement of the structure")
 
 
-def _stroke(axes: Axes, study: Study, letter: str) -> None:
+def _stroke(axes: Axes, study: PtmdStudy, letter: str) -> None:
     """x2 - x1 with the band in which the damper is clear of the undeformed ring."""
     motion, ring = study.main.motion, study.case.system.ring
     stroke = motion.x2 - motion.x1
@@ -84,7 +84,7 @@ def _stroke(axes: Axes, study: Study, letter: str) -> None:
     style.label(axes, letter, "stroke of the damper")
 
 
-def _force(axes: Axes, study: Study, letter: str) -> None:
+def _force(axes: Axes, study: PtmdStudy, letter: str) -> None:
     motion = study.main.motion
     newton, unit = prefixed(max(float(np.abs(motion.force).max()), 1e-12), "N")
     axes.plot(motion.time, newton * motion.force, color=style.VERMILION, linewidth=0.9)

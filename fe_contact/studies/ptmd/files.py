@@ -10,7 +10,7 @@ import numpy as np
 
 from lumped.ptmd.case import Case
 from lumped.ptmd.result import COLUMNS
-from lumped.ptmd.study import SMALL, Study
+from lumped.ptmd.study import SMALL, PtmdStudy
 from lumped.result.folder import publish
 from lumped.result.result import provenance
 from lumped.schema.csv_file import write_csv
@@ -26,7 +26,7 @@ CONTACT_COLUMNS = {
 }
 
 
-def write_study(study: Study, where: Path) -> dict[str, Any]:
+def write_study(study: PtmdStudy, where: Path) -> dict[str, Any]:
     """Write ``ptmd.csv``, ``contacts.csv`` and ``ptmd.json`` into a folder; the content of the last."""
     motion = study.main.motion
     table = np.column_stack([getattr(motion, name) for name in COLUMNS])
@@ -45,7 +45,7 @@ def write_failure(case: Case, message: str, where: Path) -> None:
     publish(where, lambda folder: write_json(folder / RECORD, known), RECORD)
 
 
-def study_content(study: Study) -> dict[str, Any]:
+def study_content(study: PtmdStudy) -> dict[str, Any]:
     """The content of ``ptmd.json``; SI units, null where undefined."""
     message = study.convergence.message
     content: dict[str, Any] = plain(

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fe_contact.studies import style
-from fe_contact.studies.restitution.table import Line
+from fe_contact.studies.restitution.table import RestitutionLine
 from lumped.restitution import EXACT
 
 COLUMNS, PANEL = 3, 2.45  # panels in a row; height of one, in
@@ -21,7 +21,7 @@ LINES = {"force": "-", "depth": (0, (3, 1.6))}
 COLOURS = (*style.CYCLE, style.GREY)
 
 
-def plot_restitution(lines: Sequence[Line], where: Path) -> tuple[Path, Path]:
+def plot_restitution(lines: Sequence[RestitutionLine], where: Path) -> tuple[Path, Path]:
     """Write ``restitution.svg`` and ``restitution.png`` into the folder ``where``; their paths."""
     names = list(dict.fromkeys(line.law for line in lines))
     rows = -(-len(names) // COLUMNS)
@@ -44,10 +44,10 @@ def plot_restitution(lines: Sequence[Line], where: Path) -> tuple[Path, Path]:
         return style.save(figure, where, "restitution")
 
 
-def _panel(axes: Axes, lines: Sequence[Line]) -> None:
+def _panel(axes: Axes, lines: Sequence[RestitutionLine]) -> None:
     """One law: published formulas that agree share a curve and a name."""
     axes.plot([0.0, 1.0], [0.0, 1.0], color=style.GREY, linewidth=0.5, zorder=1)
-    groups: list[tuple[list[str], list[Line]]] = []
+    groups: list[tuple[list[str], list[RestitutionLine]]] = []
     for formula in dict.fromkeys(line.damping for line in lines):
         own = [line for line in lines if line.damping == formula]
         known = next((group for group in groups if _same(group[1][0], own[0])), None)
@@ -63,14 +63,14 @@ def _panel(axes: Axes, lines: Sequence[Line]) -> None:
     axes.legend(loc="upper left", fontsize=4.4, handlelength=1.3, labelspacing=0.15, borderaxespad=0.0)
 
 
-def _curves(axes: Axes, lines: Sequence[Line], name: str, colour: str) -> None:
+def _curves(axes: Axes, lines: Sequence[RestitutionLine], name: str, colour: str) -> None:
     for line in lines[:1] if _same(*lines) else lines:
         look: dict[str, Any] = {"linestyle": LINES[line.exit], "color": colour, "linewidth": 1.0}
         values = [np.nan if got is None else got for got in line.obtained]
         axes.plot(line.asked, values, label=name if line is lines[0] else None, **look)
 
 
-def _same(one: Line, other: Line) -> bool:
+def _same(one: RestitutionLine, other: RestitutionLine) -> bool:
     """Whether two curves are one."""
     first, second = (np.array([np.nan if got is None else got for got in line.obtained]) for line in (one, other))
     return bool(np.allclose(first, second, rtol=0.0, atol=SAME, equal_nan=True))

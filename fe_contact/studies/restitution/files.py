@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from fe_contact.studies.restitution.table import Line
+from fe_contact.studies.restitution.table import RestitutionLine
 from lumped.schema.csv_file import write_csv
 from lumped.schema.json_file import plain, write_json
 
@@ -14,7 +14,7 @@ SCHEMA = "fe-contact/restitution/1"
 COLUMNS = ("law", "damping", "exit", "asked", "obtained", "difference")
 
 
-def write_restitution(lines: Sequence[Line], where: Path) -> dict[str, Any]:
+def write_restitution(lines: Sequence[RestitutionLine], where: Path) -> dict[str, Any]:
     """Write ``restitution.csv`` and ``restitution.json`` into a folder; the content of the latter."""
     where.mkdir(parents=True, exist_ok=True)
     rows = [
@@ -29,6 +29,6 @@ def write_restitution(lines: Sequence[Line], where: Path) -> dict[str, Any]:
     return content
 
 
-def _worst(line: Line) -> dict[str, float] | None:
+def _worst(line: RestitutionLine) -> dict[str, float] | None:
     worst = line.worst
     return None if worst is None else {"difference": worst[0], "asked": worst[1]}

@@ -17,7 +17,7 @@ TOLERANCE = 1e-7
 UNIT, LATEST = 1.0, 1e12
 
 
-class Line(NamedTuple):
+class RestitutionLine(NamedTuple):
     """One law, damping formula and exit: restitution obtained, None where the formula or the law gives none."""
 
     law: str
@@ -33,13 +33,13 @@ class Line(NamedTuple):
         return max(pairs, key=lambda pair: abs(pair[0])) if pairs else None
 
 
-def table(asked: Sequence[float] = ASKED) -> tuple[Line, ...]:
+def table(asked: Sequence[float] = ASKED) -> tuple[RestitutionLine, ...]:
     """A line for every law that takes e, each of its formulas and either exit, found by simulation.
 
     `asked`: from 1e-4 to 1. Raises BadInput, NotReached.
     """
     return tuple(
-        Line(name, formula, exit, tuple(asked), tuple(obtained(name, formula, exit, e) for e in asked))
+        RestitutionLine(name, formula, exit, tuple(asked), tuple(obtained(name, formula, exit, e) for e in asked))
         for name, formula in formulas()
         for exit in EXITS
     )

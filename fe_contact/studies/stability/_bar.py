@@ -66,7 +66,7 @@ def measured(case: Case) -> dict[str, Any]:
     """What went wrong by how much; see :data:`fe_contact.studies.stability.bouncing.CHART`."""
     motion, wanted = bounced(case), exact(case["periods"])
     time, force, step = motion.time, motion.force, choices(case).step
-    contact = Contact(motion, 2 * TRANSIT)
+    contact = BarContact(motion, 2 * TRANSIT)
     begun, due = [start for start, _ in contact.lasting], [start for start, _ in wanted.contacts]
     known = min(len(begun), len(due), TENTH) - 1
     pressed = wanted.force(np.minimum(time, 2 * TRANSIT * (1 - 1e-9)))
@@ -91,7 +91,7 @@ def measured(case: Case) -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class Contact:
+class BarContact:
     """Contacts of a motion, those apart that follow each other within a ``duration``, s."""
 
     motion: Motion

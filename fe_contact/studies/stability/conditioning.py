@@ -40,7 +40,7 @@ DEPTHS = np.exp(np.random.default_rng(7).uniform(np.log(1e-4), np.log(2.5e-4), 8
 INSIDE = 0.7  # of the contact radius
 
 
-class Pressed(NamedTuple):
+class PressedSample(NamedTuple):
     """The layer, its exact curve, and one mesh for all depths."""
 
     indenter: Indenter
@@ -85,11 +85,11 @@ def condition(surface: PressedSurface, penalty: float, found: ContactSolution) -
 
 
 @lru_cache(maxsize=1)
-def layer() -> Pressed:
+def layer() -> PressedSample:
     """Made once a process."""
     indenter = Indenter.load(LAYER, {"target.material.nu": NU}).elastic(instant=False)
     curve = indenter.target.load_curve(indenter.profile, NU)
     numerics = settings({}, indenter.shape)
     body = get(TARGETS, indenter.target.name).still(indenter, curve.contact_radius(DEPTHS), numerics)
     assert isinstance(body, FixedStill)
-    return Pressed(indenter, curve, body)
+    return PressedSample(indenter, curve, body)

@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.indentation import indent
-from lumped.paper.table1 import Elastic, Row
+from lumped.paper.table1 import Elastic, TableRow
 from lumped.paper.table1.base import pressed
 from lumped.result.result import Quantity
 from lumped.shapes import plate
@@ -43,7 +43,7 @@ def _pressed(body: Elastic, width: float) -> Block:
     return Block(body, width, Quantity(scale * float(found.force[0]), scale * float(found.force_error[0]), "Pa"))
 
 
-def within(row: Row, tried: Sequence[Block], limit: float) -> tuple[float, float] | None:
+def within(row: TableRow, tried: Sequence[Block], limit: float) -> tuple[float, float] | None:
     """Widths between which blocks of one body have the row's modulus within a limit; None where none tried has.
 
     0 and infinite where the first or the last block still has it; else the end is found between two blocks, on a

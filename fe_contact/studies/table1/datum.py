@@ -9,11 +9,11 @@ import numpy as np
 from fe_contact.indentation import indent
 from lumped.indentation.indentation import power_law
 from lumped.load_curves.half_plane import HalfPlane
-from lumped.load_curves.layer import Layer
+from lumped.load_curves.layer import PointLayer
 from lumped.load_curves.line_curve import LineCurve
 from lumped.load_curves.line_layer import LineLayer
-from lumped.load_curves.line_profile import Cylinder as Profile
-from lumped.paper.table1 import Elastic, Row
+from lumped.load_curves.line_profile import CylinderProfile as Profile
+from lumped.paper.table1 import Elastic, TableRow
 from lumped.paper.table1.base import pressed
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
@@ -51,7 +51,7 @@ class Place:
     once: float | None = None
 
 
-def places(row: Row, *bodies: Elastic) -> tuple[Place, ...]:
+def places(row: TableRow, *bodies: Elastic) -> tuple[Place, ...]:
     """One body: exact places over decades of datum and thickness, some checked. Two: finite cylinders, by FE alone."""
     if row.bodies == 2:
         return tuple(_cylinders(row, bodies, support, share) for support, tried in HELD.items() for share in tried)
@@ -64,7 +64,7 @@ def curve(support: str, share: float, nu: float) -> LineCurve:
     """Of a cylinder of unit radius."""
     if support == "datum":
         return HalfPlane(Profile(1.0), share, nu)
-    return LineLayer(Profile(1.0), Layer(share, nu, "bonded"))
+    return LineLayer(Profile(1.0), PointLayer(share, nu, "bonded"))
 
 
 def _exact(support: str, share: float, nu: float) -> Place:
@@ -88,21 +88,21 @@ def _once(line: LineCurve) -> float | None:
     return float(line.depth(brentq(short, low, high, xtol=1e-9 * low)))
 
 
-def _body(row: Row, bodies: tuple[Elastic, ...], support: str, share: float) -> Place:
+def _body(row: TableRow, bodies: tuple[Elastic, ...], support: str, share: float) -> Place:
     """A rigid cylinder on a body of finite elements."""
     length = share * row.length
     target: Target = half_space.of(length) if support == "datum" else layer.of(length, "bonded")
     return _found(pressed(row.name, cylinder.of(row.length, 1.0), target, *bodies), row, support, share)
 
 
-def _cylinders(row: Row, bodies: tuple[Elastic, ...], support: str, share: float) -> Place:
+def _cylinders(row: TableRow, bodies: tuple[Elastic, ...], support: str, share: float) -> Place:
     """Two cylinders; 1/R = 1/R_a + 1/R_b gives the striker's radius."""
     struck = share * row.length
     striker = cylinder.of(1.0 / (1.0 / row.length - 1.0 / struck), 1.0)
     return _found(pressed(row.name, striker, cylinders.of(struck, support), *bodies), row, support, share)
 
 
-def _found(scene: Indenter, row: Row, support: str, share: float) -> Place:
+def _found(scene: Indenter, row: TableRow, support: str, share: float) -> Place:
     """By finite elements: a power law through three near depths."""
     depths = tuple(factor * DEPTH * row.length for factor in CHORD)
     found = indent(scene, depths, {"tolerance": TOLERANCE})

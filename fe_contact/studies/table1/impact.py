@@ -16,12 +16,12 @@ from fe_contact.assembly.forms import Array
 from fe_contact.reference import solve
 from fe_contact.studies.table1.datum import CHORD, DEPTH, Place
 from lumped.indentation.indentation import power_law
-from lumped.paper.table1 import Elastic, Row
+from lumped.paper.table1 import Elastic, TableRow
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.targets import Target
-from lumped.targets.cylinder import Cylinder
+from lumped.targets.cylinder import CylinderTarget
 from lumped.targets.layer import Layer
 
 SHALLOW = 1e-4  # greatest depth over the row's length
@@ -51,7 +51,7 @@ class Loading:
     relative: Array
 
 
-def power_law_impacts(row: Row, bodies: Mapping[float, tuple[Elastic, ...]]) -> FromImpact:
+def power_law_impacts(row: TableRow, bodies: Mapping[float, tuple[Elastic, ...]]) -> FromImpact:
     """Of a row with one D; ``bodies`` by Poisson's ratio, nu = 0 among them. Raises NotReached."""
     curves = {
         nu: loading(row, row.scene(*pressed), SHALLOW * row.length, SHARES, *pressed) for nu, pressed in bodies.items()
@@ -63,7 +63,7 @@ def power_law_impacts(row: Row, bodies: Mapping[float, tuple[Elastic, ...]]) -> 
     return FromImpact(moduli, law["alpha"], law["D_at_alpha"])
 
 
-def line_impacts(row: Row, bodies: Mapping[float, tuple[Elastic, ...]], nu: float) -> FromImpact:
+def line_impacts(row: TableRow, bodies: Mapping[float, tuple[Elastic, ...]], nu: float) -> FromImpact:
     """Of line contact: E* by the slope of its logarithm; D at one depth for one nu, with the row's own support."""
     moduli = {}
     for ratio, pressed in bodies.items():
@@ -72,7 +72,7 @@ def line_impacts(row: Row, bodies: Mapping[float, tuple[Elastic, ...]], nu: floa
     return FromImpact(moduli, place=_place(row, bodies[nu]))
 
 
-def _place(row: Row, bodies: tuple[Elastic, ...]) -> Place:
+def _place(row: TableRow, bodies: tuple[Elastic, ...]) -> Place:
     """D/l and the exponent around one depth."""
     scene, modulus = row.scene(*bodies), row.modulus(*bodies)
     depths = tuple(factor * DEPTH * row.length for factor in CHORD)
@@ -89,12 +89,12 @@ def _support(target: Target) -> tuple[str, float]:
     """What carries the contact, and its length, m."""
     if isinstance(target, Layer):
         return f"{target.base} layer", target.thickness
-    assert isinstance(target, Cylinder)
+    assert isinstance(target, CylinderTarget)
     return target.support or "", target.radius
 
 
 def loading(
-    row: Row, slow: Indenter, deepest: float, wanted: tuple[float, ...], *bodies: Elastic, shared: bool = True
+    row: TableRow, slow: Indenter, deepest: float, wanted: tuple[float, ...], *bodies: Elastic, shared: bool = True
 ) -> Loading:
     """Forces on the way in, at depths ``wanted``, m, or ``shared`` with the greatest one; raises NotReached.
 
@@ -122,7 +122,7 @@ def loading(
     return Loading(here.depth, here.force, certified.force_error(times) / here.force + error)
 
 
-def logarithms_modulus(row: Row, curve: Loading) -> Quantity:
+def logarithms_modulus(row: TableRow, curve: Loading) -> Quantity:
     """E*, Pa: b^2 = 4 R F/(pi E* l), so that from the first contact to the last depth/F falls by ln F/(pi E* l)."""
     length = row.factor / (0.25 * math.pi)
     ends = [0, -1]
@@ -132,7 +132,7 @@ def logarithms_modulus(row: Row, curve: Loading) -> Quantity:
     return Quantity(value, value * float(relative.sum() / growth + compliance @ relative / fall), "Pa")
 
 
-def _modulus(row: Row, known: float, base: Loading, curve: Loading) -> Quantity:
+def _modulus(row: TableRow, known: float, base: Loading, curve: Loading) -> Quantity:
     """E*, Pa: that at nu = 0 times the mean ratio of both forces over depth^alpha."""
     ratio = curve.force / curve.depth**row.alpha / (base.force / base.depth**row.alpha)
     value = known * float(np.exp(np.log(ratio).mean()))

@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from lumped.indentation.indentation import Indentation
-from lumped.paper.table1 import Elastic, Row
+from lumped.paper.table1 import Elastic, TableRow
 from lumped.result.result import Quantity
 
 LIMIT = 0.01  # departure from the power law that counts as its end
@@ -36,7 +36,7 @@ class Reach:
         return self.held.value == self.last
 
 
-def reach(row: Row, curves: Mapping[float, Indentation], pressed: Mapping[float, tuple[Elastic, ...]]) -> Reach:
+def reach(row: TableRow, curves: Mapping[float, Indentation], pressed: Mapping[float, tuple[Elastic, ...]]) -> Reach:
     """How deep the corrected row holds within 1 %, at every nu of the bodies that were pressed."""
     departures, bars = [], []
     for nu, curve in curves.items():

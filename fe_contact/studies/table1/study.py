@@ -23,7 +23,7 @@ from fe_contact.studies.table1.impact import FromImpact, line_impacts, power_law
 from fe_contact.studies.table1.reach import Reach, reach
 from lumped.errors import NotReached
 from lumped.indentation.indentation import Indentation, power_law
-from lumped.paper.table1 import Elastic, Row, examples
+from lumped.paper.table1 import Elastic, TableRow, examples
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
 
@@ -48,7 +48,7 @@ class Trial:
     not slide, at every nu above 0. ``impact``: the same identified from impacts. ``failure``: why there is no answer.
     """
 
-    row: Row
+    row: TableRow
     alpha: Quantity | None = None
     factor: Quantity | None = None
     moduli: Mapping[float, Quantity] = field(default_factory=dict)
@@ -59,7 +59,7 @@ class Trial:
     failure: str = ""
 
 
-def bodies(row: Row, nu: float) -> tuple[Elastic, ...]:
+def bodies(row: TableRow, nu: float) -> tuple[Elastic, ...]:
     """As many as the row has, the second twice as stiff and half as wide under pressure."""
     return (Elastic(YOUNG, nu), Elastic(2.0 * YOUNG, 0.5 * nu))[: row.bodies]
 
@@ -79,11 +79,11 @@ def table1(where: Path, progress: Progress = silent, jobs: int = WORKERS) -> tup
     return tuple(replace(one, bonded=bonded) if one.row.block and not one.failure else one for one in tried)
 
 
-def _named(row: Row) -> str:
+def _named(row: TableRow) -> str:
     return f"row {row.number}: {row.case}"
 
 
-def trial(row: Row) -> Trial:
+def trial(row: TableRow) -> Trial:
     """One row but for its blocks; what finite elements cannot answer is said in ``failure``."""
     try:
         return _power_law(row) if row.single else _line_contact(row)
@@ -91,7 +91,7 @@ def trial(row: Row) -> Trial:
         return Trial(row, failure=str(failure))
 
 
-def _power_law(row: Row) -> Trial:
+def _power_law(row: TableRow) -> Trial:
     curves = {nu: _pressed(row, row.scene(*bodies(row, nu)), SHALLOW + DEEP) for nu in RATIOS}
     whole, far = row.whole_scene(*bodies(row, RATIOS[1])), curves
     if whole != row.scene(*bodies(row, RATIOS[1])):
@@ -107,7 +107,7 @@ def _power_law(row: Row) -> Trial:
     )
 
 
-def _line_contact(row: Row) -> Trial:
+def _line_contact(row: TableRow) -> Trial:
     curves = {nu: _pressed(row, row.scene(*bodies(row, nu)), LINE, LINE_TOLERANCE) for nu in RATIOS}
     moduli = {nu: logarithms_modulus(row, curve) for nu, curve in curves.items()}
     struck = line_impacts(row, {nu: bodies(row, nu) for nu in RATIOS}, RATIOS[1])
@@ -115,11 +115,11 @@ def _line_contact(row: Row) -> Trial:
     return Trial(row, moduli=moduli, datum=(*places(row, *bodies(row, RATIOS[1])), *found), impact=struck)
 
 
-def _pressed(row: Row, scene: Indenter, shares: tuple[float, ...], tolerance: float = TOLERANCE) -> Indentation:
+def _pressed(row: TableRow, scene: Indenter, shares: tuple[float, ...], tolerance: float = TOLERANCE) -> Indentation:
     return indent(scene, tuple(share * row.length for share in shares), {"tolerance": tolerance})
 
 
-def identified_law(row: Row, curve: Indentation) -> tuple[Quantity, Quantity]:
+def identified_law(row: TableRow, curve: Indentation) -> tuple[Quantity, Quantity]:
     """alpha, and D with the row's alpha held, from the shallow depths of the curve at nu = 0."""
     shallow = curve.depth <= SHALLOW[-1] * row.length * (1.0 + 1e-9)
     per_modulus = curve.force[shallow] / row.modulus(*bodies(row, 0.0))
@@ -128,7 +128,7 @@ def identified_law(row: Row, curve: Indentation) -> tuple[Quantity, Quantity]:
     return found["alpha"], found["D_at_alpha"]
 
 
-def identified_moduli(row: Row, curves: Mapping[float, Indentation]) -> dict[float, Quantity]:
+def identified_moduli(row: TableRow, curves: Mapping[float, Indentation]) -> dict[float, Quantity]:
     """E*, Pa: Young's modulus (of the bodies in series) times force over force at nu = 0, at the shallowest depth."""
     base, known = curves[0.0], row.modulus(*bodies(row, 0.0))
     found = {}
@@ -139,7 +139,7 @@ def identified_moduli(row: Row, curves: Mapping[float, Indentation]) -> dict[flo
     return found
 
 
-def logarithms_modulus(row: Row, curve: Indentation) -> Quantity:
+def logarithms_modulus(row: TableRow, curve: Indentation) -> Quantity:
     """E*, Pa: b^2 = 4 R F/(pi E* l), so that from one small contact to another depth/F falls by ln F/(pi E* l).
 
     Where bodies end and where they are held adds the same to both.

@@ -16,7 +16,7 @@ from fe_contact.waves.refining import cost_of, refined_to_tolerance
 from lumped.laws import correspondence
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
-from lumped.targets.sphere import Sphere
+from lumped.targets.sphere import SphereTarget
 
 
 def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
@@ -25,7 +25,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     Raises NotReached where even that does not come to an end.
     """
     target, own = scene.target, scene.geometry.shape.tip_radius
-    assert isinstance(target, Sphere)
+    assert isinstance(target, SphereTarget)
     without = replace(scene, target=replace(target, support=None), model=replace(scene.model, inertia=False))
     return flying(scene, given, correspondence.estimate(without), max(target.radius, own or 0.0))
 

@@ -19,9 +19,9 @@ from lumped.paper.examples.steel_impacts import TOLERANCE, scene
 from lumped.solvers.point.bodies import Bodies, State
 from lumped.solvers.point.contact import Contact, contact
 from lumped.solvers.point.memory.recovering import FreeSurface
-from lumped.solvers.point.motion import Motion
+from lumped.solvers.point.motion import PointMotion
 from lumped.solvers.point.outcome import Outcome, outcome_of
-from lumped.solvers.point.track import Track
+from lumped.solvers.point.track import PointTrack
 
 Array = NDArray[np.float64]
 EXPONENT = 1.5
@@ -73,8 +73,8 @@ class DentedSurface:
         bodies = Bodies(self.steel.mass, self.steel.velocity)
         return contact(self._law, bodies, self._law.exit, start, 0.0, math.inf, TOLERANCE)
 
-    def _track(self, one: Contact) -> tuple[Track, Contact]:
-        return Track(self._law, Motion((one,), 0.0)), one
+    def _track(self, one: Contact) -> tuple[PointTrack, Contact]:
+        return PointTrack(self._law, PointMotion((one,), 0.0)), one
 
     def _left(self, pause: float) -> State:
         """The state in which the next ball finds the surface."""

@@ -8,7 +8,7 @@ from lumped.errors import BadInput, Fault, NotReached
 from lumped.paper.examples.given import Ptmd, RingLining
 from lumped.paper.examples.ring_impact import stiffness
 from lumped.paper.examples.value import Value
-from lumped.ptmd import Measures, Oscillator, PoundingDamper, Ring, Start, simulate
+from lumped.ptmd import Measures, Oscillator, PoundingDamper, PtmdRing, Start, simulate
 
 # The damper's path is exact to rounding, which some fifty contacts carry on.
 ROUNDING = 1e-9
@@ -19,7 +19,7 @@ STARTS = ("both", "structure")
 @cache
 def with_ring(ptmd: Ptmd, lining: RingLining, start: str, nu: float) -> Measures:
     """The pounding damper; `start`: "both" masses or the "structure" alone displaced. Raises BadInput, NotReached."""
-    ring = Ring(ptmd.gap, stiffness(lining, nu), 1.0)
+    ring = PtmdRing(ptmd.gap, stiffness(lining, nu), 1.0)
     return _measures(ptmd, PoundingDamper(_structure(ptmd), _damper(ptmd), ring), start)
 
 

@@ -27,7 +27,7 @@ class Elastic(NamedTuple):
     nu: float
 
 
-class Row(ABC):
+class TableRow(ABC):
     """F = D E* depth^alpha for one geometry; lengths in m, areas in m^2. Raises BadInput for a length out of range.
 
     `number` is the row's place, `case` what the paper calls it, `printed` its D and E* as printed and `corrected`

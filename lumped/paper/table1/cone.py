@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import pi, radians, tan
 from typing import ClassVar
 
-from lumped.paper.table1.base import Elastic, Row, pressed
+from lumped.paper.table1.base import Elastic, TableRow, pressed
 from lumped.scene.indenter import Indenter
 from lumped.schema.keys import Key, Number
 from lumped.shapes import cone
@@ -17,7 +17,7 @@ KEYS: Mapping[str, Key] = {"angle": Number(0.01, 80.0, "degrees, between face an
 
 
 @dataclass(frozen=True)
-class Cone(Row):
+class ConeRow(TableRow):
     """F = 2/(pi tan(theta)) E* depth^2 (Sneddon, doi 10.1016/0020-7225(65)90019-4); `angle` is theta, degrees."""
 
     angle: float
@@ -53,4 +53,4 @@ class Cone(Row):
         return pressed(self.name, cone.of(self.angle), half_space.of(), *bodies)
 
 
-EXAMPLE = Cone(angle=20.0)
+EXAMPLE = ConeRow(angle=20.0)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import ClassVar
 
-from lumped.paper.table1.base import Elastic, Row, pressed
+from lumped.paper.table1.base import Elastic, TableRow, pressed
 from lumped.scene.indenter import Indenter
 from lumped.schema.keys import Key, Number
 from lumped.shapes import cylinder
@@ -18,7 +18,7 @@ KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "height": Number(1e
 
 
 @dataclass(frozen=True)
-class Cylinder(Row):
+class CylinderRow(TableRow):
     """F = (pi/4) l E* depth, a heuristic (Popov 2010, ISBN 978-3-642-10802-0, section 5.2); `height` is l."""
 
     radius: float
@@ -54,4 +54,4 @@ class Cylinder(Row):
         return pressed(self.name, shape, target, *bodies, profile="parabola")
 
 
-EXAMPLE = Cylinder(radius=0.01, height=0.01)
+EXAMPLE = CylinderRow(radius=0.01, height=0.01)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.materials import Material, Relaxation
-from lumped.paper.table1.base import Elastic, Row, pressed
+from lumped.paper.table1.base import Elastic, TableRow, pressed
 from lumped.scene.indenter import Indenter
 from lumped.schema.keys import Key, Number
 from lumped.shapes import plate
@@ -17,7 +17,7 @@ KEYS: Mapping[str, Key] = {"area": Number(1e-18, 1e8, "m2"), "thickness": Number
 
 
 @dataclass(frozen=True)
-class Plate(Row):
+class PlateRow(TableRow):
     """F = (A/l) M depth with the confined modulus M = K + 4 G/3: uniaxial strain."""
 
     area: float
@@ -53,4 +53,4 @@ class Plate(Row):
         return pressed(self.name, plate.of(self.area, self.thickness), plane.of(), *bodies)
 
 
-EXAMPLE = Plate(area=1e-2, thickness=1e-3)
+EXAMPLE = PlateRow(area=1e-2, thickness=1e-3)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lumped.paper.table1.base import Elastic, Row, pressed
+from lumped.paper.table1.base import Elastic, TableRow, pressed
 from lumped.scene.indenter import Indenter
 from lumped.schema.keys import Key, Number
 from lumped.shapes import prism
@@ -16,7 +16,7 @@ KEYS: Mapping[str, Key] = {"area": Number(1e-18, 1e8, "m2"), "height": Number(1e
 
 
 @dataclass(frozen=True)
-class Prism(Row):
+class PrismRow(TableRow):
     """F = (A/l) E depth: uniaxial stress."""
 
     area: float
@@ -51,4 +51,4 @@ class Prism(Row):
         return pressed(self.name, prism.of(self.area, self.height, "free", "sliding"), plane.of(), *bodies)
 
 
-EXAMPLE = Prism(area=1e-4, height=0.02)
+EXAMPLE = PrismRow(area=1e-4, height=0.02)

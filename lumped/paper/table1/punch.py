@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lumped.paper.table1.base import Elastic, Row, pressed
+from lumped.paper.table1.base import Elastic, TableRow, pressed
 from lumped.scene.indenter import Indenter
 from lumped.schema.keys import Key, Number
 from lumped.shapes import punch
@@ -16,7 +16,7 @@ KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}
 
 
 @dataclass(frozen=True)
-class Punch(Row):
+class PunchRow(TableRow):
     """F = 2 R E* depth (Boussinesq 1885)."""
 
     radius: float
@@ -45,4 +45,4 @@ class Punch(Row):
         return pressed(self.name, punch.of(self.radius), half_space.of(), *bodies)
 
 
-EXAMPLE = Punch(radius=0.01)
+EXAMPLE = PunchRow(radius=0.01)

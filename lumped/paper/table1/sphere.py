@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import ClassVar
 
-from lumped.paper.table1.base import Elastic, Row, pressed
+from lumped.paper.table1.base import Elastic, TableRow, pressed
 from lumped.scene.indenter import Indenter
 from lumped.schema.keys import Key, Number
 from lumped.shapes import sphere
@@ -17,7 +17,7 @@ KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}
 
 
 @dataclass(frozen=True)
-class Sphere(Row):
+class SphereRow(TableRow):
     """F = (4/3) sqrt(R) E* depth^(3/2) (Hertz 1882): the paraboloid of the sphere's tip."""
 
     radius: float
@@ -46,4 +46,4 @@ class Sphere(Row):
         return pressed(self.name, sphere.of(self.radius), half_space.of(), *bodies)
 
 
-EXAMPLE = Sphere(radius=0.01)
+EXAMPLE = SphereRow(radius=0.01)

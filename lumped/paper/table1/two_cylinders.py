@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import ClassVar
 
-from lumped.paper.table1.base import Elastic, Row, pressed
+from lumped.paper.table1.base import Elastic, TableRow, pressed
 from lumped.scene.indenter import Indenter
 from lumped.schema.keys import Key, Number
 from lumped.shapes import cylinder
@@ -21,7 +21,7 @@ KEYS: Mapping[str, Key] = {
 
 
 @dataclass(frozen=True)
-class TwoCylinders(Row):
+class TwoCylinders(TableRow):
     """F = (pi/4) l E* depth, a heuristic (Popov 2010, ISBN 978-3-642-10802-0, section 5.2); `height` is l."""
 
     radius: float

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import ClassVar
 
-from lumped.paper.table1.base import Elastic, Row, pressed
+from lumped.paper.table1.base import Elastic, TableRow, pressed
 from lumped.scene.indenter import Indenter
 from lumped.schema.keys import Key, Number
 from lumped.shapes import sphere
@@ -17,7 +17,7 @@ KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "other_radius": Num
 
 
 @dataclass(frozen=True)
-class TwoSpheres(Row):
+class TwoSpheres(TableRow):
     """F = (4/3) sqrt(R) E* depth^(3/2), 1/R = 1/R_a + 1/R_b (Hertz 1882): two half-spaces under paraboloids."""
 
     radius: float

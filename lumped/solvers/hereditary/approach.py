@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from lumped.errors import BadInput, NotReached
 from lumped.result.ending import AT_REST
-from lumped.solvers.hereditary.march import March, Piece, Settings, Stretch
-from lumped.solvers.hereditary.motion import Motion
+from lumped.solvers.hereditary.march import HereditaryMarch, HereditaryPiece, Settings, Stretch
+from lumped.solvers.hereditary.motion import PieceMotion
 from lumped.solvers.hereditary.path import Path
 from lumped.solvers.hereditary.problem import Hereditary
 
@@ -57,18 +57,18 @@ def follow(
     settings: Settings,
     largest: float = 0.0,
     before: Path | None = None,
-) -> March:
+) -> HereditaryMarch:
     """March over a span of r from a state until `over`; `first` is the length to begin with. Raises NotReached."""
     beyond: BadInput | NotReached | None = None
 
-    def piece(root: float, length: float, state: Array) -> Piece | None:
-        motion, found = Motion.over_root(problem, settings.table, root, length), None
+    def piece(root: float, length: float, state: Array) -> HereditaryPiece | None:
+        motion, found = PieceMotion.over_root(problem, settings.table, root, length), None
         if before is not None:
             force = before.value(FORCE, root + length * settings.table.nodes)
             found = motion.piece(state, problem.gravity - force)
         return found or motion.piece(state, problem.gravity - float(state[FORCE]))
 
-    def attempt(root: float, length: float, state: Array) -> Piece | None:
+    def attempt(root: float, length: float, state: Array) -> HereditaryPiece | None:
         """A long piece may try depths beyond the load curve that the motion never sees: then a shorter one."""
         nonlocal beyond
         try:
@@ -102,7 +102,7 @@ def approach(problem: Hereditary, end_time: float, settings: Settings, before: A
 
 def _to_velocity(
     problem: Hereditary, end_time: float, slow: float, settings: Settings, before: Path | None
-) -> tuple[March, float]:
+) -> tuple[HereditaryMarch, float]:
     """The march until the velocity has fallen to `slow`, and the place where it has."""
 
     def over(values: Array) -> bool:

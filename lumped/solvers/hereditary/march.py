@@ -34,7 +34,7 @@ class Settings:
         return radau(self.points)
 
 
-class Piece(NamedTuple):
+class HereditaryPiece(NamedTuple):
     """A solved piece: fields at its first place and its nodes, shape (fields, N+1); Newton steps it took."""
 
     values: Array
@@ -42,7 +42,7 @@ class Piece(NamedTuple):
 
 
 @dataclass(frozen=True)
-class March:
+class HereditaryMarch:
     """A path, its Newton steps and largest force; whether its last piece passed the event, or it got stuck."""
 
     path: Path
@@ -61,7 +61,7 @@ class Stretch:
     event that ends the march.
     """
 
-    attempt: Callable[[float, float, Array], Piece | None]
+    attempt: Callable[[float, float, Array], HereditaryPiece | None]
     force: int
     over: Callable[[Array], bool]
     time: int | None = None
@@ -74,7 +74,7 @@ class Stretch:
         settings: Settings,
         largest: float = 0.0,
         before: Path | None = None,
-    ) -> March:
+    ) -> HereditaryMarch:
         """From the first place of the span until the event, or to its end. Raises TooManySteps.
 
         `first` is the length to begin with, `largest` the largest force so far. The breaks of a path that was
@@ -99,14 +99,14 @@ class Stretch:
                     breaks.append(_landed(plan, span, place + length))
                     over = self.over(piece.values)
                     if over or breaks[-1] >= span[1]:
-                        return March(Path.of(breaks, values, table), steps, largest, over)
+                        return HereditaryMarch(Path.of(breaks, values, table), steps, largest, over)
                     length = _ahead(plan, span, breaks[-1], length * factor)
                     continue
             length *= factor
             if length <= SHORTEST * (span[1] - span[0]):
                 if not values:
                     raise NotReached("the impact could not be followed from its very start")
-                return March(Path.of(breaks, values, table), steps, largest, False, stuck=True)
+                return HereditaryMarch(Path.of(breaks, values, table), steps, largest, False, stuck=True)
         raise TooManySteps(f"more than {MOST_PIECES} pieces: accepted: a looser tolerance, an earlier end_time")
 
     def _error(self, values: Array, peak: float, table: Radau) -> float:

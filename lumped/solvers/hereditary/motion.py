@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.solvers.hereditary.march import Piece
+from lumped.solvers.hereditary.march import HereditaryPiece
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.hereditary.radau import Radau
 
@@ -24,7 +24,7 @@ CONVERGED, DIVERGED = 1e-6, 1e100
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class PieceMotion:
     """Times since the start of the piece at its nodes, (N,), and `weights`, (N, N), of integrals over time."""
 
     problem: Hereditary
@@ -32,18 +32,18 @@ class Motion:
     weights: Array
 
     @classmethod
-    def over_root(cls, problem: Hereditary, table: Radau, root: float, length: float) -> Motion:
+    def over_root(cls, problem: Hereditary, table: Radau, root: float, length: float) -> PieceMotion:
         """The piece from `root` over this length in r = sqrt(t)."""
         step = length * table.nodes
         return cls(problem, step * (2.0 * root + step), 2.0 * length * table.integral * (root + step))
 
     @classmethod
-    def to_end(cls, problem: Hereditary, table: Radau, duration: float) -> Motion:
+    def to_end(cls, problem: Hereditary, table: Radau, duration: float) -> PieceMotion:
         """The piece of this duration in the root of the time left: there contact closes smoothly."""
         left = 1.0 - table.nodes
         return cls(problem, duration * (1.0 - left * left), 2.0 * duration * table.integral * left)
 
-    def piece(self, state: Array, guess: float | Array) -> Piece | None:
+    def piece(self, state: Array, guess: float | Array) -> HereditaryPiece | None:
         """The piece from a state, (4 + K,), the acceleration guessed; None where Newton's steps fail."""
         problem, weights = self.problem, self.weights
         modulus = problem.modulus
@@ -74,7 +74,7 @@ class Motion:
                 np.abs(twice @ change) <= CONVERGED**2 * np.abs(depth)
             )
             if rests or size * CONVERGED <= allowed or size**3 <= allowed * before**2:
-                return Piece(self._values(state, a, rise + slope * (twice @ change), answers), step)
+                return HereditaryPiece(self._values(state, a, rise + slope * (twice @ change), answers), step)
             before = size
         return None
 

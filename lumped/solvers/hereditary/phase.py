@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 NEWTON_STEPS, ENDS = 4, 34
 
 
-class Clock(Protocol):
+class PathClock(Protocol):
     """Times of places and places of times, arrays of one shape."""
 
     def time(self, places: Array) -> Array:
@@ -81,14 +81,14 @@ class ByField:
 
 
 @dataclass(frozen=True, eq=False)
-class Phase:
+class HereditaryPhase:
     """A path and its clock; `depth` is the first of its fields depth, velocity, work, force, and of the edge's.
 
     The edge's field is the depth at which an elastic contact would have the present radius.
     """
 
     path: Path
-    clock: Clock
+    clock: PathClock
     depth: int
     edge: int
 

@@ -19,7 +19,7 @@ SHALLOW, WHOLE = 1e-9, 1e-3
 
 
 @dataclass(frozen=True)
-class Scales:
+class HereditaryScales:
     """What one unit of time, velocity, depth and force is, SI; and the elastic load y0, m2, that `unit`
     carries it with.
 
@@ -56,7 +56,7 @@ class Hereditary:
     E_k z_k + eta y'.
     """
 
-    scales: Scales
+    scales: HereditaryScales
     curve: LoadCurve
     modulus: Relaxation
     gravity: float
@@ -78,7 +78,7 @@ class Hereditary:
         taus = tuple(tau / time for tau in modulus.times)
         moduli = tuple(value / unit for value in modulus.moduli)
         plain = Relaxation(modulus.equilibrium / unit, moduli, taus, modulus.viscosity / (unit * time))
-        scales = Scales(time, velocity, mass, unit)
+        scales = HereditaryScales(time, velocity, mass, unit)
         return cls(scales, curve, plain, gravity * time / velocity, shortest / time)
 
     @property

@@ -32,7 +32,7 @@ from lumped.errors import NotReached
 from lumped.result.ending import End
 from lumped.solvers.hereditary import approach as forth
 from lumped.solvers.hereditary.approach import Approach
-from lumped.solvers.hereditary.march import Piece, Settings, Stretch
+from lumped.solvers.hereditary.march import HereditaryPiece, Settings, Stretch
 from lumped.solvers.hereditary.path import Path, falling_zero
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.hereditary.radau import Radau
@@ -71,7 +71,7 @@ class Rebound:
 
 
 @dataclass(frozen=True)
-class Retreat:
+class ReboundPieces:
     """The pieces of a rebound that follows an approach."""
 
     problem: Hereditary
@@ -79,14 +79,14 @@ class Retreat:
     table: Radau
     before: Path | None
 
-    def piece(self, place: float, length: float, state: Array) -> Piece | None:
+    def piece(self, place: float, length: float, state: Array) -> HereditaryPiece | None:
         """The piece of a length at a place, from the state there; None where Newton's steps fail."""
         over, weights = place + length * self.table.nodes, length * self.table.integral
         then = self._then(place, over, weights, state)
         tried = (self._solved(weights, state, then, pace) for pace in self._paces(over))
         return next((found for found in tried if found), None)
 
-    def _solved(self, weights: Array, state: Array, then: Then, pace: Array) -> Piece | None:
+    def _solved(self, weights: Array, state: Array, then: Then, pace: Array) -> HereditaryPiece | None:
         """Newton's steps for the pace p = dt/ds at the nodes, which lets nothing lack."""
         for step in range(1, NEWTON_STEPS + 1):
             now = Trial(self.problem, self.past.turn, weights, state, then, pace)
@@ -98,7 +98,7 @@ class Retreat:
             if size <= CONVERGED * scale or float(np.abs(weights @ change).max()) <= ROUNDING * now.time[-1]:
                 values = Trial(self.problem, self.past.turn, weights, state, then, pace).values()
                 forth = bool(np.all(np.diff(values[TIME]) >= -ROUNDING * values[TIME, -1]))
-                return Piece(values, step) if forth else None
+                return HereditaryPiece(values, step) if forth else None
         return None
 
     def _paces(self, over: Array) -> Iterator[Array]:
@@ -176,7 +176,7 @@ def rebound(
     if start[FORCE] <= problem.gravity * (1.0 + BORNE):
         return Rebound(Path.of([-end, -end * (1.0 - 1e-12)], [np.repeat(start[:, None], settings.points + 1, 1)],
                                settings.table), End.SECOND_APPROACH, 0)  # fmt: skip
-    retreat = Retreat(problem, Past(inward.path, forth.VELOCITY, problem.fadings), settings.table, known)
+    retreat = ReboundPieces(problem, Past(inward.path, forth.VELOCITY, problem.fadings), settings.table, known)
 
     def over(values: Array) -> bool:
         return bool(values[TIME, -1] >= end_time)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lumped.solvers.hereditary.approach import DEPTH, FORCE, VELOCITY
 from lumped.solvers.hereditary.march import Settings, tail
-from lumped.solvers.hereditary.motion import Motion
+from lumped.solvers.hereditary.motion import PieceMotion
 from lumped.solvers.hereditary.path import Path
 from lumped.solvers.hereditary.problem import Hereditary
 
@@ -58,7 +58,7 @@ def shut(
     power, unit = _power(problem, state)
     steep, before = steep or unit * _mean_modulus(problem, duration), None
     for _ in range(TRIES):
-        piece = Motion.to_end(problem, settings.table, duration).piece(state, a)
+        piece = PieceMotion.to_end(problem, settings.table, duration).piece(state, a)
         if piece is None:
             return None
         steps += piece.steps

@@ -5,26 +5,26 @@ from __future__ import annotations
 from lumped.result.ending import End
 from lumped.scene.scales import stiffest_impact
 from lumped.scene.scene import Scene
-from lumped.solvers.mdr.march import Track, march
+from lumped.solvers.mdr.march import RowTrack, march
 from lumped.solvers.mdr.pace import Adaptive
-from lumped.solvers.mdr.row import Problem
+from lumped.solvers.mdr.row import RowProblem
 
 MOST_STEPS = 10_000
 # An end time is near a turn that comes before so many times it, and not more than so many steps before it.
 FURTHER, NEAR = 1.2, 1.5
 
 
-def problem_of(scene: Scene) -> Problem:
+def problem_of(scene: Scene) -> RowProblem:
     """What the row of springs needs of a scene."""
-    return Problem(scene.profile, scene.contact_modulus, scene.reduced_mass, scene.velocity, scene.gravity)
+    return RowProblem(scene.profile, scene.contact_modulus, scene.reduced_mass, scene.velocity, scene.gravity)
 
 
-def coarse(problem: Problem, end_time: float, elements: int) -> Track:
+def coarse(problem: RowProblem, end_time: float, elements: int) -> RowTrack:
     """One march with steps by their error and by the travel of the edge, 1/elements. Raises NotReached."""
     return march(problem, end_time, pace_of(problem, end_time, elements), MOST_STEPS)
 
 
-def coarse_beyond(problem: Problem, end_time: float, elements: int) -> tuple[Track, float]:
+def coarse_beyond(problem: RowProblem, end_time: float, elements: int) -> tuple[RowTrack, float]:
     """One march with when it stops, s: at the end time or, where that lies within some steps of the turn, beyond both.
 
     Finer marches than this turn at other times: if all go further none of them is cut short of the turn, or by it.
@@ -44,7 +44,7 @@ def coarse_beyond(problem: Problem, end_time: float, elements: int) -> tuple[Tra
     return (beyond, later) if beyond.end is End.TIME else (track, end_time)
 
 
-def pace_of(problem: Problem, end_time: float, elements: int) -> Adaptive:
+def pace_of(problem: RowProblem, end_time: float, elements: int) -> Adaptive:
     """Its pace."""
     reach = stiffest_impact(problem.shape, problem.modulus, problem.mass, problem.velocity).contact_radius
     first = float(problem.shape.load_curve.depth(reach / elements)) / problem.velocity

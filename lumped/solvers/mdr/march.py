@@ -16,7 +16,7 @@ from lumped.result.ending import AT_REST, End
 from lumped.solvers.mdr.memory import Fading, fadings
 from lumped.solvers.mdr.pace import Pace
 from lumped.solvers.mdr.retreat import retreat
-from lumped.solvers.mdr.row import Instant, Place, Problem, Row, Step, followed, followed_bend
+from lumped.solvers.mdr.row import Instant, Place, RowProblem, RowStep, SpringsInRow, followed, followed_bend
 from lumped.solvers.mdr.springs import Springs, Values, stretched, yielding
 
 LOCATING_STEPS = 60
@@ -34,13 +34,13 @@ GAUSS = (0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0))
 class Inward:
     """The row after an approach, its instants, and how the impact ended in it; None: with the turn."""
 
-    row: Row
+    row: SpringsInRow
     instants: list[Instant]
     end: End | None
 
 
 @dataclass(frozen=True)
-class Track:
+class RowTrack:
     """Instants of the approach, and of the rebound, which starts with the last of them; the end; energies there.
 
     `spent` in dashpots and `held` in springs, pressed or released, J. `beyond`: whole steps past an end by time.
@@ -54,7 +54,7 @@ class Track:
     beyond: list[Instant]
 
 
-def march(problem: Problem, end_time: float, pace: Pace, most: int, at_rest: float = AT_REST) -> Track:
+def march(problem: RowProblem, end_time: float, pace: Pace, most: int, at_rest: float = AT_REST) -> RowTrack:
     """Follow one impact until separation or `end_time`, s.
 
     `pace` is that of the approach. Raises NotReached, TooManySteps after `most` steps of it.
@@ -62,18 +62,18 @@ def march(problem: Problem, end_time: float, pace: Pace, most: int, at_rest: flo
     return rebound(approach(problem, end_time, pace, most, at_rest), end_time)
 
 
-def approach(problem: Problem, end_time: float, pace: Pace, most: int, at_rest: float = AT_REST) -> Inward:
+def approach(problem: RowProblem, end_time: float, pace: Pace, most: int, at_rest: float = AT_REST) -> Inward:
     """The approach, to where the velocity is zero, or has died away in a fluid. Raises as `march` does."""
-    row = Row(problem)
+    row = SpringsInRow(problem)
     touch = Instant(0.0, 0.0, problem.velocity, problem.gravity, 0.0, 0.0)
     slow = at_rest * problem.velocity if problem.is_fluid and problem.gravity == 0.0 else 0.0
-    growing = Phase(lambda now, h: grown(row, now, h), row.take, lambda step: step.now.velocity)
+    growing = RowPhase(lambda now, h: grown(row, now, h), row.take, lambda step: step.now.velocity)
     instants, turned = growing.run(touch, pace, end_time, slow, most)
     rests = turned is None and instants[-1].velocity < slow
     return Inward(row, instants, None if turned else End.REST if rests else End.TIME)
 
 
-def rebound(inward: Inward, end_time: float) -> Track:
+def rebound(inward: Inward, end_time: float) -> RowTrack:
     """What follows an approach: until the spring at the axis carries no force, or gravity turns the striker again."""
     row, turn = inward.row, inward.instants[-1]
     if inward.end:
@@ -84,23 +84,23 @@ def rebound(inward: Inward, end_time: float) -> Track:
     return _track(inward, found.instants, found.end, found.beyond)
 
 
-def _track(inward: Inward, outward: list[Instant], end: End, beyond: list[Instant] | None = None) -> Track:
+def _track(inward: Inward, outward: list[Instant], end: End, beyond: list[Instant] | None = None) -> RowTrack:
     row, last = inward.row, (outward or inward.instants)[-1]
     held = row.springs.held(row.problem.modulus, last.depth, row.even)
-    return Track(inward.instants, outward, end, 2.0 * row.spent, 2.0 * (row.released + held), beyond or [])
+    return RowTrack(inward.instants, outward, end, 2.0 * row.spent, 2.0 * (row.released + held), beyond or [])
 
 
 @dataclass(frozen=True)
-class Phase:
+class RowPhase:
     """How to try a step, how to take it, and what is `left` of the phase after it: at zero it is over."""
 
-    attempt: Callable[[Instant, float], Step]
-    take: Callable[[Step], None]
-    left: Callable[[Step], float]
+    attempt: Callable[[Instant, float], RowStep]
+    take: Callable[[RowStep], None]
+    left: Callable[[RowStep], float]
 
     def run(
         self, start: Instant, pace: Pace, end_time: float, slow: float, most: int
-    ) -> tuple[list[Instant], Step | None]:
+    ) -> tuple[list[Instant], RowStep | None]:
         """Steps until nothing is left, until `end_time`, or until the velocity has died away below `slow`.
 
         Returns the instants, and the step after which nothing was left (None in the other cases). Raises
@@ -127,7 +127,7 @@ class Phase:
             f"contact had not ended after {most} steps: accepted: a looser tolerance, an earlier end_time"
         )
 
-    def _located(self, now: Instant, beyond: Step, level: float) -> Step:
+    def _located(self, now: Instant, beyond: RowStep, level: float) -> RowStep:
         """The step from `now`, with `level` left, that ends with nothing left: secant in a bracket, Illinois."""
         low, high = 0.0, beyond.now.time - now.time
         miss_high = self.left(beyond)
@@ -154,7 +154,7 @@ class Phase:
         return step
 
 
-def grown(row: Row, now: Instant, h: float) -> Step:
+def grown(row: SpringsInRow, now: Instant, h: float) -> RowStep:
     """A step of length h, s, not yet taken. Raises NotReached."""
     modulus = row.problem.modulus
     faded = fadings(modulus, h)
@@ -172,11 +172,11 @@ def grown(row: Row, now: Instant, h: float) -> Step:
     lately = [k - before * fade.left for k, before, fade in zip(kept, row.kept, faded, strict=True)]
     instant = row.instant(now.time + h, depth, velocity, edge, springs, axis, kept)
     place = Place(instant.time, depth, edge, axis, joined, lately)
-    return Step(instant, springs, even, axis, kept, spent, 0.0, place)
+    return RowStep(instant, springs, even, axis, kept, spent, 0.0, place)
 
 
 def _kept(
-    row: Row, now: Instant, after: tuple[float, float, float], axis: Values, faded: list[Fading], h: float
+    row: SpringsInRow, now: Instant, after: tuple[float, float, float], axis: Values, faded: list[Fading], h: float
 ) -> Values:
     """What all pressed springs lack, after a step, to as many like the one at the axis; with `after` the velocity and
     the edge then, and the mean of their product over the step: by so much the springs are stretched.
@@ -187,7 +187,7 @@ def _kept(
     return [edge * z - y for z, y in zip(axis, load, strict=True)]
 
 
-def _rate(row: Row, now: Instant, h: float, faded: list[Fading]) -> tuple[float, float, float]:
+def _rate(row: SpringsInRow, now: Instant, h: float, faded: list[Fading]) -> tuple[float, float, float]:
     """The rate at which the depth grows: m (v1 - v0) = m g h - int F dt with v0 + v1 twice the rate.
 
     With it what `_touched` says.
@@ -211,7 +211,7 @@ def _rate(row: Row, now: Instant, h: float, faded: list[Fading]) -> tuple[float,
     raise NotReached("the velocity within one step of the spring row did not converge")
 
 
-def _touched(row: Row, now: Instant, h: float, rate: float) -> tuple[float, float]:
+def _touched(row: SpringsInRow, now: Instant, h: float, rate: float) -> tuple[float, float]:
     """Width of the springs that a step touches, m, and for how long they are pressed, s, by their mean profile."""
     curve, depth = row.problem.shape.load_curve, now.depth + h * rate
     width = float(curve.contact_radius(depth)) - now.edge if rate > 0.0 else 0.0

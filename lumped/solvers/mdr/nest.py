@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from lumped.errors import NotReached
 from lumped.numbers.interpolation import local
 from lumped.result.ending import End
-from lumped.solvers.mdr.march import Inward, Track, approach, rebound
+from lumped.solvers.mdr.march import Inward, RowTrack, approach, rebound
 from lumped.solvers.mdr.pace import Adaptive, Prescribed
-from lumped.solvers.mdr.row import Instant, Problem
+from lumped.solvers.mdr.row import Instant, RowProblem
 
 Array = NDArray[np.float64]
 ALIGNING_TRIES, LEAST_SLOPE = 12, -0.3
@@ -55,14 +55,14 @@ class Nest:
     `cut`: when the history is to end, s, where marches go on beyond it.
     """
 
-    problem: Problem
+    problem: RowProblem
     end_time: float
     grid: Grid
     rests: bool = False
     cut: float | None = None
 
     @classmethod
-    def around(cls, problem: Problem, end_time: float, track: Track, pace: Adaptive, intervals: int) -> Nest:
+    def around(cls, problem: RowProblem, end_time: float, track: RowTrack, pace: Adaptive, intervals: int) -> Nest:
         """The grid of a coarse march at this pace, denser where the rebound needs it. Raises NotReached.
 
         It has `intervals` where the march has the steps that its pace has elements, else more or fewer in proportion.
@@ -109,7 +109,7 @@ class Nest:
             turn -= missed / slope
         raise NotReached("finer and coarser steps of the spring row do not follow the same course of events")
 
-    def _level(self, track: Track, times: list[float], steps: int) -> Level:
+    def _level(self, track: RowTrack, times: list[float], steps: int) -> Level:
         steps += len(track.rebound) + len(track.beyond)
         outward = [*track.rebound[:-1], *track.beyond] if track.beyond else track.rebound
         ended = track if self.cut is None else self._ended(times, self.cut)
@@ -120,7 +120,7 @@ class Nest:
         stop = np.array(last, dtype=float)
         return Level(_columns(track.approach), _columns(outward), stop, end, last.time, steps, energies)
 
-    def _ended(self, times: list[float], cut: float) -> Track:
+    def _ended(self, times: list[float], cut: float) -> RowTrack:
         """The march of these steps to where the history ends."""
         return rebound(approach(self.problem, cut, Prescribed(times), 2 * len(times), at_rest=0.0), cut)
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from lumped.errors import NotReached
 from lumped.result.ending import End
 from lumped.solvers.mdr.memory import Fading, fadings
-from lumped.solvers.mdr.row import Instant, Row, Step, followed, left
+from lumped.solvers.mdr.row import Instant, RowStep, SpringsInRow, followed, left
 from lumped.solvers.mdr.springs import Values, stretched, yielding
 
 TRIES, CLOSE, WIDER = 100, 1e-7, 4.0
@@ -25,13 +25,13 @@ LEAST = 1e-200
 class Retreat(NamedTuple):
     """The row when the rebound ends, its instants from the turn on, how it ended; whole steps past an end by time."""
 
-    row: Row
+    row: SpringsInRow
     instants: list[Instant]
     end: End
     beyond: list[Instant]
 
 
-def retreat(row: Row, start: Instant, end_time: float) -> Retreat:
+def retreat(row: SpringsInRow, start: Instant, end_time: float) -> Retreat:
     """From the turn until the springs at the axis leave, gravity turns the striker, or `end_time`, s.
 
     Raises NotReached.
@@ -55,7 +55,7 @@ def retreat(row: Row, start: Instant, end_time: float) -> Retreat:
     return Retreat(row, track, End.SEPARATED, [])
 
 
-def _beyond(row: Row, now: Instant, paces: list[float]) -> list[Instant]:
+def _beyond(row: SpringsInRow, now: Instant, paces: list[float]) -> list[Instant]:
     """A few whole steps from an instant on: limits of marches are smooth at these, not within a step."""
     track, paces = [now], list(paces)
     while len(row.places) > 1 and len(track) <= WHOLE_STEPS:
@@ -70,7 +70,7 @@ def _beyond(row: Row, now: Instant, paces: list[float]) -> list[Instant]:
     return track[1:]
 
 
-def _next(row: Row, paces: list[float]) -> float:
+def _next(row: SpringsInRow, paces: list[float]) -> float:
     """How long a step will take: as the last three have, over the times that the approach took for their ground."""
     last = paces[-1]
     before = paces[-2] if len(paces) > 1 else last
@@ -78,7 +78,7 @@ def _next(row: Row, paces: list[float]) -> float:
     return _inward(row) * min(max(3.0 * (last - before) + once, 0.5 * last), 2.0 * last)
 
 
-def _inward(row: Row) -> float:
+def _inward(row: SpringsInRow) -> float:
     """The time which the approach took for the ground over which the edge runs back next."""
     return row.places[-1].time - row.places[-2].time
 
@@ -138,7 +138,7 @@ class Attempt(NamedTuple):
 class Shrinking:
     """Steps of any length from an instant; the springs of that ground are pressed for a share of it."""
 
-    def __init__(self, row: Row, now: Instant) -> None:
+    def __init__(self, row: SpringsInRow, now: Instant) -> None:
         modulus, last = row.problem.modulus, row.places[-1]
         self.row, self.now, self.place = row, now, row.places[-2]
         shares = left(modulus, now.time - last.time)
@@ -180,7 +180,7 @@ class Shrinking:
         modulus = self.row.problem.modulus
         return modulus.equilibrium * (depth - self.place.depth) + modulus.viscosity * velocity
 
-    def step(self, tried: Attempt) -> Step:
+    def step(self, tried: Attempt) -> RowStep:
         """The step which was tried, not yet taken."""
         row, now, (h, rate, velocity, faded, shortly, axis, _) = self.row, self.now, tried
         modulus = row.problem.modulus
@@ -193,4 +193,4 @@ class Shrinking:
         even = stretched(modulus, row.even, faded, rate)
         kept = [k * fade.left for k, fade in zip(self.kept, faded, strict=True)]
         instant = row.instant(now.time + h, now.depth + h * rate, velocity, self.place.edge, springs, axis, kept)
-        return Step(instant, springs, even, axis, kept, spent, released)
+        return RowStep(instant, springs, even, axis, kept, spent, released)

@@ -19,7 +19,7 @@ from lumped.solvers.mdr.springs import Springs, Values, none
 
 
 @dataclass(frozen=True)
-class Problem:
+class RowProblem:
     """Profile, E*(t) in Pa, mass in kg, velocity at touch in m/s, gravity in m/s2."""
 
     shape: Shape
@@ -59,7 +59,7 @@ class Place(NamedTuple):
     kept: Values
 
 
-class Step(NamedTuple):
+class RowStep(NamedTuple):
     """A step not yet taken: where it leads, the springs pressed then, energies spent in dashpots and released in it, J.
 
     Of the motion whose velocity runs evenly from one end to the other `axis` is what the spring at the axis carries
@@ -77,10 +77,10 @@ class Step(NamedTuple):
     place: Place | None = None
 
 
-class Row:
+class SpringsInRow:
     """The state after the steps taken, the places that the edge has passed, and energies of one half so far, J."""
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: RowProblem) -> None:
         nothing = [0.0] * len(problem.modulus.moduli)
         self.problem = problem
         self.springs = none(problem.modulus)
@@ -88,13 +88,13 @@ class Row:
         self.places = [Place(0.0, 0.0, 0.0, nothing, self.springs, nothing)]
         self.spent = self.released = 0.0
 
-    def copy(self) -> Row:
+    def copy(self) -> SpringsInRow:
         """The same state, to go on from on its own."""
         other = copy(self)
         other.places = list(self.places)
         return other
 
-    def take(self, step: Step) -> None:
+    def take(self, step: RowStep) -> None:
         """Take a step: of the approach where it has a place, else of the rebound."""
         self.springs, self.even, self.axis, self.kept = step.springs, step.even, step.axis, step.kept
         self.spent += step.spent

@@ -11,7 +11,7 @@ from lumped.errors import TooManySteps
 from lumped.result.ending import AT_REST, End
 from lumped.solvers.point.bodies import Bodies, PointLaw, Stage, State, Step
 from lumped.solvers.point.nodes import STAGES
-from lumped.solvers.point.phase import Event, March, Phase
+from lumped.solvers.point.phase import Event, PointMarch, PointPhase
 
 Array = NDArray[np.float64]
 MOST_TURNS = 2000
@@ -23,7 +23,7 @@ FAINTEST_EXIT = 1e-20
 class Contact:
     """The phases of one contact and how it ended."""
 
-    phases: tuple[Phase, ...]
+    phases: tuple[PointPhase, ...]
     end: End
 
     @property
@@ -64,10 +64,10 @@ def contact(
     stage = Stage(start.rate > 0.0, start.depth, abs(start.rate) or bodies.velocity, start.depth)
     length = tolerance ** (law.grading(stage) / STAGES) * scale
     corners = law.corners(stage)
-    phases: list[Phase] = []
+    phases: list[PointPhase] = []
     for _ in range(MOST_TURNS):
         events = _events(law, stage, exit_rule) | _corner(stage, corners)
-        march = March(law, stage, bodies, events, until, tolerance * bodies.velocity)
+        march = PointMarch(law, stage, bodies, events, until, tolerance * bodies.velocity)
         phase = march.phase(start, time, length)
         phases.append(phase)
         start, time, length = phase.last.end, phase.end_time, phase.last.length

@@ -27,8 +27,8 @@ from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, Stage
 from lumped.solvers.point.contact import Contact, following, leaving
 from lumped.solvers.point.nodes import STAGES, paced, radau
 from lumped.solvers.point.outcome import Outcome
-from lumped.solvers.point.phase import Phase
-from lumped.solvers.point.track import Row, Track, legendre_terms
+from lumped.solvers.point.phase import PointPhase
+from lumped.solvers.point.track import PointRow, PointTrack, legendre_terms
 
 Array = NDArray[np.float64]
 # Estimates are to first order, and tell the largest of a smooth error from its values at some points.
@@ -52,7 +52,7 @@ class HalfWidths(NamedTuple):
     impulse: float
 
 
-def half_widths(track: Track, bodies: Bodies, exit_rule: str, outcome: Outcome, impulse: float) -> HalfWidths:
+def half_widths(track: PointTrack, bodies: Bodies, exit_rule: str, outcome: Outcome, impulse: float) -> HalfWidths:
     """Of the first contact of a track, whose law remembers nothing of its path but turns, and of its impulse, N s."""
     one = track.motion.contacts[0]
     found = deviations(track, bodies, one)
@@ -75,7 +75,7 @@ def half_widths(track: Track, bodies: Bodies, exit_rule: str, outcome: Outcome, 
     )
 
 
-def _end(track: Track, bodies: Bodies, exit_rule: str, last: Deviation) -> tuple[float, float]:
+def _end(track: PointTrack, bodies: Bodies, exit_rule: str, last: Deviation) -> tuple[float, float]:
     """By how much a contact may end at another time, s, and with another rate, m/s, rounding of time included."""
     one = track.motion.contacts[0]
     depth, rate, force = (float(part[-1, -1]) for part in last[5:])
@@ -142,7 +142,7 @@ class Deviation(NamedTuple):
     lacking_force: Array
 
 
-def deviations(track: Track, bodies: Bodies, one: Contact) -> list[Deviation]:
+def deviations(track: PointTrack, bodies: Bodies, one: Contact) -> list[Deviation]:
     """Those of the phases of the first contact of a track, whose law remembers nothing of its path but turns."""
     found: list[Deviation] = []
     start, stage = (0.0, 0.0), one.phases[0].stage
@@ -154,7 +154,9 @@ def deviations(track: Track, bodies: Bodies, one: Contact) -> list[Deviation]:
     return found
 
 
-def _of(law: PointLaw, bodies: Bodies, phase: Phase, row: Row, start: tuple[float, float], stage: Stage) -> Deviation:
+def _of(
+    law: PointLaw, bodies: Bodies, phase: PointPhase, row: PointRow, start: tuple[float, float], stage: Stage
+) -> Deviation:
     """That of one phase which begins with the deviations `start`; `stage` as it should be."""
     terms, slopes = _terms()
     share, pace = paced(NODES.places, *(what[:, None] for what in (row.powers, row.begun, row.mirrored)))

@@ -15,7 +15,7 @@ FAINTEST = 1e-6
 
 
 @dataclass(frozen=True)
-class Motion:
+class PointMotion:
     """Contacts in order; between two of them depth is that of free flight. `gravity`: m/s2 towards the target."""
 
     contacts: tuple[Contact, ...]
@@ -32,7 +32,7 @@ class Motion:
         return sum(len(phase.steps) for one in self.contacts for phase in one.phases)
 
 
-def motion(law: PointLaw, bodies: Bodies, exit_rule: str, impacts: int, until: float, tolerance: float) -> Motion:
+def motion(law: PointLaw, bodies: Bodies, exit_rule: str, impacts: int, until: float, tolerance: float) -> PointMotion:
     """Up to `impacts` contacts, the first at time zero, followed until `until`, s. Raises TooManySteps."""
     state, time, contacts = law.touch(bodies), 0.0, list[Contact]()
     while len(contacts) < impacts:
@@ -47,4 +47,4 @@ def motion(law: PointLaw, bodies: Bodies, exit_rule: str, impacts: int, until: f
         time, state = contacts[-1].end_time + again[0], again[1]
         if abs(state.rate) < FAINTEST * bodies.velocity:
             break
-    return Motion(tuple(contacts), bodies.gravity)
+    return PointMotion(tuple(contacts), bodies.gravity)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from lumped.result.ending import End
 from lumped.solvers.point.contact import Contact
-from lumped.solvers.point.phase import Phase
-from lumped.solvers.point.track import Track
+from lumped.solvers.point.phase import PointPhase
+from lumped.solvers.point.track import PointTrack
 
 Array = NDArray[np.float64]
 # Half the widths of the quartics through which a peak is found, in that of its surroundings, and their points.
@@ -32,7 +32,7 @@ class Outcome(NamedTuple):
     peak_depth: float
 
 
-def outcome_of(track: Track, one: Contact) -> Outcome:
+def outcome_of(track: PointTrack, one: Contact) -> Outcome:
     """The outcome of one contact of a track."""
     separated = one.end is End.SEPARATED
     peak_time, peak_force = peak_of(track, one)
@@ -47,7 +47,7 @@ def outcome_of(track: Track, one: Contact) -> Outcome:
     )
 
 
-def peak_of(track: Track, one: Contact) -> tuple[float, float]:
+def peak_of(track: PointTrack, one: Contact) -> tuple[float, float]:
     """Time, s, and height, N, of the highest force of a contact."""
     steps = [(phase, step) for phase in one.phases for step in phase.steps]
     ends = one.start_time + np.cumsum([step.length for _, step in steps])
@@ -61,7 +61,7 @@ def peak_of(track: Track, one: Contact) -> tuple[float, float]:
     return max((one.start_time, touch), _vertex(track, phase, places), key=lambda peak: peak[1])
 
 
-def _vertex(track: Track, phase: Phase, places: Array) -> tuple[float, float]:
+def _vertex(track: PointTrack, phase: PointPhase, places: Array) -> tuple[float, float]:
     """The highest force between the first and the last of ascending places: the top of ever narrower quartics."""
     values = track.pressed(phase, places)[2]
     i = int(np.argmax(values))

@@ -39,7 +39,7 @@ class Event(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Phase:
+class PointPhase:
     """Steps of one stage, beginning at `start_time`, and the name of the event that ended it; None: the time did."""
 
     stage: Stage
@@ -62,7 +62,7 @@ class Phase:
 
 
 @dataclass(frozen=True)
-class March:
+class PointMarch:
     """What one stage is marched with: the events by name, the last time, s, and the allowed roughness, m/s."""
 
     law: PointLaw
@@ -72,7 +72,7 @@ class March:
     until: float
     allowed: float
 
-    def phase(self, start: State, time: float, length: float) -> Phase:
+    def phase(self, start: State, time: float, length: float) -> PointPhase:
         """March from `start` with a first step of about `length`, s. Raises TooManySteps."""
         steps: list[Step] = []
         now, state, guess = time, start, np.full(STAGES, self.bodies.gravity)
@@ -92,7 +92,7 @@ class March:
             now, state = now + step.length, step.end
             event = event or ("rest" if self._rests(state) else None)
             if event is not None or now >= self.until * (1.0 - PRECISE):
-                return Phase(self.stage, time, tuple(steps), event)
+                return PointPhase(self.stage, time, tuple(steps), event)
             length = step.length * nodes.following(_ratio(rough, power))
             guess = step.last_acceleration + step.last_slope(step.gain / step.nodes.pace) * length * NODES.points
         raise TooManySteps(

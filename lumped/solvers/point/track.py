@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from lumped.result.ending import End
 from lumped.solvers.point.bodies import PointLaw, Step
 from lumped.solvers.point.contact import Contact
-from lumped.solvers.point.motion import Motion
+from lumped.solvers.point.motion import PointMotion
 from lumped.solvers.point.nodes import STAGES, place_of
-from lumped.solvers.point.phase import Phase
+from lumped.solvers.point.phase import PointPhase
 
 Array = NDArray[np.float64]
 # How near to a touch the rows begin, as a power of 1/2, in the length of its step.
@@ -25,7 +25,7 @@ IN_FLIGHT = 17
 EARLY = 1e-6
 
 
-class Row(NamedTuple):
+class PointRow(NamedTuple):
     """The steps of a stage side by side, n of them: starts and lengths, s, and what their nodes are, shape (n,).
 
     `depths` and `rates` are those at their starts. `series`, shape (n, 2, s + 1), are the Legendre coefficients of
@@ -43,7 +43,7 @@ class Row(NamedTuple):
     graded: bool
 
     @classmethod
-    def of(cls, phase: Phase) -> Row:
+    def of(cls, phase: PointPhase) -> PointRow:
         """Those of a phase."""
         lengths = np.array([step.length for step in phase.steps])
         starts = phase.times[:-1]
@@ -56,11 +56,11 @@ class Row(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Track:
+class PointTrack:
     """A motion under its law, dense in time."""
 
     law: PointLaw
-    motion: Motion
+    motion: PointMotion
 
     @cached_property
     def times(self) -> Array:
@@ -99,7 +99,7 @@ class Track:
         return found
 
     @cached_property
-    def _phases(self) -> list[Phase]:
+    def _phases(self) -> list[PointPhase]:
         return [phase for contact in self.motion.contacts for phase in contact.phases]
 
     def touching(self, one: Contact) -> float:
@@ -108,13 +108,13 @@ class Track:
         depth, rate = start + max(one.first.depth, 0.0), start + one.first.rate
         return float(self.law.between(phase.steps, np.zeros(1, dtype=np.intp), start, depth, rate, phase.stage)[0])
 
-    def row(self, phase: Phase) -> Row:
+    def row(self, phase: PointPhase) -> PointRow:
         """The steps of one of its phases."""
         return self._rows[id(phase)]
 
     @cached_property
-    def _rows(self) -> dict[int, Row]:
-        return {id(phase): Row.of(phase) for phase in self._phases}
+    def _rows(self) -> dict[int, PointRow]:
+        return {id(phase): PointRow.of(phase) for phase in self._phases}
 
     def _fly(self, found: Array, times: Array, contact: Contact) -> None:
         """Free flight, or rest, from the end of a contact on, until a later one overwrites it."""
@@ -130,7 +130,7 @@ class Track:
         found[1, after] = last.rate + gravity * elapsed
         found[2, after] = 0.0
 
-    def pressed(self, phase: Phase, times: Array) -> Array:
+    def pressed(self, phase: PointPhase, times: Array) -> Array:
         """The columns at times within one of its phases, shape (3, n)."""
         row = self.row(phase)
         which = np.maximum(np.searchsorted(row.starts, times, side="right") - 1, 0)

@@ -30,7 +30,7 @@ NOTHING = Polynomial([0.0])
 
 
 @dataclass(frozen=True)
-class Piece:
+class RodPiece:
     """What leaves between two echoes, over the striker's velocity at touch: ``shift`` + exp(-s) ``factor``(s)."""
 
     shift: float
@@ -41,7 +41,7 @@ class Piece:
         return np.asarray(self.shift + np.exp(-np.asarray(s)) * self.factor(s))
 
 
-STILL = Piece(0.0, NOTHING)
+STILL = RodPiece(0.0, NOTHING)
 
 
 @dataclass(frozen=True)
@@ -60,11 +60,11 @@ class FlatImpact:
         return self.mass / self.waves.impedance
 
     @cached_property
-    def pieces(self) -> tuple[tuple[Piece, ...], float, bool]:
+    def pieces(self) -> tuple[tuple[RodPiece, ...], float, bool]:
         """The pieces, the time at which contact ends or is no longer followed, s, and whether it ended."""
         weight = self.gravity * self.unit / self.velocity
         alpha, echo = self.waves.delay / self.unit, self.waves.echo
-        found = [Piece(weight, Polynomial([1.0 - weight]))]
+        found = [RodPiece(weight, Polynomial([1.0 - weight]))]
         while len(found) <= MOST_ECHOES:
             begin = 0.0 if len(found) == 1 else (len(found) - 1) * self.waves.delay
             longest = min(alpha, (self.until - begin) / self.unit)
@@ -76,7 +76,7 @@ class FlatImpact:
             found.append(_next(found, alpha, echo, weight))
         raise NotReached(f"rod: more than {MOST_ECHOES} echoes; accepted: a heavier rod, an earlier motion.end_time")
 
-    def _leaves(self, pieces: list[Piece], longest: float) -> float | None:
+    def _leaves(self, pieces: list[RodPiece], longest: float) -> float | None:
         """When the force of the last piece first falls to zero, in its own time; None where it does not."""
         now, before = pieces[-1], pieces[-2] if len(pieces) > 1 else STILL
         reach = longest if math.isfinite(longest) else 1.0
@@ -135,11 +135,11 @@ class FlatImpact:
         return depth
 
 
-def _next(found: list[Piece], alpha: float, echo: float, weight: float) -> Piece:
+def _next(found: list[RodPiece], alpha: float, echo: float, weight: float) -> RodPiece:
     last, before = found[-1], found[-2] if len(found) > 1 else STILL
     factor = (-echo * (last.factor.deriv() - 2.0 * last.factor)).integ()
     # the shift of a piece keeps p - echo q = weight
     shift = weight + echo * last.shift
     velocity = float(last(alpha) + echo * before(alpha))
     start = velocity - echo * float(last(0.0))
-    return Piece(shift, factor + (start - shift))
+    return RodPiece(shift, factor + (start - shift))

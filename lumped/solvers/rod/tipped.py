@@ -26,7 +26,7 @@ STRIKER, SPEED, END = range(3)
 
 
 @dataclass(frozen=True)
-class Scales:
+class RodScales:
     """Depth, m, and time, s, of the elastic impact on a body that sends no waves."""
 
     depth: float
@@ -47,7 +47,7 @@ class TippedImpact:
     velocity: float
     gravity: float
     until: float
-    scales: Scales
+    scales: RodScales
     rtol: float
     longest: float = LONGEST
 

@@ -8,7 +8,7 @@ from lumped.solvers.point.bodies import Bodies, State
 from lumped.solvers.point.hereditary import HereditaryLoad
 
 
-class Rule(Protocol):
+class MemoryRule(Protocol):
     """A module of this folder."""
 
     def returned(self, load: HereditaryLoad, bodies: Bodies, last: State) -> tuple[float, State] | None:
