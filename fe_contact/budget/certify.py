@@ -61,6 +61,8 @@ LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 200.0, "far_radi
 CAUSES = ("mesh", "penalty", "time_step", "far_field")
 OUTSIDE = ("in", "out")  # terms of the energy account that the striker knows
 LOST = ("contact", "numerical", "residual")  # terms that are zero but for errors
+ROWS_ORDER = 3  # of the five that forces between the rows of a curve have, where half and a quarter of them show it
+PEAKS = ("peak_force", "peak_time", "peak_depth")  # which lie between rows
 FALLS = 0.7  # share of a jitter which half the step leaves, if the step is its cause
 MOST_APART = 1.5  # durations by different steps that tell of one and the same end
 ROUNDING = 1e-9  # of a solve of nearly incompressible bodies
@@ -89,8 +91,8 @@ class Budget:
 
     def error(self, name: str, cause: str) -> float:
         """Error of a quantity by one cause, in its unit; infinite where a variation failed."""
-        reading = self.curve.end_spread if (name, cause) == ("duration", "time_step") else 0.0
-        return reading + sum(_error(change, name) for change in self.changes[cause])
+        spread = SAFETY * self.curve.peak_spread.get(name, 0.0) if name != "duration" else self.curve.end_spread
+        return (spread if cause == "time_step" else 0.0) + sum(_error(change, name) for change in self.changes[cause])
 
     def total(self, name: str) -> float:
         """Error bar of a quantity, in its unit."""
@@ -167,6 +169,7 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[C
     curve = partial(runs.curve, number)
     surface = runs.surface(numerics)
     steps = _time_steps(curve, numerics, isinstance(surface, FlatEnd))
+    steps = replace(steps, value=steps.value.with_peak_spread())
     if alone and isinstance(surface, FlatEnd):
         held = _by_stiffness(runs, steps.value, surface, numerics)
         return steps.value, held | {"time_step": (*steps.changes, *steps.jitter)}
@@ -280,11 +283,26 @@ def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics, f
     change = Change(value, before, least, weights, quarter.duration * float(quarter.x[UNSEEN]) ** 2)
     shares = {name: share / KEPT_OF_FORCE for name, share in KEPT.items()}
     kept = Change(fine, half, KEPT_OF_FORCE * trusted.kept, shares)
-    end = {} if value.separated else {"peak_force": UNORDERED}  # at a cut-off, where no later step evens it out
-    jitter, finer, coarser = (Change(one, one.thinned(), 1.0, end) for one in (value, fine, half))  # its own is largest
+    jitter, finer, coarser = (Change(one, one.thinned(), 1.0) for one in (value, fine, half))  # its own is largest
+    jitter = replace(jitter, weights=_rows(jitter))
     falls = finer.history < FALLS * coarser.history
     changes = (change, kept) if trusted.kept else (change,)
     return _TimeSteps(value, changes, (jitter,), numerics.steps // 4, falls)
+
+
+def _rows(jitter: Change) -> dict[str, float]:
+    """What a change to every other row weighs, by peak: where nothing jitters it is what lies between the rows.
+
+    A quarter of the rows shows that: in a force that jitters the change does not grow with their distance.
+    """
+    if not jitter.first.separated:  # at a cut-off no later step evens it out
+        return {"peak_force": UNORDERED}
+    half, ordered = jitter.second, 2**ROWS_ORDER
+    quarter = Change(half, half.thinned(), 1.0)
+    if quarter.history < ordered * jitter.history:
+        return {}
+    shown = [name for name in PEAKS if quarter.errors[name] >= ordered * jitter.errors[name]]
+    return dict.fromkeys(shown, SAFETY / (ordered - 1))
 
 
 def _end_alike(*curves: Curve) -> bool:

@@ -74,7 +74,8 @@ class Change:
 
         While no order shows the whole change counts, and twice that within the first step of all; where the path turns,
         and with it, of a viscous contact, the force's slope at once, the order is one. What steps err by there and at
-        touch, motion carries along: forces of viscous contacts have the velocity's order.
+        touch, motion carries along: forces of viscous contacts have the velocity's order. What is cut off may peak in
+        its last step, which no later one evens out.
         """
         places, change = self._pointwise
         width = max(1, round(SMOOTHING * len(change)))
@@ -86,6 +87,8 @@ class Change:
         carried = 1.0 if self.second.strike.relaxation.is_elastic else self.weights.get("restitution", 1.0)
         factor = np.where(whole, max(carried * self.factor, FIRST_ORDER), carried * self.factor)
         factor[time <= self.first.duration * self.first.x[1] ** 2] = max(self.factor, UNORDERED)
+        if not self.first.separated:
+            factor[time >= self.second.last_step] *= self.weights.get("peak_force", 1.0)
         return np.asarray(factor * np.interp(time, places, around))
 
     def _about_turn(self, time: Array) -> npt.NDArray[np.bool_]:

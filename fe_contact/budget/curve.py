@@ -14,7 +14,8 @@ a polynomial would swing. So each interval is looked at from both sides, and bot
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -26,6 +27,7 @@ from fe_contact.march.account import Energies, balanced
 from fe_contact.steppers.march import March, Strike
 
 PEAK_SHARE = 0.98  # of its peak above which a force is near it
+HALF_AS_HIGH = 0.25  # of the error of a peak's place, of fourth order in the width, is left where a fit is half as high
 SHARES = np.linspace(0.0, 1.0, 601)
 EARLIEST = 4  # rows after touch that tell whether steps or shares are more crowded there
 LATE = 0.75  # of the contact: from here on path and speed count for those at separation
@@ -45,7 +47,7 @@ class Reading:
 @dataclass(frozen=True)
 class Curve:
     """Mean force since touch (n,), N, depth (n,), m, at ``x`` (n,); squared radius at ``radius_x``; duration and how
-    sharply its end can be read, s; energies of the account, J.
+    sharply its end can be read, s; energies of the account, J; how sharply peaks can be read, by quantity.
     """
 
     strike: Strike
@@ -58,6 +60,7 @@ class Curve:
     radius_squared: Array
     end_spread: float
     energy: Energies
+    peak_spread: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(cls, march: March, strike: Strike) -> Curve:
@@ -175,11 +178,32 @@ class Curve:
 
     @property
     def _force_peak(self) -> tuple[float, float]:
-        # under a flat end no place comes or goes, so that nothing jitters; or the striker comes to rest: no hill to fit
-        if np.ptp(self.radius_squared) == 0.0 or self.near_peak.stop == len(self.shares):
+        if self._fitless:
             return peak(self.dense_time, self.dense_force)
-        near = self.dense_time[self.near_peak]
-        return fitted_peak(float(near[0]), float(near[-1]), self.force(np.linspace(near[0], near[-1], PLACES)))
+        return self._peak_of(self.near_peak)
+
+    def _peak_of(self, near: slice) -> tuple[float, float]:
+        """Time and height by the quartic nearest to these dense forces."""
+        first, *_, last = self.dense_time[near].tolist()
+        return fitted_peak(first, last, self.force(np.linspace(first, last, PLACES)))
+
+    def with_peak_spread(self) -> Curve:
+        """The curve with what the fit of its peak errs by, as the fit to the upper half of its forces tells.
+
+        No step and no mesh tells of that: a quartic fits them all alike.
+        """
+        near = np.flatnonzero(self.dense_force > 0.5 * (1.0 + PEAK_SHARE) * self.dense_force.max())
+        if near[0] == near[-1] or self._fitless:
+            return self
+        narrow, wide = self._peak_of(slice(int(near[0]), int(near[-1]) + 1)), self._force_peak
+        apart = {name: abs(a - b) for name, a, b in zip(("peak_time", "peak_force"), narrow, wide, strict=True)}
+        spread = {name: value / (1.0 - HALF_AS_HIGH) for name, value in apart.items()}
+        return replace(self, peak_spread=spread)
+
+    @property
+    def _fitless(self) -> bool:
+        """Whether no place comes or goes, under a flat end, so that nothing jitters; or the striker comes to rest."""
+        return bool(np.ptp(self.radius_squared) == 0.0) or self.near_peak.stop == len(self.shares)
 
     @cached_property
     def quantities(self) -> dict[str, float | None]:

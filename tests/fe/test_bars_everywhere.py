@@ -144,6 +144,8 @@ def judged(scene: Scene, tolerance: float) -> Outcome | None:
         exact = simulate(laws.ting.of(scene), scene, EXACT)
     except FeContactError:
         return None
+    if "does not follow" in exact.message:  # it ends where a striker approaches again before it has left
+        return None
     try:
         found = fe_contact.run(scene, tolerance)
     except FeContactError as failure:

@@ -11,7 +11,7 @@ import pytest
 from scipy.special import beta, betainc
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.certify import CAUSES, Budget, Causes, _time_steps
+from fe_contact.budget.certify import CAUSES, SAFETY, Budget, Causes, _rows, _time_steps
 from fe_contact.budget.change import Change
 from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.settings import Numerics
@@ -27,9 +27,14 @@ Terms = Mapping[float, float]  # errors of the finest run, by the power of the s
 Settings = Callable[..., Numerics]
 
 
-def made_up(steps: int, off: Callable[[Array], Any], late: float = 0.0) -> Curve:
-    """The force [4 t (1 - t)]^(3/2): mean force and depth ``off`` by a share at every instant, the end by a share."""
+def made_up(steps: int, off: Callable[[Array], Any], late: float = 0.0, crowded: bool = False) -> Curve:
+    """The force [4 t (1 - t)]^(3/2): mean force and depth ``off`` by a share at every instant, the end by a share.
+
+    Rows crowd at touch alone, or at both ends.
+    """
     x = np.linspace(0.0, 1.0, steps + 1)
+    if crowded:
+        x = np.sin(0.5 * np.pi * x)
     share = x**2
     impulse = 8.0 * beta(2.5, 2.5) * betainc(2.5, 2.5, share)
     mean = np.divide(impulse, share, out=np.zeros_like(share), where=share > 0.0)
@@ -198,3 +203,43 @@ def test_runs_that_end_at_quite_different_times_tell_nothing(settings: Numerics)
     """Of sixteen, thirty-two and sixty-four steps, the last two a contact of 6 and of 3.5 s."""
     found = judged(settings.varied(steps=16), {2: 1e-3}, 0.0, {1: 1.0})
     assert all(found.total(name) == np.inf for name in (*RULED, "duration"))
+
+
+def test_peaks_between_rows_lie_within_what_every_other_row_changes_however_little_that_weighs() -> None:
+    rng, deepest, little = np.random.default_rng(9), 0.3**2 / (4.0 * 0.2945), 0
+    for steps in rng.integers(16, 200, CASES):
+        curve = made_up(int(steps), np.zeros_like, crowded=True)
+        jitter = Change(curve, curve.thinned(), 1.0)
+        weights = _rows(jitter)
+        little += "peak_time" in weights
+        errors, spread = replace(jitter, weights=weights).errors, curve.with_peak_spread().peak_spread
+        for name, exact in {"peak_force": 1.0, "peak_time": 0.5, "peak_depth": deepest}.items():
+            assert abs(curve.quantities[name] - exact) <= errors[name] + SAFETY * spread.get(name, 0.0) + 1e-12, (
+                name,
+                steps,
+            )
+    assert little > CASES // 3
+
+
+def test_rows_that_jitter_count_whole() -> None:
+    """Of any size that the rows between do not hide: then it is no matter of how far rows lie apart."""
+    rng = np.random.default_rng(10)
+    for size in 10 ** rng.uniform(-5.0, -2.0, CASES):
+        noise = size * rng.normal(size=STEPS + 1)
+        curve = made_up(STEPS, lambda share, noise=noise: noise)
+        assert not _rows(Change(curve, curve.thinned(), 1.0)), size
+
+
+@pytest.mark.parametrize("fall", [1.5, 3.0, 6.0])
+def test_a_skewed_peak_that_a_quartic_fits_badly_lies_within_what_half_of_it_tells(fall: float) -> None:
+    """F = t^(3/2) (1 - t)^m by its exact impulse: no step and no mesh knows how the peak is read."""
+    x = np.linspace(0.0, 1.0, 401)
+    share = x**2
+    impulse = beta(2.5, fall + 1.0) * betainc(2.5, fall + 1.0, share)
+    mean = np.divide(impulse, share, out=np.zeros_like(share), where=share > 0.0)
+    curve = replace(made_up(400, np.zeros_like), x=x, mean_force=mean).with_peak_spread()
+    time = 1.5 / (1.5 + fall)
+    exact = {"peak_time": time, "peak_force": time**1.5 * (1.0 - time) ** fall}
+    for name, value in exact.items():
+        assert abs(curve.quantities[name] - value) <= SAFETY * curve.peak_spread[name] + 1e-9 * value, name
+        assert curve.peak_spread[name] < 1e-3 * value, name
