@@ -13,7 +13,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.budget.curve import Curve, Reading
 
 TOP = 0.998  # of the largest depth or force, above which it is near: further away what comes later counts as an error
-STEEPER = 1.25  # times the chord there, that the slope of a change may have
+STEEPER = 2.0  # times the chord there, that the slope of a change may have
 SMOOTHING = 0.07  # share of the contact over which a pointwise change counts as the error of its neighbours
 FIRST_ORDER = 1.25  # factor where order one is all that shows
 UNORDERED = 2.5  # factor where no order shows: the finer of two runs errs by less than twice their distance
@@ -165,7 +165,7 @@ class Change:
         """How far a change of the force's slope moves its peak: slope over curvature, s.
 
         The curvature is that of all forces near the peak, the slope that of the change: of all these forces where a
-        dashpot makes it jitter, else somewhat more than the chord over the top.
+        dashpot makes it jitter, else twice the chord over the top.
         """
         time, force, near = self.first.dense_time, self.first.dense_force, self.first.near_peak
         top = min(max(int(force.argmax()), 1), len(force) - 2)
