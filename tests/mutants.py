@@ -482,6 +482,8 @@ def met(mutant: Mutant, tests: list[dict[str, Any]], budget: float, copied: Path
         shutil.copy2(pristine, target)  # with its time: else Python would go on with what it compiled
     if ended.returncode == 0:
         return f"survived {len(chosen)} tests"
+    if ended.returncode == pytest.ExitCode.USAGE_ERROR:  # its name tells what the code calls something
+        return "not asked, a test has another name now; cure: another --work"
     failed = re.search(r"^(?:FAILED|ERROR) (\S+)", ended.stdout, re.MULTILINE)
     return f"killed by {failed[1]}" if failed else "killed by timeout" if ended.returncode < 0 else "killed at import"
 
