@@ -296,6 +296,7 @@ def test_a_setting_at_the_end_of_its_range_is_varied_all_the_same(key: str) -> N
         ("steel-on-steel-waves", {"model.inertia": False}, r"striker\.material.*model\.inertia"),
         ("steel-on-steel-waves", {"striker.velocity": 1.2e3}, r"striker\.velocity"),
         ("steel-ball-flight-waves", {"motion.impacts": 2}, r"motion\.impacts"),
+        ("steel-ball-flight-waves", {"striker.velocity": 1.2e3}, r"striker\.velocity.*shear waves"),
         ("steel-ball-flight-waves", {"target.material": STEEL}, r"target\.material"),
         ("two-finite-spheres-waves", {"target.mass": 4.0e-3}, r"target\.mass.*0\.00469"),
         ("two-finite-spheres-waves", {"target.support": "held"}, r"target\.support.*free"),

@@ -14,6 +14,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.budget.certify import CAUSES, SAFETY, Budget, Causes, _rows, _time_steps
 from fe_contact.budget.change import Change
 from fe_contact.budget.curve import Curve, extrapolated
+from fe_contact.budget.trusted_order import trust
 from fe_contact.settings import Numerics
 from fe_contact.steppers.march import Strike
 from fe_contact.waves.certify import Moved
@@ -243,3 +244,43 @@ def test_a_skewed_peak_that_a_quartic_fits_badly_lies_within_what_half_of_it_tel
     for name, value in exact.items():
         assert abs(curve.quantities[name] - value) <= SAFETY * curve.peak_spread[name] + 1e-9 * value, name
         assert curve.peak_spread[name] < 1e-3 * value, name
+
+
+@pytest.mark.parametrize("over_step", [1.0 / 0.3, 1e-3])
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9])
+def test_what_branches_faster_than_a_step_carry_is_taken_from_the_trusted_order(over_step: float, share: float) -> None:
+    """Down to the scheme's own, where they carry all: then they are dashpots, known to one order less."""
+    tau = over_step / STEPS
+    fast = Relaxation(1.0, (share / (1.0 - share) / tau,), (tau,))
+    strike = replace(STRIKE, relaxation=fast)
+    off = (1e-3, 4e-3, 16e-3)
+    fine, half, quarter = (
+        replace(made_up(STEPS // 2**number, lambda s, e=error: e * s * (1.5 + np.cos(2.0 * s))), strike=strike)
+        for number, error in enumerate(off)
+    )
+    found = trust((fine, half, quarter), 2, (1.0 / STEPS, 1.0 / STEPS), flat=False)
+    assert found.orders["force"] == pytest.approx(3.0 - share)
+    assert found.orders["impulse"] == pytest.approx(2.0 - share)
+
+
+def test_the_band_of_a_force_that_is_cut_off_as_it_rises_holds_the_bar_of_its_peak() -> None:
+    """Its largest force is its last one, of which no later step tells."""
+    rng, x = np.random.default_rng(11), np.linspace(0.0, 1.0, STEPS + 1)
+    share = x**2
+    impulse = 8.0 / 0.4 * beta(2.5, 2.5) * betainc(2.5, 2.5, 0.4 * share)
+    mean = np.divide(impulse, share, out=np.zeros_like(share), where=share > 0.0)
+    jittered = mean * (1.0 + 1e-4 * rng.normal(size=x.size))
+    cut = replace(made_up(STEPS, np.zeros_like), separated=False, mean_force=jittered)
+    jitter = Change(cut, cut.thinned(), 1.0)
+    weighed = replace(jitter, weights=_rows(jitter))
+    last = np.array([1.0])
+    assert weighed.errors["peak_force"] > 2.0 * jitter.errors["peak_force"]
+    assert weighed.force(last)[0] >= weighed.errors["peak_force"]
+
+
+def test_the_bar_of_a_history_is_the_norm_of_what_changes_over_the_norm_of_the_force() -> None:
+    fine, coarse = made_up(STEPS, np.zeros_like), made_up(STEPS, wave(1e-3, 0.3, 1.0))
+    times = np.linspace(0.0, 1.0, 20001)
+    force = fine.force(times)
+    norms = [np.sqrt(np.trapezoid(values**2, times)) for values in (fine.force(times) - coarse.force(times), force)]
+    assert Change(fine, coarse, 0.5).errors["history_l2"] == pytest.approx(0.5 * norms[0] / norms[1], rel=1e-2)
