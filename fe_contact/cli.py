@@ -29,7 +29,6 @@ from fe_contact import __version__
 from fe_contact.progress import clear
 from fe_contact.threads import one_thread
 
-COMMANDS = "fe_contact.commands"
 DONE, DEFECT, BAD_INPUT, NOT_REACHED = 0, 1, 2, 3
 LEAST_MEMORY = 640 * 2**20  # bytes of address space: below, the libraries of gmsh and scipy crash while they load
 SIGNALLED = 128  # plus the signal's number, as shells count: 130 after Ctrl-C, 143 after SIGTERM
@@ -56,14 +55,14 @@ class OneLine(argparse.ArgumentParser):
 
 def parser() -> OneLine:
     """The parser of all commands."""
-    from lumped.schema.members import available, get
+    from fe_contact.commands import COMMANDS
 
     top = OneLine(prog="fe-contact", description="Finite-element contact validation suite.")
     top.add_argument("--version", action="version", version=f"fe-contact {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for name in available(COMMANDS):
-        module = get(COMMANDS, name)
-        module.arguments(commands.add_parser(name, help=module.SUMMARY.replace("%", "%%"), description=module.SUMMARY))
+    for name, command in COMMANDS.members.items():
+        says = command.summary
+        command.arguments(commands.add_parser(name, help=says.replace("%", "%%"), description=says))
     return top
 
 
@@ -73,12 +72,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _said("stdout is closed: accepted an open one, as > /dev/null", BAD_INPUT)
     if _memory_limit() < LEAST_MEMORY:
         return _said(f"out of memory; cure: a limit of {LEAST_MEMORY // 1024} kB or more (ulimit -v)", NOT_REACHED)
-    from lumped.schema.members import get
+    from fe_contact.commands import COMMANDS
 
     args = parser().parse_args(arguments)
     try:
         with _interruptible(), one_thread:
-            code: int = get(COMMANDS, args.command).execute(args)
+            code = COMMANDS.get(args.command).execute(args)
             sys.stdout.flush()
             return code
     except KeyboardInterrupt as interruption:

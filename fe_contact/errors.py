@@ -10,6 +10,7 @@ from lumped.errors import BadInput, Fault, NotReached
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.schema.keys import Number
+from lumped.schema.record import keys_of
 from meshes.errors import GmshMissing, MeshError, MeshTooFine
 
 Said = TypeVar("Said", Scene, Indenter)
@@ -39,7 +40,9 @@ def says_which_key(door: Callable[Concatenate[Said, Given], Found]) -> Callable[
 def _lengths(scene: Scene | Indenter) -> str:
     """The keys of the body that is meshed."""
     part, body = ("target", scene.target) if scene.target.deformable else ("striker", scene.shape)
-    numbers = () if body is None else [key for key, kind in body.keys.items() if isinstance(kind, Number)]
+    numbers = (
+        () if body is None else [name for name, key in keys_of(type(body)).items() if isinstance(key.kind, Number)]
+    )
     return ", ".join(f"{part}.{key}" for key in numbers) or part
 
 

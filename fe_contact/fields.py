@@ -24,15 +24,16 @@ from typing import Any
 import numpy as np
 from skfem import Basis
 
-from fe_contact.assembly.forms import Array, isotropic
+from fe_contact.assembly.forms import Array, Indices, isotropic
 from fe_contact.bodies.pressing import BEYOND
-from fe_contact.reference import Solved
+from fe_contact.budget.certify import Certified
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.results.surface_pressure import felt, peak_step, scale
-from fe_contact.settings import ENFORCEMENTS, TARGETS, Numerics
+from fe_contact.settings import Numerics
 from fe_contact.steppers.scaled_surface import ScaledSurface
+from fe_contact.targets.base import struck
 from lumped.errors import BadInput, Fault
 from lumped.scene.scene import Scene
-from lumped.schema.members import get
 from lumped.targets import HalfSpace
 from lumped.targets.layer import Layer
 
@@ -52,11 +53,11 @@ class Fields:
     depth: float
     contact_radius: float
     points: Array
-    triangles: np.ndarray[Any, np.dtype[np.int64]]
+    triangles: Indices
     displacement: Array
     stress: Array
     pressure: Array
-    contact: np.ndarray[Any, np.dtype[np.int64]]
+    contact: Indices
 
 
 def check_fields(scene: Scene) -> None:
@@ -73,9 +74,9 @@ def check_fields(scene: Scene) -> None:
         raise BadInput(Fault(scene.source, "target.material.constant", reason))
 
 
-def write_fields(scene: Scene, solved: Solved, where: Path) -> Path:
+def write_fields(scene: Scene, certified: Certified, where: Path) -> Path:
     """Write ``fields.vtu`` into the folder ``where``, made when it is not there; its path. Raises BadInput."""
-    return written(fields_at_peak(scene, solved), where)
+    return written(fields_at_peak(scene, certified), where)
 
 
 def written(fields: Fields, where: Path, velocity: Array | None = None) -> Path:
@@ -92,17 +93,18 @@ def written(fields: Fields, where: Path, velocity: Array | None = None) -> Path:
     return path
 
 
-def fields_at_peak(scene: Scene, solved: Solved) -> Fields:
+def fields_at_peak(scene: Scene, certified: Certified) -> Fields:
     """The fields in the step in which the force peaks. Raises BadInput, see :func:`check_fields`."""
     check_fields(scene)
-    certified, march = solved.certified, solved.certified.march
+    march = certified.march
     assert isinstance(certified.surface, ScaledSurface)
     step = peak_step(certified)
     pressure = felt(certified, step)
     depth = float(np.interp(pressure.time, march.time, march.depth))
     length = scale(certified.surface.operator, march.snapshots[step])
-    finer = solved.numerics.varied(elements_per_contact=FINER * solved.numerics.elements_per_contact)
-    surface: ScaledSurface = get(TARGETS, scene.target.name).struck(scene.geometry, finer)
+    finer = certified.numerics.varied(elements_per_contact=FINER * certified.numerics.elements_per_contact)
+    surface = struck(scene.geometry, finer)
+    assert isinstance(surface, ScaledSurface)
     operator = surface.operator
     points = length * operator.basis.doflocs.T
     touching = (points[:, 1] == 0.0) & (points[:, 0] <= pressure.contact_radius)
@@ -128,12 +130,12 @@ def _indented(scene: Scene, surface: ScaledSurface, numerics: Numerics, depth: f
     """
     operator = surface.operator
     height = np.minimum(scene.profile.height(length * operator.points), BEYOND * length)
-    enforcement = get(ENFORCEMENTS, numerics.enforcement)
+    enforcement = ENFORCEMENTS.get(numerics.enforcement)
     solution = enforcement.enforce(surface.problem(depth - height, numerics.penalty, 0.0), operator.points < 1.0)
     return np.asarray(operator.solve(operator.trace.T @ (operator.weights * solution.pressure)))
 
 
-def nodal_stress(basis: Any, displacement: Array, law: Array) -> Array:
+def nodal_stress(basis: Basis, displacement: Array, law: Array) -> Array:
     """Stress (N, 4) at the nodes of a scalar basis, the mean over the elements that meet there.
 
     Parameters
@@ -158,7 +160,7 @@ def nodal_stress(basis: Any, displacement: Array, law: Array) -> Array:
     return np.asarray((law @ (np.stack(sums) / shared)).T)
 
 
-def subdivided(basis: Any) -> np.ndarray[Any, np.dtype[np.int64]]:
+def subdivided(basis: Basis) -> Indices:
     """Linear triangles (t, 3) on the nodes of the elements of a scalar basis: order squared an element."""
     order = int(basis.elem.maxdeg)
     lattice = {tuple(place): k for k, place in enumerate(np.rint(order * basis.elem.doflocs).astype(int).tolist())}

@@ -9,23 +9,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array, check_compressible
 from fe_contact.bodies.pressing import Still
-from fe_contact.budget.certify import LEAST_ORDER, factor, other_mesh, other_setting
-from fe_contact.budget.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, RIM_PENALTY, SETTING, refined
+from fe_contact.budget.certify import LEAST_ORDER, other_mesh, other_setting
+from fe_contact.budget.change import factor
+from fe_contact.budget.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, RIM_PENALTY
+from fe_contact.budget.refine import Finer, dominant, refine
 from fe_contact.errors import says_which_key
 from fe_contact.progress import Progress, silent
-from fe_contact.settings import RANGES, TARGETS, Numerics, check_kind
+from fe_contact.settings import Given, Numerics, check_kind
+from fe_contact.targets.base import TARGETS
 from fe_contact.threads import one_thread
 from lumped.errors import BadInput, Fault
 from lumped.indentation.indentation import Indentation
 from lumped.numbers.clock import Clock
 from lumped.scene.indenter import Indenter
-from lumped.schema.members import get
 from lumped.shapes import Shape
 
 CAUSES = ("mesh", "penalty", "far_field")
@@ -34,7 +36,6 @@ ROUNDING = 1e-9  # relative, of a solve of nearly incompressible bodies: where n
 ROUNDS = 5  # refinements before giving up
 FEWEST = 12  # depths that tell an error bar
 SPREAD = 0.6  # of them at least, smallest over largest: contact edges over an element of the coarser mesh
-DOMINANT = 0.5  # causes above this share of the largest one are refined together
 BISECTIONS = 40
 SMALL = 1e-3  # radius, in depths, from which the search for the overlap's end begins
 SCOUTING, SCOUTING_ORDER = 2.0, 2  # elements along the contact radius that tell how large contacts will be
@@ -60,7 +61,7 @@ class PressedDepths:
 def indent(
     indenter: Indenter,
     depths: tuple[float, ...],
-    given: Mapping[str, Any],
+    given: Given,
     instant: bool = False,
     progress: Progress = silent,
 ) -> Indentation:
@@ -77,16 +78,9 @@ def indent(
     elastic, numerics = indenter.elastic(instant), settings(given, indenter.shape)
     check_compressible(indenter)
     _check_digits(elastic)
-    pinned = set(given) - {"tolerance"}
-    radii = expected(elastic, depth, numerics)
-    for attempt in range(ROUNDS + 1):
-        progress(f"{numerics.elements_per_contact:g} elements along the contact radius")
-        base = press(elastic, depth, radii, numerics)
-        budget = _budget(base, lambda changed: press(elastic, depth, radii, changed), numerics)
-        finer = _refined(numerics, budget, pinned)
-        if finer == numerics or attempt == ROUNDS:
-            break
-        numerics = finer
+    way = Indenting(elastic, depth, expected(elastic, depth, numerics), frozenset(given) - {"tolerance"}, progress)
+    found, _ = refine(way, numerics)
+    base, budget, numerics = found.base, found.budget, found.numerics
     indenter.check_contacts(depth[:asked], base.contact_radius[:asked])
     error = ROUNDING + np.sum([budget[cause] for cause in CAUSES], axis=0)[:asked]
     force = (modulus * indenter.shape.total * base.force)[:asked]
@@ -105,6 +99,43 @@ def indent(
         timing=clock.read(),
         work=base.work,
     )
+
+
+@dataclass(frozen=True, eq=False)
+class PressedBudget:
+    """Every depth with one setting of everything, and by cause the relative error of the force there, (n,)."""
+
+    base: PressedDepths
+    budget: Mapping[str, Array]
+    numerics: Numerics
+
+
+@dataclass(frozen=True, eq=False)
+class Indenting:
+    """The way of an indentation: to every ``depth``, m, from the contact ``radii`` expected there, m, (n,)."""
+
+    elastic: Indenter
+    depth: Array
+    radii: Array
+    pinned: frozenset[str]
+    progress: Progress
+    rounds: ClassVar[int] = ROUNDS
+
+    def certified(self, numerics: Numerics) -> PressedBudget:
+        """The forces and what each setting changes of them. Raises NotReached where contact does not settle."""
+        self.progress(f"{numerics.elements_per_contact:g} elements along the contact radius")
+        base = self._press(numerics)
+        return PressedBudget(base, _budget(base, self._press, numerics), numerics)
+
+    def finer(self, found: PressedBudget) -> Finer:
+        """Less of what dominates, until the tolerance is met."""
+        errors = {cause: float(error.max()) for cause, error in found.budget.items()}
+        if sum(errors.values()) <= found.numerics.tolerance:
+            return Finer(None)
+        return Finer(dominant(errors, found.numerics, self.pinned))
+
+    def _press(self, numerics: Numerics) -> PressedDepths:
+        return press(self.elastic, self.depth, self.radii, numerics)
 
 
 def _check_digits(elastic: Indenter) -> None:
@@ -129,7 +160,7 @@ def _accompanied(depth: Array) -> Array:
     return np.concatenate([depth, np.geomspace(min(depth.min(), SPREAD * depth.max()), depth.max(), FEWEST)])
 
 
-def settings(given: Mapping[str, Any], shape: Shape) -> Numerics:
+def settings(given: Given, shape: Shape) -> Numerics:
     """Settings of an indentation: those of an impact without its time; stiffer where no edge has to be found."""
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
     elements = ELEMENTS * max(1.0, (1e-4 / tolerance) ** 0.25)
@@ -140,7 +171,7 @@ def settings(given: Mapping[str, Any], shape: Shape) -> Numerics:
 
 def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) -> PressedDepths:
     """Every depth, m, with one setting of everything, from the largest to the smallest; ``radii`` to begin with, m."""
-    body: Still = get(TARGETS, indenter.target.name).still(indenter, radii, numerics)
+    body: Still = TARGETS.get(indenter.target.name).still(indenter, radii, numerics)
     force, radius = np.empty_like(depth), np.empty_like(depth)
     growth, problems, iterations = 1.0, 0, 0
     for i in np.argsort(-depth):
@@ -177,20 +208,6 @@ def _error(trusted: float, first: PressedDepths, second: PressedDepths) -> Array
     return np.full_like(first.force, trusted * np.abs(second.force / first.force - 1.0).max())
 
 
-def _refined(numerics: Numerics, budget: Mapping[str, Array], pinned: set[str]) -> Numerics:
-    """Settings with less of what dominates, the same where the tolerance is met or nothing is left to refine."""
-    errors = {cause: float(error.max()) for cause, error in budget.items()}
-    if sum(errors.values()) <= numerics.tolerance:
-        return numerics
-    worst, finer = max(errors.values()), numerics
-    for cause, error in errors.items():
-        candidate = refined(finer, cause)
-        key = SETTING[cause]
-        if error >= DOMINANT * worst and key not in pinned and getattr(candidate, key) <= RANGES[key][1]:
-            finer = candidate
-    return finer
-
-
 def expected(indenter: Indenter, depth: Array, numerics: Numerics) -> Array:
     """Contact radii which the meshes are made for, m, shape (n,); they enter no value.
 
@@ -202,7 +219,7 @@ def expected(indenter: Indenter, depth: Array, numerics: Numerics) -> Array:
     ends = [int(depth.argmin()), int(depth.argmax())]
     coarse = numerics.varied(elements_per_contact=SCOUTING, order=SCOUTING_ORDER)
     reach = overlapping[ends] * np.array([LEAST_SHARE, LARGEST_SHARE])
-    body: Still = get(TARGETS, indenter.target.name).still(indenter, reach, coarse)
+    body: Still = TARGETS.get(indenter.target.name).still(indenter, reach, coarse)
     found = [body.press(float(depth[i]), float(overlapping[i])).contact_radius for i in ends]
     share = np.interp(np.log(depth), np.log(depth[ends]), np.log(found / overlapping[ends]))
     return np.asarray(overlapping * np.exp(share))

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 from fe_contact.errors import says_which_key
 from fe_contact.progress import Progress, silent
-from fe_contact.settings import WAVES, check_kind, checked
+from fe_contact.settings import Given, checked
 from lumped import laws
 from lumped import simulate as simulate_law
 from lumped.errors import BadInput, Fault, FeContactError, nearest, shown
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
-from lumped.schema.members import get
+from lumped.schema import Table
 
 FE = "fe"
 EXACT = ("mdr", "ting")  # exact in milliseconds: the row of springs on the half-space, Ting on any load curve
@@ -21,7 +18,7 @@ EXACT_WITH_INERTIA = ("rod_waves",)
 OWN = (FE, "cheapest")
 
 
-def settings(table: Mapping[str, Any], tolerance: float | None, source: str) -> dict[str, Any]:
+def settings(table: Given, tolerance: float | None, source: str) -> Table:
     """Checked settings, the tolerance taking precedence over the table's; raises BadInput."""
     given = dict(table) if tolerance is None else {**table, "tolerance": tolerance}
     return checked(given, source)
@@ -36,7 +33,7 @@ def default(scene: Scene) -> str:
 def simulate(
     scene: Scene,
     method: str | None,
-    table: Mapping[str, Any],
+    table: Given,
     tolerance: float | None = None,
     progress: Progress = silent,
 ) -> Result:
@@ -52,7 +49,7 @@ def simulate(
     return _lumped(scene, method, given)
 
 
-def _lumped(scene: Scene, name: str, given: Mapping[str, Any]) -> Result:
+def _lumped(scene: Scene, name: str, given: Given) -> Result:
     from fe_contact.budget.plan import DEFAULT_TOLERANCE
 
     found = simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))
@@ -61,17 +58,13 @@ def _lumped(scene: Scene, name: str, given: Mapping[str, Any]) -> Result:
     return found
 
 
-def _finite_elements(scene: Scene, given: Mapping[str, Any], progress: Progress) -> Result:
+def _finite_elements(scene: Scene, given: Given, progress: Progress) -> Result:
     from fe_contact.reference import fe
 
-    if not scene.model.inertia:
-        return fe(scene, given, progress)
-    check_kind(given, True, scene.source)
-    result: Result = get(WAVES, scene.target.name).fe(scene, given, progress)
-    return result
+    return fe(scene, given, progress)
 
 
-def _cheapest(scene: Scene, given: Mapping[str, Any], progress: Progress) -> Result:
+def _cheapest(scene: Scene, given: Given, progress: Progress) -> Result:
     """An exact law where it meets the tolerance, else finite elements; without geometry the scene's own law."""
     if scene.law is not None and not scene.has_geometry:
         return _lumped(scene, scene.law.name, given)

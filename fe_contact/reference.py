@@ -4,81 +4,105 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from typing import Any, Protocol
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
 
 import numpy as np
 
 from fe_contact.assembly.forms import check_compressible
-from fe_contact.budget.certify import CAUSES, Budget, Certified, Several, certify
-from fe_contact.budget.plan import SETTING, Plan, plan, refined
+from fe_contact.budget import plan as statics
+from fe_contact.budget.budget import CAUSES, Solution, shares_of
+from fe_contact.budget.certify import Certified, certify
+from fe_contact.budget.plan import Plan
+from fe_contact.budget.refine import Finer, ImpactWay, dominant, refine
 from fe_contact.budget.runs import operations
-from fe_contact.errors import MemoryTooSmall, says_which_key
+from fe_contact.budget.several import Row, Several
+from fe_contact.errors import says_which_key
+from fe_contact.march.flight import UNFOLLOWED
 from fe_contact.progress import Progress, silent
 from fe_contact.results.recovery import indentation_left, recovers
-from fe_contact.results.several import whole
-from fe_contact.results.told import history, quantities_of, shares_of
-from fe_contact.settings import RANGES, TARGETS, Numerics
-from fe_contact.steppers.chosen import struck
+from fe_contact.settings import Given, Numerics, check_kind
 from fe_contact.steppers.march import Strike
-from lumped.errors import BadInput, Fault, NotReached
-from lumped.result.result import UNITS, Quantity, Result, meets, provenance, unmet
+from fe_contact.targets.base import TARGETS, struck
+from lumped.errors import BadInput, Fault
+from lumped.result.result import (
+    RULED_ABSOLUTE,
+    RULED_RELATIVE,
+    UNITS,
+    Quantity,
+    Result,
+    meets,
+    provenance,
+    unmet,
+)
+from lumped.result.sufficiency import LedgerEntry
 from lumped.scene.scene import Scene
-from lumped.schema.members import get
+
+if TYPE_CHECKING:
+    from fe_contact.waves.targets.base import WaveTarget
 
 CURE = "cure: a larger tolerance, or fewer numerics of your own"
 ROUNDS = 4  # refinements before giving up
 MOST_STEPS = 20_000  # of all marches of a round, about half a minute; the next one may take twice as many
 MOST_OPERATIONS = 2e12  # of a round, some eighty seconds at the 2.6e10 a second that large contact problems reach
-DOMINANT = 0.5  # causes above this share of the largest one, or of the tolerance, are refined together
+
+Answer = TypeVar("Answer", bound=Solution, covariant=True)
 
 
 @dataclass(frozen=True)
-class Solved:
-    """A certified impact with the plan it began from and the settings it ended with; CPU and wall time, s.
+class SolvedBy(Generic[Answer]):
+    """A certified impact with the plan it began from; CPU and wall time, s.
 
     ``refused``: why no finer settings were tried that may have met the tolerance; empty where none was refused.
     """
 
     plan: Plan
-    numerics: Numerics
-    certified: Certified
+    certified: Answer
     cpu: float
     wall: float
-    refused: str = ""
-
-
-class Answer(Protocol):
-    """What a result is made of, however it was found: see :class:`Solved`."""
+    refused: str
 
     @property
-    def plan(self) -> Plan: ...
-
-    @property
-    def numerics(self) -> Numerics: ...
-
-    @property
-    def certified(self) -> Budget: ...
-
-    @property
-    def cpu(self) -> float: ...
-
-    @property
-    def wall(self) -> float: ...
-
-    @property
-    def refused(self) -> str: ...
+    def numerics(self) -> Numerics:
+        """The settings it ended with."""
+        return self.certified.numerics
 
 
-def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
-    """Force history of a scene by finite elements, with error bars; see :func:`solve`."""
-    return result_of(scene, solve(scene, given, progress))
+Solved = SolvedBy[Certified]  # without waves
+
+
+def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
+    """Force history of a scene by finite elements, with waves or without, and error bars; see :func:`solve`."""
+    if not scene.model.inertia:
+        return result_of(scene, solve(scene, given, progress))
+    target = with_waves(scene)
+    target.check(scene)
+    return result_of(scene, _solved(scene, given, progress, target.way))
+
+
+def with_waves(scene: Scene) -> WaveTarget:
+    """What strikes or is struck with inertia. Raises BadInput."""
+    from fe_contact.waves.targets.base import WAVES  # late: few impacts need it
+
+    return WAVES.get(scene.target.name)
 
 
 @says_which_key
-def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Solved:
-    """Plan, certify, refine until the bars meet the tolerance or nothing is left to refine.
+def plan(scene: Scene, given: Given) -> Plan:
+    """Choose what ``given`` (checked settings, see :func:`fe_contact.settings.checked`) leaves open.
+
+    Raises NotReached where even a coarse estimate does not come to an end.
+    """
+    if not scene.model.inertia:
+        return statics.plan(scene, given)
+    check_kind(given, True, scene.source)
+    return with_waves(scene).plan(scene, given)
+
+
+@says_which_key
+def solve(scene: Scene, given: Given, progress: Progress = silent) -> Solved:
+    """Plan, certify, refine until the bars meet the tolerance or nothing is left to refine; without waves.
 
     Parameters
     ----------
@@ -90,43 +114,68 @@ def solve(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -
     that does not remember by its surface alone, or that goes deeper than its bodies.
     """
     check_target(scene)
+    return _solved(scene, given, progress, Statics.of)
+
+
+def _solved(
+    scene: Scene,
+    given: Given,
+    progress: Progress,
+    way_of: Callable[[Scene, Plan, Progress], ImpactWay[Answer]],
+) -> SolvedBy[Answer]:
     cpu, wall = time.process_time(), time.perf_counter()
     progress("what to expect of the contact")
     chosen = plan(scene, given)
-    if scene.motion.impacts > 1 and not struck(scene.geometry, chosen.numerics).recovers:
-        scene.check_single("fe, on what remembers by its bulk or by two surfaces,")
-    strike = strike_of(scene)
-    numerics = finer = chosen.numerics
-    certified, outgrown, refused = None, None, ""
-    for _ in range(ROUNDS + 1):
-        try:
-            certified = certify(strike, scene.geometry, finer, scene.motion.impacts, progress)
-            numerics = certified.numerics
-        except MemoryTooSmall as failure:
-            outgrown = failure
-            finer = finer.varied(contact_radius=1.5 * finer.contact_radius)
-            continue
-        except NotReached:
-            if certified is None:
-                raise
-            break  # finer settings lose their way: what is known stands, with its bars
-        better = refined_for(certified, numerics, chosen)
-        refused = "" if better is None else _too_dear(certified, numerics, better)
-        if better is None or refused:
-            break
-        finer = better
-    if certified is None:
-        raise outgrown or MemoryTooSmall(numerics.contact_radius)
-    for curve in (budget.curve for budget in certified.row):
-        scene.check_sunk(curve.quantities["peak_depth"] or 0.0, float(np.sqrt(curve.radius_squared.max())))
-    return Solved(chosen, numerics, certified, time.process_time() - cpu, time.perf_counter() - wall, refused)
+    way = way_of(scene, chosen, progress)
+    found, refused = refine(way, chosen.numerics)
+    chosen = replace(chosen, ledger=way.ledger(found))
+    return SolvedBy(chosen, found, time.process_time() - cpu, time.perf_counter() - wall, refused)
 
 
-def _too_dear(certified: Certified, numerics: Numerics, finer: Numerics) -> str:
+@dataclass(frozen=True, eq=False)
+class Statics:
+    """The way without waves: every round a budget of its own."""
+
+    scene: Scene
+    chosen: Plan
+    progress: Progress
+    rounds: ClassVar[int] = ROUNDS
+
+    @classmethod
+    def of(cls, scene: Scene, chosen: Plan, progress: Progress) -> Statics:
+        """Raises BadInput for several impacts on a body that does not remember by its surface alone."""
+        if scene.motion.impacts > 1 and not struck(scene.geometry, chosen.numerics).recovers:
+            scene.check_single("fe, on what remembers by its bulk or by two surfaces,")
+        return cls(scene, chosen, progress)
+
+    def certified(self, numerics: Numerics) -> Certified:
+        """A contact, or several, and the bars. Raises BadInput for one deeper than its bodies."""
+        scene = self.scene
+        found = certify(Strike.of(scene), scene.geometry, numerics, scene.motion.impacts, self.progress)
+        for curve in (budget.curve for budget in found.row):
+            scene.check_sunk(curve.quantities["peak_depth"] or 0.0, float(np.sqrt(curve.radius_squared.max())))
+        return found
+
+    def finer(self, found: Certified) -> Finer:
+        """Less of the causes that stand in the way, unless that is not to be afforded."""
+        tolerance = found.numerics.tolerance
+        if all(meets(part, tolerance) for part in found.parts):
+            return Finer(None)
+        excess = {cause: max(shares_of(one, cause).max() for one in found.row) for cause in CAUSES}
+        settings = dominant(excess, found.numerics, self.chosen.pinned, least=1.0)
+        return Finer(settings, "" if settings is None else _too_dear(found, settings))
+
+    def ledger(self, found: Certified) -> tuple[LedgerEntry, ...]:
+        """What the model leaves out, as was planned."""
+        return self.chosen.ledger
+
+
+def _too_dear(certified: Certified, finer: Numerics) -> str:
     """Why a round of finer settings is not to be afforded, from what the last one took; empty where it is.
 
     Steps count in proportion, and the nodes in the contact zone, which are as many as the elements, by their cube.
     """
+    numerics = certified.numerics
     longer = finer.steps / numerics.steps
     steps = longer * certified.work.steps
     if steps > MOST_STEPS:
@@ -146,90 +195,70 @@ def check_target(scene: Scene) -> None:
         reason = "true: this command is without waves in this version; accepted: false, or fe-contact run"
         raise BadInput(Fault(scene.source, "model.inertia", reason))
     fixed = geometry.target.fixed_radius(geometry.shape) is not None
-    if not fixed and not hasattr(get(TARGETS, geometry.target.name), "struck"):
+    if not fixed and TARGETS.get(geometry.target.name).struck is None:
         reason = f"no impact on {geometry.target.name} by finite elements in this version; accepted: indent"
         raise BadInput(Fault(scene.source, "target.shape", reason))
-    if not geometry.surface_remembers and not hasattr(get(TARGETS, geometry.target.name), "relaxing"):
+    if not geometry.surface_remembers and TARGETS.get(geometry.target.name).relaxing is None:
         reason = f'"bulk": no impact on {geometry.target.name} with it in this version; accepted: "poisson"'
         raise BadInput(Fault(scene.source, "target.material.constant", reason))
 
 
-def strike_of(scene: Scene) -> Strike:
-    """What the march needs of a scene; forces in plane strain are totals, so the modulus counts with the length."""
-    target, profile = scene.target, scene.profile
-    place, lead = target.length_of_place, target.lead
-    bent = None if place == 1.0 else lambda arc, depth: target.overlap(profile, arc / place, depth)
-    return Strike(
-        overlap=bent,
-        height=lambda r: -target.overlap(profile, r / place, 0.0) / lead,
-        mass=scene.reduced_mass,
-        velocity=scene.velocity,
-        gravity=scene.gravity,
-        relaxation=scene.contact_modulus.scaled(scene.geometry.shape.total),
-        end_time=scene.end_time,
-        total=scene.geometry.shape.total,
-    )
-
-
-def refined_for(certified: Budget, numerics: Numerics, chosen: Plan) -> Numerics | None:
-    """Settings with less of the causes that stand in the way, or None where nothing helps or is needed."""
-    if all(meets(quantities_of(one), numerics.tolerance) for one in certified.row):
-        return None
-    excess = {cause: max(shares_of(one, cause, numerics.tolerance).max() for one in certified.row) for cause in CAUSES}
-    free = {cause: value for cause, value in excess.items() if SETTING[cause] not in chosen.pinned}
-    worst = max(excess.values())
-    finer = numerics
-    for cause, value in free.items():
-        candidate = refined(finer, cause)
-        if value >= DOMINANT * min(worst, 1.0) and getattr(candidate, SETTING[cause]) <= RANGES[SETTING[cause]][1]:
-            finer = candidate
-    return None if finer == numerics else finer
-
-
-def result_of(scene: Scene, solved: Answer) -> Result:
+def result_of(scene: Scene, solved: SolvedBy[Solution]) -> Result:
     """The record of a certified impact, or of several."""
-    first, certified = _first(scene, solved), solved.certified
-    return whole(first, certified) if isinstance(certified, Several) and scene.motion.impacts > 1 else first
-
-
-def _first(scene: Scene, solved: Answer) -> Result:
-    """That of the first one."""
-    certified, numerics = solved.certified, solved.numerics
-    curve, tolerance = certified.curve, numerics.tolerance
-    quantities = quantities_of(certified)
-    by_quantity = {name: {cause: certified.error(name, cause) for cause in CAUSES} for name in UNITS}
-    peak = quantities["peak_force"].value or np.inf
-    converged = meets(quantities, tolerance)
+    found, recovery = solved.certified, None
+    if isinstance(found, Several) and len(found.row) == 1 and recovers(scene, found.curve):
+        recovery = indentation_left(found)
+    if isinstance(found, Several) and scene.motion.impacts > 1:
+        found = Row(found)
+    by_quantity = {name: {cause: found.error(name, cause) for cause in CAUSES} for name in UNITS}
+    peak = found.quantities["peak_force"].value or np.inf
+    missed = _missed(scene, solved, found)
+    said = [*missed]
+    if found.grounded is not None:
+        said.append(f"contacts followed: {len(found.parts)} of {scene.motion.impacts}; {found.grounded.value}")
     return Result(
         method="fe",
-        converged=converged,
-        separated=curve.separated,
+        converged=not missed and found.grounded not in UNFOLLOWED,
+        separated=found.separated,
         scene=scene,
         model=scene.model,
-        tolerance=tolerance,
-        history=history(certified, tolerance),
-        quantities=quantities,
-        numerics=numerics.as_dict(),
+        tolerance=found.numerics.tolerance,
+        history=found.history(),
+        quantities=found.quantities,
+        numerics=found.numerics.as_dict(),
         error_budget={cause: value / peak for cause, value in by_quantity["peak_force"].items()},
         error_budget_by_quantity=by_quantity,
         model_ledger=solved.plan.ledger,
-        energy=curve.energy,
-        energy_error={name: certified.energy_error(name) for name in curve.energy if name != "residual"},
+        energy=found.energy,
+        energy_error=found.energy_errors,
         provenance=provenance(),
         timing={"cpu_s": solved.cpu, "wall_s": solved.wall},
-        work=asdict(certified.work),
-        message="" if converged else "; ".join(_unmet(solved, quantities)),
-        recovery=indentation_left(certified) if recovers(scene, curve) and len(certified.row) == 1 else None,
+        work=found.counted,
+        contacts=found.contacts,
+        message="; ".join(said),
+        recovery=recovery,
     )
 
 
-def _unmet(solved: Answer, quantities: Mapping[str, Quantity]) -> list[str]:
+def _missed(scene: Scene, solved: SolvedBy[Solution], found: Solution) -> list[str]:
     """What bars exceed the tolerance, what kept them from being refined, the tolerance that is met, and the cure."""
-    tolerance = solved.numerics.tolerance
-    shares = sum(np.nan_to_num(shares_of(solved.certified, cause, tolerance), nan=np.inf) for cause in CAUSES)
-    largest = tolerance * float(np.max(shares))
-    said = [unmet(quantities, tolerance), solved.refused]
-    if math.isfinite(largest):
-        met = 10.0 ** (math.ceil(10.0 * math.log10(largest)) / 10.0)  # rounded up
-        said.append(f"a tolerance of {met:.2g} is met")
-    return [part for part in said if part] + [CURE]
+    tolerance = found.numerics.tolerance
+    missed = [unmet(part, tolerance) for part in found.parts]
+    if scene.motion.impacts > 1:
+        missed = [f"contact {number}: {words}" for number, words in enumerate(missed, start=1) if words]
+    if not any(missed):
+        return []
+    largest = max(_largest(part) for part in found.parts)
+    met = 10.0 ** (math.ceil(10.0 * math.log10(largest)) / 10.0) if math.isfinite(largest) else None  # rounded up
+    said = [*missed, solved.refused, "" if met is None else f"a tolerance of {met:.2g} is met", CURE]
+    return [part for part in said if part]
+
+
+def _largest(quantities: Mapping[str, Quantity]) -> float:
+    """The largest bar that a tolerance rules, in terms of it; infinite where one is unknown."""
+    bars = []
+    for name in (*RULED_RELATIVE, *RULED_ABSOLUTE):
+        value, error = quantities[name].value, quantities[name].error
+        if value is not None and error is not None:
+            bars.append(error / (abs(value) or math.inf) if name in RULED_RELATIVE else error)
+    return float(np.nan_to_num(bars, nan=np.inf, posinf=np.inf).max())

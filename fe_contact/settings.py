@@ -1,4 +1,7 @@
-"""Numerics: every choice that is not physics, validated; Scene says what happens, Numerics how it is solved."""
+"""Numerics: every choice that is not physics, validated; Scene says what happens, Numerics how it is solved.
+
+Numerics of a body with inertia: beside the settings of every impact, how its mass stands on the nodes.
+"""
 
 from __future__ import annotations
 
@@ -6,30 +9,63 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from itertools import islice
-from typing import Any
+from typing import Annotated, Any, Self
 
 from lumped.errors import SHOWN_FAULTS, BadInput, Fault, nearest, shown
+from lumped.schema import Table
+from lumped.schema.keys import Key
 from lumped.schema.members import available
+from lumped.schema.record import keys_of
 
-ENFORCEMENTS = "fe_contact.contact.enforcement"
-SCHEMES = "fe_contact.schemes"
-TARGETS = "fe_contact.targets"
-MASSES = "fe_contact.dynamics.mass"
-WAVE_SCHEMES = "fe_contact.dynamics.schemes"
-WAVES = "fe_contact.waves.targets"
-
-RANGES: dict[str, tuple[float, float]] = {
-    "tolerance": (1e-6, 0.1),
-    "elements_per_contact": (1, 32),
-    "order": (1, 4),
-    "penalty": (1.0, 1e7),
-    "steps": (8, 8192),
-    "far_radius": (2.0, 1e4),
-    "rho": (0.0, 1.0),
-}
-INTEGERS = ("order", "steps")
+Given = Mapping[str, Any]  # values of keys, each of its own type
+STATIC_SCHEMES, WAVE_SCHEMES = "fe_contact.schemes", "fe_contact.dynamics.schemes"
 OF_WAVES = ("mass", "rho")  # mean nothing without inertia
-MEMBERS = {"enforcement": (ENFORCEMENTS,), "scheme": (SCHEMES, WAVE_SCHEMES), "mass": (MASSES,)}
+
+
+@dataclass(frozen=True)
+class Range:
+    """A number in `[low, high]`, or a ``whole`` one, which may be written as 4 or as 4.0."""
+
+    low: float
+    high: float
+    whole: bool = False
+
+    @property
+    def accepted(self) -> str:
+        """In words."""
+        return f"{'a whole number' if self.whole else 'a number'} from {self.low:g} to {self.high:g}"
+
+    def read(self, value: object) -> float:
+        """The number; raises ValueError."""
+        if isinstance(value, bool) or not isinstance(value, int | float) or not self.low <= value <= self.high:
+            raise ValueError
+        if self.whole and not float(value).is_integer():
+            raise ValueError
+        return int(value) if self.whole else value
+
+
+@dataclass(frozen=True)
+class MemberOf:
+    """The name of a member of one of some ``packages``."""
+
+    packages: tuple[str, ...]
+
+    @property
+    def names(self) -> list[str]:
+        """All of them."""
+        return sorted({name for package in self.packages for name in available(package)})
+
+    @property
+    def accepted(self) -> str:
+        """In words."""
+        return ", ".join(self.names)
+
+    def read(self, value: object) -> str:
+        """The name; raises ValueError, with the nearest one."""
+        if not isinstance(value, str) or value not in self.names:
+            hint = nearest(value, self.names) if isinstance(value, str) else ""
+            raise ValueError(f"{shown(value)}: accepted {self.accepted}{hint}")
+        return value
 
 
 @dataclass(frozen=True)
@@ -43,48 +79,77 @@ class Numerics:
     force over contact time) are scales that place mesh, memory and time steps; they enter no value.
     """
 
-    tolerance: float
-    elements_per_contact: float
-    order: int
-    penalty: float
-    enforcement: str
-    scheme: str
-    steps: int
-    far_radius: float
+    tolerance: Annotated[float, Key(Range(1e-6, 0.1), "relative, asked of every ruled quantity")]
+    elements_per_contact: Annotated[float, Key(Range(1, 32), "elements along the contact radius")]
+    order: Annotated[int, Key(Range(1, 4, whole=True), "order of the elements")]
+    penalty: Annotated[float, Key(Range(1.0, 1e7), "penalty stiffness over contact modulus over contact radius")]
+    enforcement: Annotated[str, Key(MemberOf(("fe_contact.contact.enforcement",)), "how the surfaces are kept apart")]
+    scheme: Annotated[str, Key(MemberOf((STATIC_SCHEMES, WAVE_SCHEMES)), "time integrator")]
+    steps: Annotated[int, Key(Range(8, 8192, whole=True), "time steps along the contact, a multiple of four")]
+    far_radius: Annotated[float, Key(Range(2.0, 1e4), "where the mesh ends, in contact radii")]
     contact_radius: float
     contact_time: float
     peak_share: float
 
-    def varied(self, **changes: Any) -> Numerics:
+    def varied(self, **changes: Any) -> Self:
         """A copy with some settings changed."""
         return replace(self, **changes)
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Table:
         """Plain data for ``result.json``."""
         return asdict(self)
 
 
-KEYS = (*RANGES, *MEMBERS)  # what a user may choose
+@dataclass(frozen=True)
+class WaveNumerics(Numerics):
+    """``scheme`` is one of :mod:`fe_contact.dynamics.schemes`, of spectral radius ``rho`` for what no step follows;
+    ``mass`` one of :mod:`fe_contact.dynamics.mass`; ``finer``: times as many elements at the surface as the body has;
+    the rest as in Numerics.
+    """
+
+    rho: Annotated[float, Key(Range(0.0, 1.0), "spectral radius for what no step follows, with waves")]
+    mass: Annotated[str, Key(MemberOf(("fe_contact.dynamics.mass",)), "how mass stands on the nodes, with waves")]
+    finer: float = 1.0
 
 
-def checked(table: Mapping[str, Any], source: str) -> dict[str, Any]:
-    """Settings a user gave, type and range checked; raises BadInput naming every fault at once."""
+KEYS = keys_of(WaveNumerics)  # what a user may choose
+RANGES = {name: (key.kind.low, key.kind.high) for name, key in KEYS.items() if isinstance(key.kind, Range)}
+
+
+def checked(table: Given, source: str) -> Table:
+    """Settings a user gave, type and range checked; raises BadInput naming every fault at once.
+
+    Steps up to a multiple of four: the error budget halves them twice.
+    """
     found = faults(table, source)
     if found:
         raise BadInput(found)
-    return {key: _rounded(key, value) for key, value in table.items()}
+    values: Table = {name: KEYS[name].kind.read(value) for name, value in table.items()}
+    return values | ({"steps": 4 * math.ceil(values["steps"] / 4)} if "steps" in values else {})
 
 
-def faults(table: Mapping[str, Any], source: str) -> list[Fault]:
+def faults(table: Given, source: str) -> list[Fault]:
     """Everything wrong with a table of settings."""
-    found = (fault for key, value in table.items() for fault in _faults(key, value, source))
+    found = (fault for name, value in table.items() for fault in _faults(name, value, source))
     return list(islice(found, SHOWN_FAULTS))
 
 
-def check_kind(given: Mapping[str, Any], inertia: bool, source: str) -> None:
+def _faults(name: str, value: object, source: str) -> list[Fault]:
+    where = f"numerics.{name}"
+    if name not in KEYS:
+        return [Fault(source, where, f"unknown key; accepted: {', '.join(KEYS)}{nearest(name, tuple(KEYS))}")]
+    kind = KEYS[name].kind
+    try:
+        kind.read(value)
+    except ValueError as refused:
+        return [Fault(source, where, str(refused) or f"{shown(value)}: accepted {kind.accepted}")]
+    return []
+
+
+def check_kind(given: Given, inertia: bool, source: str) -> None:
     """Raise BadInput for checked settings of the other kind of motion: with inertia or without."""
     state, found = f"with model.inertia = {str(inertia).lower()}", []
-    schemes = available(WAVE_SCHEMES if inertia else SCHEMES)
+    schemes = available(WAVE_SCHEMES if inertia else STATIC_SCHEMES)
     if given.get("scheme", schemes[0]) not in schemes:
         reason = f"{shown(given['scheme'])}: {state} accepted {', '.join(schemes)}"
         found.append(Fault(source, "numerics.scheme", reason))
@@ -92,28 +157,3 @@ def check_kind(given: Mapping[str, Any], inertia: bool, source: str) -> None:
         found += [Fault(source, f"numerics.{key}", f"no such setting {state}") for key in OF_WAVES if key in given]
     if found:
         raise BadInput(found)
-
-
-def _rounded(key: str, value: Any) -> Any:
-    """Whole numbers as such, steps up to a multiple of four: the error budget halves them twice."""
-    if key == "steps":
-        return 4 * math.ceil(value / 4)
-    return int(value) if key in INTEGERS else value
-
-
-def _faults(key: str, value: Any, source: str) -> list[Fault]:
-    where = f"numerics.{key}"
-    if key in MEMBERS:
-        names = sorted({name for package in MEMBERS[key] for name in available(package)})
-        if value in names:
-            return []
-        hint = nearest(value, names) if isinstance(value, str) else ""
-        return [Fault(source, where, f"{shown(value)}: accepted {', '.join(names)}{hint}")]
-    if key not in RANGES:
-        return [Fault(source, where, f"unknown key; accepted: {', '.join(KEYS)}{nearest(key, KEYS)}")]
-    low, high = RANGES[key]
-    kind = "a whole number" if key in INTEGERS else "a number"
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if number and low <= value <= high and (key not in INTEGERS or float(value).is_integer()):
-        return []
-    return [Fault(source, where, f"{shown(value)}: accepted {kind} from {low:g} to {high:g}")]

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 SHOWN_FAULTS = 20
 SHOWN_CHARACTERS = 60  # of a value or a key that is told back
@@ -19,7 +19,7 @@ class FeContactError(Exception):
 
     exit_code: ClassVar[int]
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         """Another process gets what it says, not what it was made of: kinds differ in their arguments."""
         return type(self).__new__, (type(self), *self.args), self.__dict__
 

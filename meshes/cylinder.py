@@ -8,5 +8,17 @@ from meshes.sphere import sphere
 
 
 def cylinder(elements: float, smallest: float, contact: float, order: int) -> MeshTri2:
-    """Curved triangles of the half disc ``x >= 0`` of radius 1 about (0, -1); see :func:`meshes.sphere.sphere`."""
+    """Curved triangles of the half disc ``x >= 0`` of radius 1 about (0, -1), as of :func:`meshes.sphere.sphere`.
+
+    Parameters
+    ----------
+    elements : along a contact's half-width, 1 to 200.
+    smallest : the smallest contact to resolve so, over the largest, 1e-6 to 1.
+    contact : angle of the largest contact from its middle, 1e-9 to 1.4 rad.
+    order : of the elements on this mesh, 1 to 4.
+
+    Raises
+    ------
+    MeshError for numbers outside these ranges.
+    """
     return sphere(elements, smallest, contact, order)

@@ -53,8 +53,8 @@ def layer_for_waves(
 ) -> MeshTri:
     """The same, its elements growing so slowly that waves from the contact are resolved on their way, too.
 
-    ``finer``: times as many elements at the surface as their growth into the body is for, 1 to 16; other parameters
-    and errors as of :func:`layer`.
+    ``finer``: times as many elements at the surface as their growth into the body is for, 1 to 16; ``smallest``,
+    ``thickness`` and ``width`` are over the largest contact radius, they and errors as of :func:`layer`.
     """
     _check(elements_per_radius, smallest, thickness, width)
     at_surface = elements_per_radius * checked("refinement of the surface", finer, 1.0, 16.0)
@@ -66,7 +66,7 @@ def layer_for_waves(
 def layer_under_rim(elements_per_radius: float, thickness: float, width: float) -> MeshTri:
     """The same for a contact that ends at the node (1, 0) whatever the depth, under a pressure infinite there.
 
-    Elements shrink towards that rim in proportion to their distance.
+    Elements shrink towards that rim in proportion to their distance; ``thickness`` and ``width`` are over its radius.
     """
     _check(elements_per_radius, 1.0, thickness, width)
     growth, largest = min(GROWTH / elements_per_radius, LARGEST_GROWTH), min(LARGEST / elements_per_radius, COARSEST)

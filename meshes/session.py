@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -39,7 +40,7 @@ def session(name: str) -> Iterator[Any]:
 
 def _ignore_closed_pipes() -> None:
     """As Python does: gmsh undoes that, and then a reader who leaves would end this process without a word."""
-    if hasattr(signal, "SIGPIPE") and threading.current_thread() is threading.main_thread():
+    if sys.platform != "win32" and threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGPIPE, signal.getsignal(signal.SIGPIPE))
 
 

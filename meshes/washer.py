@@ -15,7 +15,7 @@ def washer(elements: float, inner: float, outer: float, rim: float, bonded: bool
     ----------
     elements : along the shortest length, 0.5 to 200.
     inner, outer : radii, above 0 and up to 1e4.
-    rim : where the contact ends, above inner and up to outer; short of outer the mesh is graded to it.
+    rim : where the contact ends, over the height, above inner and up to outer; short of outer the mesh is graded to it.
     bonded : whether the lower corners are graded to.
 
     Returns

@@ -166,7 +166,7 @@ def marginal(imports: float) -> None:
     import lumped
     from fe_contact.budget.plan import plan
     from fe_contact.march.impact import march
-    from fe_contact.reference import strike_of
+    from fe_contact.steppers.march import Strike
     from fe_contact.targets import half_space
 
     rng = random.SystemRandom()
@@ -174,7 +174,7 @@ def marginal(imports: float) -> None:
         spent: dict[str, list[float]] = {"march": [], "run": []}
         for repeat in range(MARGINAL_REPEATS + 1):
             scene = lumped.Scene.load("polymer-sphere", {"striker.velocity": rng.uniform(0.015, 0.025)})
-            numerics, strike = plan(scene, {"tolerance": float(tolerance)}).numerics, strike_of(scene)
+            numerics, strike = plan(scene, {"tolerance": float(tolerance)}).numerics, Strike.of(scene)
             surface = half_space.surface(scene.material.nu, numerics)
             start = time.process_time()
             march(strike, surface, numerics)
@@ -227,9 +227,9 @@ def force_laws() -> None:
     imports = statistics.median(child(["-c", IMPORTS])[0] for _ in range(REPEATS))
     for name in laws.available():
         module = laws.get(name)
-        if "k" not in module.KEYS:
+        if "k" not in module.keys:
             continue
-        law = {"name": name, "k": 1e8, **({"e": 0.6} if "e" in module.KEYS else {})}
+        law = {"name": name, "k": 1e8, **({"e": 0.6} if "e" in module.keys else {})}
         lean, whole = [], []
         for _ in range(FORCE_SAMPLES):
             striker = {"mass": rng.uniform(500.0, 2000.0), "velocity": rng.uniform(0.1, 2.0)}
@@ -251,7 +251,7 @@ def studied(seed: int) -> float | None:
     decades of its parameters.
     """
     rng = random.Random(seed)
-    names = [name for name in laws.available() if "k" in laws.get(name).KEYS]
+    names = [name for name in laws.available() if "k" in laws.get(name).keys]
     name = rng.choice([*names, "correspondence"])
     striker = {"mass": 10.0 ** rng.uniform(0.0, 4.0), "velocity": 10.0 ** rng.uniform(-1.0, 0.7)}
     if name == "correspondence":
@@ -261,7 +261,7 @@ def studied(seed: int) -> float | None:
         scene = Scene.from_dict({"striker": striker, "target": {"shape": "half_space", "material": solid}})
     else:
         law = {"name": name, "k": 10.0 ** rng.uniform(6.0, 10.0)}
-        law |= {"e": rng.uniform(0.1, 0.95)} if "e" in laws.get(name).KEYS else {}
+        law |= {"e": rng.uniform(0.1, 0.95)} if "e" in laws.get(name).keys else {}
         scene = Scene.from_dict({"striker": striker, "law": law})
     return simulate(laws.get(name).of(scene), scene, FORCE_TOLERANCE).quantities["restitution"].value
 

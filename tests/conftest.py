@@ -16,17 +16,44 @@ from lumped import Result
 TENTH = 10
 DIFFERING = ("peak_force", "peak_time", "peak_depth", "duration", "restitution", "impulse")
 
-settings.register_profile("tenth", derandomize=True, deadline=None, max_examples=100)
-settings.register_profile("full", derandomize=True, deadline=None, max_examples=100 * TENTH)
+settings.register_profile("plain", derandomize=True, deadline=None, max_examples=TENTH)
+settings.register_profile("tenth", derandomize=True, deadline=None, max_examples=TENTH**2)
+settings.register_profile("full", derandomize=True, deadline=None, max_examples=TENTH**3)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--full", action="store_true", help="run the random campaigns whole, not a seeded tenth")
+    parser.addoption("--tenth", action="store_true", help="run every test, the random campaigns by a seeded tenth")
+    parser.addoption("--full", action="store_true", help="run every test, the random campaigns whole")
     parser.addoption("--opensees", action="store_true", help="compare with openseespy too, which has to be installed")
 
 
+def size_of(config: pytest.Config) -> str:
+    """plain: one case of every slow family; tenth; full."""
+    return "full" if config.getoption("--full") else "tenth" if config.getoption("--tenth") else "plain"
+
+
 def pytest_configure(config: pytest.Config) -> None:
-    settings.load_profile("full" if config.getoption("--full") else "tenth")
+    config.addinivalue_line("markers", "family: slow; a plain run takes its first case only")
+    config.addinivalue_line("markers", "tenth: slow; a plain run leaves it out")
+    settings.load_profile(size_of(config))
+
+
+def pytest_report_header(config: pytest.Config) -> str:
+    return f"size: {size_of(config)}"
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """A plain run: every family once, nothing that takes long."""
+    if size_of(config) != "plain":
+        return
+    kept, families = list[pytest.Item](), set[str]()
+    for item in items:
+        family = item.nodeid.partition("[")[0] if item.get_closest_marker("family") else ""
+        if not item.get_closest_marker("tenth") and family not in families:
+            kept.append(item)
+            families |= {family} - {""}
+    config.hook.pytest_deselected(items=[item for item in items if item not in set(kept)])
+    items[:] = kept
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
@@ -36,13 +63,13 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 @pytest.fixture(scope="session")
 def campaign_size(request: pytest.FixtureRequest) -> Callable[[int], int]:
-    """How many of a campaign's n cases to run: all with --full, else a tenth, rounded up.
+    """How many of a campaign's n cases to run: all with --full, a tenth with --tenth, else a hundredth, rounded up.
 
-    A campaign draws its cases one after the other from one seeded generator, so the tenth is the first
-    part of the whole and the same every day.
+    A campaign draws its cases one after the other from one seeded generator, so a part is the first of the whole and
+    the same every day.
     """
-    full: bool = request.config.getoption("--full")
-    return lambda n: n if full else -(-n // TENTH)
+    part = {"full": 1, "tenth": TENTH, "plain": TENTH**2}[size_of(request.config)]
+    return lambda n: -(-n // part)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -36,7 +36,7 @@ class Constant(NamedTuple):
 CERTIFY, ORDERS = "fe_contact.budget.certify", "fe_contact.budget.trusted_order"
 CHANGE, CURVE, IMPACT = "fe_contact.budget.change", "fe_contact.budget.curve", "fe_contact.march.impact"
 TABLE = (
-    Constant(CERTIFY, "SAFETY", DERIVED, "Roache's for three grids, doi:10.1115/1.2910291"),
+    Constant(CHANGE, "SAFETY", DERIVED, "Roache's for three grids, doi:10.1115/1.2910291"),
     Constant(CERTIFY, "LEAST_ORDER", DERIVED, "a penalty errs as its inverse, a far field as the inverse square"),
     Constant(
         CERTIFY,
@@ -87,8 +87,7 @@ TABLE = (
     Constant(IMPACT, "STEPS_ALLOWED", WORK, "after which a march gives up"),
     Constant("fe_contact.waves.certify", "ORDER", DERIVED, "contact that begins point by point has order one"),
     Constant("fe_contact.waves.certify", "LEAST_NODES", MEASURED, "along the contact radius; fewer are doubled"),
-    Constant("fe_contact.waves.reading", "SAFETY", DERIVED, "as above"),
-    Constant("fe_contact.waves.reading", "TRUSTED", DERIVED, "two of the five orders between rows"),
+    Constant("fe_contact.waves.certify", "TRUSTED", DERIVED, "two of the five orders between rows"),
     Constant("lumped.laws._hereditary", "SAFETY", MEASURED, "of two integrations with more and with fewer nodes"),
     Constant("lumped.laws._hereditary", "LOCAL_SHARE", WORK, "what a piece may err"),
     Constant("lumped.laws._assembly", "ROUNDING", DERIVED, "of sums of some thousand terms"),

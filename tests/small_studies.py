@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -28,10 +30,9 @@ from fe_contact.studies.table1 import study as table1
 from fe_contact.studies.tradeoff import study as tradeoff
 from fe_contact.studies.tradeoff import study_with_waves as tradeoff_waves
 from fe_contact.studies.tradeoff.targets import _rod
-from lumped.paper.table1 import prism, punch
-from lumped.schema.members import available, get
+from lumped.paper.table1 import ROWS
 
-ROWS = (prism.EXAMPLE, punch.EXAMPLE)
+TWO_ROWS = {name: ROWS[name] for name in ("prism", "punch")}
 PROFILES = tuple(one for one in exponents.PROFILES if one.name in ("cone", "cylinder"))
 CASES = [{**DEFAULT, "cfl": cfl, "elements": 20, "periods": 1} for cfl in (0.5, 1.0, 2.0, 3.0)]
 COMMANDS = {
@@ -43,7 +44,7 @@ COMMANDS = {
     "stability": ["stability", "--quick"],
 }
 SMALLER: dict[ModuleType, dict[str, Any]] = {
-    table1: {"examples": lambda: ROWS, "RATIOS": (0.0, 0.45), "SHALLOW": table1.SHALLOW[::2], "DEEP": table1.DEEP[::8]}
+    table1: {"ROWS": TWO_ROWS, "RATIOS": (0.0, 0.45), "SHALLOW": table1.SHALLOW[::2], "DEEP": table1.DEEP[::8]}
     | {"power_law_impacts": lambda *_: None},
     blocks: {"WIDTHS": blocks.WIDTHS[::4]},
     exponents: {"PROFILES": PROFILES, "FEW_POINTS": 6},
@@ -53,7 +54,7 @@ SMALLER: dict[ModuleType, dict[str, Any]] = {
     rings_impact: {"STRAINS": ()},
     tradeoff: {"variations": lambda *_: (), "_laws": lambda *_: {}, "EXACT_TOLERANCE": 1e-5, "ROW_ELEMENTS": (25, 50)},
     tradeoff_waves: {"LAWS": ("hertz",)},
-    _rod: {"variations": lambda base, quick: iter([{"steps": 100}, {"steps": 200}])},
+    _rod: {"ROD": replace(_rod.ROD, variations=lambda base, quick: iter([{"steps": 100}, {"steps": 200}]))},
 }
 
 
@@ -64,8 +65,9 @@ def begun(*arguments: Any, folder: Callable[..., Path] = base.folder) -> Path:
     return folder(*arguments)
 
 
-for study in available(STUDIES):
-    SMALLER[get(STUDIES, study)] = {"cases": lambda quick, own=study: CASES if own == "table" else []}
+for study, member in STUDIES.members.items():
+    fewer = replace(member, cases=lambda quick, own=study: CASES if own == "table" else [])
+    SMALLER[import_module(f"{STUDIES.package}.{study}")] = {"MEMBER": fewer}
 for module, changes in SMALLER.items():
     for key, value in changes.items():
         assert hasattr(module, key)
@@ -73,7 +75,7 @@ for module, changes in SMALLER.items():
 
 if __name__ == "__main__":
     for name in ("table1", "exponents", "rings", "tradeoff", "stability"):  # charts follow from the rows
-        chart = sys.modules[f"fe_contact.report.{name}"] = ModuleType(name)
+        chart = sys.modules[f"fe_contact.studies.{name}.chart"] = ModuleType(name)
         setattr(chart, f"plot_{name}", lambda *_: ())
     base.folder = begun
     asked = zip(sys.argv[1::2], sys.argv[2::2], strict=True)

@@ -12,8 +12,7 @@ import pytest
 
 from fe_contact.cli import main
 from fe_contact.studies.exponents.chart import plot_exponents
-from fe_contact.studies.exponents.check import TOLERANCE, Check, check
-from fe_contact.studies.exponents.files import COLUMNS, write_exponents
+from fe_contact.studies.exponents.check import COLUMNS, TOLERANCE, Check, check, write_exponents
 from fe_contact.studies.exponents.finite_spheres import SHARES, Pair, pairs
 from fe_contact.studies.exponents.study import PROFILES, ExponentCurve, Profile, curve, curves
 from lumped.load_curves.layer import PointLayer

@@ -48,7 +48,7 @@ def steel() -> Case:
 
 def test_the_surface_has_the_shape_of_the_striker_where_they_touch(case: Case) -> None:
     scene, solved = case
-    fields = fields_at_peak(scene, solved)
+    fields = fields_at_peak(scene, solved.certified)
     touching = fields.contact == 1
     overlap = fields.depth - scene.profile.height(fields.points[touching, 0])
     assert touching.sum() > 20
@@ -57,7 +57,7 @@ def test_the_surface_has_the_shape_of_the_striker_where_they_touch(case: Case) -
 
 def test_outside_the_contact_the_surface_stays_below_the_striker(case: Case) -> None:
     scene, solved = case
-    fields = fields_at_peak(scene, solved)
+    fields = fields_at_peak(scene, solved.certified)
     r, z = fields.points.T
     beside = (z == 0.0) & (r > 1.02 * fields.contact_radius) & (r < 0.9 * scene.shape.tip_radius)
     gap = scene.profile.height(r[beside]) - fields.depth - fields.displacement[beside, 1]
@@ -66,7 +66,7 @@ def test_outside_the_contact_the_surface_stays_below_the_striker(case: Case) -> 
 
 def test_the_surface_is_in_equilibrium_with_the_pressure(case: Case) -> None:
     scene, solved = case
-    fields = fields_at_peak(scene, solved)
+    fields = fields_at_peak(scene, solved.certified)
     r, z = fields.points.T
     smooth = (z == 0.0) & (np.abs(r / fields.contact_radius - 1) > 0.05)
     largest = fields.pressure.max()
@@ -77,7 +77,7 @@ def test_the_surface_is_in_equilibrium_with_the_pressure(case: Case) -> None:
 def test_stress_on_the_axis_is_hertz(steel: Case) -> None:
     """Johnson, Contact Mechanics (1985), (3.45); the sphere is so shallow that it is a parabola to 1e-3."""
     scene, solved = steel
-    fields = fields_at_peak(scene, solved)
+    fields = fields_at_peak(scene, solved.certified)
     axis = fields.points[:, 0] == 0.0
     force, modulus = solved.certified.curve.quantities["peak_force"] or 0.0, scene.contact_modulus.relaxed
     radius = (0.75 * force * scene.shape.tip_radius / modulus) ** (1 / 3)
@@ -136,8 +136,8 @@ def test_the_pressure_at_the_peak_is_that_of_hertz(steel: Case) -> None:
 
 def test_the_file_holds_every_field(tmp_path: Path, steel: Case) -> None:
     scene, solved = steel
-    mesh = meshio.read(write_fields(scene, solved, tmp_path))
-    fields = fields_at_peak(scene, solved)
+    mesh = meshio.read(write_fields(scene, solved.certified, tmp_path))
+    fields = fields_at_peak(scene, solved.certified)
     assert set(mesh.point_data) == {"displacement", *STRESSES, "pressure", "contact"}
     assert np.array_equal(mesh.points[:, :2], fields.points)
     assert np.array_equal(mesh.point_data["displacement"][:, :2], fields.displacement)
@@ -148,7 +148,7 @@ def test_a_relaxing_body_of_constant_bulk_modulus_has_no_fields(tmp_path: Path) 
     scene = Scene.load("polymer-sphere", {"target.material.constant": "bulk"})
     where = tmp_path / "fields"
     with pytest.raises(BadInput, match=r"target\.material\.constant"):
-        write_fields(scene, solve(scene, {"tolerance": 0.01}), where)
+        write_fields(scene, solve(scene, {"tolerance": 0.01}).certified, where)
     assert not where.exists()
     check_fields(Scene.load("steel-ball", {"target.material.constant": "bulk"}))  # elastic: the two are one
 

@@ -12,7 +12,7 @@ import pytest
 from fe_contact.cli import main
 from lumped.paper import Examples, assumptions, claims, misprints, recompute
 from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNKNOWN, VERDICTS
-from lumped.result.model_ledger import material as yielding
+from lumped.result import model_ledger as yielding
 
 TABLES = {"paper", "assumptions", "misprints", "grid"}
 FIGURES = {f"fig{number}.{kind}" for number in (6, 7, 8, 10, 15) for kind in ("svg", "png")}

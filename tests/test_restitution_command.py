@@ -10,8 +10,7 @@ import pytest
 
 from fe_contact.cli import main
 from fe_contact.studies.restitution.chart import plot_restitution
-from fe_contact.studies.restitution.files import write_restitution
-from fe_contact.studies.restitution.table import EXITS, RestitutionLine, formulas, table
+from fe_contact.studies.restitution.table import EXITS, RestitutionLine, formulas, table, write_restitution
 from lumped import restitution
 
 ASKED = (0.1, 0.5, 0.9)

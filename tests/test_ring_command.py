@@ -11,10 +11,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fe_contact.studies.rings.files import write_rings
 from fe_contact.studies.rings.impact import JUDGED, RingStruck, _struck
 from fe_contact.studies.rings.study import RingCurve, cases, local_exponent, rings
-from fe_contact.studies.rings.verdict import verdict
+from fe_contact.studies.rings.verdict import verdict, write_rings
 from lumped import laws, simulate
 from lumped.paper.examples.given import Examples
 from lumped.paper.examples.ring_impact import stiffness

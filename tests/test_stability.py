@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,13 +14,14 @@ import pytest
 
 from fe_contact.bodies.bar import TIP, falling, pitch
 from fe_contact.cli import main
+from fe_contact.dynamics.mass.base import MASSES
+from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.errors import MotionUnbounded
 from fe_contact.studies.stability import explicit_limit, table
 from fe_contact.studies.stability._bar import BAR, DEFAULT, bounced, measured
 from fe_contact.studies.stability.base import STUDIES, row
-from fe_contact.waves import falling_block
+from fe_contact.waves.targets import _block as falling_block
 from lumped import Scene
-from lumped.schema.members import available, get
 
 USUAL = {**DEFAULT, "cfl": 1.0, "elements": 60, "periods": 1}
 
@@ -122,7 +124,7 @@ def test_two_over_omega_max_is_the_limit_of_a_linear_bar(mass: str) -> None:
     """A bar pressed on for good, its contact always closed, is stable below it and not beyond."""
     elements, penalty = 10, 10.0
     limit = explicit_limit.linear_limit(mass, penalty, elements)
-    body = falling(BAR, elements, get("fe_contact.dynamics.mass", mass), 0.0)
+    body = falling(BAR, elements, MASSES.get(mass), 0.0)
     case = {**DEFAULT, "scheme": "central_difference", "mass": mass, "tip": 1.0, "enforcement": "penalty"}
     case["penalty"] = penalty
     size = BAR.length / elements
@@ -155,11 +157,11 @@ def test_a_step_beyond_the_limit_is_a_named_failure_and_no_number() -> None:
 
 
 def test_every_study_names_its_settings_and_measures() -> None:
-    for study in available(STUDIES):
-        module = get(STUDIES, study)
+    for study in STUDIES.names:
+        module = STUDIES.get(study)
         quick, full = module.cases(True), module.cases(False)
         assert 0 < len(quick) < len(full)
-        assert {*module.CHART.rows, *module.CHART.columns} <= set(quick[0])
+        assert {*module.chart.rows, *module.chart.columns} <= set(quick[0])
         keys = [json.dumps(case, sort_keys=True) for case in full]
         assert len(set(keys)) == len(keys)
 
@@ -172,8 +174,9 @@ def few(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
     """Two small cases of the table alone: one that holds, one that fails."""
     small = {**USUAL, "elements": 10, "scheme": "central_difference"}
     cases = [small, {**small, "cfl": 2.0}]
-    for study in available(STUDIES):
-        monkeypatch.setattr(get(STUDIES, study), "cases", lambda quick, own=study == "table": cases if own else [])
+    for study in STUDIES.names:
+        fewer = replace(STUDIES.get(study), cases=lambda quick, own=study == "table": cases if own else [])
+        monkeypatch.setattr(f"{STUDIES.package}.{study}.MEMBER", fewer)
     monkeypatch.setattr("fe_contact.studies.stability._chart.plot_stability", lambda rows, where: [])
     return cases
 
@@ -203,4 +206,4 @@ def test_the_chart_shows_every_case(tmp_path: Path) -> None:
 
 def test_the_table_has_the_default_and_its_rivals() -> None:
     assert tuple(DEFAULT[key] for key in table.KEYS) in table.ROWS
-    assert {row[0] for row in table.ROWS} == set(available("fe_contact.dynamics.schemes"))
+    assert {row[0] for row in table.ROWS} == set(WAVE_SCHEMES.names)

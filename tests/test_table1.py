@@ -19,12 +19,21 @@ from fe_contact.studies.table1 import datum
 from fe_contact.studies.table1.blocks import Block, within
 from fe_contact.studies.table1.chart import plot_table1
 from fe_contact.studies.table1.datum import DEPTH, Place, curve
-from fe_contact.studies.table1.files import COLUMNS, write_table1
 from fe_contact.studies.table1.reach import LIMIT, Reach
 from fe_contact.studies.table1.study import RATIOS, Trial, bodies, table1
-from fe_contact.studies.table1.verdict import HOLDS, RANGE, UNDECIDED, UNTRIED, WRONG, deviations, verdict
+from fe_contact.studies.table1.verdict import (
+    COLUMNS,
+    HOLDS,
+    RANGE,
+    UNDECIDED,
+    UNTRIED,
+    WRONG,
+    deviations,
+    verdict,
+    write_table1,
+)
 from lumped.load_curves import Hertz, SneddonSphere
-from lumped.paper.table1 import Elastic, TableRow, cone, cylinder, examples, prism, punch, sphere, two_cylinders
+from lumped.paper.table1 import ROWS, Elastic, TableRow
 from lumped.result.result import Quantity
 
 ROUNDING = 1e-9
@@ -66,7 +75,7 @@ def test_the_bars_of_power_laws_cover_them(trials: Mapping[str, Trial], name: st
     assert covers(found.factor, found.row.factor)
 
 
-@pytest.mark.parametrize("name", [row.name for row in examples()])
+@pytest.mark.parametrize("name", [row.name for row in ROWS.values()])
 def test_poissons_ratio_moves_the_modulus_as_the_corrected_row_says(trials: Mapping[str, Trial], name: str) -> None:
     found = trials[name]
     assert tuple(found.moduli) == RATIOS
@@ -76,7 +85,7 @@ def test_poissons_ratio_moves_the_modulus_as_the_corrected_row_says(trials: Mapp
         assert covers(modulus, exact)
 
 
-@pytest.mark.parametrize("name", [row.name for row in examples()])
+@pytest.mark.parametrize("name", [row.name for row in ROWS.values()])
 def test_impacts_identify_what_slow_indentation_does(trials: Mapping[str, Trial], name: str) -> None:
     """E* as corrected; alpha and D within what both bars and the profile of a true sphere leave open."""
     found, struck = trials[name], trials[name].impact
@@ -175,12 +184,12 @@ def test_widths_within_a_limit() -> None:
     """Moduli made up as E (1 + 0.1 width): row 1 holds to 1 % up to 0.1, row 2 at nu = 0 alike."""
     body = Elastic(1.0, 0.0)
     made = [Block(body, width, Quantity(1.0 + 0.1 * width, 0.0, "Pa")) for width in (0.01, 0.05, 0.2, 1.0)]
-    found = within(prism.EXAMPLE, made, LIMIT)
+    found = within(ROWS["prism"], made, LIMIT)
     assert found is not None
     assert found[0] == 0.0
     assert found[1] == pytest.approx(0.1, rel=1e-9)
-    assert within(prism.EXAMPLE, made[2:], LIMIT) is None
-    assert within(prism.EXAMPLE, made[:2], LIMIT) == (0.0, math.inf)
+    assert within(ROWS["prism"], made[2:], LIMIT) is None
+    assert within(ROWS["prism"], made[:2], LIMIT) == (0.0, math.inf)
 
 
 def test_verdicts(trials: Mapping[str, Trial]) -> None:
@@ -210,30 +219,30 @@ def made_up(row: TableRow, alpha: float = 0.0, factor: float = 1.0, bar: float =
 
 
 def test_the_rule_of_the_verdict() -> None:
-    row = punch.EXAMPLE
+    row = ROWS["punch"]
     assert verdict(made_up(row)).word == HOLDS
     assert verdict(made_up(row, held=0.1)).word == RANGE
     assert verdict(made_up(row, factor=1.0008)).word == HOLDS
-    assert verdict(made_up(cone.EXAMPLE)).word == WRONG
+    assert verdict(made_up(ROWS["cone"])).word == WRONG
     assert verdict(Trial(row, failure="no contact")) == type(verdict(made_up(row)))(UNTRIED, "no contact")
 
 
 def test_what_neither_printed_nor_corrected_row_explains_is_undecided() -> None:
-    assert verdict(made_up(punch.EXAMPLE, factor=1.01)).word == UNDECIDED
-    assert verdict(made_up(punch.EXAMPLE, alpha=0.01)).word == UNDECIDED
+    assert verdict(made_up(ROWS["punch"], factor=1.01)).word == UNDECIDED
+    assert verdict(made_up(ROWS["punch"], alpha=0.01)).word == UNDECIDED
 
 
 def test_a_wide_bar_decides_nothing() -> None:
-    assert verdict(made_up(punch.EXAMPLE, bar=5e-3)).word == UNDECIDED
-    assert not any(one.differs for one in deviations(made_up(punch.EXAMPLE, factor=1.004, bar=5e-3)).values())
+    assert verdict(made_up(ROWS["punch"], bar=5e-3)).word == UNDECIDED
+    assert not any(one.differs for one in deviations(made_up(ROWS["punch"], factor=1.004, bar=5e-3)).values())
 
 
 def test_one_d_for_every_datum_would_not_be_called_wrong() -> None:
     same = tuple(Place("datum", length, "exact", Quantity(0.5, 0.0, "1"), Quantity(1.0, 0.0, "1")) for length in (1, 9))
-    moduli = made_up(cylinder.EXAMPLE).moduli
-    assert verdict(Trial(cylinder.EXAMPLE, moduli=moduli, datum=same)).word == UNDECIDED
+    moduli = made_up(ROWS["cylinder"]).moduli
+    assert verdict(Trial(ROWS["cylinder"], moduli=moduli, datum=same)).word == UNDECIDED
     other = (same[0], replace(same[1], factor=Quantity(0.6, 0.0, "1")))
-    assert verdict(Trial(cylinder.EXAMPLE, moduli=moduli, datum=other)).word == WRONG
+    assert verdict(Trial(ROWS["cylinder"], moduli=moduli, datum=other)).word == WRONG
 
 
 def test_files(tmp_path: Path, trials: Mapping[str, Trial]) -> None:
@@ -245,7 +254,7 @@ def test_files(tmp_path: Path, trials: Mapping[str, Trial]) -> None:
     assert (
         [row["D"] == "" for row in rows]
         == [row["alpha"] == "" for row in rows]
-        == [not one.single for one in examples()]
+        == [not one.single for one in ROWS.values()]
     )
     for row in rows:
         assert all(math.isfinite(float(row[name])) for name in COLUMNS if name.endswith("_Pa"))
@@ -272,7 +281,7 @@ def test_the_command(
     factor: float,
     code: int,
 ) -> None:
-    tried = (made_up(sphere.EXAMPLE, factor=factor), trials["cone"], trials["two_cylinders"])
+    tried = (made_up(ROWS["sphere"], factor=factor), trials["cone"], trials["two_cylinders"])
     monkeypatch.setattr("fe_contact.studies.table1.study.table1", lambda where, progress: tried)
     assert main(["table1", "--out", str(tmp_path / "out"), "--quiet"]) == code
     said = capsys.readouterr()
@@ -285,13 +294,13 @@ def test_the_command(
 
 
 def test_two_cylinders_vary_both_materials() -> None:
-    first, second = bodies(two_cylinders.EXAMPLE, RATIOS[-1])
+    first, second = bodies(ROWS["two_cylinders"], RATIOS[-1])
     assert first.young != second.young
     assert first.nu != second.nu
 
 
 @pytest.mark.parametrize("off", [-0.005, 0.002, 0.03])
-@pytest.mark.parametrize("row", [punch.EXAMPLE, sphere.EXAMPLE, prism.EXAMPLE], ids=lambda row: row.name)
+@pytest.mark.parametrize("row", [ROWS["punch"], ROWS["sphere"], ROWS["prism"]], ids=lambda row: row.name)
 def test_a_modulus_that_is_not_the_rows_is_never_said_to_hold(row: TableRow, off: float) -> None:
     """E* by finite elements that no row explains, at one Poisson's ratio of several."""
     found = made_up(row)

@@ -13,7 +13,7 @@ import pytest
 from fe_contact.cli import main
 from fe_contact.methods import simulate
 from fe_contact.results.distance import distance
-from fe_contact.settings import RANGES, WAVES
+from fe_contact.settings import RANGES, WaveNumerics
 from fe_contact.studies.tradeoff import study_with_waves as study
 from fe_contact.studies.tradeoff.chart import Signs, plot_tradeoff
 from fe_contact.studies.tradeoff.front import finite_elements, known_to, verdict
@@ -21,9 +21,8 @@ from fe_contact.studies.tradeoff.point import REFERENCE, Point
 from fe_contact.studies.tradeoff.targets import _block as block
 from fe_contact.studies.tradeoff.targets import _meshed as meshed
 from fe_contact.studies.tradeoff.targets import _rod as rod
-from fe_contact.waves.numerics import WaveNumerics
+from fe_contact.waves.targets.base import WAVES
 from lumped.scene.scene import Scene
-from lumped.schema.members import available, get
 
 SCENES = (
     "steel-ball-waves",
@@ -37,7 +36,7 @@ SCENES = (
 
 def planned(name: str, **given: Any) -> WaveNumerics:
     scene = Scene.load(name)
-    found = get(WAVES, scene.target.name).plan(scene, given).numerics
+    found = WAVES.get(scene.target.name).plan(scene, given).numerics
     assert isinstance(found, WaveNumerics)
     return found
 
@@ -51,7 +50,7 @@ def points(tmp_path_factory: pytest.TempPathFactory) -> tuple[Point, ...]:
 @pytest.mark.parametrize("quick", [True, False])
 def test_every_target_tries_settings_that_a_run_accepts(name: str, quick: bool) -> None:
     base, scene = planned(name), Scene.load(name)
-    chosen = study._chosen(base, {}, get(study.TARGETS, scene.target.name).of(scene).variations(base, quick))
+    chosen = study._chosen(base, {}, study.TRIED.get(scene.target.name).of(scene).variations(base, quick))
     assert 5 <= len(chosen) == len(set(chosen))
     assert base not in chosen
     for numerics in chosen:
@@ -175,4 +174,4 @@ def test_the_chart_tells_schemes_and_masses_apart(tmp_path: Path, points: tuple[
 
 
 def test_trade_offs_are_of_targets_with_waves() -> None:
-    assert set(available(study.TARGETS)) <= set(available(WAVES))
+    assert set(study.TRIED.names) <= set(WAVES.names)

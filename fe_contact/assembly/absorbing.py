@@ -8,15 +8,15 @@ reflection of what arrives head on (Lysmer and Kuhlemeyer 1969, doi:10.1061/JMCE
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sparse
 
 from fe_contact.assembly import far_field as static
+from fe_contact.assembly.forms import Basis
 
 
-def dashpots(facets: Any, poisson: float) -> sparse.coo_matrix:
+def dashpots(facets: Basis, poisson: float) -> sparse.coo_matrix:
     """Force over velocity on the far boundary for E* = 1 and density 1, shape (2 N, 2 N).
 
     Parameters

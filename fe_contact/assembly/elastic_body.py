@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
-
-import numpy.typing as npt
 
 from fe_contact.assembly.floating import Floating
-from fe_contact.assembly.forms import elastic, plane_stiffness, stiffness
+from fe_contact.assembly.forms import Basis, Indices, Matrix, elastic, plane_stiffness, stiffness
 from fe_contact.assembly.operators import SurfaceOperator, condensed
 from fe_contact.assembly.surface import Surface
 
@@ -22,9 +19,9 @@ class ElasticBody:
     of the stiffness, hence linear in both moduli too. ``floating``: of a body that nothing holds but its inertia.
     """
 
-    basis: Any
-    stiffness: Callable[[float, float], Any]
-    fixed: npt.NDArray[Any]
+    basis: Basis
+    stiffness: Callable[[float, float], Matrix]
+    fixed: Indices
     surface: Surface
     floating: Floating | None = None
 
@@ -34,12 +31,12 @@ class ElasticBody:
         return condensed(self.basis, matrix, self.fixed, poisson, self.surface, floating=self.floating, factors=factors)
 
 
-def axisymmetric(basis: Any, bulk: float, shear: float) -> Any:
+def axisymmetric(basis: Basis, bulk: float, shear: float) -> Matrix:
     """Stiffness of a body of revolution that ends with its mesh, sparse (2 N, 2 N)."""
     return stiffness(basis, elastic(bulk, shear))
 
 
-def plane(basis: Any, bulk: float, shear: float) -> Any:
+def plane(basis: Basis, bulk: float, shear: float) -> Matrix:
     """The same in plane strain, both halves."""
     return plane_stiffness(basis, elastic(bulk, shear))
 

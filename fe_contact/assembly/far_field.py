@@ -7,15 +7,13 @@ moments of the pressure; a fixed boundary would err by about 1.1 contact radii o
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sparse
 
-from fe_contact.assembly.forms import Array, scatter, vector_dofs
+from fe_contact.assembly.forms import Array, Basis, scatter, vector_dofs
 
 
-def robin(facets: Any, poisson: float) -> sparse.coo_matrix:
+def robin(facets: Basis, poisson: float) -> sparse.coo_matrix:
     """Stiffness of the outside on the far boundary for E* = 1, shape (2 N, 2 N).
 
     Parameters
@@ -28,7 +26,7 @@ def robin(facets: Any, poisson: float) -> sparse.coo_matrix:
     return springs(facets, displacement, traction, 2 * np.pi * position[0])
 
 
-def springs(facets: Any, displacement: Array, traction: Array, measure: Array | float) -> sparse.coo_matrix:
+def springs(facets: Basis, displacement: Array, traction: Array, measure: Array | float) -> sparse.coo_matrix:
     """Stiffness of ``t = -k u`` with the symmetric k that meets this displacement and traction, shape (2 N, 2 N).
 
     Both (2, facets, points) on the boundary of ``facets``; ``measure``: area per length of the boundary.
@@ -43,7 +41,7 @@ def springs(facets: Any, displacement: Array, traction: Array, measure: Array | 
     return on_boundary(facets, tensor, measure)
 
 
-def on_boundary(facets: Any, tensor: Array, measure: Array | float) -> sparse.coo_matrix:
+def on_boundary(facets: Basis, tensor: Array, measure: Array | float) -> sparse.coo_matrix:
     """``int u.k v`` over a boundary, k (2, 2, facets, points); shape (2 N, 2 N)."""
     weight = measure * np.asarray(facets.dx)
     value = np.stack([np.broadcast_to(np.asarray(shape[0]), weight.shape) for shape in facets.basis])

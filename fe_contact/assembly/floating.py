@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from fe_contact.assembly.forms import Array
+from fe_contact.assembly.forms import Array, Basis
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,7 +16,7 @@ class Floating:
     mass: Array
 
     @classmethod
-    def of(cls, basis: Any, weight: Array) -> Floating:
+    def of(cls, basis: Basis, weight: Array) -> Floating:
         """Of a uniform body; ``weight`` (elements, points): volume of every quadrature point of the basis."""
         mass = np.zeros(2 * basis.N)
         for local, shape in enumerate(basis.basis):

@@ -7,7 +7,7 @@ Vector degree of freedom ``2k + c`` belongs to scalar degree ``k`` and component
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,9 @@ from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 
 Array = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.integer[Any]]  # degrees of freedom, nodes, rows: of whatever width they come
+Basis: TypeAlias = Any  # of scikit-fem, which ships no types
+Matrix: TypeAlias = Any  # sparse, in any of scipy's formats, which share no class that has all they have
 LARGEST_NU = 0.4999  # elements of every order are tried so far by `fe-contact stability`
 
 
@@ -49,7 +52,7 @@ def elastic(bulk: float, shear: float) -> Array:
     return law
 
 
-def axisymmetric_strain(basis: Any) -> Array:
+def axisymmetric_strain(basis: Basis) -> Array:
     """Strain of every vector shape function, shape (elements, points, 4, 2 x scalar functions).
 
     Rows: ``du_r/dr``, ``du_z/dz``, ``u_r/r``, ``du_r/dz + du_z/dr``. Gauss points never lie on the axis,
@@ -67,7 +70,7 @@ def axisymmetric_strain(basis: Any) -> Array:
     return strain
 
 
-def plane_strain(basis: Any) -> Array:
+def plane_strain(basis: Basis) -> Array:
     """Strain of every vector shape function in plane strain, shape (elements, points, 4, 2 x scalar functions).
 
     Rows as in :func:`axisymmetric_strain`, the hoop's now that out of the plane: zero.
@@ -81,7 +84,7 @@ def plane_strain(basis: Any) -> Array:
     return strain
 
 
-def polar_strain(basis: Any, inner_radius: float) -> Array:
+def polar_strain(basis: Basis, inner_radius: float) -> Array:
     """Plane strain of a ring laid flat: x is arc length on its inner surface, z = inner_radius - r out of the body.
 
     The rectangle's straight elements then have the ring's exact arcs. Rows as in :func:`plane_strain`.
@@ -100,14 +103,14 @@ def polar_strain(basis: Any, inner_radius: float) -> Array:
     return strain
 
 
-def polar_stiffness(basis: Any, law: Array, inner_radius: float) -> sparse.coo_matrix:
+def polar_stiffness(basis: Basis, law: Array, inner_radius: float) -> sparse.coo_matrix:
     """Stiffness matrix per unit length of both halves of a ring laid flat, see :func:`polar_strain`."""
     radius = inner_radius - np.asarray(basis.global_coordinates())[1]
     weight = 2.0 * np.asarray(basis.dx) * radius / inner_radius
     return _assembled(basis, law, polar_strain(basis, inner_radius), weight)
 
 
-def stiffness(basis: Any, law: Array) -> sparse.coo_matrix:
+def stiffness(basis: Basis, law: Array) -> sparse.coo_matrix:
     """Stiffness matrix of an axisymmetric body, shape (2 N, 2 N), N/m.
 
     Parameters
@@ -119,17 +122,17 @@ def stiffness(basis: Any, law: Array) -> sparse.coo_matrix:
     return _assembled(basis, law, axisymmetric_strain(basis), 2 * np.pi * radius * basis.dx)
 
 
-def mass(basis: Any) -> Array:
+def mass(basis: Basis) -> Array:
     """Consistent mass of every element of an axisymmetric body of density one, (elements, 2 n, 2 n), m^3."""
     return _mass(basis, 2 * np.pi * np.asarray(basis.global_coordinates())[0] * np.asarray(basis.dx))
 
 
-def plane_mass(basis: Any) -> Array:
+def plane_mass(basis: Basis) -> Array:
     """The same per unit length of both halves of a body in plane strain, m^2."""
     return _mass(basis, 2.0 * np.asarray(basis.dx))
 
 
-def _mass(basis: Any, weight: Array) -> Array:
+def _mass(basis: Basis, weight: Array) -> Array:
     value = np.stack([np.broadcast_to(np.asarray(shape[0]), weight.shape) for shape in basis.basis], axis=-1)
     scalar = np.einsum("eqi,eqj,eq->eij", value, value, weight, optimize=True)
     elements, functions, _ = scalar.shape
@@ -138,12 +141,12 @@ def _mass(basis: Any, weight: Array) -> Array:
     return local
 
 
-def plane_stiffness(basis: Any, law: Array) -> sparse.coo_matrix:
+def plane_stiffness(basis: Basis, law: Array) -> sparse.coo_matrix:
     """Stiffness matrix per unit length of both halves of a body in plane strain; as :func:`stiffness`."""
     return _assembled(basis, law, plane_strain(basis), 2.0 * np.asarray(basis.dx))
 
 
-def _assembled(basis: Any, law: Array, strain: Array, weight: Array) -> sparse.coo_matrix:
+def _assembled(basis: Basis, law: Array, strain: Array, weight: Array) -> sparse.coo_matrix:
     """``int sigma(u):eps(v)`` with strains (elements, points, 4, functions) and weights (elements, points)."""
     elements, points, _, functions = strain.shape
     stress = np.matmul(law, strain)
@@ -153,7 +156,7 @@ def _assembled(basis: Any, law: Array, strain: Array, weight: Array) -> sparse.c
     return scatter(local, vector_dofs(basis.element_dofs), 2 * basis.N)
 
 
-def vector_dofs(scalar_dofs: npt.NDArray[np.integer[Any]]) -> npt.NDArray[np.integer[Any]]:
+def vector_dofs(scalar_dofs: Indices) -> Indices:
     """Vector degrees of freedom of each element, shape (elements, 2 x scalar functions)."""
     functions, elements = scalar_dofs.shape
     dofs = np.empty((elements, 2 * functions), dtype=scalar_dofs.dtype)
@@ -162,7 +165,7 @@ def vector_dofs(scalar_dofs: npt.NDArray[np.integer[Any]]) -> npt.NDArray[np.int
     return dofs
 
 
-def scatter(local: Array, dofs: npt.NDArray[np.integer[Any]], size: int) -> sparse.coo_matrix:
+def scatter(local: Array, dofs: Indices, size: int) -> sparse.coo_matrix:
     """Sum element matrices (elements, n, n) with numbering (elements, n) into a sparse (size, size)."""
     rows = np.broadcast_to(dofs[:, :, None], local.shape)
     columns = np.broadcast_to(dofs[:, None, :], local.shape)

@@ -5,18 +5,16 @@ In plane strain the displacement of a line force has no value of its own, only a
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sparse
 
 from fe_contact.assembly.far_field import springs
-from fe_contact.assembly.forms import Array
+from fe_contact.assembly.forms import Array, Basis
 
 BEYOND = 5.0  # logarithm of where the displacement vanishes on the axis, over the size of the mesh
 
 
-def robin(facets: Any, poisson: float) -> sparse.coo_matrix:
+def robin(facets: Basis, poisson: float) -> sparse.coo_matrix:
     """Stiffness of the outside on the far boundary for E* = 1, per unit length and of both halves, (2 N, 2 N)."""
     position = np.asarray(facets.global_coordinates())
     origin = np.exp(BEYOND) * float(np.hypot(*position).min())

@@ -7,14 +7,13 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse.linalg as linalg
 
 from fe_contact.assembly.floating import Floating
-from fe_contact.assembly.forms import Array
+from fe_contact.assembly.forms import Array, Indices, Matrix
 
 FACTORS = 160  # bytes a matrix entry: ten entries of the factors, each a number, its place and as much while they grow
 WORK_SPACE = 100e6  # bytes that BLAS and SuperLU take beside
@@ -38,9 +37,9 @@ class Interior:
     zone, out of the body; ``floating`` of a body that nothing holds.
     """
 
-    matrix: Any
-    free: npt.NDArray[np.integer[Any]]
-    push: Any
+    matrix: Matrix
+    free: Indices
+    push: Matrix
     floating: Floating | None = None
 
     @property
@@ -75,7 +74,7 @@ class Factorised:
         return answer if body.floating is None else body.floating.centred(answer)
 
 
-def factorized(matrix: Any) -> Callable[[Array], Array]:
+def factorized(matrix: Matrix) -> Callable[[Array], Array]:
     """Back-substitution for a symmetric positive definite sparse matrix, of one right-hand side or several.
 
     Raises MemoryError where the process may not have so much: SuperLU would crash, and BLAS ask for ever.

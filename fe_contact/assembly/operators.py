@@ -12,7 +12,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sparse
 from skfem import (
     Basis,
@@ -26,7 +25,7 @@ from skfem import (
 
 from fe_contact.assembly import far_field as static
 from fe_contact.assembly.floating import Floating
-from fe_contact.assembly.forms import Array, isotropic, stiffness
+from fe_contact.assembly.forms import Array, Indices, Matrix, isotropic, stiffness
 from fe_contact.assembly.interior import Interior, Solve
 from fe_contact.assembly.surface import Surface, flat
 from fe_contact.assembly.trace import contact_quadrature, trace_between
@@ -64,7 +63,7 @@ class SurfaceOperator:
     pull: Array
     trace: Array
     solve: Solve
-    basis: Any
+    basis: Basis
     poisson: float
     dimension: int
     watched: Array | None
@@ -155,12 +154,12 @@ def surface_operator(mesh: MeshTri, order: int, poisson: float) -> SurfaceOperat
 
 
 def condensed(
-    basis: Any,
-    matrix: Any,
-    fixed: npt.NDArray[np.integer[Any]],
+    basis: Basis,
+    matrix: Matrix,
+    fixed: Indices,
     poisson: float,
     surface: Surface,
-    watch: Any = None,
+    watch: Matrix = None,
     floating: Floating | None = None,
     factors: bool = False,
 ) -> SurfaceOperator:
@@ -207,7 +206,7 @@ def condensed(
     )
 
 
-def _influence(displacement: Solve, normal: Any, watch: Any, loaded: int) -> tuple[Array, Array | None]:
+def _influence(displacement: Solve, normal: Matrix, watch: Matrix, loaded: int) -> tuple[Array, Array | None]:
     """Inward displacement of the surface nodes, (n_s, loaded), and of what is watched, (loaded,), under unit forces."""
     seen = -normal.T if watch is None else sparse.vstack([-normal.T, watch])
     parts = np.array_split(np.eye(loaded), -(-loaded // SOLVED_AT_ONCE), axis=1)
@@ -224,7 +223,7 @@ def _normals(surface: Surface, size: int) -> sparse.csc_matrix:
     return sparse.csc_matrix(entries, shape=(size, columns.size))
 
 
-def system_matrix(basis: Any, poisson: float) -> Any:
+def system_matrix(basis: Basis, poisson: float) -> Matrix:
     """Stiffness of body and far field for E* = 1, sparse (2 N, 2 N); the axis is not yet fixed."""
     order = basis.elem.maxdeg
     far = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["far"], intorder=2 * order + 4)

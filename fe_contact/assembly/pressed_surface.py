@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sparse
 from scipy.linalg.lapack import dgetrf, dgetrs, dposv
 
-from fe_contact.assembly.forms import Array
+from fe_contact.assembly.forms import Array, Matrix
 
 INDEPENDENT = 1e-10  # of the largest: less than this is a sum of the others, as a rigid striker's unit displacement is
 
@@ -89,7 +88,7 @@ class PressedSurface:
         return np.asarray(found[:, sizes > INDEPENDENT * sizes[0]])
 
     @cached_property
-    def _squares(self) -> Any:
+    def _squares(self) -> Matrix:
         """Every point's trace times itself as a column, sparse (n n, q): a point sees the nodes of its facet alone."""
         points, nodes = self.trace.shape
         rows = sparse.csr_matrix(self.trace)

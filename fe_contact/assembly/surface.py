@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from fe_contact.assembly.forms import Array
+from fe_contact.assembly.forms import Array, Basis, Indices
 
 MIDDLE = 0.5 * np.pi - 1e-6  # rad from the top of a circle: just above its middle plane
 CONTACT_ZONE = 1.1  # contact is sought up to this multiple of the predicted contact radius
@@ -24,7 +22,7 @@ class Surface:
     there. ``dimension``: 3, forces in modulus x length^2, or 2, per unit length in modulus x length.
     """
 
-    dofs: npt.NDArray[np.integer[Any]]
+    dofs: Indices
     coordinate: Array
     normal: Array
     measure: Callable[[Array], Array]
@@ -33,7 +31,7 @@ class Surface:
     dimension: int
 
 
-def flat(basis: Any, dimension: int = 3, motion: Callable[[Array], Array] = np.ones_like) -> Surface:
+def flat(basis: Basis, dimension: int = 3, motion: Callable[[Array], Array] = np.ones_like) -> Surface:
     """The boundary ``surface`` of a mesh, z = 0, from the axis (or the plane of symmetry, of both halves) outwards."""
     dofs = basis.get_dofs("surface").flatten()
     dofs = dofs[np.argsort(basis.doflocs[0, dofs])]
@@ -48,7 +46,7 @@ def flat(basis: Any, dimension: int = 3, motion: Callable[[Array], Array] = np.o
     )
 
 
-def crown(basis: Any, contact: float, mean_radius: float | None) -> Surface:
+def crown(basis: Basis, contact: float, mean_radius: float | None) -> Surface:
     """The boundary ``surface`` of a circle of radius 1, by its angle from the top, rad, where ``contact`` may end.
 
     The pressure is vertical and acts on what the circle shows from above: ``mean_radius`` is its distance from the

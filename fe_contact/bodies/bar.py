@@ -17,14 +17,14 @@ contacts keep to steps, keeps its energy; under a gravity that makes hundreds of
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sparse
 
-from fe_contact.assembly.forms import Array, scatter
+from fe_contact.assembly.forms import Array, Matrix, scatter
 from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
+from fe_contact.dynamics.mass.base import Mass
 from lumped.materials import Relaxation
 
 TIP = 0.5**0.5  # first element over the others, for a surface without mass
@@ -50,7 +50,7 @@ class LineElements:
     nodes: Array
     dofs: Any
     mass: Array
-    stiffness: Any
+    stiffness: Matrix
 
 
 def pitch(length: float, elements: int, tip: float = 1.0) -> float:
@@ -73,9 +73,7 @@ def line_elements(bar: Bar, elements: int, tip: float = 1.0) -> LineElements:
     )
 
 
-def falling(
-    bar: Bar, elements: int, mass: ModuleType, gravity: float, gap: float = 0.0, tip: float = 1.0
-) -> BodyWithMass:
+def falling(bar: Bar, elements: int, mass: Mass, gravity: float, gap: float = 0.0, tip: float = 1.0) -> BodyWithMass:
     """A bar that moves freely towards a rigid plane, ``gap``, m, away; displacements count away from the plane."""
     line = line_elements(bar, elements, tip)
     size = line.nodes.size

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +22,7 @@ from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
 from fe_contact.bodies.modes import Modes
 from fe_contact.bodies.offer import Offer, Recalled
+from fe_contact.schemes.base import MemoryScheme
 from lumped.materials import Material, Relaxation
 
 SURFACES_KEPT = 4
@@ -72,7 +72,7 @@ class BulkBody:
 
     modes: Modes
     moduli: Moduli
-    scheme: ModuleType
+    scheme: MemoryScheme
     scale: float
 
     def at_rest(self) -> BulkMemory:

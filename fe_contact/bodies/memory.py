@@ -12,13 +12,13 @@ The same recursion run on the pressure itself gives the pressure each branch car
 from __future__ import annotations
 
 from functools import lru_cache
-from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.schemes import galerkin
+from fe_contact.schemes.base import MemoryScheme
 from lumped.materials import Relaxation
 
 LAWS_KEPT = 1024  # the steps of a march: their energies are counted when it has ended
@@ -40,11 +40,11 @@ class StepLaw(NamedTuple):
 
 
 @lru_cache(maxsize=LAWS_KEPT)
-def step_law(relaxation: Relaxation, scheme: ModuleType, step: float) -> StepLaw:
+def step_law(relaxation: Relaxation, scheme: MemoryScheme, step: float) -> StepLaw:
     """Numbers of one time step, s, of a scheme (see :mod:`fe_contact.schemes`); moduli in Pa."""
     ratios = step / np.asarray(relaxation.times)
     per_increment, of_past = scheme.weights(np.asarray(relaxation.moduli), ratios)
-    now = scheme.equilibrium_share() * relaxation.equilibrium + per_increment.sum() + relaxation.viscosity / step
+    now = scheme.sample * relaxation.equilibrium + per_increment.sum() + relaxation.viscosity / step
     lost = np.expm1(-ratios)
     return StepLaw(
         now=float(now),
@@ -105,15 +105,15 @@ class SurfaceMemory(NamedTuple):
             )
         return float(heat)
 
-    def lost(self, later: SurfaceMemory, relaxation: Relaxation, scheme: ModuleType, step: float) -> float:
+    def lost(self, later: SurfaceMemory, relaxation: Relaxation, scheme: MemoryScheme, step: float) -> float:
         """Work of a step's pressure less what is stored and dissipated, J.
 
         A scheme's stress is not its average over the step, and a mesh knows reciprocity only at its nodes.
         """
         change = later.strain - self.strain
-        law, exact = step_law(relaxation, scheme, step), step_law(relaxation, galerkin, step)
+        law, exact = step_law(relaxation, scheme, step), step_law(relaxation, galerkin.MEMBER, step)
         taken = law.now * later.strain + self.carried(law)
-        mean = taken if scheme is galerkin else exact.now * later.strain + self.carried(exact)
+        mean = taken if scheme is galerkin.MEMBER else exact.now * later.strain + self.carried(exact)
         return float(self.areas @ (taken[-1] * change[0])) - product(self.areas, change, mean)
 
 

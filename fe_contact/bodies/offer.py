@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from types import ModuleType
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import SurfaceOperator
 from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.contact.problem import ContactProblem
+from fe_contact.schemes.base import MemoryScheme
 from lumped.materials import Relaxation
+
+Memory: TypeAlias = Any  # what a body carries from step to step, each kind its own
 
 
 class Offer(NamedTuple):
@@ -38,50 +40,50 @@ class Recalled(NamedTuple):
 class Half(Protocol):
     """One of the bodies under a common pressure, by the nodes of its own contact zone."""
 
-    def at_rest(self) -> Any:
+    def at_rest(self) -> Memory:
         """Memory of a relaxed, undeformed body."""
 
-    def recalled(self, memory: Any, length: float) -> Recalled:
+    def recalled(self, memory: Memory, length: float) -> Recalled:
         """What its past makes of a step of a length, s."""
 
-    def pushed(self, memory: Any, length: float, load: Array) -> Any:
+    def pushed(self, memory: Memory, length: float, load: Array) -> Memory:
         """The memory after a step of a length, s, under forces at the nodes, (n,)."""
 
-    def sunk(self, memory: Any) -> Array:
+    def sunk(self, memory: Memory) -> Array:
         """Inward displacement of the nodes, (n,), m."""
 
-    def stored(self, memory: Any) -> float:
+    def stored(self, memory: Memory) -> float:
         """Elastic energy in all springs, J."""
 
-    def dissipated(self, before: Any, after: Any, length: float) -> float:
+    def dissipated(self, before: Memory, after: Memory, length: float) -> float:
         """Heat of a step, J."""
 
-    def lost(self, before: Any, after: Any, length: float) -> float:
+    def lost(self, before: Memory, after: Memory, length: float) -> float:
         """Of the work in a step, what the scheme leaves unaccounted for, J."""
 
 
 class Body(Protocol):
     """A deformable body; its memory is its own affair, and passed in and out."""
 
-    def at_rest(self) -> Any:
+    def at_rest(self) -> Memory:
         """Memory of a relaxed, undeformed body."""
 
-    def offer(self, memory: Any, length: float) -> Offer:
+    def offer(self, memory: Memory, length: float) -> Offer:
         """What contact meets in a step of a length, s."""
 
-    def after(self, memory: Any, offer: Offer, pressure: Array) -> tuple[Any, float]:
+    def after(self, memory: Memory, offer: Offer, pressure: Array) -> tuple[Memory, float]:
         """The memory after the step under a pressure (q,), and the axis' elastic displacement times modulus."""
 
-    def displacement(self, memory: Any) -> Array:
+    def displacement(self, memory: Memory) -> Array:
         """Inward displacement of the surface at the quadrature points, (q,), m."""
 
-    def stored(self, memory: Any) -> float:
+    def stored(self, memory: Memory) -> float:
         """Elastic energy in all springs, J."""
 
-    def dissipated(self, before: Any, after: Any, length: float) -> float:
+    def dissipated(self, before: Memory, after: Memory, length: float) -> float:
         """Heat of a step, J."""
 
-    def lost(self, before: Any, after: Any, length: float) -> float:
+    def lost(self, before: Memory, after: Memory, length: float) -> float:
         """Of the work in a step, what the scheme leaves unaccounted for, J."""
 
 
@@ -99,7 +101,7 @@ class Staying(Meshed, Protocol):
     def rim(self) -> float | None:
         """Where all contacts end, m, if the body is loaded no farther."""
 
-    def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> Body:
+    def body(self, relaxation: Relaxation, scheme: MemoryScheme, scale: float) -> Body:
         """The body with a contact modulus E*(t), Pa, marched by a scheme, on a mesh whose unit is ``scale``, m."""
 
     def unit(self, contact_radius: float) -> float:

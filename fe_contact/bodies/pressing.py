@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from types import ModuleType
 from typing import Protocol
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.bodies.offer import Breathing
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactSolution, Touching
 from fe_contact.errors import ContactTooWide, IndentationNotSettled
-from fe_contact.settings import ENFORCEMENTS, Numerics
+from fe_contact.settings import Numerics
 from lumped.scene.indenter import Indenter
-from lumped.schema.members import get
 
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
 RESCALINGS = 60
@@ -157,9 +156,9 @@ def _enforced(
     surface: Breathing, overlap: Array, scale: float, numerics: Numerics, touching: Touching
 ) -> tuple[ContactSolution, int]:
     """The contact problem on the mesh scaled by ``scale``, m; and how many solves it took."""
-    enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
+    enforcement = ENFORCEMENTS.get(numerics.enforcement)
     problem = surface.problem(np.maximum(overlap, -BEYOND * scale), numerics.penalty, surface.operator.yielding)
-    return enforcement.enforce(problem, touching), enforcement.SOLVES
+    return enforcement.enforce(problem, touching), enforcement.solves
 
 
 def contact_end(

@@ -7,7 +7,6 @@ unit modulus, so that energies are sums of f u.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import ModuleType
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from fe_contact.assembly.operators import SurfaceOperator
 from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
 from fe_contact.bodies.offer import Offer, Recalled
+from fe_contact.schemes.base import MemoryScheme
 from lumped.materials import Relaxation
 
 
@@ -29,7 +29,7 @@ class SurfaceBody:
     operator: SurfaceOperator
     pressed: PressedSurface
     relaxation: Relaxation
-    scheme: ModuleType
+    scheme: MemoryScheme
     scale: float
     share: float = 1.0
 

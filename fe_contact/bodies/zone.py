@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from fe_contact.assembly.forms import Array
+from fe_contact.assembly.forms import Array, Basis, Indices
 from fe_contact.errors import BodyTooThin
 from lumped.shapes import Shape
 
@@ -57,7 +55,7 @@ def smallest_struck(shape: Shape) -> float:
     return math.pow(FAINT, 1.0 / 3.0 if shape.tip_radius is not None and not shape.plane else 0.5)
 
 
-def held(basis: Any, along: tuple[str, ...], across: tuple[str, ...]) -> npt.NDArray[np.integer[Any]]:
+def held(basis: Basis, along: tuple[str, ...], across: tuple[str, ...]) -> Indices:
     """Degrees of freedom along the surface, and across it, on boundaries by their names."""
     first = [2 * basis.get_dofs(name).flatten() for name in along]
     second = [2 * basis.get_dofs(name).flatten() + 1 for name in across]

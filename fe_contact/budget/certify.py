@@ -28,24 +28,22 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from fe_contact.assembly.forms import Array
-from fe_contact.budget.change import UNORDERED, Change
+from fe_contact.budget.budget import SETTING, Budget, Causes
+from fe_contact.budget.change import SAFETY, UNORDERED, Change, factor
 from fe_contact.budget.curve import Curve, extrapolated
-from fe_contact.budget.plan import SETTING
-from fe_contact.budget.runs import Runs, TotalWork
+from fe_contact.budget.runs import Runs
+from fe_contact.budget.several import Several
 from fe_contact.budget.softening import Softening, compliance_change
 from fe_contact.budget.trusted_order import trust
-from fe_contact.march.impacts import Followed
 from fe_contact.progress import Count, Progress, silent
-from fe_contact.settings import SCHEMES, Numerics
+from fe_contact.schemes.base import SCHEMES
+from fe_contact.settings import Numerics
 from fe_contact.steppers.flat_end import FlatEnd
-from fe_contact.steppers.march import March, Strike
+from fe_contact.steppers.march import Strike
 from fe_contact.steppers.struck import Deformable, Struck
 from lumped.scene.geometry import Geometry
-from lumped.schema.members import get
 
 MARCHES = 2.5  # steps of all marches of a contact over those of the finest one: half and a quarter, and three of these
-SAFETY = 1.25
 UNSEEN = 2  # first steps of the coarsest run in which no order shows
 LEAST_ORDER = {"penalty": 1, "far_field": 2}
 MESH_ORDER = {3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
@@ -58,87 +56,20 @@ KEPT_OF_FORCE = 0.1
 LEAST_HALVED = 40  # steps below which halving them twice would leave too few to tell anything
 # half of less tells nothing: a corrected penalty below a hundred errs to either side in turn
 LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 200.0, "far_radius": 5.0}
-CAUSES = ("mesh", "penalty", "time_step", "far_field")
-OUTSIDE = ("in", "out")  # terms of the energy account that the striker knows
-LOST = ("contact", "numerical", "residual")  # terms that are zero but for errors
 ROWS_ORDER = 3  # of the five that forces between the rows of a curve have, where half and a quarter of them show it
 PEAKS = ("peak_force", "peak_time", "peak_depth")  # which lie between rows
 FALLS = 0.7  # share of a jitter which half the step leaves, if the step is its cause
 MOST_APART = 1.5  # durations by different steps that tell of one and the same end
 ROUNDING = 1e-9  # of a solve of nearly incompressible bodies
 
-Causes = tuple[Change | Softening | None, ...]  # what one setting changes, None: unknown
-
 AnyNumerics = TypeVar("AnyNumerics", bound=Numerics)
 
 
 @dataclass(frozen=True)
-class Budget:
-    """A curve with what each setting contributes to its error.
-
-    ``march`` is the finest run behind it, ``work`` that of all runs together.
-    """
-
-    curve: Curve
-    march: March
-    changes: Mapping[str, Causes]
-    work: TotalWork
-
-    @property
-    def row(self) -> tuple[Budget, ...]:
-        """All contacts in order, this one first."""
-        return (self,)
-
-    def error(self, name: str, cause: str) -> float:
-        """Error of a quantity by one cause, in its unit; infinite where a variation failed."""
-        spread = SAFETY * self.curve.peak_spread.get(name, 0.0) if name != "duration" else self.curve.end_spread
-        return (spread if cause == "time_step" else 0.0) + sum(_error(change, name) for change in self.changes[cause])
-
-    def total(self, name: str) -> float:
-        """Error bar of a quantity, in its unit."""
-        return sum(self.error(name, cause) for cause in CAUSES)
-
-    def energy_error(self, name: str) -> float:
-        """Error bar of a term of the energy account, J; infinite where a variation failed.
-
-        What is lost on the way to the body, or to rounding, may belong to any term within it.
-        """
-        energy = self.curve.energy
-        lost = sum(abs(energy[one]) for one in LOST)
-        own = 0.0 if name in OUTSIDE or energy[name] == 0.0 else lost
-        return own + sum(np.inf if one is None else one.energies[name] for row in self.changes.values() for one in row)
-
-    def force_error(self, time: Array) -> Array:
-        """Half-width of the force's error band, N; the whole of the largest force where a variation failed.
-
-        After the last step the force falls to nothing in any way.
-        """
-        last = self.curve.last_step if self.curve.separated else np.inf
-        fading = np.where(time > last, self.curve.force(np.array([last])), 0.0)
-        changes = [change for causes in self.changes.values() for change in causes]
-        unknown = np.full_like(time, self.curve.dense_force.max())
-        known = [unknown if change is None else change.force(time) for change in changes]
-        return np.asarray(np.sum([fading, *known], axis=0))
-
-
-@dataclass(frozen=True)
-class Several(Budget):
-    """The same with all contacts ``followed`` in the finest run and budgets of the ``later`` ones."""
-
-    followed: Followed
-    later: tuple[Budget, ...]
-
-    @property
-    def row(self) -> tuple[Budget, ...]:
-        return (self, *self.later)
-
-
-@dataclass(frozen=True)
 class Certified(Several):
-    """The same with the ``surface`` of the finest run and its settings, placed where the contact turned out to be."""
+    """The same with the ``surface`` of the finest run; its settings are placed where the contact turned out to be."""
 
     surface: Struck
-    numerics: Numerics
 
 
 def certify(
@@ -158,10 +89,11 @@ def certify(
     surface = runs.surface(numerics)
     work = runs.work(surface)
     row = [
-        Budget(curve, contact.march, changes, work)
+        Budget(curve, contact.march, changes, work, numerics)
         for (curve, changes), contact in zip(judged, followed.contacts, strict=True)
     ]
-    return Certified(row[0].curve, row[0].march, row[0].changes, work, followed, tuple(row[1:]), surface, numerics)
+    first, later = row[0], tuple(row[1:])
+    return Certified(first.curve, first.march, first.changes, work, numerics, followed, later, surface)
 
 
 def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[Curve, Mapping[str, Causes]]:
@@ -257,7 +189,7 @@ def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics, f
 
     Under a ``flat`` end the first steps count as much as any: its area presses at once.
     """
-    order, fine = get(SCHEMES, numerics.scheme).ORDER, curve(numerics)
+    order, fine = SCHEMES.get(numerics.scheme).order, curve(numerics)
     assert fine is not None
     if numerics.steps < LEAST_HALVED:
         double = curve(numerics.varied(steps=2 * numerics.steps))
@@ -311,19 +243,9 @@ def _end_alike(*curves: Curve) -> bool:
     return len({curve.separated for curve in curves}) == 1 and max(durations) <= MOST_APART * min(durations)
 
 
-def _error(change: Change | Softening | None, name: str) -> float:
-    """Error of a quantity by one change; infinite where the variation failed."""
-    return np.inf if change is None else change.errors[name]
-
-
 def _change(first: Curve | None, second: Curve | None, trusted: float) -> Change | None:
     """Change between settings, ``trusted`` so many times as the error of the first."""
     return None if first is None or second is None else Change(first, second, trusted)
-
-
-def factor(order: float, finer: bool) -> float:
-    """Error over change, by the module's formula; of the first setting, ``finer`` if the second is the better one."""
-    return SAFETY * (2**order if finer else 1) / (2**order - 1)
 
 
 def other_setting(numerics: AnyNumerics, key: str) -> tuple[AnyNumerics, bool]:

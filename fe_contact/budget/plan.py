@@ -7,17 +7,14 @@ steps. Nothing of it enters a value or an error bar.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from fe_contact.budget.scales import scales
 from fe_contact.errors import says_which_key
-from fe_contact.settings import RANGES, WAVES, Numerics, check_kind
+from fe_contact.settings import RANGES, Given, Numerics, check_kind
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.sufficiency import LedgerEntry
 from lumped.scene.scene import Scene
-from lumped.schema.members import get
 
 DEFAULT_TOLERANCE = 1e-3
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-4: see `fe-contact tradeoff`
@@ -32,7 +29,7 @@ FLAT_STEPS = 4  # as many under a flat end: its area presses at once, whatever r
 AT_TOUCH = 1e-12  # share of the contact before which a peak is the touch itself, but for rounding
 SOONEST_PEAK = 1e-6  # share of the contact below which the time grid would lose its digits
 EARLY_PEAK = 0.28  # a force that peaks before this share of the contact needs more steps in proportion
-DEFAULTS: Mapping[str, Any] = {
+DEFAULTS: Given = {
     "order": 4,
     "penalty": 1000.0,
     "enforcement": "corrected",
@@ -51,15 +48,12 @@ class Plan:
 
 
 @says_which_key
-def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
-    """Choose what ``given`` (checked settings, see :func:`fe_contact.settings.checked`) leaves open.
+def plan(scene: Scene, given: Given) -> Plan:
+    """Choose what ``given`` (checked settings, see :func:`fe_contact.settings.checked`) leaves open, without waves.
 
     Raises NotReached where even a coarse estimate does not come to an end.
     """
-    check_kind(given, scene.model.inertia, scene.source)
-    if scene.model.inertia:
-        found: Plan = get(WAVES, scene.target.name).plan(scene, given)
-        return found
+    check_kind(given, False, scene.source)
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
     chosen = _settings(scene, tolerance)
     size = scales(scene, chosen)
@@ -75,14 +69,6 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     )
     peak = Peak(size.peak_force, size.peak_depth, size.contact_radius, 2 * size.peak_time)
     return Plan(placed.varied(**given), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
-
-
-@says_which_key
-def cost(scene: Scene, chosen: Plan) -> Any:
-    """What an error budget with these settings takes, a :class:`fe_contact.waves.cost.Cost`; None without waves:
-    seconds. Raises BodyTooFine.
-    """
-    return get(WAVES, scene.target.name).cost(scene, chosen.numerics) if scene.model.inertia else None
 
 
 def share_of_peak(peak_time: float, contact_time: float) -> float:
@@ -128,22 +114,3 @@ def _steps(tolerance: float, peak_share: float, finer: int) -> int:
     early = max(1.0, EARLY_PEAK / peak_share)
     wanted = early * STEPS_AT_DEFAULT * max(DEFAULT_TOLERANCE / tolerance, 1.0) ** STEPS_ORDER
     return int(min(4 * finer * math.ceil(wanted / 4), RANGES["steps"][1]))
-
-
-def refined(numerics: Numerics, cause: str) -> Numerics:
-    """Settings with less of one cause of error."""
-    if cause == "time_step":
-        return numerics.varied(steps=2 * numerics.steps)
-    if cause == "mesh":
-        return numerics.varied(elements_per_contact=1.5 * numerics.elements_per_contact)
-    if cause == "penalty":
-        return numerics.varied(penalty=4 * numerics.penalty)
-    return numerics.varied(far_radius=2 * numerics.far_radius)
-
-
-SETTING = {
-    "mesh": "elements_per_contact",
-    "penalty": "penalty",
-    "time_step": "steps",
-    "far_field": "far_radius",
-}

@@ -3,40 +3,25 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import partial
 
 from fe_contact.assembly.forms import Array
+from fe_contact.budget.budget import TotalWork
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import share_of_peak
 from fe_contact.march.impact import march
-from fe_contact.march.impacts import Followed, follow
+from fe_contact.march.impacts import Followed, SurfaceBouncer, follow
 from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import Numerics
-from fe_contact.steppers.chosen import struck
 from fe_contact.steppers.march import Strike, Work
 from fe_contact.steppers.struck import Deformable, Struck
+from fe_contact.targets.base import struck
 from lumped.errors import NotReached
 from lumped.scene.geometry import Geometry
 
 PILOT_STEPS = 24  # of a march that only places the steps of others
 PLACED = 0.05  # share by which a contact may last longer, or less, than was expected
 PLACINGS = 4  # marches of few steps that look for its end, where an estimate is out by an order
-
-
-@dataclass(frozen=True)
-class TotalWork:
-    """Counted work of a certified impact: unknowns of the finest mesh; factorisations and back-substitutions
-    of all meshes; marches, time steps, contact problems and Newton iterations of all runs.
-    """
-
-    degrees_of_freedom: int
-    factorizations: int
-    solves: int
-    marches: int
-    steps: int
-    contact_problems: int
-    iterations: int
 
 
 def operations(work: TotalWork, finest: Struck) -> float:
@@ -80,7 +65,8 @@ class Runs:
         """One run, its contact radii expected to be those of the first with as many steps; raises where it fails."""
         surface, expected = self.surface(settings), self._radii.get(settings.steps, [])
         placed = partial(self._placed, settings, surface)
-        followed = follow(self._strike, surface, self._impacts, placed, expected, self._counted)
+        bouncer = SurfaceBouncer(surface, placed, expected, self._counted)
+        followed = follow(bouncer, self._strike, self._impacts)
         marches = [contact.march for contact in followed.contacts]
         self._works += [one.work for one in marches]
         self._radii.setdefault(settings.steps, [one.radius for one in marches])

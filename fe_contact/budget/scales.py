@@ -17,19 +17,19 @@ import numpy as np
 
 from fe_contact.assembly.forms import check_compressible
 from fe_contact.bodies.pressing import Still
-from fe_contact.settings import TARGETS, Numerics
+from fe_contact.settings import Numerics
 from fe_contact.steppers.flat_end import FlatEnd
+from fe_contact.targets.base import TARGETS
 from lumped.errors import BadInput
 from lumped.laws import correspondence, mdr
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.sampled import SampledCurve
 from lumped.materials import Material, Relaxation
-from lumped.scene.answered import Answered
+from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.scene.scales import stiffest_impact
-from lumped.scene.scene import Scene
-from lumped.schema.members import get
+from lumped.scene.scene import Answered, Scene
 from lumped.targets import HalfSpace
 
 SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
@@ -60,7 +60,7 @@ def _stiffness(scene: Scene, coarse: Numerics, elastic: Material) -> float:
     if has_curve(scene):
         stiffest = stiffest_impact(geometry.shape, scene.contact_modulus, scene.reduced_mass, scene.velocity)
         return modulus * float(geometry.target.load_curve(scene.profile, elastic.nu).force(stiffest.depth))
-    return modulus if fixed is None else modulus * FlatEnd.of(geometry, fixed, coarse).stiffness
+    return modulus if fixed is None else modulus * _flat_end(geometry, fixed, coarse).stiffness
 
 
 def has_curve(scene: Scene) -> bool:
@@ -77,11 +77,11 @@ def _answer(scene: Scene, numerics: Numerics) -> LoadCurve:
     geometry = scene.geometry
     fixed = geometry.target.fixed_radius(geometry.shape)
     if fixed is not None:
-        return Column(fixed, math.pi * fixed**2 / FlatEnd.of(geometry, fixed, numerics).stiffness)
+        return Column(fixed, math.pi * fixed**2 / _flat_end(geometry, fixed, numerics).stiffness)
     indenter = Indenter(scene.profile, geometry.material, geometry.target, geometry.striker_material)
     radii = np.array(WIDTHS) * geometry.target.round_radius(geometry.shape)
     depths = -geometry.target.overlap(indenter.profile, radii, 0.0) / geometry.target.lead
-    still: Still = get(TARGETS, geometry.target.name).still(indenter, radii, numerics)
+    still: Still = TARGETS.get(geometry.target.name).still(indenter, radii, numerics)
     pressed = [still.press(float(depth), float(radius)) for depth, radius in zip(depths, radii, strict=True)]
     columns = zip(*((one.force, one.contact_radius) for one in pressed), strict=True)
     forces, widths = (tuple(float(value) for value in column) for column in columns)
@@ -122,3 +122,7 @@ def _alike(material: Material, stiffness: Callable[[Material], float]) -> Materi
         young.equilibrium, tuple(share * modulus for modulus in young.moduli), young.times, share * young.viscosity
     )
     return replace(material, young=network, nu=nu, constant="poisson", bulk_modulus=None)
+
+
+def _flat_end(geometry: Geometry, radius: float, numerics: Numerics) -> FlatEnd:
+    return FlatEnd.of(geometry, radius, numerics, TARGETS.get(geometry.target.name).still)

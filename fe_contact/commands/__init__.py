@@ -1,5 +1,6 @@
-"""The commands of ``fe-contact``, one a file: each offers ``SUMMARY``, ``arguments(parser)``, ``execute(args)``.
+"""The commands of ``fe-contact``, one a file; what several of them share is in ``base.py``."""
 
-``execute`` returns the exit code 0 or 3 and raises named failures for the others. What several commands
-share is in ``base.py``.
-"""
+from fe_contact.commands.base import Command
+from lumped.schema.members import Folder
+
+COMMANDS = Folder[Command](__name__)

@@ -10,24 +10,38 @@ import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import Any, Protocol, TypeVar
+from typing import Protocol, TypeVar
 
 from fe_contact.progress import Progress, clear, log_to, terminal, to_all
-from fe_contact.settings import faults
+from fe_contact.settings import Given, faults
 from lumped.errors import BadInput, Fault, shown
 from lumped.result.result import Result
 from lumped.result.sufficiency import NO_KEY, LedgerEntry, good_to, worst
 from lumped.scene.file import load, load_indenter, resolved
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
+from lumped.schema import Table
 from lumped.schema.toml_file import overridden, parse_assignment, parsed
 
 DONE, NOT_REACHED = 0, 3
 LONGEST = 80  # characters of what --set changed in a folder's name: file systems take 255 bytes with the scene's name
 Read = TypeVar("Read")
+
+
+@dataclass(frozen=True)
+class Command:
+    """A member of this folder: what it does, in one line; what it reads; and what it executes, to an exit code 0 or 3.
+
+    Raises named failures for the other codes.
+    """
+
+    summary: str
+    arguments: Callable[[argparse.ArgumentParser], None]
+    execute: Callable[[argparse.Namespace], int]
 
 
 def scene_arguments(parser: argparse.ArgumentParser) -> None:
@@ -64,7 +78,7 @@ def overrides_of(args: argparse.Namespace) -> dict[str, object]:
     return dict(parse_assignment(text) for text in args.overrides)
 
 
-def read_scene(args: argparse.Namespace) -> tuple[Scene, dict[str, Any]]:
+def read_scene(args: argparse.Namespace) -> tuple[Scene, Table]:
     """Scene and raw settings of a command line; raises BadInput with every fault of both."""
     return _read(args, partial(load, Scene))
 
@@ -74,12 +88,12 @@ def read_scene_for_fit(args: argparse.Namespace) -> Scene:
     return _read(args, partial(load, Scene, law_known=False))[0]
 
 
-def read_indenter(args: argparse.Namespace) -> tuple[Indenter, dict[str, Any]]:
+def read_indenter(args: argparse.Namespace) -> tuple[Indenter, Table]:
     """What a slow indentation needs, and raw settings; raises BadInput with every fault of both."""
     return _read(args, partial(load_indenter, Indenter))
 
 
-def _read(args: argparse.Namespace, reader: Callable[..., tuple[Read, dict[str, Any]]]) -> tuple[Read, dict[str, Any]]:
+def _read(args: argparse.Namespace, reader: Callable[..., tuple[Read, Table]]) -> tuple[Read, Table]:
     overrides = overrides_of(args)
     try:
         scene, table = reader(args.scene, overrides)
@@ -162,9 +176,7 @@ def progress_of(args: argparse.Namespace) -> Progress:
     return to_all(listeners)
 
 
-def tell(
-    args: argparse.Namespace, content: Mapping[str, Any], lines: Sequence[str], where: Path, title: str = ""
-) -> None:
+def tell(args: argparse.Namespace, content: Given, lines: Sequence[str], where: Path, title: str = "") -> None:
     """On stdout what was found: as JSON, or line by line, under a title indented, and where it was written."""
     clear()
     if args.json:
@@ -174,7 +186,7 @@ def tell(
         print("\n  ".join([title, *told]) if title else "\n".join(told))
 
 
-def report(args: argparse.Namespace, result: Result, content: Mapping[str, Any], where: Path) -> int:
+def report(args: argparse.Namespace, result: Result, content: Given, where: Path) -> int:
     """Print a result, or the content of its file, warn of what the model lacks; the exit code."""
     clear()
     if args.json:

@@ -10,8 +10,6 @@ from lumped.errors import BadInput, Fault
 from lumped.result.folder import publish
 from lumped.scene.scene import Scene
 
-SUMMARY = "the finite-element reference against lumped laws: scores, verdict, chart"
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """SCENE [--laws a,b] [--measured CURVE.csv] [--tolerance T] [--set a.b=value ...] [--out DIR]."""
@@ -26,8 +24,8 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.methods import settings, simulate
     from fe_contact.reference import result_of, solve
     from fe_contact.studies.compare.chart import plot_comparison
-    from fe_contact.studies.compare.files import comparison_content, write_comparison
     from fe_contact.studies.compare.study import compare
+    from fe_contact.studies.compare.verdict import comparison_content, write_comparison
     from lumped.result.score import read_curve
 
     scene, table = base.read_scene(args)
@@ -72,3 +70,6 @@ def law_names(text: str | None, scene: Scene) -> tuple[str, ...]:
     if faults:
         raise BadInput(faults)
     return names
+
+
+MEMBER = base.Command("the finite-element reference against lumped laws: scores, verdict, chart", arguments, execute)

@@ -13,11 +13,6 @@ if TYPE_CHECKING:
     from fe_contact.studies.exponents.check import Check
     from fe_contact.studies.exponents.study import ExponentCurve
 
-SUMMARY = (
-    "local exponent and D from the half-space to the thin layer, every profile, base and nu, checked by finite "
-    "elements; how far finite spheres are from Hertz"
-)
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """[--quick] [--out DIR] [--json] [--quiet]."""
@@ -28,8 +23,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Solve, check, write, draw; 0, or 3 where finite elements missed their tolerance."""
     from fe_contact.studies.exponents.chart import plot_exponents
-    from fe_contact.studies.exponents.check import checks
-    from fe_contact.studies.exponents.files import write_exponents
+    from fe_contact.studies.exponents.check import checks, write_exponents
     from fe_contact.studies.exponents.finite_spheres import pairs
     from fe_contact.studies.exponents.study import curves
 
@@ -64,3 +58,11 @@ def _check(check: Check) -> str:
         f"{check.exponent.error:.0e} (exact {check.exact_exponent:.5f}), D {check.factor.value:.5f} +- "
         f"{check.factor.error:.0e} (exact {check.exact_factor:.5f})"
     )
+
+
+MEMBER = base.Command(
+    "local exponent and D from the half-space to the thin layer, every profile, base and nu, checked by finite "
+    "elements; how far finite spheres are from Hertz",
+    arguments,
+    execute,
+)

@@ -6,17 +6,17 @@ import argparse
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from fe_contact.progress import clear
 from lumped.errors import BadInput, Fault, NotReached, addressed, shown
 from lumped.result.folder import publish
+from lumped.schema import Table
 
 if TYPE_CHECKING:
     from lumped.fit import Estimate, Fit
 
-SUMMARY = "parameters of a law from a force history, with 95 % confidence intervals"
 WIDTH = 12  # of a parameter's name
 
 
@@ -63,7 +63,7 @@ def execute(args: argparse.Namespace) -> int:
     return base.DONE if found.result.converged else base.NOT_REACHED
 
 
-def _report(args: argparse.Namespace, found: Fit, content: dict[str, Any], where: Path) -> None:
+def _report(args: argparse.Namespace, found: Fit, content: Table, where: Path) -> None:
     """Parameters; for OpenSees the law, with the parameters as comments; warnings on stderr."""
     from lumped import laws
     from lumped.fit import opensees
@@ -123,3 +123,6 @@ def _bounds(text: str) -> Iterator[tuple[str, tuple[float, float]]]:
         if not sign:
             raise BadInput(Fault("--bounds", name, f"{shown(ends)}: accepted low:high"))
         yield name, (base.number(low, "--bounds"), base.number(high, "--bounds"))
+
+
+MEMBER = base.Command("parameters of a law from a force history, with 95 % confidence intervals", arguments, execute)

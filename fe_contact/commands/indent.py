@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from typing import Any
 
 from fe_contact.commands import base
 from fe_contact.progress import clear
@@ -13,8 +12,8 @@ from lumped.indentation.indentation import Indentation
 from lumped.result.folder import publish
 from lumped.result.sufficiency import good_to
 from lumped.scene.indenter import Indenter
+from lumped.schema import Table
 
-SUMMARY = "slow indentation to given depths: indentation.csv and result.json, with error bars"
 EXACT = ("mdr", "ting", "correspondence")  # at rest all are the exact load curve, the first the half-space's alone
 
 
@@ -46,9 +45,7 @@ def execute(args: argparse.Namespace) -> int:
     return base.DONE if found.converged else base.NOT_REACHED
 
 
-def _indented(
-    args: argparse.Namespace, indenter: Indenter, depths: tuple[float, ...], given: dict[str, Any]
-) -> Indentation:
+def _indented(args: argparse.Namespace, indenter: Indenter, depths: tuple[float, ...], given: Table) -> Indentation:
     """By finite elements or by a closed form; raises BadInput for any other method."""
     from fe_contact.budget.plan import DEFAULT_TOLERANCE
     from fe_contact.indentation import indent as by_elements
@@ -60,7 +57,7 @@ def _indented(
     if args.method not in names:
         reason = f"{shown(args.method)}: accepted {', '.join(names)}{nearest(args.method, names)}"
         raise BadInput(Fault("--method", "", reason))
-    from lumped.indentation.slow import indent as closed_form
+    from lumped.indentation.indentation import indent as closed_form
 
     tolerance = given.get("tolerance", DEFAULT_TOLERANCE)
     if args.method != "cheapest":
@@ -82,3 +79,8 @@ def _lines(found: Indentation) -> list[str]:
         slope = found.finite_size.slope
         lines.append(f"  F/F_Hertz-1 {slope.value:.4g} +- {slope.error or 0.0:.1e} a/R")
     return [*lines, f"  {good_to(found.model_ledger)}"]
+
+
+MEMBER = base.Command(
+    "slow indentation to given depths: indentation.csv and result.json, with error bars", arguments, execute
+)

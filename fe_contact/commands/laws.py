@@ -7,8 +7,6 @@ import json
 
 from fe_contact.commands import base
 
-SUMMARY = "the lumped laws, one line each"
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """[--json]."""
@@ -19,6 +17,9 @@ def execute(args: argparse.Namespace) -> int:
     """Print; 0."""
     from lumped import laws
 
-    known = {name: (laws.get(name).__doc__ or "").splitlines()[0] for name in laws.available()}
+    known = {name: laws.get(name).summary for name in laws.available()}
     print(json.dumps(known) if args.json else "\n".join(f"{name:20s} {says}" for name, says in known.items()))
     return base.DONE
+
+
+MEMBER = base.Command("the lumped laws, one line each", arguments, execute)

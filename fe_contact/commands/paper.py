@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from lumped.paper import JudgedClaim, Value
     from lumped.paper.study import PaperStudy
 
-SUMMARY = "the source paper's claims: printed, recomputed, deviation, verdict; its figures drawn again"
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """[--set a.b=value ...] [--out DIR] [--json] [--quiet]."""
@@ -78,3 +76,8 @@ def _line(one: JudgedClaim) -> str:
 
 def _shown(values: Sequence[Value]) -> str:
     return "; ".join(f"{value.value:.5g}" for value in values)
+
+
+MEMBER = base.Command(
+    "the source paper's claims: printed, recomputed, deviation, verdict; its figures drawn again", arguments, execute
+)

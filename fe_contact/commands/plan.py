@@ -16,8 +16,6 @@ if TYPE_CHECKING:  # finite elements are loaded when they are needed
     from fe_contact.budget.plan import Plan
     from fe_contact.waves.cost import Cost
 
-SUMMARY = "the settings chosen and what the model leaves out, without solving"
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """SCENE [--tolerance T] [--set a.b=value ...] [--json]."""
@@ -27,8 +25,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print settings, ledger, what waves take, and why finite elements refuse the scene; 3 where that is too much."""
-    from fe_contact.budget.plan import plan
     from fe_contact.methods import settings
+    from fe_contact.reference import plan
 
     scene, table = base.read_scene(args)
     progress = base.progress_of(args)
@@ -60,15 +58,16 @@ def execute(args: argparse.Namespace) -> int:
 
 def _takes(scene: Scene, chosen: Plan) -> tuple[Cost | None, FeContactError | None]:
     """What waves take, None without them, and why finite elements refuse the scene, None where they do not."""
-    from fe_contact.budget.plan import cost
-    from fe_contact.reference import check_target
+    from fe_contact.reference import check_target, with_waves
+    from fe_contact.settings import WaveNumerics
 
     try:
         if not scene.model.inertia:
             check_target(scene)
-        takes = cost(scene, chosen)
-        if takes is not None:
-            takes.check()
+            return None, None
+        assert isinstance(chosen.numerics, WaveNumerics)
+        takes = with_waves(scene).cost(scene, chosen.numerics)
+        takes.check()
     except FeContactError as failure:
         return None, failure
     return takes, None
@@ -77,3 +76,6 @@ def _takes(scene: Scene, chosen: Plan) -> tuple[Cost | None, FeContactError | No
 def _code(refused: FeContactError | None) -> int:
     """A plan that only laws can follow is one too."""
     return base.NOT_REACHED if isinstance(refused, NotReached) else base.DONE
+
+
+MEMBER = base.Command("the settings chosen and what the model leaves out, without solving", arguments, execute)

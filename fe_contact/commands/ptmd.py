@@ -14,8 +14,6 @@ from lumped.result.sufficiency import worst
 if TYPE_CHECKING:
     from lumped.ptmd.study import PtmdStudy
 
-SUMMARY = "free vibration of a pounding tuned mass damper: motion, contacts, energies, chart"
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """[FILE] [--set a.b=value ...] [--out DIR] [--json] [--quiet]."""
@@ -77,3 +75,8 @@ def _warnings(found: PtmdStudy) -> list[str]:
         most = worst(found.ledger)
         lines.append(f"the contact law assumes small deformation: {most.effect} is {most.estimate:.2g}")
     return lines
+
+
+MEMBER = base.Command(
+    "free vibration of a pounding tuned mass damper: motion, contacts, energies, chart", arguments, execute
+)

@@ -12,8 +12,6 @@ from lumped.result.folder import publish
 if TYPE_CHECKING:
     from fe_contact.studies.restitution.table import RestitutionLine
 
-SUMMARY = "restitution asked for against obtained: every law, exact and published dampings, both exits"
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """[--out DIR] [--json] [--quiet]."""
@@ -23,8 +21,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Simulate, write, say how far each formula is off; 0."""
     from fe_contact.studies.restitution.chart import plot_restitution
-    from fe_contact.studies.restitution.files import write_restitution
-    from fe_contact.studies.restitution.table import table
+    from fe_contact.studies.restitution.table import table, write_restitution
 
     where = base.folder(args, "restitution", "laws")
     progress = base.progress_of(args)
@@ -45,3 +42,8 @@ def _said(line: RestitutionLine) -> str:
     worst = line.worst
     off = "nothing obtained" if worst is None else f"{worst[0]:+.1e} at most, at e = {worst[1]:g}"
     return f"{line.law:16s} {line.damping:20s} exit {line.exit:6s} {off}"
+
+
+MEMBER = base.Command(
+    "restitution asked for against obtained: every law, exact and published dampings, both exits", arguments, execute
+)

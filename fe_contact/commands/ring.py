@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from fe_contact.studies.rings.impact import RingStruck
     from fe_contact.studies.rings.study import RingCurve
 
-SUMMARY = "rod in ring, O-ring and washer pressed, the paper's ring struck, by finite elements against its (27)-(32)"
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """[--out DIR] [--json] [--quiet]."""
@@ -24,9 +22,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Press, strike, judge, write, draw; 0, or 3 where finite elements missed their tolerance."""
     from fe_contact.studies.rings.chart import plot_rings
-    from fe_contact.studies.rings.files import write_rings
     from fe_contact.studies.rings.impact import struck
     from fe_contact.studies.rings.study import cases, rings
+    from fe_contact.studies.rings.verdict import write_rings
 
     where = base.folder(args, "ring", "paper")
     progress = base.progress_of(args)
@@ -72,3 +70,10 @@ def _told(one: RingStruck) -> list[str]:
         f"{one.ring} struck at {1e3 * one.velocity:.3g} mm/s: (30)-(32) {one.verdict}",
         f"    constant bulk modulus instead of constant nu: {bulk}",
     ]
+
+
+MEMBER = base.Command(
+    "rod in ring, O-ring and washer pressed, the paper's ring struck, by finite elements against its (27)-(32)",
+    arguments,
+    execute,
+)

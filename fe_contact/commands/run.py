@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.result.folder import publish
 from lumped.result.result import Result, write_failure
 from lumped.scene.scene import Scene
+from lumped.schema import Table
 
 if TYPE_CHECKING:  # finite elements are loaded when they are needed
     from fe_contact.reference import Solved
-
-SUMMARY = "one impact: history.csv and result.json, with error bars"
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -42,7 +41,7 @@ def execute(args: argparse.Namespace) -> int:
         raise
 
 
-def _impact(args: argparse.Namespace, scene: Scene, table: dict[str, Any], where: Path) -> int:
+def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path) -> int:
     from fe_contact.methods import settings, simulate
 
     if args.method == "fe" and not scene.model.inertia:
@@ -74,25 +73,25 @@ def _check(args: argparse.Namespace, scene: Scene) -> None:
     if args.method != "fe":
         raise BadInput(Fault("--fields", "", "only with --method fe"))
     from fe_contact.fields import check_fields
+    from fe_contact.reference import with_waves
 
-    if scene.model.inertia and not (hasattr(_moving_target(scene), "write_fields") and scene.striker_material is None):
+    if scene.model.inertia and (with_waves(scene).write_fields is None or scene.striker_material is not None):
         reason = f"{scene.target.name}: accepted with --fields and model.inertia: half_space, its striker rigid"
         raise BadInput(Fault(scene.source, "target.shape", reason))
     if not scene.model.inertia:
         check_fields(scene)
 
 
-def _moving_target(scene: Scene) -> Any:
-    from fe_contact.settings import WAVES
-    from lumped.schema.members import get
-
-    return get(WAVES, scene.target.name)
-
-
 def _write_fields(scene: Scene, solved: Solved | None, result: Result, where: Path) -> None:
     from fe_contact.fields import write_fields
+    from fe_contact.reference import with_waves
 
     if solved is None:
-        _moving_target(scene).write_fields(scene, result, where)
+        written = with_waves(scene).write_fields
+        assert written is not None  # see _check
+        written(scene, result, where)
     else:
-        write_fields(scene, solved, where)
+        write_fields(scene, solved.certified, where)
+
+
+MEMBER = base.Command("one impact: history.csv and result.json, with error bars", arguments, execute)

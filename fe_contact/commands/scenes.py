@@ -8,8 +8,6 @@ import json
 from fe_contact.commands import base
 from lumped.scene.scene import Scene
 
-SUMMARY = "the packaged scenes, one line each"
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """[--json]."""
@@ -35,3 +33,6 @@ def described(scene: Scene) -> str:
     if scene.shape is not None:
         return f"{scene.shape.name} on {scene.target.name}"
     return f"law {scene.law.name}" if scene.law is not None else "two masses"
+
+
+MEMBER = base.Command("the packaged scenes, one line each", arguments, execute)

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from fe_contact.studies.stability.base import Row
 
-SUMMARY = "maps of where methods break: schemes, masses, penalties, locking, relaxation, exits, gaps, far ends"
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """[--quick] [--jobs N] [--out DIR] [--json] [--quiet]."""
@@ -28,7 +26,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def execute(args: argparse.Namespace) -> int:
     """Measure what is not yet measured, write, draw; 0."""
     from fe_contact.studies.stability._chart import plot_stability
-    from fe_contact.studies.stability._files import rows_of, write_stability
+    from fe_contact.studies.stability.base import rows_of, write_stability
 
     where = base.folder(args, "stability", "bars")
     progress = base.progress_of(args)
@@ -54,3 +52,10 @@ def _lines(rows: Sequence[Row]) -> list[str]:
         f"{row['scheme']} {row['mass']} tip {row['tip']:.2f} {row['enforcement']}, CFL {row['cfl']:g}" for row in kept
     ]
     return [*lines, f"all limits kept over ten periods: {'; '.join(held) or 'by no scheme'}"]
+
+
+MEMBER = base.Command(
+    "maps of where methods break: schemes, masses, penalties, locking, relaxation, exits, gaps, far ends",
+    arguments,
+    execute,
+)

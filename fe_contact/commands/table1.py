@@ -12,8 +12,6 @@ from lumped.result.folder import publish
 if TYPE_CHECKING:
     from fe_contact.studies.table1.study import Trial
 
-SUMMARY = "the paper's Table 1 on trial: D, alpha and E* of every row by finite elements, with error bars and verdicts"
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """[--out DIR] [--json] [--quiet]."""
@@ -22,9 +20,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Press, identify, judge, write, draw; 0, or 3 where bars leave a row undecided."""
-    from fe_contact.studies.table1.files import write_table1
     from fe_contact.studies.table1.study import table1
-    from fe_contact.studies.table1.verdict import UNDECIDED, verdict
+    from fe_contact.studies.table1.verdict import UNDECIDED, verdict, write_table1
 
     where = base.folder(args, "table1", "paper")
     progress = base.progress_of(args)
@@ -73,3 +70,10 @@ def _struck(trial: Trial) -> list[str]:
     nu, modulus = max(found.moduli.items())
     said.append(f"E* {modulus.value:.6g} +- {modulus.error:.1e} Pa at nu = {nu:g}")
     return [f"    from impact: {', '.join(said)}"]
+
+
+MEMBER = base.Command(
+    "the paper's Table 1 on trial: D, alpha and E* of every row by finite elements, with error bars and verdicts",
+    arguments,
+    execute,
+)

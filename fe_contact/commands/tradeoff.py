@@ -8,8 +8,6 @@ from pathlib import Path
 from fe_contact.commands import base
 from lumped.result.folder import publish
 
-SUMMARY = "error over processor time and counted work, by every method; where the defaults lie"
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """SCENE [--quick] [--tolerance T] [--set a.b=value ...] [--out DIR] [--json] [--quiet]."""
@@ -24,7 +22,7 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.studies.tradeoff import study as tradeoff
     from fe_contact.studies.tradeoff import study_with_waves as tradeoff_waves
     from fe_contact.studies.tradeoff.chart import plot_tradeoff
-    from fe_contact.studies.tradeoff.files import write_tradeoff
+    from fe_contact.studies.tradeoff.front import write_tradeoff
 
     scene, table = base.read_scene(args)
     where = base.folder(args, "tradeoff", scene.name)
@@ -38,3 +36,8 @@ def execute(args: argparse.Namespace) -> int:
     content = publish(where, write, "tradeoff.json")
     base.tell(args, content, content["verdict"], where, f"{scene.name}: {len(points)} points")
     return base.DONE
+
+
+MEMBER = base.Command(
+    "error over processor time and counted work, by every method; where the defaults lie", arguments, execute
+)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sparse
 
-from fe_contact.assembly.forms import Array
+from fe_contact.assembly.forms import Array, Matrix
 from lumped.materials import Relaxation
 
 
@@ -21,7 +20,7 @@ class Part:
     A constant Poisson's ratio needs one part; a constant bulk modulus two, volume and shape.
     """
 
-    stiffness: Any
+    stiffness: Matrix
     relaxation: Relaxation
 
 
@@ -35,7 +34,7 @@ class Pressing:
     A rigid striker is one more degree of freedom, its depth: ``push`` -1, ``trace`` 1 for all points.
     """
 
-    push: Any
+    push: Matrix
     trace: Array
     weights: Array
     clearance: Array
@@ -58,7 +57,7 @@ class Pressing:
         return np.asarray(self.push @ self.forces(pressure))
 
     @cached_property
-    def _seen(self) -> Any:
+    def _seen(self) -> Matrix:
         """Displacement at the points of that of the body, sparse (q, N)."""
         return sparse.csr_matrix(self.trace) @ self.push.T.tocsr()
 
@@ -72,10 +71,10 @@ class BodyWithMass:
     of free fall, m/s2; ``pressing`` where contact may be.
     """
 
-    mass: Any
+    mass: Matrix
     rigid: Array
     parts: tuple[Part, ...]
-    dashpots: Any
+    dashpots: Matrix
     gravity: Array
     pressing: Pressing
 
@@ -90,7 +89,7 @@ class BodyWithMass:
         return all(part.relaxation.is_elastic for part in self.parts)
 
     @cached_property
-    def inertia(self) -> Any:
+    def inertia(self) -> Matrix:
         """All of the mass, sparse (N, N)."""
         return (self.mass + sparse.diags(self.rigid)).tocsc()
 
@@ -100,7 +99,7 @@ class BodyWithMass:
         return np.asarray(self.inertia @ self.gravity)
 
     @cached_property
-    def damping(self) -> Any:
+    def damping(self) -> Matrix:
         """Force per velocity, (N, N): dashpots and the parallel viscosities of the material; None without any."""
         found = [p.relaxation.viscosity * p.stiffness for p in self.parts if p.relaxation.viscosity > 0.0]
         if self.dashpots is not None:

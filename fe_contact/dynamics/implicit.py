@@ -13,11 +13,10 @@ where branches count a little later, see :mod:`fe_contact.dynamics.memory`.
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from fe_contact.assembly.forms import Array
+from fe_contact.assembly.forms import Array, Matrix
 from fe_contact.assembly.interior import factorized
 from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.dynamics import memory
@@ -69,7 +68,7 @@ class ImplicitStepper:
         """The increment (N,) without new pressure."""
         return self.solve(self._known(state) + self.scheme.alpha_f * self.body.pressing.load(state.pressure))
 
-    def _effective(self) -> Any:
+    def _effective(self) -> Matrix:
         body, (alpha_m, alpha_f, beta, gamma), dt = self.body, self.scheme, self.step
         matrix = (1 - alpha_m) / (beta * dt**2) * body.inertia
         for part, law in zip(body.parts, self.laws, strict=True):

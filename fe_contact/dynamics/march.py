@@ -9,12 +9,12 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sparse
 
-from fe_contact.assembly.forms import Array
+from fe_contact.assembly.forms import Array, Matrix
 from fe_contact.dynamics import events, ledger
 from fe_contact.dynamics.body import BodyWithMass
 from fe_contact.dynamics.explicit import ExplicitStepper
@@ -219,6 +219,6 @@ def safe_step(body: BodyWithMass, enforced: Enforced) -> float:
     return float(2.0 / np.sqrt(np.max(pull / mass)))
 
 
-def _rows(matrix: Any) -> Array:
+def _rows(matrix: Matrix) -> Array:
     """Sums of a sparse matrix's rows."""
     return np.asarray(matrix.sum(axis=1)).ravel()

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from fe_contact.assembly.forms import Array
+from fe_contact.assembly.forms import Array, Indices
 from fe_contact.assembly.pressed_surface import PressedSurface
-from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching
+from fe_contact.contact.enforcement.base import Enforcement
+from fe_contact.contact.problem import ContactProblem, Touching
 from fe_contact.dynamics.body import Pressing
-from fe_contact.dynamics.mass.consistent import Nodes
 from fe_contact.errors import ContactNotSettled
 
 
@@ -19,24 +19,25 @@ from fe_contact.errors import ContactNotSettled
 class Enforced:
     """A member of :mod:`fe_contact.contact.enforcement`, or like one, and its penalty, Pa/m."""
 
-    member: Any
+    member: Enforcement
     penalty: float
 
     @property
     def is_law(self) -> bool:
         """Whether pressure follows from the overlap alone, wherever that comes from."""
-        return hasattr(self.member, "signed_pressure")
+        return self.member.law is not None
 
     def known(self, overlap: Array) -> Found:
-        """Pressure of an overlap (q,) that no pressure changes any more."""
-        return Found(np.asarray(self.member.signed_pressure(overlap, self.penalty)), 0)
+        """Pressure of an overlap (q,) that no pressure changes any more, of a member that is a law."""
+        assert self.member.law is not None
+        return Found(self.member.law(overlap, self.penalty), 0)
 
     def found(self, surface: PressedSurface, overlap: Array, touching: Touching, time: float) -> Found:
         """Pressure that leaves of a free overlap (q,) what the member allows; raises ContactNotSettled."""
         if not (touching.any() or (overlap > 0.0).any()):
             return Found(self.penalty * overlap, 0)
         problem = ContactProblem(surface, overlap, self.penalty)
-        solution: ContactSolution = self.member.enforce(problem, touching)
+        solution = self.member.enforce(problem, touching)
         if not solution.converged:
             raise ContactNotSettled(time)
         return Found(solution.signed_pressure, solution.iterations)
@@ -54,7 +55,7 @@ class Found(NamedTuple):
         return np.maximum(self.signed_pressure, 0.0)
 
 
-def surface_of(compliance: Array, pressing: Pressing, nodes: Nodes | slice = slice(None)) -> PressedSurface:
+def surface_of(compliance: Array, pressing: Pressing, nodes: Indices | slice = slice(None)) -> PressedSurface:
     """What contact knows of a body whose surface ``nodes`` (m,) move by ``compliance`` (m, m) per force."""
     symmetric = (compliance + compliance.T) / 2
     stiffness = np.linalg.inv(symmetric)

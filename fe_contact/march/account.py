@@ -73,7 +73,7 @@ def _energy(stepper: Stepping, states: Sequence[State], steps: Sequence[Step]) -
             "viscous": sum(heats) + crept,
             "radiated": 0.0,
             "contact": sum(stepper.between(before, step) for (before, _), step in taken),
-            "numerical": lost + (scheme.LEVER - 0.5) * strike.mass * float(jumps @ jumps),
+            "numerical": lost + (scheme.lever - 0.5) * strike.mass * float(jumps @ jumps),
         }
     )
 

@@ -102,7 +102,7 @@ class _Marcher:
         if len(steps) < 4 or steps[-1].state.velocity >= 0:
             return None
         recent = steps[-3:]
-        times = [s.state.time - (1 - self.stepper.scheme.SAMPLE) * s.length for s in recent]
+        times = [s.state.time - (1 - self.stepper.scheme.sample) * s.length for s in recent]
         left = time_left(times, [s.axis_response for s in recent], recent[-1].state.time)
         # a kink in the trend is not the end: contact ends faintly
         return None if left is None or (left <= self.shortest and not _faint(steps, FAINT)) else left

@@ -11,13 +11,13 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.certify import Budget
+from fe_contact.budget.budget import Budget
 from fe_contact.budget.change import Change
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.softening import Softening
 from fe_contact.schemes import galerkin
 from lumped.materials import Recovery
-from lumped.result.indentation_left import IndentationLeft
+from lumped.result.result import IndentationLeft
 from lumped.scene.scene import Scene
 from lumped.targets import HalfSpace
 

@@ -5,10 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-
-ORDER = 1
-SAMPLE = 1.0
-LEVER = 1.0
+from fe_contact.schemes.base import MemoryScheme
 
 
 def weights(moduli: Array, ratios: Array) -> tuple[Array, Array]:
@@ -16,6 +13,4 @@ def weights(moduli: Array, ratios: Array) -> tuple[Array, Array]:
     return moduli * -np.expm1(-ratios) / ratios, moduli * np.exp(-ratios)
 
 
-def equilibrium_share() -> float:
-    """Share of the displacement increment that the equilibrium spring feels."""
-    return 1.0
+MEMBER = MemoryScheme(order=1, sample=1.0, lever=1.0, weights=weights)

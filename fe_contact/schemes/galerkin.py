@@ -12,10 +12,8 @@ import math
 import numpy as np
 
 from fe_contact.assembly.forms import Array
+from fe_contact.schemes.base import MemoryScheme
 
-ORDER = 2
-SAMPLE = 0.5
-LEVER = 0.5
 SERIES_BELOW = 0.02
 SERIES = [(-1) ** k / math.factorial(k + 2) for k in range(5, -1, -1)]
 
@@ -39,6 +37,4 @@ def _ramp(ratios: Array) -> Array:
     return total
 
 
-def equilibrium_share() -> float:
-    """Share of the displacement increment that the equilibrium spring feels."""
-    return 0.5
+MEMBER = MemoryScheme(order=2, sample=0.5, lever=0.5, weights=weights)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import ModuleType
 from typing import NamedTuple
 
 from fe_contact.assembly.cache import kept
@@ -13,10 +12,10 @@ from fe_contact.bodies.bulk_memory import BulkBody, Moduli
 from fe_contact.bodies.condensed import ByModes
 from fe_contact.bodies.memory import step_law
 from fe_contact.bodies.modes import Modes, modes
-from fe_contact.settings import SCHEMES, Numerics
+from fe_contact.schemes.base import SCHEMES, MemoryScheme
+from fe_contact.settings import Numerics
 from fe_contact.steppers.struck import Deformable
 from lumped.materials import Relaxation
-from lumped.schema.members import get
 
 # Steps between which the ratio of the moduli is looked for, in contact times; it changes little beyond.
 SHORTEST, LONGEST = 1e-6, 50.0
@@ -35,7 +34,7 @@ class Pace(NamedTuple):
 
     def ratios(self, moduli: Moduli) -> tuple[float, float]:
         """Least and largest ratio of shear to bulk modulus that the steps may meet."""
-        scheme = get(SCHEMES, self.scheme)
+        scheme = SCHEMES.get(self.scheme)
         extremes = [share * self.contact_time for share in (SHORTEST, LONGEST)]
         laws = [[step_law(modulus, scheme, length).now for modulus in moduli] for length in extremes]
         low, high = sorted(shear / bulk for bulk, shear in laws)
@@ -70,7 +69,7 @@ class BulkSurface(ByModes, Deformable):
         """The mesh's unit of length, m."""
         return contact_radius if self.length is None else self.length
 
-    def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> BulkBody:
+    def body(self, relaxation: Relaxation, scheme: MemoryScheme, scale: float) -> BulkBody:
         """The body on its mesh of unit length ``scale``, m; its E*(t) follows from its own moduli."""
         return BulkBody(self.modes, self.moduli, scheme, scale)
 

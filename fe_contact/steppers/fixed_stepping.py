@@ -16,23 +16,23 @@ The contact problem of a time step on a mesh that stays: which of its points tou
 from __future__ import annotations
 
 from collections.abc import Sequence
-from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
-from fe_contact.bodies.offer import Offer, Staying
+from fe_contact.bodies.offer import Memory, Offer, Staying
 from fe_contact.bodies.pressing import BEYOND, half_width
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
-from fe_contact.settings import ENFORCEMENTS, SCHEMES, Numerics
+from fe_contact.schemes.base import SCHEMES
+from fe_contact.settings import Numerics
 from fe_contact.steppers.coming_radius import coming_square
 from fe_contact.steppers.march import Snapshot, Strike, Work
 from fe_contact.steppers.steps import State, Step
 from fe_contact.steppers.striker import Inertia
-from lumped.schema.members import get
 
 FIRST = 0.5  # share of the first overlap from which on places are guessed to touch
 LEAST_KEPT = 0.05  # share of its area that a contact is guessed to keep over a step
@@ -56,7 +56,7 @@ class FixedStepper:
 
     def __init__(self, strike: Strike, surface: Staying, numerics: Numerics) -> None:
         self.strike, self.surface, self.numerics = strike, surface, numerics
-        self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
+        self.scheme = SCHEMES.get(numerics.scheme)
         self.contact = FixedContact(strike, surface, numerics)
         self.scale, self.places, self.heights = self.contact.scale, self.contact.places, self.contact.heights
         self.body = surface.body(strike.relaxation, self.scheme, self.scale)
@@ -66,7 +66,7 @@ class FixedStepper:
         strike = self.strike
         return State(0.0, strike.depth, strike.velocity, 0.0, Remembered(strike.memory or self.body.at_rest()))
 
-    def remembered(self, memory: Remembered) -> Any:
+    def remembered(self, memory: Remembered) -> Memory:
         """The surface's, on a body which has one for it."""
         return memory.body
 
@@ -100,7 +100,7 @@ class FixedStepper:
 
         Growing, the contact has its radius at the end of the step; receding, where the scheme samples the pressure.
         """
-        sampled = before.time + length * self.scheme.SAMPLE
+        sampled = before.time + length * self.scheme.sample
         if self.surface.rim is not None:
             return self.surface.rim, sampled, after
         if after.velocity > 0.0:
@@ -131,7 +131,7 @@ class FixedStepper:
 
     def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
         """Places and pressure at the quadrature points."""
-        early = 1 - self.scheme.SAMPLE
+        early = 1 - self.scheme.sample
         return tuple(
             Snapshot(
                 time=step.state.time - early * step.length,
@@ -143,15 +143,15 @@ class FixedStepper:
             for step in steps
         )
 
-    def stored(self, memory: Any) -> float:
+    def stored(self, memory: Memory) -> float:
         """Elastic energy, J."""
         return self.body.stored(memory.body)
 
-    def dissipated(self, before: Any, after: Any, length: float) -> float:
+    def dissipated(self, before: Memory, after: Memory, length: float) -> float:
         """Heat of a step of a length, s; J."""
         return self.body.dissipated(before.body, after.body, length)
 
-    def lost(self, before: Any, after: Any, length: float) -> float:
+    def lost(self, before: Memory, after: Memory, length: float) -> float:
         """Of the work in a step of a length, s, what the scheme leaves unaccounted for, J."""
         return self.body.lost(before.body, after.body, length)
 
@@ -180,7 +180,7 @@ class FixedContact:
 
     def __init__(self, strike: Strike, surface: Staying, numerics: Numerics) -> None:
         self.strike, self.surface, self.numerics = strike, surface, numerics
-        self.enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
+        self.enforcement = ENFORCEMENTS.get(numerics.enforcement)
         self.scale = surface.unit(numerics.contact_radius)
         self.places = surface.places(self.scale)
         self.heights = np.minimum(strike.height(self.places), BEYOND * self.scale)
@@ -208,7 +208,7 @@ class FixedContact:
         overlap = offer.now * self.overlap(inertia.free_depth) + offer.past
         yielding = offer.now * inertia.give * self.scale ** (operator.dimension - 2) + operator.yielding
         solution = self._solved(offer, overlap, yielding, steps, guesses, inertia.state.time)
-        return solution, Work(1, self.enforcement.SOLVES, solution.iterations)
+        return solution, Work(1, self.enforcement.solves, solution.iterations)
 
     def _by_secants(
         self, offer: Offer, inertia: Inertia, steps: Sequence[Step], guesses: Guesses
@@ -220,7 +220,7 @@ class FixedContact:
         for _ in range(SECANTS):
             free = offer.now * self.overlap(depth) + offer.past
             solution = self._solved(offer, free, 0.0, steps, guesses, time)
-            solves, iterations = solves + self.enforcement.SOLVES, iterations + solution.iterations
+            solves, iterations = solves + self.enforcement.solves, iterations + solution.iterations
             excess = depth + give * operator.force(self.scale, solution.pressure) - free_depth
             if abs(excess) <= PRECISE * free_depth:
                 return solution, Work(1, solves, iterations)

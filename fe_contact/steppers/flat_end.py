@@ -8,9 +8,8 @@ One time step of an impact by a flat end: its area touches at once, so that dept
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from types import ModuleType
 
 import numpy as np
 
@@ -19,16 +18,18 @@ from fe_contact.bodies.memory import SurfaceMemory, step_law
 from fe_contact.bodies.pressing import Still
 from fe_contact.contact.problem import ContactSolution
 from fe_contact.errors import ContactLost
-from fe_contact.settings import SCHEMES, TARGETS, Numerics
+from fe_contact.schemes.base import SCHEMES
+from fe_contact.settings import Numerics
 from fe_contact.steppers.march import Snapshot, Strike, Work
 from fe_contact.steppers.steps import OfSurface, State, Step, Stepping
 from fe_contact.steppers.striker import Inertia
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
-from lumped.schema.members import get
 
 SHALLOW = 1e-3  # depth over radius: every answer is in proportion
 TOUCHING = ContactSolution(np.ones(1), 0, True, (np.ones(1, dtype=bool),))
+
+Pressing = Callable[[Indenter, Array, Numerics], Still]  # at rest; radii of the contacts expected, m
 
 
 @dataclass(frozen=True)
@@ -49,10 +50,10 @@ class FlatEnd:
     solves: int = 1
 
     @classmethod
-    def of(cls, geometry: Geometry, radius: float, numerics: Numerics) -> FlatEnd:
-        """Pressed once, at rest. Raises NotReached."""
+    def of(cls, geometry: Geometry, radius: float, numerics: Numerics, pressed: Pressing) -> FlatEnd:
+        """Pressed once, at rest, as the target says. Raises NotReached."""
         indenter = Indenter(geometry.shape, geometry.material, geometry.target)
-        still: Still = get(TARGETS, geometry.target.name).still(indenter, np.array([radius]), numerics)
+        still = pressed(indenter, np.array([radius]), numerics)
         depth = SHALLOW * radius
         force = still.press(depth, radius).force
         return cls(force / depth, radius, still.degrees_of_freedom, still.mesh_order)
@@ -76,7 +77,7 @@ class FlatStepper(OfSurface):
 
     def __init__(self, strike: Strike, stiffness: float, radius: float, numerics: Numerics) -> None:
         self.strike, self.stiffness, self.radius, self.numerics = strike, stiffness, radius, numerics
-        self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
+        self.scheme = SCHEMES.get(numerics.scheme)
         self.first_force = stiffness * (strike.relaxation.viscosity * strike.velocity + self._held(self.touch().memory))
 
     def at_rest(self) -> SurfaceMemory:
@@ -107,7 +108,7 @@ class FlatStepper(OfSurface):
         force = self.stiffness * response
         strain = inertia.depth(force) * np.array([[1.0], [self.stiffness]])
         moved = inertia.moved(force, state.memory.advanced(law, strain))
-        found_at = state.time + length * self.scheme.SAMPLE
+        found_at = state.time + length * self.scheme.sample
         return Step(length, moved, force, self.radius, found_at, response, TOUCHING, self.radius, Work(1, 1, 1))
 
     def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:

@@ -14,7 +14,6 @@ former edge: here they get what the straight line missed.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from types import ModuleType
 from typing import Protocol
 
 import numpy as np
@@ -24,6 +23,7 @@ from fe_contact.assembly.operators import SurfaceOperator
 from fe_contact.bodies.memory import interpolate, step_law
 from fe_contact.bodies.offer import Meshed
 from fe_contact.bodies.pressing import BEYOND
+from fe_contact.schemes.base import MemoryScheme
 from fe_contact.steppers.march import Snapshot, Strike
 from fe_contact.steppers.steps import State, Step
 
@@ -37,7 +37,7 @@ class SteppedBy(Protocol):
     """What took the steps: its memory's ``radii`` and the profile's ``heights`` there, m, each (r,)."""
 
     strike: Strike
-    scheme: ModuleType
+    scheme: MemoryScheme
     radii: Array
     heights: Array
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from fe_contact.assembly.forms import Array
+from fe_contact.bodies.offer import Memory
 from lumped.materials import Relaxation
+from lumped.scene.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -31,7 +33,35 @@ class Strike:
     total: float = 1.0
     touched_at: float = 0.0
     depth: float = 0.0
-    memory: Any = None
+    memory: Memory = None
+
+    def again(self, flown: float, depth: float, velocity: float, memory: Memory = None) -> Strike:
+        """The strike that begins with a touch, some time ``flown`` after this one, s, at a depth, m, and m/s."""
+        return replace(
+            self,
+            velocity=velocity,
+            depth=depth,
+            memory=memory,
+            touched_at=self.touched_at + flown,
+            end_time=self.end_time - flown,
+        )
+
+    @classmethod
+    def of(cls, scene: Scene) -> Strike:
+        """The first touch of a scene; forces in plane strain are totals, so the modulus counts with the length."""
+        target, profile = scene.target, scene.profile
+        place, lead = target.length_of_place, target.lead
+        bent = None if place == 1.0 else lambda arc, depth: target.overlap(profile, arc / place, depth)
+        return cls(
+            overlap=bent,
+            height=lambda r: -target.overlap(profile, r / place, 0.0) / lead,
+            mass=scene.reduced_mass,
+            velocity=scene.velocity,
+            gravity=scene.gravity,
+            relaxation=scene.contact_modulus.scaled(scene.geometry.shape.total),
+            end_time=scene.end_time,
+            total=scene.geometry.shape.total,
+        )
 
 
 @dataclass(frozen=True)
@@ -77,7 +107,7 @@ class March:
     energy: dict[str, float]
     end_spread: float
     work: Work
-    memory: Any = None
+    memory: Memory = None
     memory_time: float = 0.0
 
     @cached_property

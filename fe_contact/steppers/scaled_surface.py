@@ -13,7 +13,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from types import ModuleType
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +23,7 @@ from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.assembly.trace import monomials
 from fe_contact.bodies.surface_body import SurfaceBody
 from fe_contact.contact.problem import ContactProblem
+from fe_contact.schemes.base import MemoryScheme
 from fe_contact.settings import Numerics
 from fe_contact.steppers.march import Snapshot, Strike
 from fe_contact.steppers.stepping import Stepper
@@ -48,7 +48,7 @@ class ScaledSurface(Deformable):
             return Stepper(strike, self, numerics, expected)
         return super().stepper(strike, numerics, expected)
 
-    def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> SurfaceBody:
+    def body(self, relaxation: Relaxation, scheme: MemoryScheme, scale: float) -> SurfaceBody:
         """The body on a mesh that stays, of unit length ``scale``, m: contact modulus E*(t), Pa, and time scheme."""
         return SurfaceBody(self.operator, self.pressed, relaxation, scheme, scale)
 

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from operator import attrgetter
-from types import ModuleType
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -20,6 +19,7 @@ from fe_contact.bodies.condensed import ByModes, Condensed
 from fe_contact.bodies.modes import Modes, modes
 from fe_contact.bodies.offer import Half
 from fe_contact.bodies.surface_body import SurfaceBody
+from fe_contact.schemes.base import MemoryScheme
 from fe_contact.steppers.bulk_surface import Pace
 from lumped.materials import Relaxation
 
@@ -53,7 +53,7 @@ class BodySide(Condensed):
         """Whether its compliance is the same, but for the modulus, in every step."""
         return True
 
-    def half(self, scheme: ModuleType, scale: float) -> Half:
+    def half(self, scheme: MemoryScheme, scale: float) -> Half:
         """The body, whose surface remembers; ``scale``, m, is the common unit."""
         operator = self.operator
         pressed = PressedSurface(self.stiffness, operator.trace, operator.weights, recurring=False)
@@ -86,7 +86,7 @@ class BulkSide(ByModes, BodySide):
         """No: its Poisson's ratio relaxes."""
         return False
 
-    def half(self, scheme: ModuleType, scale: float) -> Half:
+    def half(self, scheme: MemoryScheme, scale: float) -> Half:
         """The body, whose bulk remembers; ``scale``, m, is the common unit."""
         return BulkBody(self._stiffer, self.moduli, scheme, scale)
 

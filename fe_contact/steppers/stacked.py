@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -20,6 +19,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import SurfaceOperator
 from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.bodies.offer import Half, Offer, Recalled
+from fe_contact.schemes.base import MemoryScheme
 from fe_contact.steppers.march import Snapshot
 from fe_contact.steppers.sides import BodySide, carriers, stacked
 from fe_contact.steppers.struck import Deformable
@@ -65,7 +65,7 @@ class Stacked(Deformable):
         """From the line of motion, m."""
         return unit * np.sin(self.operator.points)
 
-    def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> StackedBody:
+    def body(self, relaxation: Relaxation, scheme: MemoryScheme, scale: float) -> StackedBody:
         """The bodies marched by a scheme; each has a modulus of its own, ``relaxation`` is that of all of them."""
         halves = tuple(side.half(scheme, scale) for side in self.sides)
         return StackedBody(self.operator, self.sides, halves)

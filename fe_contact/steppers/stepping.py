@@ -6,7 +6,6 @@ Where the edge turns out to lie outside the mesh's finest elements, the mesh is 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from types import ModuleType
 
 import numpy as np
 
@@ -14,15 +13,16 @@ from fe_contact.assembly.forms import Array
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, area_weights, graded, interpolate, step_law
 from fe_contact.bodies.offer import Breathing
 from fe_contact.bodies.pressing import BEYOND, EDGE_WINDOW, RESCALINGS
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactSolution, Touching, count, moved
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
-from fe_contact.settings import ENFORCEMENTS, SCHEMES, Numerics
+from fe_contact.schemes.base import SCHEMES
+from fe_contact.settings import Numerics
 from fe_contact.steppers import instants
 from fe_contact.steppers.coming_radius import coming_square
 from fe_contact.steppers.march import Snapshot, Strike, Work
 from fe_contact.steppers.steps import OfSurface, State, Step
 from fe_contact.steppers.striker import Inertia
-from lumped.schema.members import get
 
 LEAST_KEPT = 0.05  # share of its area that a contact is expected to keep over a step
 PATIENCE = 8  # rescalings after which the window widens by half each time: the edge may jitter in the last tail
@@ -50,8 +50,8 @@ class Stepper(OfSurface):
         expected: Sequence[float] | Array = (),
     ) -> None:
         self.strike, self.surface, self.numerics = strike, surface, numerics
-        self.scheme: ModuleType = get(SCHEMES, numerics.scheme)
-        self.enforcement: ModuleType = get(ENFORCEMENTS, numerics.enforcement)
+        self.scheme = SCHEMES.get(numerics.scheme)
+        self.enforcement = ENFORCEMENTS.get(numerics.enforcement)
         self.radii = graded(MEMORY_REACH * numerics.contact_radius, MEMORY_POINTS)
         self.heights = strike.height(self.radii)
         self.areas = area_weights(self.radii)
@@ -120,7 +120,7 @@ class Stepper(OfSurface):
                 raise ContactNotSettled(state.time)
             edge = solution.edge(points)
             if abs(edge - 1) <= EDGE_WINDOW * 1.5 ** max(attempt - PATIENCE, 0):
-                return scale, edge, solution, Work(1, (attempt + 1) * self.enforcement.SOLVES, iterations)
+                return scale, edge, solution, Work(1, (attempt + 1) * self.enforcement.solves, iterations)
             scale *= min(max(edge, 0.3), points[-1])
             if scale < VANISHING * (steps[-1].radius if steps else self.numerics.contact_radius * VANISHING):
                 raise ContactLost(state.time)
@@ -159,7 +159,7 @@ class Stepper(OfSurface):
 
     def _radius_time(self, velocity: float, time: float, length: float) -> float:
         """When the contact has the radius of a step: growing, at its end; receding, where the force is sampled."""
-        return time + length * (1.0 if velocity > 0 else self.scheme.SAMPLE)
+        return time + length * (1.0 if velocity > 0 else self.scheme.sample)
 
     def _strain(
         self, law: StepLaw, carried: Array, depth: float, radius: float, scale: float, pressure: Array

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from types import ModuleType
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 from fe_contact.assembly.forms import Array
 from fe_contact.bodies.memory import SurfaceMemory
+from fe_contact.bodies.offer import Memory
 from fe_contact.contact.problem import ContactSolution
+from fe_contact.schemes.base import MemoryScheme
 from fe_contact.settings import Numerics
 from fe_contact.steppers.march import Snapshot, Strike, Work
 
@@ -20,7 +21,7 @@ class State(NamedTuple):
     depth: float
     velocity: float
     impulse: float
-    memory: Any
+    memory: Memory
 
 
 class Step(NamedTuple):
@@ -50,14 +51,14 @@ class Stepping(Protocol):
 
     strike: Strike
     numerics: Numerics
-    scheme: ModuleType
+    scheme: MemoryScheme
     shortest: float
     first_force: float
 
     def touch(self) -> State:
         """The striker at the surface, at rest or with what it remembers."""
 
-    def remembered(self, memory: Any) -> SurfaceMemory:
+    def remembered(self, memory: Memory) -> SurfaceMemory:
         """What the surface remembers, of a body that recovers."""
 
     def standing(self) -> int:
@@ -72,13 +73,13 @@ class Stepping(Protocol):
     def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
         """The pressure of every step, where it is known."""
 
-    def stored(self, memory: Any) -> float:
+    def stored(self, memory: Memory) -> float:
         """Elastic energy, J."""
 
-    def dissipated(self, before: Any, after: Any, length: float) -> float:
+    def dissipated(self, before: Memory, after: Memory, length: float) -> float:
         """Heat of a step of a length, s; J."""
 
-    def lost(self, before: Any, after: Any, length: float) -> float:
+    def lost(self, before: Memory, after: Memory, length: float) -> float:
         """Of the work on the body in a step of a length, s, what a scheme leaves unaccounted for, J."""
 
     def between(self, before: State, step: Step) -> float:
@@ -89,7 +90,7 @@ class OfSurface:
     """What, of the contract of :class:`Stepping`, all do on a body whose memory is that of its surface alone."""
 
     strike: Strike
-    scheme: ModuleType
+    scheme: MemoryScheme
 
     def at_rest(self) -> SurfaceMemory:
         """The memory of a body that nothing has touched yet."""

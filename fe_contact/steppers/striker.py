@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from types import ModuleType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+from fe_contact.bodies.offer import Memory
+from fe_contact.schemes.base import MemoryScheme
 from fe_contact.steppers.march import Strike
 from fe_contact.steppers.steps import State
 
@@ -21,9 +22,9 @@ class Inertia(NamedTuple):
     lever: float
 
     @classmethod
-    def of(cls, strike: Strike, scheme: ModuleType, state: State, length: float) -> Inertia:
+    def of(cls, strike: Strike, scheme: MemoryScheme, state: State, length: float) -> Inertia:
         """In a step of the scheme."""
-        return cls(strike, state, length, scheme.LEVER * length**2)
+        return cls(strike, state, length, scheme.lever * length**2)
 
     @property
     def free_depth(self) -> float:
@@ -39,7 +40,7 @@ class Inertia(NamedTuple):
         """At the end of the step under a force, N; m."""
         return float(self.free_depth - self.lever * force / self.strike.mass)
 
-    def moved(self, force: float, memory: Any) -> State:
+    def moved(self, force: float, memory: Memory) -> State:
         """The state after the step under a force, N, of a body that then has this memory."""
         strike, state, length = self.strike, self.state, self.length
         return State(

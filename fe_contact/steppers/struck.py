@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from types import ModuleType
 from typing import TYPE_CHECKING, Protocol
 
 from fe_contact.assembly.forms import Array
 from fe_contact.bodies.condensed import Condensed
 from fe_contact.bodies.offer import Body
+from fe_contact.schemes.base import MemoryScheme
 from fe_contact.settings import Numerics
 from fe_contact.steppers.fixed_stepping import FixedStepper
 from fe_contact.steppers.march import Snapshot, Strike
@@ -61,7 +61,7 @@ class Deformable(Condensed):
         """Where all contacts end, m, if the body is loaded no farther."""
         return None
 
-    def body(self, relaxation: Relaxation, scheme: ModuleType, scale: float) -> Body:
+    def body(self, relaxation: Relaxation, scheme: MemoryScheme, scale: float) -> Body:
         """The body with a contact modulus E*(t), Pa, marched by a scheme, on a mesh whose unit is ``scale``, m."""
         raise NotImplementedError
 

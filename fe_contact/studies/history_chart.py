@@ -16,7 +16,8 @@ from fe_contact.studies.style import prefixed, readable, with_error
 from lumped.result.history import History
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Key, Number
+from lumped.schema.keys import Kind, Number
+from lumped.schema.record import keys_of
 
 HEIGHT = 4.35  # in
 BAND_VISIBLE = 0.01  # share of the peak below which the band is a hair line and is drawn magnified
@@ -51,8 +52,9 @@ def caption(scene: Scene) -> str:
     if not scene.has_geometry:
         return _law_alone(scene)
     material, shape, young = scene.geometry.material, scene.geometry.shape, scene.geometry.material.young
+    keys = keys_of(type(shape))
     sizes = {key: value for key, value in shape.to_dict().items() if isinstance(value, float)}
-    lengths = ", ".join(f"{key} {_size(shape.keys[key], value)}" for key, value in sizes.items())
+    lengths = ", ".join(f"{key} {_size(keys[key].kind, value)}" for key, value in sizes.items())
     terms = [readable(young.equilibrium, "Pa")] if young.equilibrium else []
     pairs = zip(young.moduli, young.times, strict=True)
     terms += [f"{readable(modulus, 'Pa')} exp(−t/{readable(tau, 's')})" for modulus, tau in pairs]
@@ -74,9 +76,9 @@ def _law_alone(scene: Scene) -> str:
     return "\n".join(textwrap.wrap(f"{moving}; {scene.law.name.replace('_', ' ')}: {values}", CAPTION_WIDTH))
 
 
-def _size(key: Key, value: float) -> str:
+def _size(kind: Kind, value: float) -> str:
     """A length with a prefixed unit, anything else as it stands in the scene file."""
-    unit = key.unit if isinstance(key, Number) else ""
+    unit = kind.unit if isinstance(kind, Number) else ""
     return readable(value, unit) if unit == "m" else f"{value:.3g} {unit}".rstrip()
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import sys
 from collections.abc import Generator, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import closing, contextmanager
@@ -26,7 +27,7 @@ from fe_contact.errors import WorkerLost
 from fe_contact.progress import Progress
 from fe_contact.threads import one_thread
 from lumped.result.result import provenance
-from lumped.schema import data
+from lumped.schema import Table, data
 from lumped.schema.json_file import decoded, encoded
 
 PACKAGES = ("lumped", "meshes", "fe_contact")
@@ -77,7 +78,7 @@ def _suite() -> str:
     return digest.hexdigest()
 
 
-def _kept(file: Path) -> dict[str, Any]:
+def _kept(file: Path) -> Table:
     """Rows by their calls; a line that an interruption cut short is none, nor is another suite's."""
     found = {}
     for line in file.read_text(encoding="utf-8", errors="replace").splitlines() if file.exists() else ():
@@ -155,7 +156,7 @@ def _started() -> tuple[BaseProcess, connection.Connection]:
 @contextmanager
 def _signals_held() -> Iterator[None]:
     """Signals that end this process come afterwards; processes started meanwhile hold them too."""
-    if not hasattr(signal, "pthread_sigmask"):  # Windows
+    if sys.platform == "win32":
         yield
         return
     resource_tracker.ensure_running()  # starts with the first process else, and lets signals through again
@@ -172,7 +173,7 @@ def _answer(line: connection.Connection) -> None:
     A second thread measures, so that this one hears the line's end at once. An interrupt is the parent's to answer.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if hasattr(signal, "pthread_sigmask"):
+    if sys.platform != "win32":
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, signal.SIGTERM})
 
     def said(done: Future[Any]) -> None:

@@ -21,6 +21,7 @@ BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 PURPLE, SKY = "#CC79A7", "#56B4E9"
 CYCLE = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
 
+Look = dict[str, Any]  # keywords of matplotlib, each of its own type
 RC: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 7.5,

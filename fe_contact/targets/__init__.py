@@ -1,4 +1,4 @@
 """Support and body of each target, one a file under the name it has in ``lumped.targets`` and ``meshes``.
 
-A member offers ``surface(poisson, numerics)``: what contact sees of the body.
+A member is a :class:`~fe_contact.targets.base.MeshedTarget`.
 """

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import ModuleType
 
 import numpy as np
 
@@ -12,11 +11,11 @@ from fe_contact.assembly.operators import SurfaceOperator
 from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.assembly.trace import trace_between
 from fe_contact.bodies.pressing import BEYOND, EDGE_ORDER, Pressed, half_width
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.errors import ContactTooWide, IndentationNotSettled
-from fe_contact.settings import ENFORCEMENTS, Numerics
+from fe_contact.settings import Numerics
 from lumped.scene.indenter import Indenter
-from lumped.schema.members import get
 
 STIFFER = 6.0  # penalty where the contact ends at a rim, over that where it may move: no edge asks for softness
 
@@ -54,7 +53,7 @@ class BodyStill:
         overlap = target.overlap(self.indenter.profile, self.places, depth)
         penalty = self.numerics.penalty * self.scale / guess * (1.0 if fixed is None else STIFFER)
         problem = ContactProblem(self.surface, np.maximum(overlap, -BEYOND * self.scale), penalty)
-        enforcement: ModuleType = get(ENFORCEMENTS, self.numerics.enforcement)
+        enforcement = ENFORCEMENTS.get(self.numerics.enforcement)
         solution = enforcement.enforce(problem, np.abs(self.places) < guess)
         gap, height = -solution.signed_pressure, target.lead * depth - overlap
         radius = fixed or half_width(self.places, solution.signed_pressure, gap, height=height)
@@ -63,7 +62,7 @@ class BodyStill:
         if not np.isfinite(radius):
             raise ContactTooWide(depth)
         force = self.operator.force(self.scale, solution.pressure)
-        return Pressed(force, radius, enforcement.SOLVES, solution.iterations)
+        return Pressed(force, radius, enforcement.solves, solution.iterations)
 
 
 def trace_at(operator: SurfaceOperator, points: Array) -> Array:

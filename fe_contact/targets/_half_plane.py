@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sparse
 from skfem import FacetBasis
@@ -11,7 +9,7 @@ from skfem import FacetBasis
 import meshes
 from fe_contact.assembly import half_plane
 from fe_contact.assembly.cache import kept
-from fe_contact.assembly.forms import Array, isotropic, plane_stiffness
+from fe_contact.assembly.forms import Array, Basis, Matrix, isotropic, plane_stiffness
 from fe_contact.assembly.operators import basis_on, condensed, made
 from fe_contact.assembly.surface import flat
 from fe_contact.assembly.trace import lagrange
@@ -57,7 +55,7 @@ def _surface(poisson: float, elements: float, order: int, smallest: float, datum
     return ScaledSurface(operator, breathes=False)
 
 
-def _upwards(basis: Any, depth: float) -> Any:
+def _upwards(basis: Basis, depth: float) -> Matrix:
     """Weights of the displacement upwards at a depth on the plane of symmetry, sparse (1, 2 N)."""
     order, dofs = basis.elem.maxdeg, basis.get_dofs("axis").flatten()
     dofs = dofs[np.argsort(-basis.doflocs[1, dofs])]

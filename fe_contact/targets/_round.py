@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
-from types import ModuleType
 
 import numpy as np
 import numpy.typing as npt
@@ -139,8 +138,7 @@ def _operator(body: ElasticBody, poisson: float) -> SurfaceOperator:
 @kept
 def _meshed(elements: float, order: int, smallest: float, contact: float, support: bool, in_plane: bool) -> ElasticBody:
     """Of unit radius, points and ``contact`` in rad from the pole; ``support``: whether it is held."""
-    module: ModuleType = meshes
-    mesh = made(module.cylinder if in_plane else module.sphere, elements, smallest, contact, order)
+    mesh = made(meshes.cylinder if in_plane else meshes.sphere, elements, smallest, contact, order)
     basis = basis_on(mesh, order)
     around = 1.0 if in_plane else 2.0 * np.pi * np.asarray(basis.global_coordinates())[0]
     return ElasticBody(

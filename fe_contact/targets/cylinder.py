@@ -7,6 +7,7 @@ from fe_contact.bodies.pressing import Still
 from fe_contact.settings import Numerics
 from fe_contact.steppers.stacked import Stacked
 from fe_contact.targets import _round
+from fe_contact.targets.base import MeshedTarget
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 
@@ -24,3 +25,6 @@ def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
 def relaxing(geometry: Geometry, numerics: Numerics) -> Stacked:
     """The same where one is of constant bulk modulus."""
     return _round.relaxing(geometry, numerics)
+
+
+MEMBER = MeshedTarget(still, struck=struck, relaxing=relaxing)

@@ -1,17 +1,21 @@
-"""The layer on a rigid foundation: one mesh that resolves every contact radius alike, the sides far away."""
+"""The layer on a rigid foundation: one mesh that resolves every contact radius alike, the sides far away.
+
+The outside of a layer that slides on its base: far from the contact a plate in plane stress, u_r ~ 1/r.
+"""
 
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
 
+import numpy as np
+import scipy.sparse as sparse
 from skfem import FacetBasis, MeshTri
 
 import meshes
-from fe_contact.assembly import plate
 from fe_contact.assembly.cache import kept
 from fe_contact.assembly.elastic_body import ElasticBody
-from fe_contact.assembly.forms import Array, elastic, plane_stiffness, stiffness
+from fe_contact.assembly.far_field import on_boundary
+from fe_contact.assembly.forms import Array, Basis, Matrix, elastic, plane_stiffness, stiffness
 from fe_contact.assembly.operators import basis_on, made
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.bulk_memory import Moduli
@@ -29,6 +33,7 @@ from fe_contact.settings import Numerics
 from fe_contact.steppers import bulk_surface
 from fe_contact.steppers.bulk_surface import BulkSurface
 from fe_contact.steppers.scaled_surface import ScaledSurface
+from fe_contact.targets.base import MeshedTarget
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.targets.layer import Layer
@@ -98,7 +103,7 @@ def _mesh(elements: float, smallest: float | None, thickness: float, width: floa
     return made(meshes.layer, elements, smallest, thickness, width)
 
 
-def matrix(basis: Any, bonded: bool, plane: bool, bulk: float, shear: float) -> Any:
+def matrix(basis: Basis, bonded: bool, plane: bool, bulk: float, shear: float) -> Matrix:
     """Stiffness of the layer, and of what lies beyond its sides: a sliding one gives way to the end of the world."""
     law = elastic(bulk, shear)
     if plane:
@@ -106,4 +111,15 @@ def matrix(basis: Any, bonded: bool, plane: bool, bulk: float, shear: float) -> 
     if bonded:
         return stiffness(basis, law)
     sides = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["side"], intorder=2 * basis.elem.maxdeg)
-    return stiffness(basis, law) + plate.robin(sides, shear)
+    return stiffness(basis, law) + robin(sides, shear)
+
+
+MEMBER = MeshedTarget(still, struck=struck, relaxing=relaxing)
+
+
+def robin(facets: Basis, shear: float) -> sparse.coo_matrix:
+    """Radial springs E/((1 + nu) r) = 2 G/r on the layer's side, of the shear modulus alone, shape (2 N, 2 N)."""
+    radius = np.asarray(facets.global_coordinates())[0]
+    tensor = np.zeros((2, 2, *radius.shape))
+    tensor[0, 0] = 2.0 * shear / radius
+    return on_boundary(facets, tensor, 2 * np.pi * radius)

@@ -28,6 +28,7 @@ from fe_contact.steppers.bulk_surface import Pace
 from fe_contact.steppers.sides import BodySide, BulkSide
 from fe_contact.steppers.stacked import Stacked
 from fe_contact.targets._body import BodyStill
+from fe_contact.targets.base import MeshedTarget
 from lumped.materials import Relaxation
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
@@ -116,3 +117,6 @@ def _body(elements: float, order: int, smallest: float, contact: float, mean_rad
     basis = basis_on(made(meshes.o_ring, elements, smallest, contact, mean_radius, order), order)
     fixed = held(basis, along=(), across=("base",))
     return ElasticBody(basis, partial(axisymmetric, basis), fixed, crown(basis, contact, mean_radius))
+
+
+MEMBER = MeshedTarget(still, struck=struck, relaxing=relaxing)

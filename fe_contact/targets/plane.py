@@ -16,6 +16,7 @@ from fe_contact.bodies.zone import held
 from fe_contact.settings import Numerics
 from fe_contact.steppers.struck import Deformable
 from fe_contact.targets import _round
+from fe_contact.targets.base import MeshedTarget
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.shapes._block import Block
@@ -93,3 +94,6 @@ def _answer(
     loose = np.setdiff1d(np.arange(displacement.size), fixed)
     displacement[loose] = linalg.spsolve(matrix[loose][:, loose], -(matrix @ displacement)[loose])
     return 2.0 * float(displacement @ (matrix @ displacement)), displacement.size
+
+
+MEMBER = MeshedTarget(still, struck=struck, relaxing=relaxing)

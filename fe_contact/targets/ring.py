@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 import meshes
 from fe_contact.assembly.cache import kept
 from fe_contact.assembly.elastic_body import ElasticBody
-from fe_contact.assembly.forms import Array, elastic, polar_stiffness
+from fe_contact.assembly.forms import Array, Matrix, elastic, polar_stiffness
 from fe_contact.assembly.operators import basis_on, made
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.bulk_memory import Moduli
@@ -28,6 +27,7 @@ from fe_contact.settings import Numerics
 from fe_contact.steppers import bulk_surface
 from fe_contact.steppers.bulk_surface import BulkSurface
 from fe_contact.steppers.scaled_surface import ScaledSurface
+from fe_contact.targets.base import MeshedTarget
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.targets.ring import Ring
@@ -90,7 +90,10 @@ def _body(elements: float, order: int, smallest: float, thickness: float, angle:
     fixed = held(basis, along=("axis", "side", "base"), across=("base",))
     surface = flat(basis, 2, lambda place: np.cos(angle * place))
 
-    def matrix(bulk: float, shear: float) -> Any:
+    def matrix(bulk: float, shear: float) -> Matrix:
         return polar_stiffness(basis, elastic(bulk, shear), 1.0 / angle)
 
     return ElasticBody(basis, matrix, fixed, surface)
+
+
+MEMBER = MeshedTarget(still, struck=struck, relaxing=relaxing)

@@ -7,6 +7,7 @@ from fe_contact.bodies.pressing import ScaledStill, Still
 from fe_contact.settings import Numerics
 from fe_contact.steppers.struck import Deformable
 from fe_contact.targets import _round, half_space
+from fe_contact.targets.base import MeshedTarget
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.targets.sphere import SphereTarget
@@ -34,3 +35,6 @@ def struck(geometry: Geometry, numerics: Numerics) -> Deformable:
 def relaxing(geometry: Geometry, numerics: Numerics) -> Deformable:
     """The same where one of true size is of constant bulk modulus: a half-space's surface remembers all."""
     return _round.relaxing(geometry, numerics)
+
+
+MEMBER = MeshedTarget(still, struck=struck, relaxing=relaxing)

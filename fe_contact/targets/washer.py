@@ -20,6 +20,7 @@ from fe_contact.settings import Numerics
 from fe_contact.steppers import bulk_surface
 from fe_contact.steppers.bulk_surface import BulkSurface
 from fe_contact.targets._body import BodyStill
+from fe_contact.targets.base import MeshedTarget
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.targets import Target
@@ -90,3 +91,6 @@ def _body(elements: float, order: int, inner: float, outer: float, rim: float, b
         dimension=3,
     )
     return ElasticBody(basis, partial(axisymmetric, basis), fixed, surface)
+
+
+MEMBER = MeshedTarget(still, relaxing=relaxing)

@@ -3,26 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sparse
 
 import meshes
 from fe_contact.assembly.cache import kept
-from fe_contact.assembly.forms import Array, isotropic, mass, stiffness, vector_dofs
+from fe_contact.assembly.forms import Array, Indices, Matrix, isotropic, mass, stiffness, vector_dofs
 from fe_contact.assembly.operators import basis_on, made
 from fe_contact.assembly.surface import Surface, crown
 from fe_contact.assembly.trace import contact_quadrature, trace_between
 from fe_contact.bodies.zone import WIDEST
 from fe_contact.dynamics.body import Part
-from fe_contact.dynamics.mass.consistent import Nodes
-from fe_contact.settings import MASSES
+from fe_contact.dynamics.mass.base import MASSES
+from fe_contact.settings import WaveNumerics
 from fe_contact.waves.half_space_body import SMALLEST
-from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.sides import WaveSide
 from lumped.materials import Material
-from lumped.schema.members import get
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,9 +29,9 @@ class UnitBall:
     ``free``: those of two degrees of freedom a node that the matrices have; ``surface`` by angles from the pole.
     """
 
-    stiffness: Any
-    mass: Any
-    free: Nodes
+    stiffness: Matrix
+    mass: Matrix
+    free: Indices
     surface: Surface
     order: int
 
@@ -54,7 +51,7 @@ class UnitBall:
         points, lengths, _ = contact_quadrature(self._corners(self.surface.zone), self.order)
         return points, lengths * self.surface.measure(points)
 
-    def seen(self, angles: Array) -> tuple[Any, Array]:
+    def seen(self, angles: Array) -> tuple[Matrix, Array]:
         """Nodal forces of unit forces on the surface nodes that points (q,) see, and the trace there, (q, m)."""
         trace = trace_between(self._corners(float(angles.max())), angles, self.order)
         m = trace.shape[1]
@@ -99,6 +96,6 @@ def unit_ball(poisson: float, elements: float, order: int, contact: float, masse
     basis = basis_on(made(meshes.sphere, elements, SMALLEST, contact, order), order)
     surface = crown(basis, contact, 0.0)
     free = np.setdiff1d(np.arange(2 * basis.N), 2 * basis.get_dofs("axis").flatten())
-    inertia = get(MASSES, masses).of(mass(basis), vector_dofs(basis.element_dofs), 2 * basis.N, 2 * surface.dofs + 1)
+    inertia = MASSES.get(masses).of(mass(basis), vector_dofs(basis.element_dofs), 2 * basis.N, 2 * surface.dofs + 1)
     springs = stiffness(basis, isotropic(1 - poisson**2, poisson))
     return UnitBall(springs.tocsc()[free][:, free], inertia.tocsc()[free][:, free], free, surface, order)

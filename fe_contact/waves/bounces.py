@@ -1,4 +1,4 @@
-"""Several impacts on a body with inertia: contact, flight, contact on what still moves and what is remembered.
+"""From contact to contact of a body with inertia, on what still moves and what is remembered.
 
 A flight between two contacts of a body with inertia: the striker falls, waves leave, what the body remembers fades.
 
@@ -11,7 +11,7 @@ and that is past while steps are still short.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,18 +19,17 @@ from fe_contact.assembly.cache import Store
 from fe_contact.dynamics import events, ledger
 from fe_contact.dynamics.body import BodyWithMass
 from fe_contact.dynamics.implicit import ImplicitStepper
-from fe_contact.dynamics.march import MOST_WORK, Choices, Moment, Motion, Sample, onwards
+from fe_contact.dynamics.march import MOST_WORK, Choices, Moment, Sample, onwards
 from fe_contact.dynamics.schemes import generalised_alpha
 from fe_contact.dynamics.state import BodyState, undeformed
 from fe_contact.errors import TooManySteps
-from fe_contact.march.flight import FAINTEST, Grounded
-from fe_contact.march.impacts import Contact, Followed
+from fe_contact.march.flight import Grounded
 from fe_contact.progress import Counted, uncounted
-from fe_contact.steppers.march import Strike
+from fe_contact.settings import WaveNumerics
+from fe_contact.steppers.march import March, Strike
 from fe_contact.waves.cost import MARCHES
 from fe_contact.waves.impact import choices_of, left, record
 from fe_contact.waves.moving import Moving
-from fe_contact.waves.numerics import WaveNumerics
 from lumped.scene.scene import Scene
 
 LONGEST = 12.0  # planned contact times after which one of several contacts counts as swinging on its weight
@@ -40,78 +39,54 @@ KEPT = 8  # lengths of step whose factors are kept, some 10 MB each
 LOCATED = 1e-6  # of a step: a touch sooner than that is now
 
 
-@dataclass(frozen=True)
-class Bounces(Followed):
-    """The same of a body with inertia; ``steps`` and ``factorizations`` of the flights."""
+class WaveBouncer:
+    """A striker on a body with inertia, from the first touch of a ``scene`` on; steps ``counted``.
 
-    steps: int
-    factorizations: int
-
-
-def follow(
-    moving: Moving, scene: Scene, strike: Strike, numerics: WaveNumerics, counted: Counted = uncounted
-) -> Bounces:
-    """Up to as many contacts as the scene asks for, the first one a ``strike`` on a body at rest; steps ``counted``.
-
-    Raises the named failures of :mod:`fe_contact.errors` where a step does not converge.
+    ``flights``: what they took.
     """
-    flights = Flights(moving.body, choices_of(scene, numerics), max(round(PATIENCE * numerics.steps), 2), counted)
-    still = undeformed(moving.body, moving.velocity)
-    moment, contacts = Moment(still, ledger.opened(moving.body, still)), list[Contact]()
 
-    def done(grounded: Grounded | None) -> Bounces:
-        return Bounces(tuple(contacts), grounded, flights.steps, flights.factorizations)
+    def __init__(self, moving: Moving, scene: Scene, numerics: WaveNumerics, counted: Counted = uncounted) -> None:
+        self._moving, self._scene, self._counted = moving, scene, counted
+        self._choices, self._longest = choices_of(scene, numerics), LONGEST * numerics.contact_time
+        self.flights = Flights(moving.body, self._choices, max(round(PATIENCE * numerics.steps), 2), counted)
+        still = undeformed(moving.body, moving.velocity)
+        self._moment = Moment(still, ledger.opened(moving.body, still))
+        self._steps = 0
 
-    while True:
-        try:
-            found = _pressed(moving, moment, scene, strike, numerics, counted)
-        except TooManySteps:
-            if not contacts:
-                raise
-            return done(Grounded.SWINGS)
-        march = record(moving, found, replace(scene, velocity=strike.velocity))
-        contacts.append(Contact(strike, march))
-        if len(contacts) == scene.motion.impacts or not march.separated:
-            return done(None)
-        if (flights.steps + sum(one.march.work.steps for one in contacts)) * moving.body.size > MOST_WORK / MARCHES:
-            return done(Grounded.MANY)
+    def contact(self, strike: Strike) -> March:
+        """The next contact, by the clock of its touch; one of several that swings for long takes too many steps."""
+        several = self._scene.motion.impacts > 1
+        until = min(self._longest, strike.end_time) if several else strike.end_time
+
+        def finished(sample: Sample) -> bool:
+            self._counted(1.0)
+            return left(sample)
+
+        body, watch = self._moving.body, self._moving.watch
+        found = onwards(body, self._moment, self._choices, until, watch, finished)
+        if until < strike.end_time and not left(found.samples[-1]):
+            raise TooManySteps(len(found.samples) - 1, found.final.time)
+        clocked = tuple(sample._replace(time=sample.time - strike.touched_at) for sample in found.samples)
+        march = record(self._moving, replace(found, samples=clocked), replace(self._scene, velocity=strike.velocity))
+        self._moment, self._steps = Moment(found.final, found.samples[-1].energies), self._steps + march.work.steps
+        return march
+
+    def touch(self, strike: Strike, march: March) -> Strike | Grounded:
+        """Where the flight ends on what still moves."""
+        scene, body = self._scene, self._moving.body
+        if (self.flights.steps + self._steps) * body.size > MOST_WORK / MARCHES:
+            return Grounded.MANY
         if scene.gravity <= 0.0:
-            return done(Grounded.NO_GRAVITY)
+            return Grounded.NO_GRAVITY
         try:
-            touch = flights.landing(Moment(found.final, found.samples[-1].energies), scene.end_time)
+            touch = self.flights.landing(self._moment, scene.end_time)
         except TooManySteps:
-            return done(Grounded.MANY)
+            return Grounded.MANY
         if touch is None:
-            return done(Grounded.LATE)
-        strike = _again(strike, moving, touch, scene.end_time)
-        if strike.velocity < FAINTEST * scene.velocity:
-            return done(Grounded.CAUGHT if strike.velocity <= 0.0 else Grounded.REST)
-        moment = touch
-
-
-def _pressed(
-    moving: Moving, begun: Moment, scene: Scene, strike: Strike, numerics: WaveNumerics, counted: Counted
-) -> Motion:
-    """One contact, by the clock of its touch; raises TooManySteps where one of several swings for too long."""
-    longest = LONGEST * numerics.contact_time if scene.motion.impacts > 1 else strike.end_time
-    until = min(longest, strike.end_time)
-
-    def finished(sample: Sample) -> bool:
-        counted(1.0)
-        return left(sample)
-
-    found = onwards(moving.body, begun, choices_of(scene, numerics), until, moving.watch, finished)
-    if until < strike.end_time and not left(found.samples[-1]):
-        raise TooManySteps(len(found.samples) - 1, found.final.time)
-    clocked = tuple(sample._replace(time=sample.time - strike.touched_at) for sample in found.samples)
-    return replace(found, samples=clocked)
-
-
-def _again(strike: Strike, moving: Moving, touch: Moment, end_time: float) -> Strike:
-    """The strike that begins with a touch."""
-    state = touch.state
-    depth, velocity = (float((moving.watch @ of)[0]) for of in (state.displacement, state.velocity))
-    return replace(strike, velocity=velocity, depth=depth, touched_at=state.time, end_time=end_time - state.time)
+            return Grounded.LATE
+        self._moment, state = touch, touch.state
+        depth, velocity = (float((self._moving.watch @ of)[0]) for of in (state.displacement, state.velocity))
+        return strike.again(state.time - strike.touched_at, depth, velocity)
 
 
 class Flights:

@@ -4,33 +4,61 @@ Mesh, penalty and time step are trusted with order one only: contact that begins
 chatter which no order describes. The change between settings in the ratio 1 : 2 then bounds the error of the better one
 by 1.25 times itself. The far field errs as the square of its distance, as without inertia: half as far, an echo comes
 back within the contact.
+
+A march with waves as a curve: through fewer rows than steps, between which the contact's chatter averages out.
+
+Points of a mesh that stays begin and end their contact one by one, and a dashpot in parallel differentiates that. The
+impulse hardly knows of it: a local cubic through the mean force since touch, as Savitzky and Golay smooth
+(doi:10.1021/ac60214a047), keeps what is smooth and knows of chatter even less.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cached_property, partial
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.certify import MESH_ORDER, WITNESS, Budget, Causes, Several, factor, other_setting
-from fe_contact.budget.change import UNORDERED, Change
+from fe_contact.budget.budget import Budget, Causes, TotalWork
+from fe_contact.budget.certify import MESH_ORDER, WITNESS, other_setting
+from fe_contact.budget.change import SAFETY, UNORDERED, Change, factor
 from fe_contact.budget.curve import Curve
-from fe_contact.budget.runs import TotalWork
+from fe_contact.budget.several import Several
+from fe_contact.march.impacts import Followed, follow
 from fe_contact.progress import Counted, uncounted
+from fe_contact.settings import Numerics, WaveNumerics
 from fe_contact.steppers.march import March, Strike
-from fe_contact.waves.bounces import Bounces, follow
+from fe_contact.waves.bounces import Flights, WaveBouncer
+from fe_contact.waves.impact import graded
 from fe_contact.waves.moving import Moving
-from fe_contact.waves.numerics import WaveNumerics
-from fe_contact.waves.reading import curve_of, reading
-from fe_contact.waves.steps import graded
 from lumped.errors import NotReached
 from lumped.scene.scene import Scene
 
 ORDER = {"mesh": 1, "penalty": 1, "time_step": 1, "far_field": 2}
 # along the contact radius: half of fewer may err alike by chance, and are hardly larger in the bulk
 LEAST_NODES = 24.0
+ROWS, AT = 60, 3e-3  # along a contact, and the tolerance for which they suffice: polynomials through six of them
+ROWS_ORDER = 5  # of the force between them
+TRUSTED = 2  # of that
+DEGREE, REACH = 3, 2  # of the polynomial through all steps so many rows to either side
+
+
+class WaveRun(NamedTuple):
+    """The contacts of one run on a body of so many unknowns, and what its flights took."""
+
+    followed: Followed
+    size: int
+    flights: Flights
+
+    @property
+    def steps(self) -> int:
+        """Of contacts and flights."""
+        return self.flights.steps + sum(one.march.work.steps for one in self.followed.contacts)
 
 
 class WaveRuns:
@@ -44,7 +72,7 @@ class WaveRuns:
     ) -> None:
         self._scene, self._strike, self._moving, self.cheap = scene, strike, moving, cheap
         self._curves: dict[WaveNumerics, tuple[Curve, ...]] = {}
-        self._runs: dict[WaveNumerics, tuple[Bounces, int]] = {}
+        self._runs: dict[WaveNumerics, WaveRun] = {}
         self.counted: Counted = uncounted  # told of every step, as the share of one on the largest body so far
         self._largest = 1
 
@@ -52,15 +80,15 @@ class WaveRuns:
         self._largest = max(self._largest, unknowns)
         self.counted(steps * unknowns / self._largest)
 
-    def follow(self, settings: WaveNumerics) -> Bounces:
+    def follow(self, settings: WaveNumerics) -> Followed:
         """One run; raises where it fails."""
         if settings not in self._runs:
             body = self._moving(self._scene, settings)
-            counted = partial(self._count, body.body.size)
-            followed = follow(body, self._scene, self._strike, settings, counted)
-            self._runs[settings] = followed, body.body.size
+            bouncer = WaveBouncer(body, self._scene, settings, partial(self._count, body.body.size))
+            followed = follow(bouncer, self._strike, self._scene.motion.impacts)
+            self._runs[settings] = WaveRun(followed, body.body.size, bouncer.flights)
             self._curves[settings] = tuple(curve_of(one.march, one.strike, settings) for one in followed.contacts)
-        return self._runs[settings][0]
+        return self._runs[settings].followed
 
     def curve(self, number: int, settings: WaveNumerics) -> Curve | None:
         """A contact of one run, None where that fails or has fewer: its cause of error is then unknown."""
@@ -75,17 +103,16 @@ class WaveRuns:
     @property
     def spent(self) -> float:
         """Unknowns times steps of all runs so far."""
-        runs = self._runs.values()
-        return float(sum(size * (run.steps + sum(one.march.work.steps for one in run.contacts)) for run, size in runs))
+        return float(sum(run.size * run.steps for run in self._runs.values()))
 
     def work(self) -> TotalWork:
         """What all runs cost together: a factorisation for every length of step, one back-substitution a step."""
-        marches = [(one.march, settings) for settings, (run, _) in self._runs.items() for one in run.contacts]
-        works, flights = [march.work for march, _ in marches], [run for run, _ in self._runs.values()]
-        steps = sum(w.steps for w in works) + sum(run.steps for run in flights)
+        marches = [(one.march, settings) for settings, run in self._runs.items() for one in run.followed.contacts]
+        works, runs = [march.work for march, _ in marches], list(self._runs.values())
+        steps = sum(run.steps for run in runs)
         return TotalWork(
-            degrees_of_freedom=max(size for _, size in self._runs.values()),
-            factorizations=sum(_lengths(*one) for one in marches) + sum(run.factorizations for run in flights),
+            degrees_of_freedom=max(run.size for run in runs),
+            factorizations=sum(_lengths(*one) for one in marches) + sum(run.flights.factorizations for run in runs),
             solves=steps,
             marches=len(works),
             steps=steps,
@@ -108,10 +135,11 @@ def certify(runs: WaveRuns, numerics: WaveNumerics) -> Several:
     followed = runs.follow(numerics)
     changes = [_judged(runs, number, numerics) for number in range(len(followed.contacts))]
     row = [
-        Budget(curve_of(one.march, one.strike, numerics), one.march, change, runs.work())
+        Budget(curve_of(one.march, one.strike, numerics), one.march, change, runs.work(), numerics)
         for one, change in zip(followed.contacts, changes, strict=True)
     ]
-    return Several(row[0].curve, row[0].march, row[0].changes, row[0].work, followed, tuple(row[1:]))
+    first, later = row[0], tuple(row[1:])
+    return Several(first.curve, first.march, first.changes, first.work, numerics, followed, later)
 
 
 def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Mapping[str, Causes]:
@@ -175,3 +203,35 @@ class Moved(Change):
         time = np.minimum(self.first.dense_time[self.first.late :], curve.duration)
         impulse = curve.read(time).impulse
         return impulse, curve.velocity(time, impulse)
+
+
+def curve_of(march: March, strike: Strike, numerics: Numerics, share: float = 1.0) -> Curve:
+    """Rows lie closer at touch and separation, and as steps do where those differ; or a ``share`` of them."""
+    curve = Curve.of(march, strike)
+    rows = _rows(len(curve.x) - 1, numerics, share)
+    return replace(curve.through(rows), mean_force=_smoothed(curve.x, curve.mean_force, rows))
+
+
+def reading(march: March, strike: Strike, numerics: Numerics) -> Change:
+    """What these rows leave, as half of them tell."""
+    fine, half = (curve_of(march, strike, numerics, share) for share in (1.0, 0.5))
+    return Change(fine, half, SAFETY / (2**TRUSTED - 1))
+
+
+def _rows(steps: int, numerics: Numerics, share: float) -> npt.NDArray[np.intp]:
+    """Those to keep of the first and so many steps; both ends."""
+    count = share * ROWS * (AT / numerics.tolerance) ** (1 / ROWS_ORDER) * max(steps / numerics.steps, 1.0)
+    places = np.linspace(0.0, 1.0, math.ceil(count) + 1)
+    return np.unique(np.round(steps * places**2 * (3 - 2 * places)).astype(np.intp))
+
+
+def _smoothed(places: Array, values: Array, rows: npt.NDArray[np.intp]) -> Array:
+    """Values (n,) at rows (m,) by the polynomial through what lies around; as they are where too little does."""
+    found = values[rows]
+    last = len(rows) - 1
+    for number, row in enumerate(rows[1:-1], start=1):
+        around = slice(rows[max(number - REACH, 0)], rows[min(number + REACH, last)] + 1)
+        x = places[around] - places[row]
+        if len(x) > DEGREE + 1:
+            found[number] = np.polyfit(x / np.abs(x).max(), values[around], DEGREE)[-1]
+    return found

@@ -13,7 +13,7 @@ from fe_contact.budget.plan import EARLY_PEAK
 from fe_contact.dynamics.march import MOST_WORK
 from fe_contact.errors import WavesTooDear
 from fe_contact.settings import Numerics
-from fe_contact.waves.steps import graded
+from fe_contact.waves.impact import graded
 
 STEP = 300  # unknowns whose share of a step takes as long as all the rest of it
 SECONDS = 1.5e-6  # of one core a unit of work: 1.1 to 1.7 of them were measured over all kinds of bodies

@@ -11,10 +11,10 @@ from fe_contact.dynamics import memory
 from fe_contact.dynamics.march import march
 from fe_contact.dynamics.state import BodyState
 from fe_contact.fields import Fields, nodal_stress, subdivided, written
+from fe_contact.settings import WaveNumerics
 from fe_contact.waves.half_space_body import UnitBody, moving, unit_of
 from fe_contact.waves.impact import choices_of
 from fe_contact.waves.moving import Moving
-from fe_contact.waves.numerics import WaveNumerics
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 

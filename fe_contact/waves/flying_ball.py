@@ -9,11 +9,11 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.trace import hats
+from fe_contact.settings import WaveNumerics
 from fe_contact.waves import half_space_body
 from fe_contact.waves.ball_body import Ball
 from fe_contact.waves.half_space_body import BEYOND
 from fe_contact.waves.moving import Flying
-from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.sides import WaveSide, together
 from lumped.scene.scene import Scene
 from lumped.shapes import Sphere

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sparse
@@ -12,17 +11,15 @@ from skfem import FacetBasis
 
 import meshes
 from fe_contact.assembly import absorbing
-from fe_contact.assembly.forms import Array, mass, vector_dofs
+from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, mass, vector_dofs
 from fe_contact.assembly.operators import basis_on, made, system_matrix
 from fe_contact.assembly.surface import flat
 from fe_contact.assembly.trace import contact_quadrature
 from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
-from fe_contact.dynamics.mass.consistent import Nodes
-from fe_contact.settings import MASSES
+from fe_contact.dynamics.mass.base import MASSES
+from fe_contact.settings import WaveNumerics
 from fe_contact.waves.moving import Moving, with_striker
-from fe_contact.waves.numerics import WaveNumerics
 from lumped.scene.scene import Scene
-from lumped.schema.members import get
 
 SMALLEST = 0.1  # contact radius over the largest one down to which every contact is resolved alike
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
@@ -35,13 +32,13 @@ class UnitBody:
     ``basis``: scalar scikit-fem basis; ``free``: those of its degrees of freedom, two a node, that the matrices have.
     """
 
-    basis: Any
-    free: Nodes
+    basis: Basis
+    free: Indices
 
-    stiffness: Any
-    mass: Any
-    dashpots: Any
-    push: Any
+    stiffness: Matrix
+    mass: Matrix
+    dashpots: Matrix
+    push: Matrix
     trace: Array
     points: Array
     weights: Array
@@ -87,7 +84,7 @@ def unit_body(poisson: float, size: tuple[float, float, float], order: int, mass
     zone = corners[: np.searchsorted(corners, surface.zone) + 1]  # whole facets only
     points, lengths, trace = contact_quadrature(zone, order)
     normal = 2 * surface.dofs + 1
-    inertia = get(MASSES, masses).of(mass(basis), vector_dofs(basis.element_dofs), 2 * basis.N, normal)
+    inertia = MASSES.get(masses).of(mass(basis), vector_dofs(basis.element_dofs), 2 * basis.N, normal)
     return UnitBody(
         basis=basis,
         free=free,
@@ -101,7 +98,7 @@ def unit_body(poisson: float, size: tuple[float, float, float], order: int, mass
     )
 
 
-def pushing(touched: Nodes, striker: int) -> sparse.csc_matrix:
+def pushing(touched: Indices, striker: int) -> sparse.csc_matrix:
     """Pressure pushes the surface into the body, z < 0, and the striker out of it."""
     rows = np.append(touched, striker)
     return sparse.csc_matrix((-np.ones(rows.size), (rows, np.arange(rows.size))), shape=(striker + 1, rows.size))

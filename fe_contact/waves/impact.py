@@ -1,24 +1,28 @@
 """One impact on a body with inertia: from the moving body and settings to the motion, and to the record of a march.
 
 When a contact with waves ends: read from the last steps in which something presses.
+
+Lengths of the steps of an impact with waves: short about an early peak of the force, doubled ever again later.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.bodies.pressing import half_width
+from fe_contact.budget.plan import EARLY_PEAK
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics.march import Choices, Motion, Sample, march
 from fe_contact.dynamics.pressed import Enforced
+from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.errors import MemoryTooSmall
-from fe_contact.settings import ENFORCEMENTS, WAVE_SCHEMES
+from fe_contact.settings import Numerics, WaveNumerics
 from fe_contact.steppers.march import March, Work
 from fe_contact.waves.moving import Moving
-from fe_contact.waves.numerics import WaveNumerics
-from fe_contact.waves.steps import graded
 from lumped.scene.scene import Scene
-from lumped.schema.members import get
 
 READ, STRAIGHT = 5, 3  # last steps asked, by a parabola and by a line
 SOONEST = 0.05  # steps after the last one in which something presses
@@ -37,8 +41,8 @@ def choices_of(scene: Scene, numerics: WaveNumerics) -> Choices:
     penalty = numerics.penalty * _stiffness(scene, numerics) / numerics.contact_radius
     step, doubled = graded(numerics)
     return Choices(
-        scheme=get(WAVE_SCHEMES, numerics.scheme).of(numerics.rho),
-        enforced=Enforced(get(ENFORCEMENTS, numerics.enforcement), penalty),
+        scheme=WAVE_SCHEMES.get(numerics.scheme).of(numerics.rho),
+        enforced=Enforced(ENFORCEMENTS.get(numerics.enforcement), penalty),
         step=step,
         doubled=doubled,
     )
@@ -142,3 +146,14 @@ def parting(time: Array, force: Array, exponent: float) -> tuple[float, float] |
     end = min(max(curved, SOONEST), 1.0)
     apart = min(abs(curved - straight) + abs(curved - end), 1.0) if ends else 1.0
     return float(time[last]) + step * end, step * apart
+
+
+def graded(numerics: Numerics) -> tuple[float, tuple[float, ...]]:
+    """First step, s, and the times, s, from which steps are twice as long as before.
+
+    From a share of the contact on at which a force may well peak there are ``steps`` to the contact time; half that
+    time before they are half as long, down to the time of the peak.
+    """
+    octaves = max(math.ceil(math.log2(EARLY_PEAK / numerics.peak_share)), 0)
+    times = [EARLY_PEAK * numerics.contact_time / 2**earlier for earlier in range(octaves)]
+    return numerics.contact_time / numerics.steps / 2**octaves, tuple(reversed(times))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from skfem import FacetBasis
@@ -13,21 +12,19 @@ from skfem import FacetBasis
 import meshes
 from fe_contact.assembly.elastic_body import moduli
 from fe_contact.assembly.far_field import on_boundary
-from fe_contact.assembly.forms import Array, mass, plane_mass, vector_dofs
+from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, mass, plane_mass, vector_dofs
 from fe_contact.assembly.operators import basis_on, made
 from fe_contact.assembly.surface import flat
 from fe_contact.assembly.trace import contact_quadrature
 from fe_contact.bodies.zone import held, thickness_over
 from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
-from fe_contact.dynamics.mass.consistent import Nodes
-from fe_contact.settings import MASSES
+from fe_contact.dynamics.mass.base import MASSES
+from fe_contact.settings import WaveNumerics
 from fe_contact.targets.layer import matrix
 from fe_contact.waves.half_space_body import BEYOND, SMALLEST, pushing
 from fe_contact.waves.moving import Moving, with_striker
-from fe_contact.waves.numerics import WaveNumerics
 from lumped.materials import Material, Relaxation
 from lumped.scene.scene import Scene
-from lumped.schema.members import get
 from lumped.targets.layer import Layer
 
 
@@ -40,15 +37,15 @@ class UnitLayer:
     ``free`` as of :class:`~fe_contact.waves.half_space_body.UnitBody`.
     """
 
-    basis: Any
-    free: Nodes
+    basis: Basis
+    free: Indices
 
-    volume: Any
-    shape: Any
-    mass: Any
-    leaving: Any
-    sliding: Any
-    push: Any
+    volume: Matrix
+    shape: Matrix
+    mass: Matrix
+    leaving: Matrix
+    sliding: Matrix
+    push: Matrix
     trace: Array
     points: Array
     weights: Array
@@ -99,7 +96,7 @@ def unit_layer(
     points, lengths, trace = contact_quadrature(zone, order)
     normal = 2 * surface.dofs + 1
     local = plane_mass(basis) if plane else mass(basis)
-    inertia = get(MASSES, masses).of(local, vector_dofs(basis.element_dofs), 2 * basis.N, normal)
+    inertia = MASSES.get(masses).of(local, vector_dofs(basis.element_dofs), 2 * basis.N, normal)
     return UnitLayer(
         basis=basis,
         free=free,
@@ -115,7 +112,7 @@ def unit_layer(
     )
 
 
-def _side(basis: Any, plane: bool, component: int) -> Any:
+def _side(basis: Basis, plane: bool, component: int) -> Matrix:
     """Unit impedance of one component of the motion on the side, sparse (2 N, 2 N)."""
     facets = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["side"], intorder=2 * basis.elem.maxdeg)
     radius = np.asarray(facets.global_coordinates())[0]
@@ -134,7 +131,7 @@ def _parts(scene: Scene, unit: UnitLayer, scale: float) -> tuple[Part, ...]:
     return Part(scale * unit.volume, volume), Part(scale * unit.shape, shape)
 
 
-def _dashpots(scene: Scene, unit: UnitLayer, scale: float) -> Any:
+def _dashpots(scene: Scene, unit: UnitLayer, scale: float) -> Matrix:
     """What the side's dashpots resist, of waves as fast as the first answer sends them.
 
     Through a bonded layer's side go pressure waves; a sliding one's slowest mode is the plate's, modulus E*, which its

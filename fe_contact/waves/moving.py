@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sparse
 
-from fe_contact.assembly.forms import Array
+from fe_contact.assembly.forms import Array, Indices, Matrix
 from fe_contact.dynamics import memory
 from fe_contact.dynamics.body import BodyWithMass
-from fe_contact.dynamics.mass.consistent import Nodes
 from fe_contact.dynamics.state import BodyState
 
 
@@ -35,7 +33,7 @@ class Moving:
         return velocity
 
     @property
-    def watch(self) -> Any:
+    def watch(self) -> Matrix:
         """Picks the depth, sparse (1, N)."""
         return sparse.csr_matrix(([1.0], ([0], [self.body.size - 1])), shape=(1, self.body.size))
 
@@ -61,7 +59,7 @@ class Flying(Moving):
         return self.speed * self.start
 
     @property
-    def watch(self) -> Any:
+    def watch(self) -> Matrix:
         """The approach of the centres of mass, sparse (1, N)."""
         return sparse.csr_matrix(self.approach[None])
 
@@ -72,7 +70,7 @@ class Flying(Moving):
         return 0.5 * float(own @ (self.body.mass @ own)), strain
 
 
-def with_striker(matrix: Any, free: Nodes) -> Any:
+def with_striker(matrix: Matrix, free: Indices) -> Matrix:
     """A matrix of the body's free degrees of freedom, with a row and a column of zeros for the striker."""
     inside = matrix.tocsc()[free][:, free]
     return sparse.block_diag([inside, sparse.csc_matrix((1, 1))]).tocsc()

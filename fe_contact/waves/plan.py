@@ -6,17 +6,14 @@ The exact row of springs, which has no inertia, places mesh and time steps. Noth
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from functools import partial
-from typing import Any
 
 import numpy as np
 
 from fe_contact.assembly.absorbing import wave_speeds
 from fe_contact.assembly.forms import check_compressible
 from fe_contact.budget.plan import SOONEST_PEAK, Plan
-from fe_contact.settings import RANGES
-from fe_contact.waves.numerics import WaveNumerics
+from fe_contact.settings import RANGES, Given, WaveNumerics
 from lumped.laws import mdr
 from lumped.laws.mdr import ImpactScales
 from lumped.materials import Relaxation
@@ -35,7 +32,7 @@ TRAVEL = 0.5  # of the contact time: an echo from the far radius returns after t
 LEAST_RESTITUTION = 0.1  # a striker that comes back slower hardly comes back again
 NEAREST = 20.0  # contact radii: the far springs' own need
 SPREAD = 3.0  # lengths over which a dashpot in parallel, which has no wave speed, spreads a motion in a contact
-DEFAULTS: Mapping[str, Any] = {
+DEFAULTS: Given = {
     "order": 3,
     "enforcement": "corrected",
     "scheme": "generalised_alpha",
@@ -44,7 +41,7 @@ DEFAULTS: Mapping[str, Any] = {
 }
 
 
-def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
+def plan(scene: Scene, given: Given) -> Plan:
     """Choose what ``given`` (checked settings) leaves open.
 
     Raises NotReached where even the row of springs does not come to an end.
@@ -62,7 +59,7 @@ def contact_time(scene: Scene, scales: ImpactScales) -> float:
 
 def placed(
     scene: Scene,
-    given: Mapping[str, Any],
+    given: Given,
     scales: ImpactScales,
     far_radius: float,
     wide: float = 1.0,

@@ -8,11 +8,10 @@ import scipy.sparse as sparse
 import meshes
 from fe_contact.assembly.forms import scatter
 from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
-from fe_contact.settings import MASSES
+from fe_contact.dynamics.mass.base import MASSES
+from fe_contact.settings import WaveNumerics
 from fe_contact.waves.moving import Moving, with_striker
-from fe_contact.waves.numerics import WaveNumerics
 from lumped.scene.scene import Scene
-from lumped.schema.members import get
 from lumped.targets.rod import Rod
 
 
@@ -53,7 +52,7 @@ def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
     springs = rod.area / length * np.array([[1.0, -1.0], [-1.0, 1.0]])
     end = mesh.boundaries["end"]
     free = np.setdiff1d(np.arange(size), end if rod.end == "fixed" else [])
-    mass = get(MASSES, numerics.mass).of(np.tile(of_element, (len(dofs), 1, 1)), dofs, size, np.array([0]))
+    mass = MASSES.get(numerics.mass).of(np.tile(of_element, (len(dofs), 1, 1)), dofs, size, np.array([0]))
     rigid, gravity = np.zeros(len(free) + 1), np.zeros(len(free) + 1)
     rigid[-1], gravity[-1] = scene.reduced_mass, scene.gravity
     body = BodyWithMass(

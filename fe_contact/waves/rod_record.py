@@ -10,16 +10,15 @@ from itertools import pairwise
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.certify import CAUSES, SAFETY
+from fe_contact.budget.budget import Contacts
+from fe_contact.budget.change import SAFETY
 from fe_contact.budget.curve import PEAK_SHARE
-from fe_contact.budget.plan import Plan
-from fe_contact.reference import CURE
 from fe_contact.results.distance import distance
 from fe_contact.settings import Numerics
 from fe_contact.waves.fronts import DENT, DEPTH, FORCE, TIME, VELOCITY
-from fe_contact.waves.rod_reading import Contacts, RodReading
+from fe_contact.waves.rod_reading import RodReading
 from lumped.result.history import LEAST_ROWS, History
-from lumped.result.result import RULED_ABSOLUTE, UNITS, Quantity, Result, meets, provenance, unmet
+from lumped.result.result import RULED_ABSOLUTE, UNITS, Quantity
 from lumped.scene.scene import Scene
 
 ROUNDING = 1e-9  # relative, of what adds up over the steps
@@ -44,17 +43,76 @@ class Run:
 
 
 @dataclass(frozen=True, eq=False)
-class Bars:
-    """A march, the same with one cause of error varied, by cause, half the steps among them; a ``quarter`` of them."""
+class Line:
+    """A march, the same with one cause of error varied, by cause, half the steps among them; a ``quarter`` of them.
 
+    ``runs``: all marches made so far, with other settings too.
+    """
+
+    scene: Scene
+    numerics: Numerics
     fine: Run
     others: Mapping[str, Run]
     quarter: Run
+    runs: tuple[Run, ...] = ()
 
     @property
-    def runs(self) -> list[Run]:
-        """All marches."""
-        return [self.fine, *self.others.values(), self.quarter]
+    def separated(self) -> bool:
+        """Whether the last contact ended."""
+        return self.fine.reading.separated
+
+    @property
+    def parts(self) -> tuple[Mapping[str, Quantity], ...]:
+        """One: the tolerance rules what all contacts tell together."""
+        return (self.quantities,)
+
+    @property
+    def contacts(self) -> Contacts:
+        """Every contact, where there may be several."""
+        return self.fine.contacts
+
+    @property
+    def grounded(self) -> None:
+        """Nothing is missing."""
+
+    @property
+    def energy(self) -> Mapping[str, float]:
+        """The account at the end, J."""
+        return self.fine.energy
+
+    @property
+    def energy_errors(self) -> Mapping[str, float]:
+        """None is known."""
+        return {}
+
+    @property
+    def counted(self) -> Mapping[str, int]:
+        """Unknowns of the finest march, marches and steps of all."""
+        steps = sum(one.steps for one in self.runs)
+        return {"degrees_of_freedom": self.fine.unknowns, "marches": len(self.runs), "steps": steps}
+
+    def error(self, name: str, cause: str) -> float:
+        """Error of a quantity by one cause, in its unit; steps and elements are one."""
+        return (self.by_cause[cause][name].error or 0.0) if cause in self.by_cause else 0.0
+
+    def history(self) -> History:
+        """The rows, at least as many as a history has, with the force's error band.
+
+        That is the largest change around a time, or half of what doubling the steps before changed there.
+        """
+        fine, coarse, coarser = (one.reading for one in (self.fine, self.others["time_step"], self.quarter))
+        rows = fine.rows
+        if rows.shape[1] < LEAST_ROWS:
+            between = np.linspace(rows[TIME, 0], rows[TIME, -1], LEAST_ROWS)[1:-1]
+            more = np.array([np.interp(between, rows[TIME], row) for row in rows])
+            rows = np.hstack([rows, more])[:, np.argsort(np.append(rows[TIME], between), kind="stable")]
+        change = np.maximum(_largest(fine, coarse), 0.5 * _largest(coarse, coarser))
+        width = int(COMPARED * min(max(AWAY, self.safety * self.moved / rows[TIME, -1]), 1.0))
+        around = np.lib.stride_tricks.sliding_window_view(np.pad(change, width, mode="edge"), 2 * width + 1).max(axis=1)
+        error = self.safety * np.interp(rows[TIME], _places(fine), around)
+        flat, curve = self.scene.profile.fixed_radius, self.scene.profile.load_curve
+        radius = np.full(rows.shape[1], flat) if flat is not None else curve.contact_radius(rows[DENT])
+        return History(rows[TIME], rows[DEPTH], rows[VELOCITY], rows[FORCE], np.asarray(radius), error)
 
     @property
     def safety(self) -> float:
@@ -83,8 +141,8 @@ class Bars:
             found[cause] = bars(fine, other.reading, least, self.safety)
         return found
 
-    @property
-    def quantities(self) -> dict[str, Quantity]:
+    @cached_property
+    def quantities(self) -> Mapping[str, Quantity]:
         """With the bars of all causes together."""
         found = dict(self.by_cause["time_step"])
         for name, quantity in found.items():
@@ -92,12 +150,6 @@ class Bars:
             error = None if None in errors else sum(error for error in errors if error is not None)
             found[name] = replace(quantity, error=error)
         return found
-
-    @property
-    def budget(self) -> dict[str, dict[str, float]]:
-        """Error of every quantity by cause; steps and elements are one."""
-        nothing = dict.fromkeys(CAUSES, 0.0)
-        return {n: nothing | {c: own[n].error or 0.0 for c, own in self.by_cause.items()} for n in UNITS}
 
 
 def bars(fine: RodReading, coarse: RodReading, least: Mapping[str, float], safety: float) -> dict[str, Quantity]:
@@ -244,55 +296,3 @@ def _largest(fine: RodReading, coarse: RodReading) -> Array:
 def _places(fine: RodReading) -> Array:
     """Times up to just before the end of contact, s, where a force may jump to zero."""
     return np.linspace(0.0, fine.rows[TIME, -1] * (1.0 - ROUNDING), COMPARED)
-
-
-def result_of(
-    scene: Scene, chosen: Plan, numerics: Numerics, found: Bars, timing: Mapping[str, float], runs: list[Run]
-) -> Result:
-    """The record of an impact and its variations; ``runs``: all that were made on the way."""
-    fine, quantities, budget = found.fine, found.quantities, found.budget
-    peak = quantities["peak_force"].value or np.inf
-    converged = meets(quantities, numerics.tolerance)
-    return Result(
-        method="fe",
-        converged=converged,
-        separated=fine.reading.separated,
-        scene=scene,
-        model=scene.model,
-        tolerance=numerics.tolerance,
-        history=history(scene, found),
-        quantities=quantities,
-        numerics=numerics.as_dict(),
-        error_budget={cause: value / peak for cause, value in budget["peak_force"].items()},
-        error_budget_by_quantity=budget,
-        model_ledger=chosen.ledger,
-        energy=fine.energy,
-        provenance=provenance(),
-        timing=timing,
-        work={
-            "degrees_of_freedom": fine.unknowns,
-            "marches": len(runs),
-            "steps": sum(one.steps for one in runs),
-        },
-        message="" if converged else f"{unmet(quantities, numerics.tolerance)}; {CURE}",
-        contacts=fine.contacts,
-    )
-
-
-def history(scene: Scene, found: Bars) -> History:
-    """The rows, at least as many as a history has, with the force's error band: the largest change around a time, or
-    half of what doubling the steps before changed there.
-    """
-    fine, coarse, coarser = (one.reading for one in (found.fine, found.others["time_step"], found.quarter))
-    rows = fine.rows
-    if rows.shape[1] < LEAST_ROWS:
-        between = np.linspace(rows[TIME, 0], rows[TIME, -1], LEAST_ROWS)[1:-1]
-        more = np.array([np.interp(between, rows[TIME], row) for row in rows])
-        rows = np.hstack([rows, more])[:, np.argsort(np.append(rows[TIME], between), kind="stable")]
-    change = np.maximum(_largest(fine, coarse), 0.5 * _largest(coarse, coarser))
-    width = int(COMPARED * min(max(AWAY, found.safety * found.moved / rows[TIME, -1]), 1.0))
-    around = np.lib.stride_tricks.sliding_window_view(np.pad(change, width, mode="edge"), 2 * width + 1).max(axis=1)
-    error = found.safety * np.interp(rows[TIME], _places(fine), around)
-    flat, curve = scene.profile.fixed_radius, scene.profile.load_curve
-    radius = np.full(rows.shape[1], flat) if flat is not None else curve.contact_radius(rows[DENT])
-    return History(rows[TIME], rows[DEPTH], rows[VELOCITY], rows[FORCE], np.asarray(radius), error)

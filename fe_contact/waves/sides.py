@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sparse
 
-from fe_contact.assembly.forms import Array
+from fe_contact.assembly.forms import Array, Matrix
 from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
 
 
@@ -23,10 +22,10 @@ class WaveSide:
     throughout for a body that does not fly.
     """
 
-    mass: Any
+    mass: Matrix
     parts: tuple[Part, ...]
-    dashpots: Any
-    push: Any
+    dashpots: Matrix
+    push: Matrix
     trace: Array
     axial: Array
 
@@ -92,7 +91,7 @@ def together(
     )
 
 
-def _among(matrix: Any, before: int, after: int) -> Any:
+def _among(matrix: Matrix, before: int, after: int) -> Matrix:
     return sparse.block_diag([_none(before, before), matrix, _none(after, after)]).tocsc()
 
 

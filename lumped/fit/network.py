@@ -7,18 +7,17 @@ from dataclasses import replace
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material, Relaxation
-from lumped.schema.keys import Key, Number
-from lumped.schema.members import get
+from lumped.materials.networks import NETWORKS
+from lumped.schema.keys import Number
 
-NETWORKS = "lumped.materials.networks"
 FAMILIES = ("elastic", "kelvin_voigt", "maxwell", "sls")
 SOURCE = "free"
 
 
 def keys() -> dict[str, Number]:
     """Every parameter of a network that a fit can change."""
-    every = [item for family in FAMILIES for kind in _sets(family) for item in kind.items()]
-    return {name: key for name, key in every if isinstance(key, Number)}
+    every = [item for family in FAMILIES for keys in NETWORKS.get(family).sets for item in keys.items()]
+    return {name: key.kind for name, key in every if isinstance(key.kind, Number)}
 
 
 def material(own: Material, values: Mapping[str, float]) -> Material:
@@ -29,7 +28,7 @@ def material(own: Material, values: Mapping[str, float]) -> Material:
     if missing:
         reason = "missing; the scene's material does not tell it; accepted: free, or a fixed value"
         raise BadInput(Fault(SOURCE, name, reason) for name in missing)
-    return replace(own, young=get(NETWORKS, family).of(**{name: known[name] for name in names}))
+    return replace(own, young=NETWORKS.get(family).of(**{name: known[name] for name in names}))
 
 
 def own_values(young: Relaxation) -> dict[str, float]:
@@ -56,9 +55,14 @@ def three_parameters(E0: float, R1: float, R2: float) -> dict[str, float]:
 
 def _network(young: Relaxation, names: Iterable[str]) -> tuple[str, tuple[str, ...]]:
     """The smallest network with these parameters that forgets nothing of what the scene's own remembers."""
-    found = [(family, tuple(kind)) for family in _open_to(young) for kind in _sets(family) if set(names) <= set(kind)]
+    found = [
+        (family, tuple(keys))
+        for family in _open_to(young)
+        for keys in NETWORKS.get(family).sets
+        if set(names) <= set(keys)
+    ]
     if not found:
-        sets = [", ".join(kind) for family in _open_to(young) for kind in _sets(family)]
+        sets = [", ".join(kind) for family in _open_to(young) for kind in NETWORKS.get(family).sets]
         reason = f"no network of the material has {', '.join(names)}; accepted, of one set: {'; '.join(sets)}"
         raise BadInput(Fault(SOURCE, "", reason))
     return min(found, key=lambda kind: len(kind[1]))
@@ -70,8 +74,3 @@ def _open_to(young: Relaxation) -> tuple[str, ...]:
     if young.moduli:
         return ("sls",)
     return ("kelvin_voigt", "sls") if young.viscosity else ("elastic", "kelvin_voigt", "sls")
-
-
-def _sets(family: str) -> tuple[Mapping[str, Key], ...]:
-    module = get(NETWORKS, family)
-    return module.KEYS if isinstance(module.KEYS, tuple) else (module.KEYS,)

@@ -17,7 +17,7 @@ from lumped.errors import BadInput, NotReached
 from lumped.fit.measured import Measured
 from lumped.fit.space import Space
 from lumped.laws._force_law import ForceLaw
-from lumped.laws._hereditary import Solve, once
+from lumped.laws._hereditary import HereditaryLaw, Solve, once
 from lumped.laws._impacts import bodies_of
 from lumped.numbers.interpolation import local
 from lumped.result.result import Result
@@ -123,12 +123,11 @@ class Candidate:
 
 def candidate(name: str, scene: Scene) -> Candidate:
     """The impact of a scene by the law of this name. Raises BadInput, NotReached."""
-    module = laws.get(name)
-    law = module.of(scene)
+    law = laws.get(name).of(scene)
     if isinstance(law, ForceLaw):
         return _of_force_law(law, scene)
-    if hasattr(module, "solve") and getattr(law, "exit", "force") == "force":
-        return _of_memory(module.solve, scene)
+    if isinstance(law, HereditaryLaw) and law.solve is not None:
+        return _of_memory(law.solve, scene)
     return _of_result(law.simulate(scene, RESULT_TOLERANCE))
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +13,7 @@ from lumped.result.folder import publish
 from lumped.result.history import History
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
+from lumped.schema import Table
 from lumped.schema.csv_file import write_csv
 from lumped.schema.json_file import plain, write_json
 
@@ -35,7 +35,7 @@ class Estimate:
 class Fit:
     """A law fitted to a curve.
 
-    `parameters` are the free ones, in the order of `covariance` and `correlation`, shape (p, p), of their values;
+    `parameters` are the free ones, in the order of `covariance`, SI units, and `correlation`, a ratio, both (p, p);
     `held` the others that were given. `normalized_error` is "(20)", "(21)". `depth` is half of the greatest depth,
     m, and `force_at_depth` the force there in the approach: known well even where stiffness and exponent are not.
     `scene` holds the fitted law, `result` is its impact, `history` that on the curve's clock.
@@ -61,7 +61,7 @@ class Fit:
         """Every parameter, free or held."""
         return {name: estimate.value for name, estimate in self.parameters.items()} | dict(self.held)
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> Table:
         """The content of fit.json."""
         content = {
             "schema": SCHEMA,

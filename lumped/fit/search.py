@@ -1,23 +1,37 @@
-"""The fit: the best of searches from several starts, its certainty, and the impact of the fitted law."""
+"""The fit: the best of searches from several starts, its certainty, and the impact of the fitted law.
+
+Starts by Hertz scaling from the peak and the duration, restitution from the impulse; a search is least squares from one
+start, in the logarithms of the parameters.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from lumped import laws
 from lumped.errors import BadInput, Fault, NotReached
+from lumped.fit import network
 from lumped.fit.certainty import certainty_of
-from lumped.fit.descent import Descent, Found
 from lumped.fit.measured import Measured
 from lumped.fit.problem import FitProblem
 from lumped.fit.record import Fit
-from lumped.fit.space import Bounds, space_of
-from lumped.fit.starts import starts
+from lumped.fit.space import REACH, TOUCH, Bounds, Space, damping_names, own_keys, space_of
+from lumped.laws import impact_bilinear
+from lumped.laws._force_law import between_masses
+from lumped.laws._impacts import bodies_of
+from lumped.laws._power_law import spring_contact_time, spring_of_peak
 from lumped.laws.base import check_mass, simulate
 from lumped.result.history import History
 from lumped.result.score import Curve, normalized_error
 from lumped.scene.scene import Scene
+from lumped.scene.tables import LawChoice
+from lumped.solvers.point.bodies import Stage
 
 # How many of the starts, the nearest to the curve first, are followed; one is enough where noise is all that is left.
 FOLLOWED = 2
@@ -25,6 +39,21 @@ HAIR = 1e-4
 RESULT_TOLERANCE = 1e-6
 # Which parameter holds the peak: the first of these that is free.
 STIFFNESSES = ("k", "k1", "E", "E0", "E1", "R1", "E2")
+# The damper's force over the spring's, at half depth and full speed, per 1 - e: Hunt-Crossley has 3/2, Kelvin 4/pi.
+DAMPER = 1.4
+# The loss 1 - e that the impulse tells, and less and more, for it may tell it badly.
+LOSSES = (1.0, 0.15, 3.5)
+LEAST_RESTITUTION, MOST_RESTITUTION = 0.05, 0.98
+# Guesses of the ratio E2/E1 and of the relaxation time over the contact time.
+RATIOS, TIMES = (0.3, 2.0), (0.1, 1.0, 10.0)
+Values = dict[str, float]
+Array = NDArray[np.float64]
+# Of the differences: far above what an impact's integration errs by, and the search needs no better slopes.
+DIFFERENCE = 1e-4
+TOLERANCE, MOST_STEPS = 1e-10, 80
+SOLID = ("E0", "R1", "R2")
+# An impact that does not exist is this many times as far from the curve as none at all.
+FAR = 10.0
 
 
 def search(
@@ -114,3 +143,177 @@ def _inside(problem: FitProblem, name: str, guess: float) -> float:
     low, high = problem.space.limits(name, guess)
     hair = HAIR * min(high - low, abs(guess) or 1.0)
     return min(max(guess, low + hair), high - hair)
+
+
+def starts(space: Space, measured: Measured) -> list[Values]:
+    """First guesses of the free parameters, the best founded one first."""
+    pulse = CurvePulse(space, measured)
+    own = set(own_keys(space.law)) | {TOUCH}
+    names = [name for name in (*space.free, *space.held) if name in own]
+    of_network = [name for name in (*space.free, *space.held) if name not in own]
+    ours = list(pulse.law_guesses(names))
+    theirs = list(pulse.network_guesses()) if of_network else [{}]
+    return [{name: (law | solid)[name] for name in space.free} for law, solid in product(ours, theirs)]
+
+
+@dataclass(frozen=True)
+class CurvePulse:
+    """The curve seen as an impact of the scene's bodies."""
+
+    space: Space
+    measured: Measured
+
+    @property
+    def loss(self) -> float:
+        """1 - e, e = J/(m v) - 1 from the impulse."""
+        scene = self.space.scene
+        e = self.measured.impulse / (scene.reduced_mass * scene.velocity) - 1.0
+        return 1.0 - min(max(e, LEAST_RESTITUTION), MOST_RESTITUTION)
+
+    def law_guesses(self, names: list[str]) -> Iterator[Values]:
+        """Of the law's own parameters: the springs of the peak and of the duration, each with every loss."""
+        bodies, held, own = bodies_of(self.space.scene), self.space.held, own_keys(self.space.law)
+        depth = bodies.velocity * self.measured.duration / 3.0
+        alpha = held.get("alpha", 1.5 if "alpha" in own else 1.0)
+        of_time = (spring_contact_time(1.0, alpha, bodies) / self.measured.duration) ** (alpha + 1.0)
+        of_peak = spring_of_peak(self.measured.peak, alpha, bodies)
+        dampers = [name for name in names if name in damping_names(self.space.law) and name not in held]
+        for k, share in product((of_peak, of_time), LOSSES if "e" in own else (1.0,)):
+            loss = min(share * self.loss, 1.0 - LEAST_RESTITUTION)
+            loop = self._loop(k, 1.0 - loss) if "k1" in names else {}
+            springs = {TOUCH: 0.0, "alpha": alpha, "e": 1.0 - loss, "k": k, **loop, **held}
+            yield springs | {name: share * self._damping(name, springs, depth) for name in dampers}
+
+    def _loop(self, k: float, e: float) -> Values:
+        """The numbers of the bilinear law by its own recipe."""
+        law = LawChoice(self.space.law, {"k": k, "e": e})
+        loop = impact_bilinear.of(replace(self.space.scene, law=law))
+        return {"k1": loop.k1, "k2": loop.k2, "yield_depth": loop.yield_depth}
+
+    def _damping(self, name: str, springs: Mapping[str, float], depth: float) -> float:
+        """The damper's parameter whose force to the spring's is as 1 - e asks."""
+        chosen = {key: springs[key] for key in self.space.free if key in springs}
+        velocity = self.space.scene.velocity
+        half = Stage(True, 0.5 * depth, velocity)
+        bare, damped = (
+            between_masses(self.space.law, self.space.scene_at(chosen | {name: value})) for value in (0.0, 1.0)
+        )
+        spring, damper = bare.force(half.deepest, velocity, half), damped.lost(half.deepest, velocity, half)
+        return float(DAMPER * self.loss * spring / damper)
+
+    def network_guesses(self) -> Iterator[Values]:
+        """Of the material: the modulus whose Hertz impact peaks alike, shared between what lasts and what relaxes."""
+        scene, held, duration = self.space.scene, self.space.held, self.measured.duration
+        solid, bodies = scene.geometry.material, bodies_of(scene)
+        of_one = scene.profile.hertz_impact(1.0 / (1.0 - solid.nu**2), bodies.mass, bodies.velocity).force
+        sudden = (self.measured.peak / of_one) ** 2.5
+        lasting = {**network.own_values(solid.young), **held}.get("E0", sudden)
+        for ratio, time in product(RATIOS, TIMES):
+            shared = "E0" in self.space.free
+            R1 = ratio if shared else max(sudden / lasting - 1.0, 0.1 * ratio)
+            E0 = sudden / (1.0 + ratio) if shared else lasting
+            guess = network.three_parameters(E0, R1, time * duration * (1.0 + R1))
+            yield {**guess, "E": sudden, "eta": sudden * time * duration, **held}
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """All free parameters at one end of a search, their first guess, and the residuals, shape (n,)."""
+
+    values: Mapping[str, float]
+    guess: Mapping[str, float]
+    error: Array
+
+    @property
+    def norm(self) -> float:
+        """How far from the curve."""
+        return float(np.linalg.norm(self.error))
+
+
+@dataclass(frozen=True, eq=False)
+class Descent:
+    """The coordinates of a search: logarithms of what is positive, the touch in shares of the contact.
+
+    Of the 3-parameter solid a slow relaxation tells the glassy modulus E0 (1 + R1) and the rate R1/R2 at which it
+    falls at first, and hardly more: in these the long valley of the error is straight, in E0 and R2 it is bent.
+    `known` keeps the errors of places that have been computed, for the slopes there begin with them.
+    """
+
+    problem: FitProblem
+    start: Found
+    known: dict[bytes, Array] = field(default_factory=dict)
+
+    def end(self) -> Found | None:
+        """Where the search ends; None where it does not converge."""
+        if not self.problem.searched:
+            return self.start
+        from scipy.optimize import least_squares
+
+        search: Any = least_squares  # its stubs know only their own array shapes
+        # Where no parameter changes the curve it divides by slopes of zero.
+        with np.errstate(all="ignore"):
+            solution = search(
+                self.error, self._place(self.start.values), self.slopes, bounds=self._limits().T,
+                xtol=TOLERANCE, ftol=TOLERANCE, gtol=None, max_nfev=MOST_STEPS,
+            )  # fmt: skip
+        try:
+            values = self._whole(solution.x)
+        except NotReached:
+            return None
+        found = Found(values, self.start.guess, solution.fun)
+        return found if solution.status > 0 and found.norm < np.linalg.norm(self._nothing) else None
+
+    def error(self, place: Array) -> Array:
+        """The residuals at a place, shape (n,); where there is no impact, far from any."""
+        key = place.tobytes()
+        if key not in self.known:
+            try:
+                self.known[key] = self.problem.error(self._whole(place))
+            except (BadInput, NotReached):
+                self.known[key] = FAR * self._nothing
+        return self.known[key]
+
+    def slopes(self, place: Array) -> Array:
+        """Forward differences, backward at an upper bound; shape (n, q)."""
+        here, highest = self.error(place), self._limits()[:, 1]
+        steps = np.where(place + DIFFERENCE <= highest, DIFFERENCE, -DIFFERENCE)
+        columns = [(self.error(there) - here) / step for there, step in zip(place + np.diag(steps), steps, strict=True)]
+        return np.array(columns).T
+
+    @property
+    def _nothing(self) -> Array:
+        """The residuals of no force at all."""
+        return self.problem.measured.error_of(np.zeros_like(self.problem.measured.force))
+
+    @property
+    def _straight(self) -> bool:
+        """Whether the solid is searched for in its glassy modulus and rate: all of it free, and without bounds."""
+        return set(SOLID) <= set(self.problem.searched) and not set(SOLID) & self.problem.space.bounds.keys()
+
+    def _limits(self) -> Array:
+        """Lowest and highest place, shape (q, 2)."""
+        names, guess = self.problem.searched, self.start.guess
+        limits = {name: self.problem.space.limits(name, guess[name]) for name in names}
+        ends = np.array([self._plain({name: limits[name][i] for name in names}) for i in (0, 1)]).T
+        if self._straight:
+            rows = [names.index(name) for name in SOLID]
+            ends[rows] = self._place(self.start.values)[rows, None] + np.log(REACH) * np.array([-1.0, 1.0])
+        return ends
+
+    def _place(self, values: Mapping[str, float]) -> Array:
+        if not self._straight:
+            return self._plain(values)
+        glassy, ratio = values["E0"] * (1.0 + values["R1"]), values["R1"]
+        return self._plain({**values, "E0": glassy, "R2": values["R2"] / ratio})
+
+    def _plain(self, values: Mapping[str, float]) -> Array:
+        scale = self.problem.measured.duration
+        return np.array([values[n] / scale if n == TOUCH else np.log(values[n]) for n in self.problem.searched])
+
+    def _whole(self, place: Array) -> dict[str, float]:
+        """All free parameters at a place. Raises NotReached."""
+        scale, names = self.problem.measured.duration, self.problem.searched
+        values = {n: float(x * scale if n == TOUCH else np.exp(x)) for n, x in zip(names, place, strict=True)}
+        if self._straight:
+            values |= {"E0": values["E0"] / (1.0 + values["R1"]), "R2": values["R2"] * values["R1"]}
+        return self.problem.whole(values, self.start.values)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +14,7 @@ from lumped.fit import network
 from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS
 from lumped.scene.scene import Scene
 from lumped.scene.tables import LawChoice
+from lumped.schema import Table
 from lumped.schema.keys import Number
 
 Array = NDArray[np.float64]
@@ -91,7 +91,7 @@ def space_of(law: str, scene: Scene, free: Sequence[str] | None, fixed: Mapping[
 
 def own_keys(law: str) -> dict[str, Number]:
     """The numbers that a law has of its own."""
-    return {name: key for name, key in laws.get(law).KEYS.items() if isinstance(key, Number)}
+    return {name: key.kind for name, key in laws.get(law).keys.items() if isinstance(key.kind, Number)}
 
 
 def damping_names(law: str) -> tuple[str, ...]:
@@ -110,7 +110,7 @@ def default_free(law: str, scene: Scene, fixed: Mapping[str, float]) -> tuple[st
     return tuple(name for name in names if name not in fixed)
 
 
-def _said(scene: Scene, law: str, chosen: Mapping[str, float]) -> dict[str, Any]:
+def _said(scene: Scene, law: str, chosen: Mapping[str, float]) -> Table:
     """What the scene's own [law] says, without another name of a damping that is chosen here."""
     if scene.law is None or scene.law.name != law:
         return {}

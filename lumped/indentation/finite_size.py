@@ -12,13 +12,13 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
+from lumped.schema import Table
 from lumped.targets.sphere import SphereTarget
 
 Array = NDArray[np.float64]
@@ -50,7 +50,7 @@ class FiniteSize:
             name: Quantity(float(value), float(bar), "1") for name, value, bar in zip(TERMS, values, bars, strict=True)
         }
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Table:
         """Its part of result.json."""
         return {
             "a/R": self.share.tolist(),

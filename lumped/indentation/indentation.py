@@ -1,4 +1,4 @@
-"""Slow indentation: force and contact radius over depth, and the power law through them."""
+"""Slow indentation: force and contact radius over depth, and the power law through them; by a load curve, exact."""
 
 from __future__ import annotations
 
@@ -6,18 +6,20 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.errors import BadInput, Fault
 from lumped.indentation.finite_size import FiniteSize, finite_size
+from lumped.numbers.clock import Clock
 from lumped.result.dimensionless import groups_at_rest
 from lumped.result.folder import RECORD, publish
 from lumped.result.model_ledger import Peak, ledger_at_rest
 from lumped.result.result import Quantity, provenance
 from lumped.result.sufficiency import LedgerEntry, sufficient
 from lumped.scene.indenter import Indenter
+from lumped.schema import Table
 from lumped.schema.csv_file import write_columns
 from lumped.schema.json_file import plain, write_json
 
@@ -25,6 +27,7 @@ Array = NDArray[np.float64]
 SCHEMA = "fe-contact/indentation/1"
 COLUMNS = ("depth_m", "force_N", "contact_radius_m", "force_error_N")
 FEWEST = 3  # depths which a power law with an error bar needs
+HALF_SPACE_ALONE = ("mdr", "hertz")
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +46,7 @@ class Indentation:
     contact_radius: Array
     force_error: Array
     budget: Mapping[str, Array] = field(default_factory=dict)
-    numerics: Mapping[str, Any] = field(default_factory=dict)
+    numerics: Table = field(default_factory=dict)
     timing: Mapping[str, float] = field(default_factory=dict)
     work: Mapping[str, int] = field(default_factory=dict)
 
@@ -86,7 +89,7 @@ class Indentation:
             return None
         return finite_size(self.indenter, self.depth, self.force / self.modulus, self.force_error / self.modulus)
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> Table:
         """The content of result.json."""
         content = {
             "schema": SCHEMA,
@@ -107,7 +110,7 @@ class Indentation:
             "provenance": provenance(),
             "timing": self.timing,
         }
-        found: dict[str, Any] = plain(content)
+        found: Table = plain(content)
         return found
 
     def write(self, directory: Path) -> None:
@@ -147,3 +150,32 @@ def _factor(logarithm: float, error: float, alpha: float) -> Quantity:
     """A geometry factor from its logarithm."""
     value = math.exp(logarithm)
     return Quantity(value, value * math.expm1(error), f"m^{round(2.0 - alpha, 4):g}")
+
+
+def indent(
+    indenter: Indenter, depths: tuple[float, ...], method: str, instant: bool = False, tolerance: float = 1e-3
+) -> Indentation:
+    """Force and contact radius at every depth, m, by the load curve of the profile; Hertz's is the parabola's.
+
+    Raises BadInput for depths and materials that cannot be, NotReached where the load curve ends.
+    """
+    if method in HALF_SPACE_ALONE and indenter.target.has_length:
+        reason = f"{method} knows the half-space alone; accepted: another method, or half_space without a datum"
+        raise BadInput(Fault(indenter.source, "target.shape", reason))
+    clock = Clock()
+    depth, modulus = np.array(indenter.checked(depths)), indenter.modulus(instant)
+    shape = indenter.shape.resolved("parabola") if method == "hertz" else indenter.profile
+    with indenter.addressed():
+        curve = indenter.target.load_curve(shape, indenter.elastic(instant).material.nu)
+        force = modulus * shape.total * np.asarray(curve.force(depth))
+    return Indentation(
+        indenter=indenter,
+        method=method,
+        modulus=modulus,
+        tolerance=tolerance,
+        depth=depth,
+        force=force,
+        contact_radius=np.asarray(curve.contact_radius(depth)),
+        force_error=curve.accuracy * force,
+        timing=clock.read(),
+    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import RULED_RELATIVE, UNITS, Quantity, Result, provenance, unmet
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
+from lumped.schema import Table
 
 Array = NDArray[np.float64]
 # Rounding of the sums behind a quantity, relative to it.
@@ -142,8 +143,8 @@ def assemble(
     quantities: Mapping[str, Quantity],
     force_error: float,
     clock: Clock,
-    numerics: Mapping[str, Any],
-    work: Mapping[str, Any],
+    numerics: Table,
+    work: Mapping[str, float],
     model: Model | None = None,
 ) -> Result:
     """The Result of one law: history dense enough for the tolerance, ledgers, and what it cost.

@@ -5,13 +5,16 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped import laws
+from lumped.errors import BadInput, Fault
 from lumped.laws import _impacts
 from lumped.load_curves.base import LoadCurve
+from lumped.numbers import Real
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
@@ -48,11 +51,11 @@ class ForceLaw(ABC):
         return 1
 
     @abstractmethod
-    def force(self, depth: Any, rate: Any, stage: Stage) -> Any:
+    def force(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """F, N, compression positive; depth >= 0, m, rate, m/s."""
 
     @abstractmethod
-    def tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+    def tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
         """dF/d depth, N/m, and dF/d rate, N s/m."""
 
     def touch(self, bodies: Bodies) -> State:
@@ -90,7 +93,7 @@ class ForceLaw(ABC):
         return float(self.force(depth, 0.0, stage))
 
     @abstractmethod
-    def lost(self, depth: Any, rate: Any, stage: Stage) -> Any:
+    def lost(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """The part of the force whose work is not stored, N."""
 
     @abstractmethod
@@ -102,7 +105,7 @@ class ForceLaw(ABC):
         """The elastic contact time, s."""
 
     @property
-    def parameters(self) -> dict[str, Any]:
+    def parameters(self) -> dict[str, object]:
         """Its numbers by the names of the scene file."""
         return {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("load_curve", "source")}
 
@@ -124,3 +127,11 @@ class ForceLaw(ABC):
     def resolved(self, scene: Scene) -> Model:
         """The scene's model as this law has it: its stiffness stands for a parabola, and no body for waves."""
         return replace(scene.model, profile="parabola", inertia=False) if scene.has_geometry else scene.model
+
+
+def between_masses(name: str, scene: Scene) -> ForceLaw:
+    """The law called so, made for a scene. Raises BadInput, also where it is no force between two masses."""
+    law = laws.get(name).of(scene)
+    if not isinstance(law, ForceLaw):
+        raise BadInput(Fault(scene.source, "law.name", f"{name} is no force between two masses; accepted: one that is"))
+    return law

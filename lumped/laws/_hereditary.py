@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -92,6 +93,15 @@ class Solve(Protocol):
     def __call__(
         self, problem: Hereditary, end_time: float, settings: Settings, before: Course | None = None
     ) -> Course: ...
+
+
+class HereditaryLaw(ABC):
+    """A law that says of a load curve and a modulus how the force follows the depth."""
+
+    @property
+    @abstractmethod
+    def solve(self) -> Solve | None:
+        """One integration, where one of :func:`once` says all; None where contacts follow one another in steps."""
 
 
 def simulate(name: str, scene: Scene, tolerance: float, solve: Solve) -> Result:

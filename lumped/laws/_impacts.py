@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,7 +62,7 @@ class SceneLaw(PointLaw, Protocol):
     def load_curve(self) -> LoadCurve | None: ...
 
     @property
-    def parameters(self) -> dict[str, Any]: ...
+    def parameters(self) -> dict[str, object]: ...
 
     def elastic_contact_time(self, scene: Scene) -> float:
         """Contact time without damping, s."""

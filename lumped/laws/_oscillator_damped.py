@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 from lumped.laws._parameters import Parameters
 from lumped.laws._power_law import PowerLaw
+from lumped.numbers import Real
 from lumped.scene.scene import Scene
 from lumped.solvers.point.bodies import Stage
 
@@ -42,13 +43,13 @@ class OscillatorDamped(PowerLaw):
         """The spring's and the damper's."""
         return (self.alpha, 0.5 * (self.alpha - 1.0)) if self._damped(stage) else (self.alpha,)
 
-    def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:
+    def damper(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """c depth^((alpha - 1)/2) rate, where it acts."""
         if not self._damped(stage):
             return 0.0 * depth
         return self.c * depth ** (0.5 * (self.alpha - 1.0)) * rate
 
-    def damper_tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+    def damper_tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
         """Its slopes."""
         if not self._damped(stage):
             return 0.0, 0.0 * depth

@@ -5,38 +5,40 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TypeVar
 
 from lumped import restitution
 from lumped.errors import BadInput, Fault
-from lumped.laws._half_space import check_half_space
 from lumped.laws._impacts import bodies_of
 from lumped.laws._power_law import spring_of_peak
+from lumped.laws.base import check_half_space
 from lumped.load_curves.base import LoadCurve
 from lumped.scene.scene import Scene
+from lumped.schema import Table
 from lumped.schema.keys import Choice, Key, Number
 
-STIFFNESS: Mapping[str, Key] = {"k": Number(1e-30, 1e30, "N/m^alpha", required=False)}
-EXPONENT: Mapping[str, Key] = {"alpha": Number(0.5, 5.0, required=False)}
+Keys = Mapping[str, Key]
+T = TypeVar("T")
+STIFFNESS: Keys = {"k": Key(Number(1e-30, 1e30, "N/m^alpha"), "stiffness", required=False)}
+EXPONENT: Keys = {"alpha": Key(Number(0.5, 5.0), "exponent of the depth", required=False)}
 # A damper with the power (alpha - 1)/2 of the depth is infinite at touch for alpha below 1.
-EXPONENT_FROM_ONE: Mapping[str, Key] = {"alpha": Number(1.0, 5.0, required=False)}
-COMMON: Mapping[str, Key] = {
-    "gap": Number(0.0, 1e6, "m", required=False),
-    "exit": Choice(("force", "depth"), required=False),
-}
-RESTITUTION: Mapping[str, Key] = {"e": Number(1e-4, 1.0, required=False)}
+EXPONENT_FROM_ONE: Keys = {"alpha": replace(EXPONENT["alpha"], kind=Number(1.0, 5.0))}
+EXIT = Key(Choice(("force", "depth")), "what ends the contact by its return to zero", required=False)
+COMMON: Keys = {"gap": Key(Number(0.0, 1e6, "m"), "distance before touch", required=False), "exit": EXIT}
+RESTITUTION: Keys = {"e": Key(Number(1e-4, 1.0), "restitution which the damping is to meet", required=False)}
 # The exact laws that tell the restitution of a scene's own material, the second where contact has a fixed area.
 EXACT, EXACT_FIXED, EXACT_TOLERANCE = "mdr", "ting", 1e-4
 
 
-def damping_keys(*names: str, unit: str = "") -> Mapping[str, Key]:
-    """Optional keys of a damper, each >= 0."""
-    return {name: Number(0.0, 1e30, unit, required=False) for name in names}
+def damping_key(name: str, unit: str = "") -> Keys:
+    """The optional key of a damper, >= 0."""
+    return {name: Key(Number(0.0, 1e30, unit), "damping", required=False)}
 
 
-def formula_key(family: str) -> Mapping[str, Key]:
+def formula_key(family: str) -> Keys:
     """The key `damping`: by which formula e becomes the damping, exact by default or a published one."""
-    return {"damping": Choice((restitution.EXACT, *restitution.get(family).published), required=False)}
+    kind = Choice((restitution.EXACT, *restitution.get(family).published))
+    return {"damping": Key(kind, "formula by which e becomes the damping", required=False)}
 
 
 @dataclass
@@ -49,7 +51,7 @@ class Parameters:
     taken: list[str] = field(default_factory=list)
 
     @property
-    def values(self) -> Mapping[str, Any]:
+    def values(self) -> Table:
         """What the `[law]` table says, if it is about this law."""
         law = self.scene.law
         return law.values if law is not None and law.name == self.name else {}
@@ -59,16 +61,17 @@ class Parameters:
         """The load curve of the scene's parabola."""
         return self.scene.geometry.shape.resolved("parabola").load_curve if self.scene.has_geometry else None
 
-    def get(self, key: str, default: Any) -> Any:
+    def get(self, key: str, default: T) -> T:
         """A number with a default."""
-        return self.values.get(key, default)
+        found: T = self.values.get(key, default)
+        return found
 
     def exponent(self) -> float:
         """alpha of `[law]`; else the scene's own, Table 1, or 3/2 without geometry."""
         own = self.scene.geometry.shape.exponent_of_force if self.scene.has_geometry else 1.5
         return float(self.values.get("alpha", own))
 
-    def common(self) -> dict[str, Any]:
+    def common(self) -> Table:
         """What every force law has, last: the words of `taken` are complete then. Raises BadInput."""
         self.checked()
         own = {key: self.values[key] for key in COMMON if key in self.values}

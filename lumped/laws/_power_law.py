@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import Any
 
 from lumped.laws._force_law import ForceLaw
+from lumped.numbers import Real
 from lumped.solvers.point.bodies import Bodies, Stage
 
 GRADINGS = (1, 2, 4)
@@ -30,23 +30,23 @@ class PowerLaw(ForceLaw):
         return next((p for p in GRADINGS if all((p * n).is_integer() for n in powers)), GRADINGS[-1])
 
     @abstractmethod
-    def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:
+    def damper(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """The damper's force, N."""
 
     @abstractmethod
-    def damper_tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+    def damper_tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
         """The slopes of the damper's force over depth, N/m, and rate, N s/m."""
 
-    def force(self, depth: Any, rate: Any, stage: Stage) -> Any:
+    def force(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """F, N."""
         return self.k * depth**self.alpha + self.damper(depth, rate, stage)
 
-    def tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+    def tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
         """dF/d depth, dF/d rate."""
         over_depth, over_rate = self.damper_tangents(depth, rate, stage)
         return self.k * self.alpha * depth ** (self.alpha - 1.0) + over_depth, over_rate
 
-    def lost(self, depth: Any, rate: Any, stage: Stage) -> Any:
+    def lost(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """The damper's force, N."""
         return self.damper(depth, rate, stage)
 
@@ -63,11 +63,11 @@ class PowerLaw(ForceLaw):
 class Undamped(PowerLaw):
     """The spring alone: nothing is lost."""
 
-    def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:
+    def damper(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """None."""
         return 0.0 * depth
 
-    def damper_tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+    def damper_tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
         """None."""
         return 0.0, 0.0 * depth
 
@@ -84,3 +84,26 @@ def spring_of_peak(force: float, alpha: float, bodies: Bodies) -> float:
     """k, N/m^alpha, of the spring whose elastic impact peaks at `force`, N."""
     energy = 0.5 * (alpha + 1.0) * bodies.mass * bodies.velocity**2
     return float(force * (force / energy) ** alpha)
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpringDamped(PowerLaw):
+    """The force is zero at depth zero and nowhere else, so that both exits are one, and it never jumps.
+
+    Its restitution depends on factor times the velocity at touch alone, whatever the exponent.
+    """
+
+    alpha: float = 1.5
+
+    @abstractmethod
+    def factor(self, stage: Stage) -> float:
+        """The damper's force over the spring's and the rate, s/m."""
+
+    def damper(self, depth: Real, rate: Real, stage: Stage) -> Real:
+        """k depth^alpha factor rate."""
+        return self.k * self.factor(stage) * depth**self.alpha * rate
+
+    def damper_tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
+        """Its slopes."""
+        strength = self.k * self.factor(stage)
+        return strength * self.alpha * depth ** (self.alpha - 1.0) * rate, strength * depth**self.alpha

@@ -1,25 +1,51 @@
-"""The contract of a law: a force between two masses, or what time does to a load curve.
-
-A law is one module of this folder with `KEYS`, those of the `[law]` table, and `of(scene) -> Law`; a Law is a frozen
-dataclass which knows its `name` and simulates the impacts of a scene to a tolerance.
-"""
+"""The contract of a law: a force between two masses, or what time does to a load curve; what a law asks of a scene."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar, Protocol
 
 from lumped.errors import BadInput, Fault
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
+from lumped.schema.keys import Key
+from lumped.schema.record import Sets
+from lumped.targets import HalfSpace
 
 
 class Law(Protocol):
-    """A force law with everything it took from its scene."""
+    """A force law with everything it took from its scene: a frozen dataclass."""
 
     name: ClassVar[str]
 
     def simulate(self, scene: Scene, tolerance: float) -> Result:
         """The impacts of a scene; every claimed error is the integration error of this law. Raises NotReached."""
+
+
+@dataclass(frozen=True)
+class LawKind:
+    """A member of this folder: how its Law is made `of` a scene, what it `says`, the `groups` of its `[law]` keys."""
+
+    of: Callable[[Scene], Law]
+    says: str | None
+    groups: Sets = ()
+
+    @cached_property
+    def keys(self) -> Mapping[str, Key]:
+        """Those of its `[law]` table."""
+        return {name: key for group in self.groups for name, key in group.items()}
+
+    @property
+    def sets(self) -> Sets:
+        """One."""
+        return (self.keys,)
+
+    @property
+    def summary(self) -> str:
+        """It in one line."""
+        return (self.says or "").splitlines()[0]
 
 
 def simulate(model: Law, scene: Scene, tolerance: float = 1e-6) -> Result:
@@ -45,3 +71,24 @@ def check_mass(scene: Scene) -> None:
     if scene.mass == 0.0:
         reason = "0: a lumped law moves a rigid mass; accepted: more, or --method fe"
         raise BadInput(Fault(scene.source, "striker.mass", reason))
+
+
+def check(scene: Scene, name: str) -> None:
+    """Raise BadInput for a scene without geometry, and for several impacts, which need a memory between them."""
+    check_geometry(scene, name)
+    check_half_space(scene, name)
+    scene.check_single(name)
+
+
+def check_geometry(scene: Scene, name: str) -> None:
+    """Raise BadInput for a scene without geometry."""
+    if not scene.has_geometry:
+        reason = f"missing; the law {name} follows from the striker's shape and the target's material"
+        raise BadInput(Fault(scene.source, "striker.shape", reason))
+
+
+def check_half_space(scene: Scene, name: str) -> None:
+    """Raise BadInput for a geometry which is not that of a half-space under an axisymmetric profile."""
+    if scene.shape is not None and (not isinstance(scene.target, HalfSpace) or scene.shape.plane):
+        reason = f"{scene.target.name}: {name} is for the half-space; accepted: half_space, or another method"
+        raise BadInput(Fault(scene.source, "target.shape", reason))

@@ -2,41 +2,137 @@
 
 F(t) = int_0^t E*(t-s) d(y(s)), y the elastic load curve; contact ends at the first F = 0, as the paper clips
 it. Exact while the contact radius grows (Lee and Radok 1960, doi 10.1115/1.3644020), an approximation in the
-rebound.
+rebound. As a force between two masses that remembers it has any exit, and any
+number of contacts.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import ClassVar
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from lumped.errors import FeContactError
-from lumped.laws._half_space import check_geometry
-from lumped.laws._hereditary import Course, once, simulate
-from lumped.laws._hereditary_force import law_of
+from lumped.laws._force_law import ForceLaw
+from lumped.laws._hereditary import Course, HereditaryLaw, Solve, once, simulate
+from lumped.laws._parameters import EXIT
+from lumped.laws.base import LawKind, check_geometry
 from lumped.laws.mdr import ImpactScales
+from lumped.numbers import Real
 from lumped.result.ending import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
+from lumped.scene.tables import Model
 from lumped.schema.keys import Choice, Key
+from lumped.schema.record import keys_of
 from lumped.solvers.hereditary.approach import DEPTH, approach
 from lumped.solvers.hereditary.closing import Closing, close
 from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.path import Path
 from lumped.solvers.hereditary.phase import HereditaryPhase, SinceTouch, UntilEnd
 from lumped.solvers.hereditary.problem import Hereditary
-from lumped.solvers.point import memory
+from lumped.solvers.point.bodies import TINY, Bodies, Stage, State, Step
+from lumped.solvers.point.hereditary import HereditaryLoad, StepLoad
+from lumped.solvers.point.memory import RULES
+from lumped.solvers.point.nodes import through_zero
+from lumped.solvers.point.step import NODES
 
+Array = NDArray[np.float64]
 ROUGH, FINE = 1e-3, 1e-6  # tolerances of scales
-KEYS: Mapping[str, Key] = {
-    "exit": Choice(("force", "depth"), required=False),
-    "memory": Choice(memory.available(), required=False),
-}
+
+
+@dataclass(frozen=True, kw_only=True)
+class HereditaryForce(ForceLaw):
+    """F = int E*(t-s) dy, "(17)" to "(19)"; `rule` says what is remembered between contacts, `scale` is a time, s."""
+
+    load: HereditaryLoad
+    rule: str
+    scale: float
+    within_step: StepLoad | None = None
+    name: ClassVar[str] = "correspondence"
+    tensile: ClassVar[bool] = True
+    remembers: ClassVar[bool] = True
+
+    @property
+    def parameters(self) -> dict[str, object]:
+        """Its choices; the rest is the scene's."""
+        return {"exit": self.exit, "memory": self.rule}
+
+    def touch(self, bodies: Bodies) -> State:
+        """A relaxed surface."""
+        return State(0.0, bodies.velocity, 0.0, self.load.at_rest)
+
+    def within(self, start: State, length: float) -> HereditaryForce:
+        """Its branches solved for at the points of the step."""
+        return replace(self, within_step=StepLoad.of(self.load, start.memory, length, NODES))
+
+    def remembered(self, depth: Array) -> tuple[float, ...]:
+        """The memories at the end of the step."""
+        return tuple(self._step.memories(depth)[:, -1].tolist())
+
+    def force(self, depth: Real, rate: Real, stage: Stage) -> Real:
+        """F at the points of the step, N."""
+        return self._step.force(depth, rate)
+
+    def tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
+        """Slopes at the points of the step."""
+        return self._step.tangents(depth, rate)
+
+    def carried(self, depth: float, stage: Stage) -> float:
+        """Not known: it creeps."""
+        return math.nan
+
+    def lost(self, depth: Real, rate: Real, stage: Stage) -> Real:
+        """All of it: what a memory of the load gives back is no potential of the depth."""
+        return self._step.force(depth, rate)
+
+    def stored(self, depth: float, stage: Stage) -> float:
+        """Nothing is counted as stored."""
+        return 0.0
+
+    def time_scale(self, bodies: Bodies) -> float:
+        """The scene's elastic contact time."""
+        return self.scale
+
+    def between(
+        self, steps: Sequence[Step], place: NDArray[np.intp], share: Array, depth: Array, rate: Array, stage: Stage
+    ) -> Array:
+        """F from the memories, polynomials through their values at the points and at the start of each step."""
+        force = np.zeros_like(depth)
+        for index in np.unique(place):
+            here, step = place == index, steps[index]
+            there = StepLoad.of(self.load, step.start.memory, step.length, NODES)
+            values = np.column_stack([there.memory, there.memories(np.maximum(step.depth, TINY))])
+            force[here] = self.load.force(depth[here], rate[here], values @ through_zero(share[here]).T)
+        return force
+
+    def returned(self, bodies: Bodies, last: State) -> tuple[float, State] | None:
+        """As the rule has it."""
+        return RULES.get(self.rule).returned(self.load, bodies, last)
+
+    def resolved(self, scene: Scene) -> Model:
+        """The scene's own profile."""
+        return scene.model
+
+    @property
+    def _step(self) -> StepLoad:
+        assert self.within_step is not None
+        return self.within_step
+
+
+def law_of(scene: Scene, exit: str = "force", rule: str = "recovering") -> HereditaryForce:
+    """The law for a scene, on the load curve of its target. Raises BadInput where no load curve is known."""
+    curve = scene.load_curve
+    load = HereditaryLoad(curve, scene.contact_modulus.scaled(scene.geometry.shape.total))
+    return HereditaryForce(exit=exit, rule=rule, load=load, scale=scene.elastic_contact_time, load_curve=curve)
 
 
 @dataclass(frozen=True)
-class Correspondence:
+class Correspondence(HereditaryLaw):
     """The law; the rest is in the scene.
 
     `exit`: contact ends when the force returns to zero ("force", as the paper clips it) or at depth zero ("depth",
@@ -44,9 +140,14 @@ class Correspondence:
     :mod:`lumped.solvers.point.memory`.
     """
 
-    exit: str = "force"
-    memory: str = "recovering"
+    exit: Annotated[str, EXIT] = "force"
+    memory: Annotated[str, Key(Choice(RULES.names), "what is left of it at the next contact")] = "recovering"
     name: ClassVar[str] = "correspondence"
+
+    @property
+    def solve(self) -> Solve | None:
+        """That which ends with the force."""
+        return solve if self.exit == "force" else None
 
     def simulate(self, scene: Scene, tolerance: float) -> Result:
         """The impacts of a scene to this tolerance. Raises NotReached."""
@@ -97,3 +198,6 @@ def solve(problem: Hereditary, end_time: float, settings: Settings, before: Cour
 
 def _phase(path: Path) -> HereditaryPhase:
     return HereditaryPhase(path, SinceTouch(), DEPTH, DEPTH)
+
+
+MEMBER = LawKind(of, __doc__, (keys_of(Correspondence),))

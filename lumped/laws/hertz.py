@@ -5,16 +5,13 @@ Of a scene k = (4/3) E* sqrt(R) with the relaxed modulus, the profile a parabola
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.laws._parameters import COMMON, EXPONENT, STIFFNESS, Parameters
 from lumped.laws._power_law import Undamped
+from lumped.laws.base import LawKind
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Key
-
-KEYS: Mapping[str, Key] = {**STIFFNESS, **EXPONENT, **COMMON}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,3 +27,6 @@ def of(scene: Scene) -> HertzLaw:
     given = Parameters(scene, HertzLaw.name)
     alpha = given.exponent()
     return HertzLaw(k=given.stiffness(alpha), alpha=alpha, **given.common())
+
+
+MEMBER = LawKind(of, __doc__, (STIFFNESS, EXPONENT, COMMON))

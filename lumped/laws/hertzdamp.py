@@ -7,24 +7,14 @@ does not depend on it. Of e, xi is the exact one unless `damping` names a publis
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_keys, formula_key
-from lumped.laws._spring_damped import SpringDamped
+from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_key, formula_key
+from lumped.laws._power_law import SpringDamped
+from lumped.laws.base import LawKind
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Key
 from lumped.solvers.point.bodies import Stage
-
-KEYS: Mapping[str, Key] = {
-    **STIFFNESS,
-    **EXPONENT,
-    **RESTITUTION,
-    **damping_keys("xi"),
-    **formula_key("hunt_crossley"),
-    **COMMON,
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,3 +38,8 @@ def of(scene: Scene) -> Hertzdamp:
     if kind == "e":
         xi = given.meeting("hunt_crossley", xi)
     return Hertzdamp(k=k, xi=xi, alpha=alpha, **given.common())
+
+
+MEMBER = LawKind(
+    of, __doc__, (STIFFNESS, EXPONENT, RESTITUTION, damping_key("xi"), formula_key("hunt_crossley"), COMMON)
+)

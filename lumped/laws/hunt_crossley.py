@@ -6,24 +6,14 @@ Doi 10.1115/1.3423596. Of e, chi is the exact one unless `damping` names a publi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_keys, formula_key
-from lumped.laws._spring_damped import SpringDamped
+from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_key, formula_key
+from lumped.laws._power_law import SpringDamped
+from lumped.laws.base import LawKind
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Key
 from lumped.solvers.point.bodies import Stage
-
-KEYS: Mapping[str, Key] = {
-    **STIFFNESS,
-    **EXPONENT,
-    **RESTITUTION,
-    **damping_keys("chi", unit="s/m"),
-    **formula_key("hunt_crossley"),
-    **COMMON,
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,3 +37,10 @@ def of(scene: Scene) -> HuntCrossley:
     if kind == "e":
         chi = given.meeting("hunt_crossley", chi) / scene.velocity
     return HuntCrossley(k=k, chi=chi, alpha=alpha, **given.common())
+
+
+MEMBER = LawKind(
+    of,
+    __doc__,
+    (STIFFNESS, EXPONENT, RESTITUTION, damping_key("chi", "s/m"), formula_key("hunt_crossley"), COMMON),
+)

@@ -2,8 +2,15 @@
 
 F = k2 depth + q: q follows the depth with the slope k1 - k2, but never leaves 0 to (k1 - k2) yield_depth. So loading
 has the slope k1 up to the yield depth, then k2; unloading k1 until it meets the line k2 depth, then follows that; and
-so on from wherever it turns. Doi 10.1002/eqe.557; Dryden 2008 for OpenSees. Of e and an elastic stiffness see
-:mod:`lumped.laws._bilinear`.
+so on from wherever it turns. Doi 10.1002/eqe.557; Dryden 2008 for OpenSees.
+
+Of an elastic stiffness and a restitution the published recipe asks for the loss
+E = k d^(alpha + 1) (1 - e^2)/(alpha + 1) at the largest depth d, with the secant stiffness K = k d^(alpha - 1) there
+and a yield depth a d:
+    k1 = K + E/(a d^2),  k2 = K - E/((1 - a) d^2).
+Muthukumar and DesRoches 2006, doi 10.1002/eqe.557; d is that of the elastic impact. But the loop stores other energy
+than the elastic spring, so that neither d nor e come out. Exact, E = (1 - e^2) m v^2/2 and d is the depth reached,
+    K d^2 = (1 + e^2) m v^2/2, as the work done up to d is (K d^2 + E)/2.
 """
 
 from __future__ import annotations
@@ -11,36 +18,30 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
 from lumped import restitution
 from lumped.errors import Fault
-from lumped.laws import _bilinear
 from lumped.laws._force_law import ForceLaw
 from lumped.laws._impacts import bodies_of
 from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters
+from lumped.laws.base import LawKind
+from lumped.numbers import Real
 from lumped.scene.scene import Scene
 from lumped.schema.keys import Choice, Key, Number
 from lumped.solvers.point.bodies import Bodies, Stage
 
-FORMULAS = {restitution.EXACT: _bilinear.exact, "muthukumar": _bilinear.published}
+FORMULAS = (restitution.EXACT, "muthukumar")
 # A step that ends at a corner, to rounding, is still before it.
 AT_CORNER = 1e-9
 LOOP: Mapping[str, Key] = {
-    "k1": Number(1e-30, 1e30, "N/m", required=False),
-    "k2": Number(1e-30, 1e30, "N/m", required=False),
-    "yield_depth": Number(1e-30, 1e6, "m", required=False),
+    "k1": Key(Number(1e-30, 1e30, "N/m"), "stiffness up to the yield depth", required=False),
+    "k2": Key(Number(1e-30, 1e30, "N/m"), "stiffness beyond it", required=False),
+    "yield_depth": Key(Number(1e-30, 1e6, "m"), "depth at which it yields", required=False),
 }
-KEYS: Mapping[str, Key] = {
-    **LOOP,
-    **STIFFNESS,
-    **EXPONENT,
-    **RESTITUTION,
-    "damping": Choice(tuple(FORMULAS), required=False),
-    **COMMON,
-}
+YIELD_SHARE = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,15 +59,15 @@ class ImpactBilinear(ForceLaw):
         """The slope of q, N/m, and its highest value, N."""
         return self.k1 - self.k2, (self.k1 - self.k2) * self.yield_depth
 
-    def force(self, depth: Any, rate: Any, stage: Stage) -> Any:
+    def force(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """F, N."""
         return self.k2 * depth + self._held(depth, stage)
 
-    def tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+    def tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
         """k1 while q follows the depth, else k2; 0."""
         return np.where(self._sliding(depth, stage), self.k2, self.k1), 0.0 * rate
 
-    def lost(self, depth: Any, rate: Any, stage: Stage) -> Any:
+    def lost(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """q where it stays at its highest, N: at zero it loses nothing."""
         return np.where(self._sliding(depth, stage), self._held(depth, stage), 0.0)
 
@@ -100,11 +101,11 @@ class ImpactBilinear(ForceLaw):
         """q at the beginning of a stage."""
         return stage.kept[0] if stage.kept else 0.0
 
-    def _held(self, depth: Any, stage: Stage) -> Any:
+    def _held(self, depth: Real, stage: Stage) -> Real:
         slope, highest = self.slider
         return np.clip(self._begun(stage) + slope * (depth - stage.turn), 0.0, highest)
 
-    def _sliding(self, depth: Any, stage: Stage) -> Any:
+    def _sliding(self, depth: Real, stage: Stage) -> Real:
         slope, highest = self.slider
         free, least = self._begun(stage) + slope * (depth - stage.turn), AT_CORNER * highest
         return (free > highest + least) if stage.approaching else (free < -least)
@@ -117,12 +118,12 @@ def of(scene: Scene) -> ImpactBilinear:
     return ImpactBilinear(**numbers._asdict(), **given.common())
 
 
-def _given(given: Parameters) -> _bilinear.LoopNumbers:
+def _given(given: Parameters) -> LoopNumbers:
     """k1, k2 and yield_depth of the scene file, all three."""
-    for key, accepted in LOOP.items():
+    for key, own in LOOP.items():
         if key not in given.values:
-            given.missing(key, f"{accepted.accepted}; k1, k2 and yield_depth come together")
-    numbers = _bilinear.LoopNumbers(*(given.get(key, 1.0) for key in LOOP))
+            given.missing(key, f"{own.kind.accepted}; k1, k2 and yield_depth come together")
+    numbers = LoopNumbers(*(given.get(key, 1.0) for key in LOOP))
     others = sorted(set(given.values) & {"k", "alpha", "e", "damping"})
     if others:
         reason = f"{', '.join(others)} beside k1, k2 and yield_depth; accepted: either, not both"
@@ -133,8 +134,55 @@ def _given(given: Parameters) -> _bilinear.LoopNumbers:
     return numbers
 
 
-def _derived(given: Parameters) -> _bilinear.LoopNumbers:
+def _derived(given: Parameters) -> LoopNumbers:
     """From the stiffness of an elastic law and e."""
     alpha = given.exponent()
     k, (_, e) = given.stiffness(alpha), given.damping(())
-    return FORMULAS[given.get("damping", restitution.EXACT)](k, alpha, bodies_of(given.scene), e)
+    recipe_of = exact if given.get("damping", restitution.EXACT) == restitution.EXACT else published
+    return recipe_of(k, alpha, bodies_of(given.scene), e)
+
+
+class LoopNumbers(NamedTuple):
+    """k1 and k2, N/m, and the yield depth, m."""
+
+    k1: float
+    k2: float
+    yield_depth: float
+
+
+def exact(k: float, alpha: float, bodies: Bodies, e: float) -> LoopNumbers:
+    """The loop that meets e and has the elastic law's force at its largest depth.
+
+    k2 stays positive where a < 2 e^2/(1 + e^2): for e below 1/3 a is half of that.
+    """
+    kinetic = 0.5 * bodies.mass * bodies.velocity**2
+    depth = ((1.0 + e**2) * kinetic / k) ** (1.0 / (alpha + 1.0))
+    share = min(YIELD_SHARE, e**2 / (1.0 + e**2))
+    return recipe(k * depth ** (alpha - 1.0), depth, (1.0 - e) * (1.0 + e) * kinetic, share)
+
+
+def published(k: float, alpha: float, bodies: Bodies, e: float) -> LoopNumbers:
+    """The recipe at the depth of the elastic impact."""
+    kinetic = 0.5 * bodies.mass * bodies.velocity**2
+    depth = ((alpha + 1.0) * kinetic / k) ** (1.0 / (alpha + 1.0))
+    return recipe(k * depth ** (alpha - 1.0), depth, (1.0 - e) * (1.0 + e) * kinetic, YIELD_SHARE)
+
+
+def recipe(stiffness: float, depth: float, loss: float, share: float) -> LoopNumbers:
+    """From the secant stiffness, N/m, at a depth, m, the loss, J, and the yield depth's share of the depth."""
+    k1, k2 = stiffness + loss / (share * depth**2), stiffness - loss / ((1.0 - share) * depth**2)
+    return LoopNumbers(k1, k2, share * depth)
+
+
+MEMBER = LawKind(
+    of,
+    __doc__,
+    (
+        LOOP,
+        STIFFNESS,
+        EXPONENT,
+        RESTITUTION,
+        {"damping": Key(Choice(FORMULAS), "formula by which e becomes the loop", required=False)},
+        COMMON,
+    ),
+)

@@ -6,23 +6,13 @@ paper. Doi 10.1002/eqe.434.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.laws._oscillator_damped import OscillatorDamped
-from lumped.laws._parameters import COMMON, EXPONENT_FROM_ONE, RESTITUTION, STIFFNESS, damping_keys, formula_key
+from lumped.laws._parameters import COMMON, EXPONENT_FROM_ONE, RESTITUTION, STIFFNESS, damping_key, formula_key
+from lumped.laws.base import LawKind
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Key
-
-KEYS: Mapping[str, Key] = {
-    **STIFFNESS,
-    **EXPONENT_FROM_ONE,
-    **RESTITUTION,
-    **damping_keys("xi"),
-    **formula_key("jankowski"),
-    **COMMON,
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,3 +26,8 @@ class Jankowski(OscillatorDamped):
 def of(scene: Scene) -> Jankowski:
     """The law for a scene. Raises BadInput."""
     return Jankowski.damped_by(scene, "xi", unit=2.0)
+
+
+MEMBER = LawKind(
+    of, __doc__, (STIFFNESS, EXPONENT_FROM_ONE, RESTITUTION, damping_key("xi"), formula_key("jankowski"), COMMON)
+)

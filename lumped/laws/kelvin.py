@@ -6,24 +6,15 @@ damping "(7)" (1988, doi 10.1002/eqe.4290160312) belongs to `exit = "depth"`, wh
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from lumped.laws._parameters import COMMON, RESTITUTION, STIFFNESS, Parameters, damping_keys, formula_key
+from lumped.laws._parameters import COMMON, RESTITUTION, STIFFNESS, Parameters, damping_key, formula_key
 from lumped.laws._power_law import PowerLaw
+from lumped.laws.base import LawKind
+from lumped.numbers import Real
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Key
 from lumped.solvers.point.bodies import Stage
-
-KEYS: Mapping[str, Key] = {
-    **STIFFNESS,
-    **RESTITUTION,
-    **damping_keys("xi"),
-    **damping_keys("c", unit="N s/m"),
-    **formula_key("kelvin"),
-    **COMMON,
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,11 +26,11 @@ class Kelvin(PowerLaw):
     name: ClassVar[str] = "kelvin"
     tensile: ClassVar[bool] = True
 
-    def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:
+    def damper(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """c rate."""
         return self.c * rate
 
-    def damper_tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+    def damper_tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
         """0, c."""
         return 0.0, self.c + 0.0 * rate
 
@@ -49,3 +40,10 @@ def of(scene: Scene) -> Kelvin:
     given = Parameters(scene, Kelvin.name)
     k = given.stiffness(1.0)
     return Kelvin(k=k, c=given.dashpot(k), **given.common())
+
+
+MEMBER = LawKind(
+    of,
+    __doc__,
+    (STIFFNESS, RESTITUTION, damping_key("xi"), damping_key("c", "N s/m"), formula_key("kelvin"), COMMON),
+)

@@ -7,23 +7,14 @@ with a constant c = chi k of its own.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_keys
-from lumped.laws._spring_damped import SpringDamped
+from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_key
+from lumped.laws._power_law import SpringDamped
+from lumped.laws.base import LawKind
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Key
 from lumped.solvers.point.bodies import Stage
-
-KEYS: Mapping[str, Key] = {
-    **STIFFNESS,
-    **EXPONENT,
-    **RESTITUTION,
-    **damping_keys("c", unit="N s/m^(alpha + 1)"),
-    **COMMON,
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,3 +38,6 @@ def of(scene: Scene) -> Khatiwada:
     if kind == "e":
         c = given.meeting("khatiwada", c) * k / scene.velocity
     return Khatiwada(k=k, c=c, alpha=alpha, **given.common())
+
+
+MEMBER = LawKind(of, __doc__, (STIFFNESS, EXPONENT, RESTITUTION, damping_key("c", "N s/m^(alpha + 1)"), COMMON))

@@ -7,25 +7,17 @@ contact. A in s. The force is that of Hertz at the depth which A later would be 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from lumped.laws._parameters import COMMON, RESTITUTION, STIFFNESS, Parameters, damping_keys, formula_key
+from lumped.laws._parameters import COMMON, RESTITUTION, STIFFNESS, Parameters, damping_key, formula_key
 from lumped.laws._power_law import PowerLaw
+from lumped.laws.base import LawKind
+from lumped.numbers import Real
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Key
 from lumped.solvers.point.bodies import Stage
-
-KEYS: Mapping[str, Key] = {
-    **STIFFNESS,
-    **RESTITUTION,
-    **damping_keys("A", unit="s"),
-    **formula_key("kuwabara_kono"),
-    **COMMON,
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,11 +33,11 @@ class KuwabaraKono(PowerLaw):
         """The spring's and the damper's."""
         return (1.5, 0.5)
 
-    def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:
+    def damper(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """(3/2) A k sqrt(depth) rate."""
         return 1.5 * self.A * self.k * np.sqrt(depth) * rate
 
-    def damper_tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+    def damper_tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
         """Its slopes."""
         strength, root = 1.5 * self.A * self.k, np.sqrt(depth)
         return 0.5 * strength * rate / root, strength * root
@@ -62,3 +54,6 @@ def of(scene: Scene) -> KuwabaraKono:
     if kind == "e":
         A = given.meeting("kuwabara_kono", A) / (1.5 * (k / scene.reduced_mass) ** 0.4 * scene.velocity**0.2)
     return KuwabaraKono(k=k, A=A, **given.common())
+
+
+MEMBER = LawKind(of, __doc__, (STIFFNESS, RESTITUTION, damping_key("A", "s"), formula_key("kuwabara_kono"), COMMON))

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.laws._parameters import COMMON, STIFFNESS, Parameters
 from lumped.laws._power_law import Undamped
+from lumped.laws.base import LawKind
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Key
-
-KEYS: Mapping[str, Key] = {**STIFFNESS, **COMMON}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,3 +23,6 @@ def of(scene: Scene) -> LinearSpring:
     """The law for a scene. Raises BadInput."""
     given = Parameters(scene, LinearSpring.name)
     return LinearSpring(k=given.stiffness(1.0), **given.common())
+
+
+MEMBER = LawKind(of, __doc__, (STIFFNESS, COMMON))

@@ -6,24 +6,15 @@ Jankowski 2011, Iran. J. Sci. Technol. C 35, 51-62.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from lumped.laws._parameters import COMMON, RESTITUTION, STIFFNESS, Parameters, damping_keys, formula_key
+from lumped.laws._parameters import COMMON, RESTITUTION, STIFFNESS, Parameters, damping_key, formula_key
 from lumped.laws._power_law import PowerLaw
+from lumped.laws.base import LawKind
+from lumped.numbers import Real
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Key
 from lumped.solvers.point.bodies import Stage
-
-KEYS: Mapping[str, Key] = {
-    **STIFFNESS,
-    **RESTITUTION,
-    **damping_keys("xi"),
-    **damping_keys("c", unit="N s/m"),
-    **formula_key("mahmoud"),
-    **COMMON,
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,11 +25,11 @@ class Mahmoud(PowerLaw):
     alpha: float = 1.0
     name: ClassVar[str] = "mahmoud"
 
-    def damper(self, depth: Any, rate: Any, stage: Stage) -> Any:
+    def damper(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """c rate in the approach."""
         return self.c * rate if stage.approaching else 0.0 * rate
 
-    def damper_tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+    def damper_tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
         """0, c in the approach."""
         return 0.0, (self.c if stage.approaching else 0.0) + 0.0 * rate
 
@@ -48,3 +39,10 @@ def of(scene: Scene) -> Mahmoud:
     given = Parameters(scene, Mahmoud.name)
     k = given.stiffness(1.0)
     return Mahmoud(k=k, c=given.dashpot(k), **given.common())
+
+
+MEMBER = LawKind(
+    of,
+    __doc__,
+    (STIFFNESS, RESTITUTION, damping_key("xi"), damping_key("c", "N s/m"), formula_key("mahmoud"), COMMON),
+)

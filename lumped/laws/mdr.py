@@ -11,14 +11,13 @@ from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.laws._assembly import Answer, assemble, bars, impulse_of
-from lumped.laws._half_space import KEYS as KEYS
-from lumped.laws._half_space import check
+from lumped.laws.base import LawKind, check
 from lumped.numbers.clock import Clock
 from lumped.numbers.interpolation import local, peak
 from lumped.result.ending import End
 from lumped.result.result import Result, meets
 from lumped.scene.scene import Scene
-from lumped.solvers.mdr.coarse import coarse, coarse_beyond, pace_of, problem_of
+from lumped.solvers.mdr.march import coarse, coarse_beyond, pace_of, problem_of
 from lumped.solvers.mdr.nest import Level, Nest, limit, predicted_turn
 
 Array = NDArray[np.float64]
@@ -189,3 +188,6 @@ def _energy(scene: Scene, level: Level) -> dict[str, float | None]:
     fallen, out, spent, held = level.energies.tolist()
     given = 0.5 * scene.reduced_mass * scene.velocity**2 + fallen
     return {"in": given, "out": out, "viscous": spent, "stored": held, "residual": given - out - spent - held}
+
+
+MEMBER = LawKind(of, __doc__)

@@ -2,30 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.laws._assembly import Answer, assemble, bars, impulse_of
-from lumped.laws._half_space import check_geometry
+from lumped.laws.base import LawKind, check_geometry
 from lumped.numbers.clock import Clock
 from lumped.numbers.interpolation import highest
 from lumped.result.ending import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Key
+from lumped.schema import Table
 from lumped.solvers.rod.flat import FlatImpact
 from lumped.solvers.rod.tipped import LONGEST, RodScales, TippedImpact
 from lumped.solvers.rod.waves import Waves
 from lumped.targets.rod import Rod
 
 Array = NDArray[np.float64]
-KEYS: Mapping[str, Key] = {}
 COARSEST, FINEST, FINER = 1e-6, 1e-12, 1e-3  # of the tolerance, asked of every step
 COARSER = 1e2  # where what is left of the error shows
 # The longest steps of the coarser answer over those of the finer: where no tolerance binds both would take the same
@@ -47,7 +45,7 @@ class RodWaves:
         fine = _answer(scene, rtol)
         coarse = fine if scene.profile.fixed_radius else _answer(scene, rtol * COARSER, LONGER * LONGEST)
         quantities, force_error = bars(fine, coarse, SAFETY)
-        integration: dict[str, Any] = {"rtol": rtol} if coarse is not fine else {"series": "exact"}
+        integration: Table = {"rtol": rtol} if coarse is not fine else {"series": "exact"}
         work, model = {"echoes": int(fine.times.size // PLACES) - 1}, scene.model
         return assemble(self.name, scene, tolerance, fine, quantities, force_error, clock, integration, work, model)
 
@@ -153,3 +151,6 @@ def _energy(
         held += modulus * float(scene.profile.load_curve.energy(float(impact.dents(rows[-1:])[0])))
     residual = given - out - held - radiated
     return {"in": given, "out": out, "stored": held, "viscous": 0.0, "radiated": radiated, "residual": residual}
+
+
+MEMBER = LawKind(of, __doc__)

@@ -8,9 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lumped.laws._half_space import KEYS as KEYS
-from lumped.laws._half_space import check_geometry
-from lumped.laws._hereditary import Course, simulate
+from lumped.laws._hereditary import Course, HereditaryLaw, Solve, simulate
+from lumped.laws.base import LawKind, check_geometry
 from lumped.result.ending import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
@@ -22,10 +21,15 @@ from lumped.solvers.hereditary.problem import Hereditary
 
 
 @dataclass(frozen=True)
-class Ting:
+class Ting(HereditaryLaw):
     """The law; everything it needs is in the scene."""
 
     name: ClassVar[str] = "ting"
+
+    @property
+    def solve(self) -> Solve:
+        """That of the whole contact."""
+        return solve
 
     def simulate(self, scene: Scene, tolerance: float) -> Result:
         """One impact to this tolerance. Raises NotReached."""
@@ -49,3 +53,6 @@ def solve(problem: Hereditary, end_time: float, settings: Settings, before: Cour
     outward = back.rebound(problem, inward, end_time, settings, known)
     shrinking = HereditaryPhase(outward.path, ByField(outward.path), back.DEPTH, back.EDGE)
     return Course((growing, shrinking), outward.end, inward.steps + outward.steps, inward, outward)
+
+
+MEMBER = LawKind(of, __doc__)

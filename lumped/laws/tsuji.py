@@ -5,23 +5,13 @@ Alpha = 3/2 in doi 10.1016/0032-5910(92)88030-L. With `exit = "depth"` the dampe
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.laws._oscillator_damped import OscillatorDamped
-from lumped.laws._parameters import COMMON, EXPONENT_FROM_ONE, RESTITUTION, STIFFNESS, damping_keys, formula_key
+from lumped.laws._parameters import COMMON, EXPONENT_FROM_ONE, RESTITUTION, STIFFNESS, damping_key, formula_key
+from lumped.laws.base import LawKind
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Key
-
-KEYS: Mapping[str, Key] = {
-    **STIFFNESS,
-    **EXPONENT_FROM_ONE,
-    **RESTITUTION,
-    **damping_keys("alpha_t"),
-    **formula_key("tsuji"),
-    **COMMON,
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,3 +26,8 @@ class Tsuji(OscillatorDamped):
 def of(scene: Scene) -> Tsuji:
     """The law for a scene. Raises BadInput."""
     return Tsuji.damped_by(scene, "alpha_t")
+
+
+MEMBER = LawKind(
+    of, __doc__, (STIFFNESS, EXPONENT_FROM_ONE, RESTITUTION, damping_key("alpha_t"), formula_key("tsuji"), COMMON)
+)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.numbers import Real
 from lumped.numbers.quadrature import gauss
 
 GAUSS_POINTS = 48
@@ -30,34 +31,34 @@ class LoadCurve(ABC):
         return float("inf")
 
     @abstractmethod
-    def force(self, depth: ArrayLike) -> Any:
+    def force(self, depth: ArrayLike) -> Real:
         """F/E* at a depth."""
 
     @abstractmethod
-    def contact_radius(self, depth: ArrayLike) -> Any:
+    def contact_radius(self, depth: ArrayLike) -> Real:
         """Contact radius a at a depth."""
 
     @abstractmethod
-    def depth(self, contact_radius: ArrayLike) -> Any:
+    def depth(self, contact_radius: ArrayLike) -> Real:
         """Depth at a contact radius."""
 
     @abstractmethod
-    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+    def depth_slope(self, contact_radius: ArrayLike) -> Real:
         """d depth / d a."""
 
     @abstractmethod
-    def dforce_ddepth(self, depth: ArrayLike) -> Any:
+    def dforce_ddepth(self, depth: ArrayLike) -> Real:
         """d(F/E*)/d depth: at the edge the profile meets the surface with the stiffness of a flat punch."""
 
     @abstractmethod
     def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
         """Pressure p/E* at a distance from the axis while the contact has this radius, zero outside of it."""
 
-    def force_and_slope(self, depth: ArrayLike) -> tuple[Any, Any]:
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
         """F/E* and dF/d depth at a depth, for those who need both at every step."""
         return self.force(depth), self.dforce_ddepth(depth)
 
-    def force_at(self, contact_radius: ArrayLike) -> Any:
+    def force_at(self, contact_radius: ArrayLike) -> Real:
         """F/E* at a contact radius."""
         return self.force(self.depth(contact_radius))
 
@@ -69,5 +70,5 @@ class LoadCurve(ABC):
         return np.asarray(a * ((self.force_at(x) * self.depth_slope(x)) @ weights))
 
     def pressure_at(self, radius: ArrayLike, depth: float) -> NDArray[np.float64]:
-        """Pressure p/E* at a distance from the axis and a depth."""
+        """Pressure p/E* at a distance from the axis, m, and a depth, m."""
         return self.pressure(radius, float(self.contact_radius(float(depth))))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi, radians, tan
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.half_space import HalfSpaceCurve
+from lumped.numbers import Real
 
 
 @dataclass(frozen=True)
@@ -33,19 +33,19 @@ class ConeCurve(HalfSpaceCurve):
         """tan(theta)."""
         return tan(radians(self.angle))
 
-    def force(self, depth: ArrayLike) -> Any:
+    def force(self, depth: ArrayLike) -> Real:
         """F/E*, m^2."""
         return 2.0 / (pi * self.steepness) * np.maximum(depth, 0.0) ** 2
 
-    def contact_radius(self, depth: ArrayLike) -> Any:
+    def contact_radius(self, depth: ArrayLike) -> Real:
         """2 depth/(pi tan(theta)), m."""
         return 2.0 / (pi * self.steepness) * np.maximum(depth, 0.0)
 
-    def depth(self, contact_radius: ArrayLike) -> Any:
+    def depth(self, contact_radius: ArrayLike) -> Real:
         """(pi/2) a tan(theta), m."""
         return 0.5 * pi * self.steepness * np.asarray(contact_radius)
 
-    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+    def depth_slope(self, contact_radius: ArrayLike) -> Real:
         """(pi/2) tan(theta)."""
         return np.full_like(np.asarray(contact_radius, dtype=float), 0.5 * pi * self.steepness)
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
+from lumped.numbers import Real
 
 
 class FixedArea(LoadCurve):
@@ -28,23 +28,23 @@ class FixedArea(LoadCurve):
         """The radius of the end, m."""
         return self.radius
 
-    def force(self, depth: ArrayLike) -> Any:
+    def force(self, depth: ArrayLike) -> Real:
         """S depth."""
         return self.stiffness * np.maximum(depth, 0.0)
 
-    def contact_radius(self, depth: ArrayLike) -> Any:
+    def contact_radius(self, depth: ArrayLike) -> Real:
         """The radius of the end wherever there is depth, m."""
         return np.where(np.asarray(depth) > 0.0, self.radius, 0.0)
 
-    def depth(self, contact_radius: ArrayLike) -> Any:
+    def depth(self, contact_radius: ArrayLike) -> Real:
         """The least depth with this contact radius, m: 0, infinite beyond the end."""
         return np.where(np.asarray(contact_radius) <= self.radius, 0.0, np.inf)
 
-    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+    def depth_slope(self, contact_radius: ArrayLike) -> Real:
         """0, infinite beyond the end."""
         return self.depth(contact_radius)
 
-    def dforce_ddepth(self, depth: ArrayLike) -> Any:
+    def dforce_ddepth(self, depth: ArrayLike) -> Real:
         """S."""
         return np.where(np.asarray(depth) >= 0.0, self.stiffness, 0.0)
 

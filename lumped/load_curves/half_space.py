@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.load_curves.base import GAUSS_POINTS, LoadCurve
+from lumped.numbers import Real
 from lumped.numbers.quadrature import gauss
 
 
@@ -16,7 +15,7 @@ class HalfSpaceCurve(LoadCurve):
     of the indenter (Sneddon 1965, doi 10.1016/0020-7225(65)90019-4).
     """
 
-    def dforce_ddepth(self, depth: ArrayLike) -> Any:
+    def dforce_ddepth(self, depth: ArrayLike) -> Real:
         """2 a."""
         return 2.0 * self.contact_radius(depth)
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.half_space import HalfSpaceCurve
+from lumped.numbers import Real
 
 
 @dataclass(frozen=True)
@@ -19,21 +19,21 @@ class Hertz(HalfSpaceCurve):
 
     radius: float
 
-    def force(self, depth: ArrayLike) -> Any:
+    def force(self, depth: ArrayLike) -> Real:
         """F/E*, m^2."""
         return 4.0 / 3.0 * self.radius**0.5 * np.maximum(depth, 0.0) ** 1.5
 
-    def contact_radius(self, depth: ArrayLike) -> Any:
+    def contact_radius(self, depth: ArrayLike) -> Real:
         """a, m."""
         if isinstance(depth, float):
             return (self.radius * max(depth, 0.0)) ** 0.5
         return np.sqrt(self.radius * np.maximum(depth, 0.0))
 
-    def depth(self, contact_radius: ArrayLike) -> Any:
+    def depth(self, contact_radius: ArrayLike) -> Real:
         """a^2/R, m."""
         return np.asarray(contact_radius) ** 2 / self.radius
 
-    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+    def depth_slope(self, contact_radius: ArrayLike) -> Real:
         """2a/R."""
         return 2.0 * np.asarray(contact_radius) / self.radius
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import e, exp, pi
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +12,7 @@ from lumped.errors import NotReached
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.half_plane import check_datum
 from lumped.load_curves.line_profile import hertz_pressure
+from lumped.numbers import Real
 
 
 @dataclass(frozen=True)
@@ -41,15 +41,15 @@ class Johnson(LoadCurve):
     def _side(self) -> float:
         return self.nu / (1.0 - self.nu)
 
-    def force(self, depth: ArrayLike) -> Any:
+    def force(self, depth: ArrayLike) -> Real:
         """F/E* per unit length, m."""
         return self.force_at(self.contact_radius(depth))
 
-    def force_at(self, contact_radius: ArrayLike) -> Any:
+    def force_at(self, contact_radius: ArrayLike) -> Real:
         """pi b^2/(4R), m."""
         return 0.25 * pi * np.asarray(contact_radius) ** 2 / self.radius
 
-    def contact_radius(self, depth: ArrayLike) -> Any:
+    def contact_radius(self, depth: ArrayLike) -> Real:
         """Half-width b, m: b^2 ln(b^2/B) = -4 R depth, B = 4 d^2 exp(-nu/(1-nu)), by Lambert's lower branch."""
         from scipy.special import lambertw
 
@@ -63,17 +63,17 @@ class Johnson(LoadCurve):
         answer = np.real(lambertw(-np.where(share > 0.0, share, 0.1), -1))
         return np.where(share > 0.0, np.sqrt(square * np.exp(answer)), 0.0)
 
-    def depth(self, contact_radius: ArrayLike) -> Any:
+    def depth(self, contact_radius: ArrayLike) -> Real:
         """(b^2/(4R)) [2 ln(2d/b) - nu/(1-nu)], m."""
         b = np.asarray(contact_radius, dtype=float)
         return 0.25 * b**2 / self.radius * (self._logarithm(b) - self._side)
 
-    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+    def depth_slope(self, contact_radius: ArrayLike) -> Real:
         """(b/(2R)) [2 ln(2d/b) - 1 - nu/(1-nu)]."""
         b = np.asarray(contact_radius, dtype=float)
         return 0.5 * b / self.radius * (self._logarithm(b) - 1.0 - self._side)
 
-    def dforce_ddepth(self, depth: ArrayLike) -> Any:
+    def dforce_ddepth(self, depth: ArrayLike) -> Real:
         """pi/[2 ln(2d/b) - 1 - nu/(1-nu)]: a flat punch's, as far as the datum is far."""
         b = np.asarray(self.contact_radius(depth))
         return np.where(b > 0.0, pi / (self._logarithm(b) - 1.0 - self._side), 0.0)

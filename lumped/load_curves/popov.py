@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.line_profile import hertz_pressure
+from lumped.numbers import Real
 
 
 @dataclass(frozen=True)
@@ -23,23 +23,23 @@ class Popov(LoadCurve):
 
     radius: float
 
-    def force(self, depth: ArrayLike) -> Any:
+    def force(self, depth: ArrayLike) -> Real:
         """(pi/4) depth, m."""
         return 0.25 * pi * np.maximum(depth, 0.0)
 
-    def contact_radius(self, depth: ArrayLike) -> Any:
+    def contact_radius(self, depth: ArrayLike) -> Real:
         """sqrt(R depth), m."""
         return np.sqrt(self.radius * np.maximum(depth, 0.0))
 
-    def depth(self, contact_radius: ArrayLike) -> Any:
+    def depth(self, contact_radius: ArrayLike) -> Real:
         """b^2/R, m."""
         return np.asarray(contact_radius) ** 2 / self.radius
 
-    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+    def depth_slope(self, contact_radius: ArrayLike) -> Real:
         """2 b/R."""
         return 2.0 * np.asarray(contact_radius) / self.radius
 
-    def dforce_ddepth(self, depth: ArrayLike) -> Any:
+    def dforce_ddepth(self, depth: ArrayLike) -> Real:
         """pi/4."""
         return np.where(np.asarray(depth) >= 0.0, 0.25 * pi, 0.0)
 

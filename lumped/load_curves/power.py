@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import gamma, inf, pi, sqrt
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.half_space import HalfSpaceCurve
+from lumped.numbers import Real
 
 
 @dataclass(frozen=True)
@@ -36,20 +36,20 @@ class Power(HalfSpaceCurve):
         n = self.exponent
         return self.coefficient * sqrt(pi) * gamma(0.5 * n + 1.0) / gamma(0.5 * n + 0.5)
 
-    def force(self, depth: ArrayLike) -> Any:
+    def force(self, depth: ArrayLike) -> Real:
         """F/E*, m^2."""
         n = self.exponent
         return 2.0 * n / (n + 1.0) * np.maximum(depth, 0.0) * self.contact_radius(depth)
 
-    def contact_radius(self, depth: ArrayLike) -> Any:
+    def contact_radius(self, depth: ArrayLike) -> Real:
         """(depth/(beta c))^(1/n), m."""
         return (np.maximum(depth, 0.0) / self._steepness) ** (1.0 / self.exponent)
 
-    def depth(self, contact_radius: ArrayLike) -> Any:
+    def depth(self, contact_radius: ArrayLike) -> Real:
         """beta c a^n, m."""
         return self._steepness * np.asarray(contact_radius) ** self.exponent
 
-    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+    def depth_slope(self, contact_radius: ArrayLike) -> Real:
         """n beta c a^(n-1)."""
         return self.exponent * self._steepness * np.asarray(contact_radius) ** (self.exponent - 1.0)
 

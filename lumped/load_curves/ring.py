@@ -5,15 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from math import exp, log
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import NotReached
 from lumped.load_curves.base import GAUSS_POINTS, LoadCurve
-from lumped.load_curves.panels import Array, evaluate, panel, tested_place
 from lumped.load_curves.ring_contact import RingContact
+from lumped.load_curves.tabulated import Array, evaluate, panel, tested_place
+from lumped.numbers import Real
 from lumped.numbers.quadrature import gauss
 
 # Panels by the logarithm of the depth over its limit: the deeper half, and a decade each below it.
@@ -33,30 +34,30 @@ class RodInRing(RingContact, LoadCurve):
 
     accuracy: ClassVar[float] = ACCURACY
 
-    def force(self, depth: ArrayLike) -> Any:
+    def force(self, depth: ArrayLike) -> Real:
         """F/E* per unit length, m."""
         return self._at(depth)[1]
 
-    def contact_radius(self, depth: ArrayLike) -> Any:
+    def contact_radius(self, depth: ArrayLike) -> Real:
         """Half-length of the inner arc touched, m."""
         return self._at(depth)[0]
 
-    def dforce_ddepth(self, depth: ArrayLike) -> Any:
+    def dforce_ddepth(self, depth: ArrayLike) -> Real:
         """d(F/E*)/d depth per unit length."""
         return self._at(depth)[2]
 
-    def force_and_slope(self, depth: ArrayLike) -> tuple[Any, Any]:
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
         """F/E* and dF/d depth at a depth."""
         _, force, slope, _ = self._at(depth)
         return force, slope
 
-    def depth(self, contact_radius: ArrayLike) -> Any:
+    def depth(self, contact_radius: ArrayLike) -> Real:
         """The least depth with this half-length of arc, m, from the equation itself; infinite where none has it."""
         half_length = np.asarray(contact_radius, dtype=float)
         depths = [self.depth_at(float(b) / self.inner_radius) if b > 0.0 else 0.0 for b in half_length.ravel()]
         return np.reshape(depths, half_length.shape)
 
-    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+    def depth_slope(self, contact_radius: ArrayLike) -> Real:
         """d depth / d half-length of arc."""
         depth = np.asarray(self.depth(contact_radius))
         half_length, _, _, exponent = self._at(depth)

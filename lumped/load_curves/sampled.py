@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
+from lumped.numbers import Real
 
 Array = NDArray[np.float64]
 BISECTIONS = 120
@@ -27,23 +27,23 @@ class SampledCurve(LoadCurve):
     forces: tuple[float, ...]
     radii: tuple[float, ...]
 
-    def force(self, depth: ArrayLike) -> Any:
+    def force(self, depth: ArrayLike) -> Real:
         """F/E*."""
         return self.force_and_slope(depth)[0]
 
-    def dforce_ddepth(self, depth: ArrayLike) -> Any:
+    def dforce_ddepth(self, depth: ArrayLike) -> Real:
         """d(F/E*)/d depth."""
         return self.force_and_slope(depth)[1]
 
-    def force_and_slope(self, depth: ArrayLike) -> tuple[Any, Any]:
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
         """F/E* and its slope, zero without depth."""
         return self._power(depth, self.forces)
 
-    def contact_radius(self, depth: ArrayLike) -> Any:
+    def contact_radius(self, depth: ArrayLike) -> Real:
         """a, m."""
         return self._power(depth, self.radii)[0]
 
-    def depth(self, contact_radius: ArrayLike) -> Any:
+    def depth(self, contact_radius: ArrayLike) -> Real:
         """The depth of a contact radius, m, by bisection in logarithms."""
         asked = np.maximum(np.asarray(contact_radius, dtype=float), 0.0)
         low, high = np.full_like(asked, np.log(TINY)), np.full_like(asked, -np.log(TINY))
@@ -53,7 +53,7 @@ class SampledCurve(LoadCurve):
             low, high = np.where(wide, low, middle), np.where(wide, middle, high)
         return np.where(asked > 0.0, np.exp(0.5 * (low + high)), 0.0)
 
-    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+    def depth_slope(self, contact_radius: ArrayLike) -> Real:
         """1/(da/d depth)."""
         return 1.0 / self._power(self.depth(contact_radius), self.radii)[1]
 
@@ -61,7 +61,7 @@ class SampledCurve(LoadCurve):
         """Raises BadInput: forces alone are known."""
         raise BadInput(Fault("load curve", "pressure", "sampled: only its forces are known"))
 
-    def _power(self, depth: ArrayLike, values: tuple[float, ...]) -> tuple[Any, Any]:
+    def _power(self, depth: ArrayLike, values: tuple[float, ...]) -> tuple[Real, Real]:
         """A positive quantity and its slope over the depth."""
         known = np.maximum(np.asarray(depth, dtype=float), TINY)
         logarithm, exponent = _line(np.log(known), np.log(self.depths), np.log(values))

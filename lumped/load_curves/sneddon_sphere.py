@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.load_curves.half_space import HalfSpaceCurve
+from lumped.numbers import Real
 
 # u - tanh u = u^3/3 - 2u^5/15 + ...: where the difference itself would lose digits.
 SERIES = (1 / 3, -2 / 15, 17 / 315, -62 / 2835, 1382 / 155925, -21844 / 6081075, 929569 / 638512875)
@@ -30,24 +30,24 @@ class SneddonSphere(HalfSpaceCurve):
         """R, m."""
         return self.radius
 
-    def force(self, depth: ArrayLike) -> Any:
+    def force(self, depth: ArrayLike) -> Real:
         """F/E*, m^2."""
         return self.force_and_slope(depth)[0]
 
-    def force_and_slope(self, depth: ArrayLike) -> tuple[Any, Any]:
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
         """F/E*, m^2, and 2 a, m."""
         u = self._angles(depth)
         t = np.tanh(u)
         return self.radius**2 * (_minus_tanh(u, t) + t * t * u), 2.0 * self.radius * t
 
-    def contact_radius(self, depth: ArrayLike) -> Any:
+    def contact_radius(self, depth: ArrayLike) -> Real:
         """a = R tanh u with u tanh u = depth/R, m."""
         if isinstance(depth, float):
             ratio = max(depth, 0.0) / self.radius
             return self.radius * math.tanh(_angle(ratio, math.tanh, ratio))
         return self.radius * np.tanh(self._angles(depth))
 
-    def depth(self, contact_radius: ArrayLike) -> Any:
+    def depth(self, contact_radius: ArrayLike) -> Real:
         """a artanh(a/R), m; infinite at a = R, nan beyond."""
         if isinstance(contact_radius, float) and abs(contact_radius) < self.radius:
             return contact_radius * math.atanh(contact_radius / self.radius)
@@ -55,7 +55,7 @@ class SneddonSphere(HalfSpaceCurve):
         with np.errstate(divide="ignore", invalid="ignore"):
             return a * np.arctanh(a / self.radius)
 
-    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+    def depth_slope(self, contact_radius: ArrayLike) -> Real:
         """artanh(a/R) + a R/(R^2 - a^2)."""
         ratio = np.asarray(contact_radius) / self.radius
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -67,7 +67,7 @@ class SneddonSphere(HalfSpaceCurve):
         return np.asarray(_angle(ratio, np.tanh, ratio.max(initial=0.0)))
 
 
-def _angle(ratio: Any, tanh: Callable[[Any], Any], deepest: float) -> Any:
+def _angle(ratio: Real, tanh: Callable[[Real], Real], deepest: float) -> Real:
     """u >= 0 with u tanh u = ratio, by Newton; `tanh` is the scalar's or the array's.
 
     The first guess errs by 5 % at most, three steps make that 5e-14 and the fourth leaves rounding; shallow it errs by

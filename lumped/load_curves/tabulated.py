@@ -7,16 +7,23 @@ needed, from the smallest contact outwards.
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Callable
 from functools import lru_cache
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.polynomial import chebyshev
+from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import NotReached
 from lumped.load_curves.base import LoadCurve
-from lumped.load_curves.panels import Array, evaluate, panel, tested_place
+from lumped.numbers import Real
 
+Array = NDArray[np.float64]
+POINTS = 14
+COSINES = np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS)
+# Of the way from a panel's middle to its end: no node lies there.
+TESTED_AT = 0.985
 # A panel is certified by an equation with finer quadrature.
 ACCURACY, REFINEMENT = 1e-8, 1.5
 # Newton's method squares its error: a step of 1e-6 leaves 1e-12.
@@ -27,13 +34,40 @@ REACH, SHARE_OF_EXTENT = 20.0, 0.85
 FIRST_PANEL, FIRST_OF_EXTENT, GROWTH = 0.3, 0.3, 1.6
 
 
+def panel(low: float, high: float, sample: Callable[[float], Array]) -> Array:
+    """Coefficients of smooth functions and of their slopes on one panel, shape (POINTS, 2, m).
+
+    `sample` gives the m functions at one place, shape (m,).
+    """
+    places = 0.5 * (low + high) + 0.5 * (high - low) * COSINES
+    values = chebyshev.chebfit(COSINES, np.array([sample(float(place)) for place in places]), POINTS - 1)
+    slopes = np.concatenate([chebyshev.chebder(values), np.zeros((1, values.shape[1]))])
+    return np.stack([values, slopes * 2.0 / (high - low)], axis=1)
+
+
+def tested_place(low: float, high: float) -> float:
+    """Where a panel is to be certified."""
+    return 0.5 * (low + high) + 0.5 * (high - low) * TESTED_AT
+
+
+def evaluate(tables: Array, edges: Array, place: Array) -> tuple[Array, Array]:
+    """Functions and slopes at places, each of shape (m, n), from panels between ascending edges.
+
+    `tables` has shape (k, POINTS, 2, m), `edges` (k+1,), `place` (n,); the outer panels go on beyond their ends.
+    """
+    index = np.clip(np.searchsorted(edges, place) - 1, 0, len(tables) - 1)
+    z = (2.0 * place - edges[index] - edges[index + 1]) / (edges[index + 1] - edges[index])
+    both = np.asarray(chebyshev.chebval(z, np.moveaxis(tables[index], 0, -1), tensor=False), dtype=float)
+    return both[0], both[1]
+
+
 class TabulatedState(NamedTuple):
     """A curve at contact radii: depth, its slope over the radius, F/E* and dF/d depth, of one shape."""
 
-    depth: Any
-    depth_slope: Any
-    force: Any
-    stiffness: Any
+    depth: Real
+    depth_slope: Real
+    force: Real
+    stiffness: Real
 
 
 class TabulatedCurve(LoadCurve):
@@ -66,32 +100,32 @@ class TabulatedCurve(LoadCurve):
         flat = TabulatedState(*(np.asarray(part) for part in self._at(a.ravel(), max(panels, 1))))
         return TabulatedState(*(part.reshape(a.shape) for part in flat))
 
-    def depth(self, contact_radius: ArrayLike) -> Any:
+    def depth(self, contact_radius: ArrayLike) -> Real:
         """Depth at a contact radius, m."""
         return self.at(contact_radius).depth
 
-    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+    def depth_slope(self, contact_radius: ArrayLike) -> Real:
         """d depth / d a."""
         return self.at(contact_radius).depth_slope
 
-    def force_at(self, contact_radius: ArrayLike) -> Any:
+    def force_at(self, contact_radius: ArrayLike) -> Real:
         """F/E* at a contact radius."""
         return self.at(contact_radius).force
 
-    def force(self, depth: ArrayLike) -> Any:
+    def force(self, depth: ArrayLike) -> Real:
         """F/E* at a depth."""
         return self.force_at(self.contact_radius(depth))
 
-    def dforce_ddepth(self, depth: ArrayLike) -> Any:
+    def dforce_ddepth(self, depth: ArrayLike) -> Real:
         """That of a flat punch with the contact radius at this depth."""
         return self.at(self.contact_radius(depth)).stiffness
 
-    def force_and_slope(self, depth: ArrayLike) -> tuple[Any, Any]:
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
         """F/E* and dF/d depth at a depth."""
         here = self.at(self.contact_radius(depth))
         return here.force, here.stiffness
 
-    def contact_radius(self, depth: ArrayLike) -> Any:
+    def contact_radius(self, depth: ArrayLike) -> Real:
         """Contact radius at a depth, m, by Newton's method in logarithms from a table."""
         asked = np.maximum(np.asarray(depth, dtype=float), 0.0)
         wanted = asked.ravel()[asked.ravel() > 0.0]

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.layer import PointLayer
+from lumped.numbers import Real
 
 
 @dataclass(frozen=True)
@@ -42,24 +42,24 @@ class ThinLayer(LoadCurve):
         """Force over p0 a^2, in plane strain over p0 a."""
         return (4.0 / 3.0, 16.0 / 15.0)[self.power - 1] if self.plane else pi / (self.power + 1.0)
 
-    def force(self, depth: ArrayLike) -> Any:
+    def force(self, depth: ArrayLike) -> Real:
         """F/E*, m^2; per unit length m."""
         a = self.contact_radius(depth)
         return self._fullness * self._peak(np.maximum(depth, 0.0)) * (a if self.plane else a**2)
 
-    def contact_radius(self, depth: ArrayLike) -> Any:
+    def contact_radius(self, depth: ArrayLike) -> Real:
         """sqrt(spread R depth), m."""
         return np.sqrt(self.spread * self.radius * np.maximum(depth, 0.0))
 
-    def depth(self, contact_radius: ArrayLike) -> Any:
+    def depth(self, contact_radius: ArrayLike) -> Real:
         """a^2/(spread R), m."""
         return np.asarray(contact_radius) ** 2 / (self.spread * self.radius)
 
-    def depth_slope(self, contact_radius: ArrayLike) -> Any:
+    def depth_slope(self, contact_radius: ArrayLike) -> Real:
         """2 a/(spread R)."""
         return 2.0 * np.asarray(contact_radius) / (self.spread * self.radius)
 
-    def dforce_ddepth(self, depth: ArrayLike) -> Any:
+    def dforce_ddepth(self, depth: ArrayLike) -> Real:
         """alpha F/depth."""
         d = np.maximum(np.asarray(depth, dtype=float), 0.0)
         return self.exponent * np.divide(self.force(d), d, out=np.zeros_like(d), where=d > 0.0)
@@ -70,7 +70,7 @@ class ThinLayer(LoadCurve):
         ratio = np.divide(r, contact_radius, out=np.ones_like(r), where=r < contact_radius)
         return np.asarray(self._peak(self.depth(contact_radius)) * (1.0 - ratio**2) ** self.power)
 
-    def _peak(self, depth: Any) -> Any:
+    def _peak(self, depth: Real) -> Real:
         """p0/E*."""
         geometry = 1.0 if self.power == 1 else self.radius / self.thickness
         return self.hardness * geometry * (depth / self.thickness) ** self.power

@@ -3,27 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, ClassVar
 
 from lumped.errors import BadInput, Fault
 from lumped.materials.relaxation import Relaxation
-from lumped.schema.key_table import check_fields
+from lumped.schema import Table
 from lumped.schema.keys import Choice, Key, Number
+from lumped.schema.record import Record, written
 
-KEYS: Mapping[str, Key] = {
-    "nu": Number(-1.0, 0.5, above=True),
-    "density": Number(1e-3, 1e6, "kg/m3", required=False),
-    "constant": Choice(("poisson", "bulk"), required=False),
-    "bulk_modulus": Number(1e-3, 1e16, "Pa", required=False),
-    "yield_strength": Number(1e-3, 1e16, "Pa", required=False),
-    "work_of_adhesion": Number(1e-9, 1e6, "J/m2", required=False),
-}
+MODULUS = Number(1e-3, 1e16, "Pa")
 
 
 @dataclass(frozen=True)
-class Material:
+class Material(Record):
     """An isotropic linear viscoelastic material.
 
     `young` is the relaxation modulus of the network (Pa, s). `constant = "poisson"`: nu is constant and
@@ -32,15 +25,16 @@ class Material:
     """
 
     young: Relaxation
-    nu: float
-    density: float | None = None
-    constant: str = "poisson"
-    bulk_modulus: float | None = None
-    yield_strength: float | None = None
-    work_of_adhesion: float | None = None
+    nu: Annotated[float, Key(Number(-1.0, 0.5, above=True), "Poisson's ratio")]
+    density: Annotated[float | None, Key(Number(1e-3, 1e6, "kg/m3"), "density")] = None
+    constant: Annotated[str, Key(Choice(("poisson", "bulk")), "what does not relax")] = "poisson"
+    bulk_modulus: Annotated[float | None, Key(MODULUS, "constant bulk modulus of a fluid")] = None
+    yield_strength: Annotated[float | None, Key(MODULUS, "stress at which it yields")] = None
+    work_of_adhesion: Annotated[float | None, Key(Number(1e-9, 1e6, "J/m2"), "work to part two surfaces")] = None
+    name: ClassVar[str] = "material"
 
     def __post_init__(self) -> None:
-        check_fields("material", self, KEYS)
+        super().__post_init__()
         message = self._bulk_fault()
         if message:
             raise BadInput(Fault("material", "bulk_modulus", message))
@@ -89,17 +83,16 @@ class Material:
         stiffness = 9.0 * self.bulk * shear / (3.0 * self.bulk + shear)
         return Material(Relaxation(stiffness), 0.5 * stiffness / shear - 1.0)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Table:
         """The table of a scene file that gives this material back."""
         young = self.young
-        table: dict[str, Any] = {"law": "prony", "E_inf": young.equilibrium}
+        table: Table = {"law": "prony", "E_inf": young.equilibrium}
         if young.moduli:
             table |= {"E": list(young.moduli), "tau": list(young.times)}
         if young.viscosity:
             table["eta"] = young.viscosity
         table |= _fit_keys(young)
-        known = {name: getattr(self, name) for name in KEYS}
-        return table | {name: value for name, value in known.items() if value is not None}
+        return table | written(self)
 
     def _bulk_fault(self) -> str:
         """Why this bulk modulus cannot stand with this network; empty when it can."""
@@ -111,7 +104,7 @@ class Material:
         return "only for a fluid: a solid has K = E_inf/(3(1-2 nu))" if self.young.relaxed > 0.0 else ""
 
 
-def _fit_keys(young: Relaxation) -> dict[str, Any]:
+def _fit_keys(young: Relaxation) -> Table:
     """What a fitted series says of its fit, in the keys of a Prony series."""
     fidelity = young.fidelity
     if fidelity is None:

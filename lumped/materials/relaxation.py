@@ -6,7 +6,6 @@ The reciprocal of an operational modulus as a sum of simple fractions.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -69,8 +68,8 @@ class Relaxation:
             value = value + modulus * np.exp(-t / tau)
         return value
 
-    def operational(self, s: ArrayLike) -> NDArray[Any]:
-        """s times the Laplace transform of E, in Pa: Q(s)/P(s) of "(13)" to "(16)".
+    def operational(self, s: ArrayLike) -> NDArray[np.inexact]:
+        """s times the Laplace transform of E, scalars or arrays, in Pa: Q(s)/P(s) of "(13)" to "(16)".
 
         `s`, 1/s, is positive, or complex off the negative real axis; at s = i omega this is the complex modulus,
         storage + i loss.
@@ -111,8 +110,8 @@ class Creep:
             value = value - compliance * np.expm1(-t / tau)
         return value
 
-    def operational(self, s: ArrayLike) -> NDArray[Any]:
-        """s times the Laplace transform of J, 1/Pa, for `s` as in `Relaxation.operational`."""
+    def operational(self, s: ArrayLike) -> NDArray[np.inexact]:
+        """s times the Laplace transform of J, scalars or arrays, 1/Pa, for `s` as in `Relaxation.operational`."""
         frequency = np.asarray(s)
         value = self.instantaneous + self.fluidity / frequency
         for compliance, tau in zip(self.compliances, self.times, strict=True):

@@ -9,8 +9,8 @@ from decimal import Decimal
 from lumped.errors import BadInput, Fault, nearest
 from lumped.paper.examples.value import Value
 from lumped.schema.data import directory
-from lumped.schema.key_table import read_table
 from lumped.schema.keys import Choice, Key, Number, Text
+from lumped.schema.record import read_table
 from lumped.schema.toml_file import parsed
 
 AGREES, DIFFERS, UNDECIDED, UNKNOWN = "agrees", "differs", "undecided", "cannot be computed from the text"
@@ -65,8 +65,10 @@ def load() -> dict[str, Rule]:
     """The packaged rules by name. Raises BadInput."""
     path = directory() / "paper" / "rules.toml"
     keys: Mapping[str, Key] = {
-        "kind": Choice((*MARGINS, *UNJUDGED)), "says": Text(), "width": Number(-1.0, 1.0, required=False),
-    }  # fmt: skip
+        "kind": Key(Choice((*MARGINS, *UNJUDGED)), "how a value is judged"),
+        "says": Key(Text(), "the rule in words"),
+        "width": Key(Number(-1.0, 1.0), "what it may differ by", required=False),
+    }
     found, faults = {}, []
     for name, table in parsed(path).items():
         values, more = read_table(path.name, name, table if isinstance(table, Mapping) else {}, keys)

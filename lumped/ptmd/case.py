@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from typing import Any
 
 from lumped.ptmd.system import PoundingDamper, Start
+from lumped.schema import Table
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Case:
     thickness: float | None = None
     rod_radius: float | None = None
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Table:
         """What was resolved from the file: oscillators, force relaxation of the ring, start and times, SI."""
         system = asdict(self.system)
         if self.system.ring is not None:

@@ -13,25 +13,24 @@ from lumped.ptmd.free_vibration import TIME_KEYS
 from lumped.ptmd.system import (
     DISPLACEMENT,
     LENGTH,
-    OSCILLATOR_KEYS,
-    RING_KEYS,
-    START_KEYS,
     Memory,
     Oscillator,
     PoundingDamper,
     PtmdRing,
     Start,
 )
-from lumped.scene.table_reader import Table, TableReader
-from lumped.schema import data
+from lumped.scene.table_reader import TableReader
+from lumped.schema import Table, data
 from lumped.schema.bounded_file import exists
-from lumped.schema.keys import Choice, Key, Number
+from lumped.schema.keys import Choice, Key
+from lumped.schema.record import keys_of
 from lumped.schema.toml_file import overridden, parsed
 
 FOLDER, DEFAULT = "ptmd", "paper"
+RING_KEYS, START_KEYS = keys_of(PtmdRing), keys_of(Start)
 SIZE_KEYS: Mapping[str, Key] = {
     "gap": RING_KEYS["gap"],
-    "memory": Choice(tuple(memory.value for memory in Memory), required=False),
+    "memory": Key(Choice(tuple(memory.value for memory in Memory)), "the surface between contacts", required=False),
     "thickness": replace(LENGTH, required=False),
     "rod_radius": replace(LENGTH, required=False),
 }
@@ -41,8 +40,8 @@ LAW_KEYS: tuple[Mapping[str, Key], ...] = (
     {"coefficient": RING_KEYS["coefficient"], "exponent": RING_KEYS["exponent"]},
 )
 RELEASE_KEYS: Mapping[str, Key] = {
-    "start": Choice(("both", "structure"), required=False),
-    "displacement": replace(DISPLACEMENT, required=True),
+    "start": Key(Choice(("both", "structure")), "what is released", required=False),
+    "displacement": DISPLACEMENT,
 }
 
 
@@ -90,8 +89,8 @@ class _Reader(TableReader):
     def oscillator(self, part: str, required: bool = True) -> Oscillator | None:
         """Structure or damper; None when it is absent or has a fault."""
         table = self.table(part, required)
-        values = {} if table is None else self.checked(part, table, OSCILLATOR_KEYS)
-        return Oscillator(**values) if values.keys() == OSCILLATOR_KEYS.keys() else None
+        values = {} if table is None else self.checked(part, table, keys_of(Oscillator))
+        return Oscillator(**values) if values.keys() == keys_of(Oscillator).keys() else None
 
     def ring(self) -> tuple[Table, PtmdRing | None]:
         """Lengths for the ledger, and the ring; None when it is absent or has a fault."""
@@ -120,12 +119,11 @@ class _Reader(TableReader):
     def motion(self) -> tuple[Start | None, Table]:
         """How it starts, None with a fault noted, and the times given."""
         table = self.table("motion") or {}
-        times: Mapping[str, Number] = {key: replace(kind, required=False) for key, kind in TIME_KEYS.items()}
         released = not table.keys() & START_KEYS.keys()
-        own = RELEASE_KEYS if released else {**START_KEYS, "x1": replace(DISPLACEMENT, required=True)}
+        own = RELEASE_KEYS if released else START_KEYS
         known = len(self.faults)
-        values = self.checked("motion", table, {**own, **times}) if "motion" in self.raw else {}
-        spans = {key: values.pop(key) for key in times if key in values}
+        values = self.checked("motion", table, {**own, **TIME_KEYS}) if "motion" in self.raw else {}
+        spans = {key: values.pop(key) for key in TIME_KEYS if key in values}
         if len(self.faults) > known or not values:
             return None, spans
         try:

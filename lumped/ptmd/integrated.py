@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -129,11 +129,20 @@ class PtmdLevel(NamedTuple):
         return float(self.of(y + ahead) - self.of(y - ahead)) / (2.0 * self.near)
 
 
+class _Piece(Protocol):
+    """What an integrator knows of one step, from `t_old` to `t`, s: the state at its times."""
+
+    t_old: float
+    t: float
+
+    def __call__(self, time: float) -> Array: ...
+
+
 class LevelRow(NamedTuple):
     """A level over one step, from its interpolant; `length` in s."""
 
     level: PtmdLevel
-    piece: Any
+    piece: _Piece
     length: float
 
     @property
@@ -159,7 +168,7 @@ def _asked(levels: list[PtmdLevel], y: Array, rates: Array) -> Array:
     return np.array([[float(level.of(y)) for level in levels], [level.slope(y, rates) for level in levels]])
 
 
-def _fall(levels: list[PtmdLevel], piece: Any, ends: Array, fresh: bool) -> tuple[float, int] | None:
+def _fall(levels: list[PtmdLevel], piece: _Piece, ends: Array, fresh: bool) -> tuple[float, int] | None:
     """Offset, s, and index of the first fall within a step; `ends` (2, 2, m): level and slope before and after it."""
     length = float(piece.t - piece.t_old)
     values, slopes = ends[:, 0].T, ends[:, 1].T
@@ -170,7 +179,7 @@ def _fall(levels: list[PtmdLevel], piece: Any, ends: Array, fresh: bool) -> tupl
     return first_fall([LevelRow(level, piece, length) for level in levels], begun.tolist())
 
 
-def _phase(stages: Stages, times: Array, states: Array, pieces: list[Any], size: int) -> PtmdPhase:
+def _phase(stages: Stages, times: Array, states: Array, pieces: list[_Piece], size: int) -> PtmdPhase:
     def solution(time: float) -> Array:
         i = int(np.clip(np.searchsorted(times, time, side="right") - 1, 0, len(pieces) - 1))
         return np.asarray(pieces[i](time))

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.ptmd.system import PoundingDamper, Start
+from lumped.schema import Table
 
 Array = NDArray[np.float64]
 COLUMNS = {
@@ -125,7 +125,7 @@ class PtmdResult:
     energy: Energy
     measures: Measures
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Table:
         """Measures, energies and contacts: Python's own types."""
         return {
             "measures": self.measures.to_dict(),

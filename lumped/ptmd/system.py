@@ -2,27 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
+from typing import Annotated, ClassVar
 
 import numpy as np
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Relaxation
-from lumped.schema.key_table import check_fields
 from lumped.schema.keys import Key, Number
+from lumped.schema.record import Record
 
-MASS, STIFFNESS, DAMPING = Number(1e-9, 1e12, "kg"), Number(1e-9, 1e18, "N/m"), Number(0.0, 1e15, "N s/m")
-OSCILLATOR_KEYS: Mapping[str, Key] = {"mass": MASS, "stiffness": STIFFNESS, "damping": DAMPING}
-LENGTH = Number(1e-9, 1e4, "m")
-RING_KEYS: Mapping[str, Key] = {
-    "gap": Number(0.0, 1e4, "m"),
-    "coefficient": Number(1e-12, 1e12, "m^(2-exponent)"),
-    "exponent": Number(1.0, 3.0, required=False),
-}
-DISPLACEMENT, VELOCITY = Number(-1e4, 1e4, "m", required=False), Number(-1e4, 1e4, "m/s", required=False)
-START_KEYS: Mapping[str, Key] = {"x1": DISPLACEMENT, "x2": DISPLACEMENT, "v1": VELOCITY, "v2": VELOCITY}
+LENGTH = Key(Number(1e-9, 1e4, "m"), "length")
+DISPLACEMENT, VELOCITY = Key(Number(-1e4, 1e4, "m"), "displacement"), Key(Number(-1e4, 1e4, "m/s"), "velocity")
 SIDES = (1, -1)
 
 
@@ -35,33 +27,29 @@ class Memory(Enum):
 
 
 @dataclass(frozen=True)
-class Oscillator:
+class Oscillator(Record):
     """Mass, kg, on a spring, N/m, and a dashpot, N s/m. Raises BadInput."""
 
-    mass: float
-    stiffness: float
-    damping: float
-
-    def __post_init__(self) -> None:
-        check_fields("oscillator", self, OSCILLATOR_KEYS)
+    mass: Annotated[float, Key(Number(1e-9, 1e12, "kg"), "mass")]
+    stiffness: Annotated[float, Key(Number(1e-9, 1e18, "N/m"), "stiffness of its spring")]
+    damping: Annotated[float, Key(Number(0.0, 1e15, "N s/m"), "that of its dashpot")]
+    name: ClassVar[str] = "oscillator"
 
 
 @dataclass(frozen=True)
-class PtmdRing:
+class PtmdRing(Record):
     """The lining of both stops, `gap` metres from the damper at rest.
 
     Force F = coefficient * int E*(t-s) d(depth^exponent), the correspondence law "(29)" to "(32)" read as a
     convolution, without tension; `modulus` is E*(t) in Pa. Raises BadInput.
     """
 
-    gap: float
+    gap: Annotated[float, Key(Number(0.0, 1e4, "m"), "distance between damper and ring at rest")]
     modulus: Relaxation
-    coefficient: float
-    exponent: float = 1.0
+    coefficient: Annotated[float, Key(Number(1e-12, 1e12, "m^(2-exponent)"), "force per E* and depth^exponent")]
+    exponent: Annotated[float, Key(Number(1.0, 3.0), "exponent of the depth")] = 1.0
     memory: Memory = Memory.RECOVERING
-
-    def __post_init__(self) -> None:
-        check_fields("ring", self, RING_KEYS)
+    name: ClassVar[str] = "ring"
 
     @classmethod
     def struck_by_rod(
@@ -93,19 +81,20 @@ class PoundingDamper:
 
 
 @dataclass(frozen=True)
-class Start:
+class Start(Record):
     """Displacements, m, and velocities, m/s, at t = 0. Raises BadInput when all are zero.
 
     Where the damper starts inside the ring it has been held there until the ring relaxed.
     """
 
-    x1: float
-    x2: float = 0.0
-    v1: float = 0.0
-    v2: float = 0.0
+    x1: Annotated[float, DISPLACEMENT]
+    x2: Annotated[float, DISPLACEMENT] = 0.0
+    v1: Annotated[float, VELOCITY] = 0.0
+    v2: Annotated[float, VELOCITY] = 0.0
+    name: ClassVar[str] = "start"
 
     def __post_init__(self) -> None:
-        check_fields("start", self, START_KEYS)
+        super().__post_init__()
         if not any((self.x1, self.x2, self.v1, self.v2)):
             raise BadInput(Fault("start", "x1", "nothing moves; accepted: one value that is not zero"))
 

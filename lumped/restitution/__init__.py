@@ -6,25 +6,24 @@ approximations of the literature.
 
 from __future__ import annotations
 
-from typing import cast as _cast
-
 from lumped.errors import BadInput as _BadInput
 from lumped.errors import Fault as _Fault
 from lumped.errors import nearest as _nearest
 from lumped.restitution.base import Family as Family
-from lumped.schema import members as _members
+from lumped.schema.members import Folder as _Folder
 
 EXACT = "exact"
+_FAMILIES = _Folder[Family](__name__, source="restitution")
 
 
 def available() -> tuple[str, ...]:
     """Names of the families."""
-    return _members.available(__name__)
+    return _FAMILIES.names
 
 
 def get(name: str) -> Family:
-    """The family's module; raises BadInput with the nearest name."""
-    return _cast(Family, _members.get(__name__, name, source="restitution"))
+    """The family called so; raises BadInput with the nearest name."""
+    return _FAMILIES.get(name)
 
 
 def damping(family: Family, e: float, exit: str = "force", formula: str = EXACT) -> float:
@@ -42,7 +41,7 @@ def damping(family: Family, e: float, exit: str = "force", formula: str = EXACT)
 
 
 def __getattr__(name: str) -> Family:
-    """The family's module, imported when it is first asked for: `lumped.restitution.kelvin`."""
+    """The family, imported when it is first asked for: `lumped.restitution.kelvin`."""
     if name in available():
         return get(name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import math
 
-from lumped.restitution._newton import newton
-from lumped.restitution.base import Limit
+from lumped.restitution.base import Limit, newton
 
 # The speed at zero x is below 1e-96 at this damping ratio.
 UNDERDAMPED = 0.9999

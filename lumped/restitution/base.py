@@ -8,32 +8,37 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Protocol
 
-from lumped.errors import BadInput, Fault
-from lumped.schema.keys import Choice, Key, Number
+from lumped.errors import BadInput, Fault, NotReached
+from lumped.schema.keys import Choice, Kind, Number
 
 EXIT = Choice(("force", "depth"))
 RESTITUTION = Number(1e-6, 1.0)
 PLASTIC = "; for a plastic impact, e = 0, see lumped.solvers.stereomechanics"
-
 Published = Mapping[str, Callable[[float], float]]
+ITERATIONS = 60
+# The error after a step is of the order of its square.
+LAST_STEP = 1e-9
 
 
-class Family(Protocol):
-    """What a module of this package offers. A damping is the law's own dimensionless number, named in its module.
+class Exact(Protocol):
+    """An exact relation, one way or the other, for a contact that ends at `exit`."""
 
-    `exit` says where the contact ends: "force", when the force returns to zero (no tension), or "depth", when the
-    depth does (tension allowed). All values are floats; all raise BadInput outside their ranges.
+    def __call__(self, value: float, exit: str = "force", /) -> float: ...
+
+
+@dataclass(frozen=True)
+class Family:
+    """A member of this package. A damping is the law's own dimensionless number, named in its module.
+
+    `restitution` gives the exact e at a damping, which falls from 1 as the damping grows from 0; `damping` that at
+    which e is met exactly, for e from 1e-6 to 1. `exit` says where the contact ends: "force", when the force returns
+    to zero (no tension), or "depth", when the depth does (tension allowed). `published`: formulas of the literature by
+    name, from e to the damping; none knows of an exit. All values are floats; all raise BadInput outside their ranges.
     """
 
-    @property
-    def published(self) -> Published:
-        """Formulas of the literature by name: from e to the damping. None of them knows of an exit."""
-
-    def restitution(self, damping: float, exit: str = "force") -> float:
-        """The exact e at this damping: it falls from 1 as the damping grows from 0."""
-
-    def damping(self, e: float, exit: str = "force") -> float:
-        """The damping at which e is met exactly, for e from 1e-6 to 1."""
+    restitution: Exact
+    damping: Exact
+    published: Published
 
 
 @dataclass(frozen=True)
@@ -72,7 +77,7 @@ def formulas(**named: Callable[[float], float]) -> Published:
     return MappingProxyType({name: _checked(formula) for name, formula in named.items()})
 
 
-def check(name: str, value: object, kind: Key, cure: str = "") -> None:
+def check(name: str, value: object, kind: Kind, cure: str = "") -> None:
     """Raises BadInput, with the name, the range and the cure, for a value which `kind` refuses."""
     try:
         kind.read(value)
@@ -83,3 +88,15 @@ def check(name: str, value: object, kind: Key, cure: str = "") -> None:
 
 def _checked(formula: Callable[[float], float]) -> Callable[[float], float]:
     return lambda e: formula(check_restitution(e))
+
+
+def newton(value_and_slope: Callable[[float], tuple[float, float]], start: float) -> float:
+    """The positive root of a function given with its slope, to rounding. Raises NotReached."""
+    x = start
+    for _ in range(ITERATIONS):
+        value, slope = value_and_slope(x)
+        step = value / slope
+        x -= step
+        if abs(step) <= LAST_STEP * abs(x):
+            return x
+    raise NotReached(f"no root was found in {ITERATIONS} iterations from {start:g}")

@@ -13,8 +13,7 @@ from __future__ import annotations
 
 import math
 
-from lumped.restitution._newton import newton
-from lumped.restitution.base import check_damping, check_restitution, formulas
+from lumped.restitution.base import Family, check_damping, check_restitution, formulas, newton
 
 # Odd denominators of the continued fraction s/(3 + s^2/(5 + s^2/(7 + ...))); exact to rounding up to s = 1.
 FRACTION = range(21, 1, -2)
@@ -76,16 +75,20 @@ def hu_guo(e: float) -> float:
     return 1.5 * (1.0 - e) / e
 
 
-published = formulas(
-    hunt_crossley=hunt_crossley,
-    lankarani_nikravesh=lankarani_nikravesh,
-    muthukumar=lankarani_nikravesh,
-    herbert_mcwhannell=herbert_mcwhannell,
-    zhiying_qishao=zhiying_qishao,
-    ye=ye,
-    flores=ye,
-    gonthier=gonthier,
-    hu_guo=hu_guo,
+MEMBER = Family(
+    restitution,
+    damping,
+    formulas(
+        hunt_crossley=hunt_crossley,
+        lankarani_nikravesh=lankarani_nikravesh,
+        muthukumar=lankarani_nikravesh,
+        herbert_mcwhannell=herbert_mcwhannell,
+        zhiying_qishao=zhiying_qishao,
+        ye=ye,
+        flores=ye,
+        gonthier=gonthier,
+        hu_guo=hu_guo,
+    ),
 )
 
 

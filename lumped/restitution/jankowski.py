@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from lumped.restitution import _oscillator as oscillator
-from lumped.restitution.base import check_damping, decay_of, formulas
+from lumped.restitution.base import Family, check_damping, decay_of, formulas
 
 SQRT5 = math.sqrt(5.0)
 
@@ -34,4 +34,4 @@ def jankowski_2006(e: float) -> float:
     return 4.5 * SQRT5 * (1.0 - e) * (1.0 + e) / (e * (e * (9.0 * math.pi - 16.0) + 16.0))
 
 
-published = formulas(equation_10=equation_10, jankowski_2006=jankowski_2006)
+MEMBER = Family(restitution, damping, formulas(equation_10=equation_10, jankowski_2006=jankowski_2006))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from lumped.restitution import _oscillator as oscillator
-from lumped.restitution.base import check_damping, decay_of, formulas
+from lumped.restitution.base import Family, check_damping, decay_of, formulas
 
 
 def restitution(damping: float, exit: str = "force") -> float:
@@ -26,4 +26,4 @@ def anagnostopoulos(e: float) -> float:
     return damping(e, "depth")
 
 
-published = formulas(anagnostopoulos=anagnostopoulos)
+MEMBER = Family(restitution, damping, formulas(anagnostopoulos=anagnostopoulos))

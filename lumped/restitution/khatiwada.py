@@ -5,8 +5,7 @@ exponent n, its damping "numerically exact" instead of one of the published appr
 not depend on n, so it is that of Hunt and Crossley with d = c v_0/k. Both exits are one.
 """
 
-from lumped.restitution.base import formulas
-from lumped.restitution.hunt_crossley import damping as damping
-from lumped.restitution.hunt_crossley import restitution as restitution
+from lumped.restitution.base import Family, formulas
+from lumped.restitution.hunt_crossley import damping, restitution
 
-published = formulas()
+MEMBER = Family(restitution, damping, formulas())

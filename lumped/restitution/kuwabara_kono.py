@@ -18,7 +18,7 @@ from operator import mul
 from typing import NamedTuple
 
 from lumped.errors import NotReached, TooManySteps
-from lumped.restitution.base import Limit, check, check_damping, decay_of, formulas
+from lumped.restitution.base import Family, Limit, check, check_damping, decay_of, formulas
 from lumped.schema.keys import Number
 
 TOO_DAMPED = "; beyond it e is below 1e-6"
@@ -71,7 +71,7 @@ def series(e: float) -> float:
     return 2.0 * (1.0 - e) / (C1 * (1.0 + math.sqrt(max(1.0 - 2.4 * (1.0 - e), 0.0))))
 
 
-published = formulas(series=series)
+MEMBER = Family(restitution, damping, formulas(series=series))
 
 
 class Expansion(NamedTuple):

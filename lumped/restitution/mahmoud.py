@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from lumped.restitution import _oscillator as oscillator
-from lumped.restitution.base import check_damping, decay_of, formulas
+from lumped.restitution.base import Family, check_damping, decay_of, formulas
 
 
 def restitution(damping: float, exit: str = "force") -> float:
@@ -26,4 +26,4 @@ def mahmoud_jankowski(e: float) -> float:
     return (1.0 - e) * (1.0 + e) / (e * (e * (math.pi - 2.0) + 2.0))
 
 
-published = formulas(mahmoud_jankowski=mahmoud_jankowski)
+MEMBER = Family(restitution, damping, formulas(mahmoud_jankowski=mahmoud_jankowski))

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from lumped.restitution import _oscillator as oscillator
-from lumped.restitution.base import Limit, check_damping, decay_of, formulas
+from lumped.restitution.base import Family, Limit, check_damping, decay_of, formulas
 
 SQRT5 = math.sqrt(5.0)
 LIMITS = oscillator.LIMITS | {"depth": Limit(SQRT5 * oscillator.UNDERDAMPED, oscillator.NEVER_BACK)}
@@ -40,4 +40,4 @@ def tsuji_polynomial(e: float) -> float:
     return math.sqrt(2.0) * sum(coefficient * e**power for power, coefficient in enumerate(POLYNOMIAL))
 
 
-published = formulas(antypov_elliott=antypov_elliott, tsuji_polynomial=tsuji_polynomial)
+MEMBER = Family(restitution, damping, formulas(antypov_elliott=antypov_elliott, tsuji_polynomial=tsuji_polynomial))

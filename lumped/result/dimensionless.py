@@ -6,12 +6,13 @@ Two impacts with the same profile, base and groups have the same history in thes
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.scene.pair import contact_modulus
+from lumped.scene.geometry import contact_modulus
+from lumped.schema import Table
 
 if TYPE_CHECKING:
     from lumped.result.history import History
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from lumped.scene.scene import Scene
 
 
-def groups(scene: Scene, values: Mapping[str, float | None], history: History) -> dict[str, Any]:
+def groups(scene: Scene, values: Mapping[str, float | None], history: History) -> Table:
     """The groups by name, of the ``values`` of the quantities; empty without a geometry, None where one is undefined.
 
     E_i/E_inf of the contact moduli; tau/T, every relaxation time over the duration; nu; a/R with the largest contact
@@ -46,7 +47,7 @@ def groups(scene: Scene, values: Mapping[str, float | None], history: History) -
     }
 
 
-def groups_at_rest(indenter: Indenter, contact_radius: NDArray[np.float64]) -> dict[str, Any]:
+def groups_at_rest(indenter: Indenter, contact_radius: NDArray[np.float64]) -> Table:
     """Those of a slow indentation, which knows no time: E_i/E_inf, nu, a/R and h/a with the largest of its radii, m."""
     modulus = contact_modulus(indenter.shape, indenter.material, indenter.striker_material)
     largest = float(contact_radius.max())

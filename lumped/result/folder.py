@@ -22,9 +22,9 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
 
 from lumped.errors import CannotWrite
+from lumped.schema import Table
 from lumped.schema.json_file import write_json
 
 RECORD = "result.json"
@@ -35,7 +35,7 @@ WAIT, PAUSE = 300.0, 0.02  # s for other runs to end their writing, some seconds
 NO_LINKS = (errno.EPERM, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.EXDEV, errno.EMLINK)
 
 
-def publish(directory: Path, write: Callable[[Path], object], record: str = RECORD) -> dict[str, Any]:
+def publish(directory: Path, write: Callable[[Path], object], record: str = RECORD) -> Table:
     """Make what `write` writes into a folder the content of `directory`, made where it is not; the record's content.
 
     `write` is given an empty folder and leaves files in it, among them the JSON file `record`, which then names the
@@ -59,12 +59,12 @@ def publish(directory: Path, write: Callable[[Path], object], record: str = RECO
         raise CannotWrite(directory, failure.strerror or str(failure)) from failure
 
 
-def _published(directory: Path, hidden: Path, write: Callable[[Path], object], record: str) -> dict[str, Any]:
+def _published(directory: Path, hidden: Path, write: Callable[[Path], object], record: str) -> Table:
     older, newer = hidden / "older", hidden / "newer"
     older.mkdir()
     newer.mkdir()
     write(newer)
-    content: dict[str, Any] = json.loads((newer / record).read_text(encoding="utf-8"))
+    content: Table = json.loads((newer / record).read_text(encoding="utf-8"))
     names = sorted(path.name for path in newer.iterdir() if path.name != record)
     for name in (*names, record):
         if (directory / name).is_dir():
@@ -127,7 +127,7 @@ def _left(directory: Path) -> set[str]:
     return found
 
 
-def _files(path: Path) -> Mapping[str, Any] | None:
+def _files(path: Path) -> Mapping[str, object] | None:
     """What a record of ours names; None for any other file."""
     try:
         content = json.loads(path.read_text(encoding="utf-8"))

@@ -32,10 +32,10 @@ MOST_PARTS, TINY = 16.0, 1e-300
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """Columns of one length >= 2, SI units, time never decreasing. `force_error`: half-width of the force's
-    bar.
+    """Columns of one length >= 2: `time`, s, never decreasing; `depth`, m, positive into the target; `velocity`, m/s,
+    positive while approaching; `force`, N; `contact_radius`, m; `force_error`, N, half-width of the force's bar.
 
-    Depth is positive into the target, velocity positive while approaching. Raises BadInput.
+    Raises BadInput.
     """
 
     time: Array

@@ -7,20 +7,23 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lumped.numbers.interpolation import peak
 from lumped.result.dimensionless import groups
 from lumped.result.folder import RECORD, publish
 from lumped.result.history import History
-from lumped.result.indentation_left import IndentationLeft
 from lumped.result.sufficiency import LedgerEntry, sufficient
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
+from lumped.schema import Table
+from lumped.schema.csv_file import write_columns
 from lumped.schema.json_file import plain, write_json
 
+Array = NDArray[np.float64]
+COLUMNS_LEFT = ("time_after_separation_s", "depth_m", "depth_error_m")
 SCHEMA = "fe-contact/result/1"
 UNITS = {
     "peak_force": "N",
@@ -37,9 +40,39 @@ RULED_ABSOLUTE = ("restitution", "history_l2")
 ENERGY_TERMS = ("in", "out", "stored", "viscous", "radiated", "contact", "numerical", "residual")
 
 
+@dataclass(frozen=True, eq=False)
+class IndentationLeft:
+    """Rows (n,): time after separation, s, depth and its bar, m; the first row at separation.
+
+    ``permanent``, m: what is left for ever; ``retardation_times`` (k,), s: those of the creep compliance, with which
+    the rest goes.
+    """
+
+    time: Array
+    depth: Array
+    error: Array
+    permanent: float
+    retardation_times: tuple[float, ...]
+
+    def to_json(self) -> Table:
+        """What result.json says of it."""
+        return {
+            "residual_depth": {"value": float(self.depth[0]), "error": float(self.error[0]), "unit": "m"},
+            "permanent_depth": self.permanent,
+            "retardation_times": self.retardation_times,
+            "time": self.time,
+            "depth": self.depth,
+            "error": self.error,
+        }
+
+    def write_csv(self, path: Path) -> None:
+        """Write the rows, every value with all its digits."""
+        write_columns(path, COLUMNS_LEFT, [self.time, self.depth, self.error])
+
+
 @dataclass(frozen=True)
 class Quantity:
-    """A number with an absolute half-width: |value - exact| <= error. None where undefined."""
+    """`value` and half-width `error`, both of its `unit`: |value - exact| <= error. None where undefined."""
 
     value: float | None
     error: float | None
@@ -65,15 +98,15 @@ class Result:
     tolerance: float
     history: History
     quantities: Mapping[str, Quantity]
-    numerics: Mapping[str, Any] = field(default_factory=dict)
+    numerics: Table = field(default_factory=dict)
     error_budget: Mapping[str, float] = field(default_factory=dict)
     error_budget_by_quantity: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     model_ledger: tuple[LedgerEntry, ...] = ()
     energy: Mapping[str, float | None] = field(default_factory=dict)
     energy_error: Mapping[str, float] = field(default_factory=dict)
-    provenance: Mapping[str, Any] = field(default_factory=dict)
-    timing: Mapping[str, Any] = field(default_factory=dict)
-    work: Mapping[str, Any] = field(default_factory=dict)
+    provenance: Mapping[str, object] = field(default_factory=dict)
+    timing: Mapping[str, object] = field(default_factory=dict)
+    work: Mapping[str, float] = field(default_factory=dict)
     message: str = ""
     contacts: tuple[Mapping[str, float | None], ...] = ()
     recovery: IndentationLeft | None = None
@@ -83,7 +116,7 @@ class Result:
         """Whether no effect that can be judged exceeds the tolerance."""
         return sufficient(self.model_ledger, self.tolerance)
 
-    def to_json(self) -> dict[str, Any]:
+    def to_json(self) -> Table:
         """The content of result.json; what is not finite is null."""
         values = {name: quantity.value for name, quantity in self.quantities.items()}
         content = {
@@ -110,7 +143,7 @@ class Result:
             "provenance": self.provenance,
             "timing": self.timing,
         }
-        found: dict[str, Any] = plain(content)
+        found: Table = plain(content)
         return found
 
     def write(self, directory: Path) -> None:

@@ -40,7 +40,7 @@ class Score:
     """How far a candidate is from a reference.
 
     `normalized_error`: "(20)" as a norm over a norm, on 201 points of the common time, the shorter curve
-    continued by zero; `shape`: the same after both are scaled to unit peak and unit duration. Candidate/reference
+    continued by zero; `shape`: the same ratio after both are scaled to unit peak and unit duration. Candidate/reference
     - 1: peak_force, peak_time, peak_depth, duration, impulse, and `work`, int F d depth up to the greatest depth.
     Candidate - reference: restitution; `loss`, the share of that work which the rebound does not give back;
     `peak_shift`, the peak's time over the duration. None where undefined.

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+
+from lumped.schema import Table
 
 WITHIN, ABOVE, OPEN, UNKNOWN = "within tolerance", "above it", "open", "unknown"
 NO_KEY = "no larger model here"
@@ -47,7 +48,7 @@ class LedgerEntry:
             return WITHIN
         return f"{ABOVE}: {self.key or NO_KEY}" if self.exceeds(tolerance) else f"{OPEN}: {self.note}"
 
-    def to_json(self, tolerance: float) -> dict[str, Any]:
+    def to_json(self, tolerance: float) -> Table:
         """Its fields, and its verdict at a tolerance."""
         return asdict(self) | {"verdict": self.verdict(tolerance)}
 

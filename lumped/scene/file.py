@@ -6,38 +6,29 @@ The tables of a scene file: the scene that they describe, every fault reported a
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from contextlib import AbstractContextManager
 from pathlib import Path
-from types import ModuleType
-from typing import Any, Protocol, TypeVar
+from typing import Protocol, TypeVar
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
-from lumped.scene.table_reader import Table, TableReader
+from lumped.scene.table_reader import TableReader
 from lumped.scene.tables import (
     LAWS,
-    MODEL_KEYS,
-    MOTION_KEYS,
-    SECOND_BODY_KEYS,
     STRIKER_KEYS,
-    TARGETS,
+    TARGET_KEYS,
     LawChoice,
     Model,
     Motion,
     inertia_faults,
 )
-from lumped.schema import data
-from lumped.schema.alternatives import alternatives
+from lumped.schema import Table, data
 from lumped.schema.bounded_file import exists
-from lumped.schema.key_table import optional
 from lumped.schema.keys import Key
-from lumped.schema.members import Member, get
+from lumped.schema.members import Folder, Member, alternatives
+from lumped.schema.record import Part, keys_of, optional
 from lumped.schema.toml_file import overridden, parsed
-from lumped.shapes import Shape
-from lumped.targets import Target
-
-SHAPES = "lumped.shapes"
-TARGET_KEYS: Mapping[str, Key] = {"mass": SECOND_BODY_KEYS["target_mass"]}
+from lumped.shapes import SHAPES, Shape
+from lumped.targets import TARGETS, Target
 
 
 def load(
@@ -85,16 +76,18 @@ def _reader(source: str | Path, overrides: Mapping[str, object] | None) -> Scene
     return SceneReader(path.name, overridden(parsed(path), overrides or {}, path.name), path.parent)
 
 
-class Described(Protocol):
-    """What a scene file describes: inside `addressed`, what a part refuses is said of that file and its keys."""
+class Lawful(Protocol):
+    """What a scene file may describe: an impact, perhaps with a law of its own."""
 
-    def addressed(self) -> AbstractContextManager[None]: ...
+    def check_law(self) -> None:
+        """Raise BadInput for a law of its own that has no answer for it."""
 
 
-Impact = TypeVar("Impact", bound=Described)
+Impact = TypeVar("Impact", bound=Lawful)
 
 
 Pressed = TypeVar("Pressed")
+B = TypeVar("B")
 
 
 class SceneReader(TableReader):
@@ -111,8 +104,8 @@ class SceneReader(TableReader):
         lawful = "law" in self.raw or not law_known
         alone = lawful and "shape" not in self.table("striker", required=False, quiet=True)
         bodies = self.masses_alone() if alone else self.bodies()
-        model = self.checked("model", self.table("model", required=False), MODEL_KEYS)
-        motion = self.checked("motion", self.table("motion", required=False), MOTION_KEYS)
+        model = self.checked("model", self.table("model", required=False), keys_of(Model))
+        motion = self.checked("motion", self.table("motion", required=False), keys_of(Motion))
         numerics = self.table("numerics", required=False)
         if alone or bodies["target"] is not None:
             self.inertia(model, bodies.get("target"))
@@ -120,15 +113,14 @@ class SceneReader(TableReader):
             raise BadInput(self.faults)
         built = kind(**bodies, law=law, model=Model(**model), motion=Motion(**motion), name=name, source=self.source)
         if law is not None and law_known:
-            with built.addressed():
-                get(LAWS, law.name).of(built)
+            built.check_law()
         return built, numerics
 
     def indenter(self, kind: Callable[..., Pressed]) -> tuple[Pressed, Table]:
         """The scene without its motion; raises BadInput when anything is wrong."""
         name = self.name()
         bodies = self.bodies(optional(STRIKER_KEYS))
-        model = self.checked("model", self.table("model", required=False), MODEL_KEYS)
+        model = self.checked("model", self.table("model", required=False), keys_of(Model))
         numerics = self.table("numerics", required=False)
         if self.faults:
             raise BadInput(self.faults)
@@ -174,21 +166,22 @@ class SceneReader(TableReader):
         if not table:
             return None
         (own,) = alternatives(LAWS, table.get("name"))
-        values = self.checked("law", table, {"name": Member(LAWS), **own})
-        return LawChoice(values.pop("name").__name__.rpartition(".")[2], values) if not self.faults else None
+        values = self.checked("law", table, {"name": Key(Member(LAWS.package)), **own})
+        return LawChoice(values.pop("name"), values) if not self.faults else None
 
-    def body(self, part: str, package: str, common: Mapping[str, Key]) -> tuple[Table, Any]:
-        """A body's checked common values, and what the member of `package` makes of its own keys."""
+    def body(self, part: str, folder: Folder[Part[B]], common: Mapping[str, Key]) -> tuple[Table, B | None]:
+        """A body's checked common values, and what the member of `folder` makes of its own keys."""
         table = self.table(part)
         rest = {key: value for key, value in table.items() if key != "material"}
         if part not in self.raw:
             return {}, None
-        (own,) = alternatives(package, table.get("shape"))
-        values = self.checked(part, rest, {"shape": Member(package), **common, **own})
-        kind: ModuleType | None = values.pop("shape", None)
+        (own,) = alternatives(folder, table.get("shape"))
+        values = self.checked(part, rest, {"shape": Key(Member(folder.package)), **common, **own})
+        shape: str | None = values.pop("shape", None)
         shared = {key: values.pop(key) for key in common if key in values}
-        complete = kind is not None and values.keys() >= {key for key in own if own[key].required}
-        return shared, self.made(part, kind.of, values, str(table["shape"])) if kind is not None and complete else None
+        if shape is None or not values.keys() >= {key for key in own if own[key].required}:
+            return shared, None
+        return shared, self.made(part, folder.get(shape).of, values, shape)
 
     def material(self, part: str) -> Material | None:
         """The material of a body, None with a fault noted."""

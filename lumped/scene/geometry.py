@@ -1,13 +1,17 @@
-"""What strikes what: the bodies that finite elements and the laws of the half-space need."""
+"""What strikes what: the bodies, which of them has a material, and the modulus of both together."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from lumped.materials import Material
+from lumped.errors import BadInput, Fault
+from lumped.materials import Creep, Material, Relaxation
+from lumped.schema import Table
 from lumped.shapes import Shape
 from lumped.shapes._block import Block
 from lumped.targets import Target
+
+SPARE_MASS = 0.01  # of a whole body with inertia, which its density gives way to
 
 
 @dataclass(frozen=True)
@@ -40,3 +44,64 @@ class Geometry:
         steady = all(one.constant == "poisson" or one.young.is_elastic for one in materials)
         uniform = isinstance(self.shape, Block) and self.shape.uniform
         return steady or uniform or not self.target.has_length
+
+
+def contact_modulus(shape: Shape, material: Material, striker: Material | None) -> Relaxation:
+    """The modulus E*(t) which the force is in proportion to, Pa: of one body, or of both.
+
+    Compliances add, 1/E*(s) = 1/E1*(s) + 1/E2*(s), and the sum is inverted as a whole.
+    """
+    own = shape.modulus(material)
+    return own if striker is None else _together(own.creep(), shape.modulus(striker).creep()).relaxation()
+
+
+def _together(first: Creep, second: Creep) -> Creep:
+    """Two compliances under one load."""
+    return Creep(
+        first.instantaneous + second.instantaneous,
+        first.compliances + second.compliances,
+        first.times + second.times,
+        first.fluidity + second.fluidity,
+    )
+
+
+def check_striker_material(source: str, target: Target, shape: Shape, striker: Material | None, inertia: bool) -> None:
+    """Raise BadInput for a second material on a target whose striker is rigid, or on a rigid target."""
+    faults = [] if striker is None else target.yielding_faults(source, shape, inertia)
+    if faults:
+        raise BadInput(faults)
+
+
+def flying_faults(source: str, geometry: Geometry, mass: float, target_mass: float | None) -> list[Fault]:
+    """What is wrong with the masses, kg, of bodies with inertia that fly whole: their densities say the same."""
+    shape, target = geometry.shape, geometry.target
+    faults = target.inertia_faults(source, geometry.striking)
+    if geometry.striking is not None and target.deformable and geometry.striking.density is None:
+        reason = "missing; model.inertia = true needs it, in kg/m3"
+        faults.append(Fault(source, "striker.material.density", reason))
+    for part, body, material, given in (
+        ("striker", shape, geometry.striking, mass),
+        ("target", target, geometry.material, target_mass),
+    ):
+        whole = body.whole_mass(material.density) if material is not None and material.density is not None else None
+        if whole is not None and (given is None or abs(given - whole) > SPARE_MASS * whole):
+            said = "missing" if given is None else f"{given:g} kg"
+            reason = f"{said}; with model.inertia a {body.name} has the mass of its density; accepted: {whole:.6g} kg"
+            faults.append(Fault(source, f"{part}.mass", f"{reason} within {SPARE_MASS:.0%}, or another density"))
+    return faults
+
+
+def places(shape: Shape, target: Target, deep: str) -> dict[str, str]:
+    """Where in a scene file stands what a part refuses; `deep`: what a depth comes from."""
+    yielding = "target" if target.deformable else "striker"
+    own = {"material": f"{yielding}.material", "relaxation": f"{yielding}.material", "numerics": "numerics"}
+    return {**own, "depth": deep, target.name: "target", shape.name: "striker"}
+
+
+def tables(shape: Shape, target: Target, material: Material, striker: Material | None) -> tuple[Table, Table]:
+    """The striker's and the target's table of a scene file that gives them back."""
+    own, held = shape.to_dict(), target.to_dict()
+    if not target.deformable:
+        return own | {"material": material.to_dict()}, held
+    first = {} if striker is None else {"material": striker.to_dict()}
+    return own | first, held | {"material": material.to_dict()}

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +13,9 @@ from numpy.typing import NDArray
 from lumped.errors import BadInput, Fault, addressed
 from lumped.materials import Material
 from lumped.scene.file import load_indenter
-from lumped.scene.geometry import Geometry
-from lumped.scene.pair import check_striker_material, contact_modulus, places, tables
+from lumped.scene.geometry import Geometry, check_striker_material, contact_modulus, places, tables
 from lumped.scene.tables import Model
+from lumped.schema import Table
 from lumped.schema.keys import Number
 from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
@@ -100,7 +99,7 @@ class Indenter:
         if faults:
             raise BadInput(faults)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Table:
         """The tables of a scene file that gives it back."""
         striker, target = tables(self.shape, self.target, self.material, self.striker_material)
         return {"name": self.name, "striker": striker, "target": target, "model": vars(self.model).copy()}

@@ -4,23 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Protocol
 
 from lumped.errors import BadInput, Fault, addressed
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material, Relaxation
 from lumped.scene.file import load, read
-from lumped.scene.geometry import Geometry
-from lumped.scene.pair import check_striker_material, contact_modulus, flying_faults, places, tables
+from lumped.scene.geometry import Geometry, check_striker_material, contact_modulus, flying_faults, places, tables
 from lumped.scene.scales import absurd_depth, relaxed_impact
 from lumped.scene.tables import (
     LAWS,
-    NAME_KEYS,
-    SECOND_BODY_KEYS,
-    STRIKER_KEYS,
+    MASS,
+    NAME,
+    SECOND_MASS,
+    VELOCITY,
     LawChoice,
     Model,
     Motion,
@@ -28,8 +28,9 @@ from lumped.scene.tables import (
     inertia_faults,
     mass_faults,
 )
-from lumped.schema.key_table import check_fields
-from lumped.schema.members import get
+from lumped.schema import Table
+from lumped.schema.members import Folder
+from lumped.schema.record import check_fields
 from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
 
@@ -46,20 +47,20 @@ class Scene:
     """
 
     shape: Shape | None
-    mass: float
-    velocity: float
+    mass: Annotated[float, MASS]
+    velocity: Annotated[float, VELOCITY]
     material: Material | None = None
     target: Target = field(default_factory=HalfSpace)
     model: Model = field(default_factory=Model)
     motion: Motion = field(default_factory=Motion)
-    target_mass: float | None = None
+    target_mass: Annotated[float | None, SECOND_MASS] = None
     law: LawChoice | None = None
     striker_material: Material | None = None
-    name: str = "scene"
+    name: Annotated[str, NAME] = "scene"
     source: str = "scene"
 
     def __post_init__(self) -> None:
-        check_fields(self.source, self, {**NAME_KEYS, **STRIKER_KEYS, **SECOND_BODY_KEYS})
+        check_fields(self.source, self)
         if (self.shape is None) != (self.material is None):
             missing = "striker.shape" if self.shape is None else "target.material"
             raise BadInput(Fault(self.source, missing, "missing; shape and material come together"))
@@ -143,8 +144,7 @@ class Scene:
     def elastic_contact_time(self) -> float:
         """Hertz contact time with the relaxed modulus, or the glassy one of a fluid; or of the bare law, s."""
         if self.law is not None and not self.has_geometry:
-            law = get(LAWS, self.law.name).of(self)
-            return float(law.elastic_contact_time(self))
+            return _LAWS.get(self.law.name).of(self).elastic_contact_time(self)
         geometry = self.geometry
         local = relaxed_impact(geometry.shape, self.contact_modulus, self.swinging_mass, self.velocity).duration
         return geometry.target.contact_time(local, geometry.material, self.reduced_mass)
@@ -159,10 +159,10 @@ class Scene:
         flight = 2.0 * self.velocity / self.gravity if self.gravity > 0.0 else 0.0
         return self.motion.until(contact_time, flight)
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Table:
         """The tables of a scene file that gives this scene back."""
-        striker: dict[str, Any] = {"mass": self.mass, "velocity": self.velocity}
-        target: dict[str, Any] = {} if self.target_mass is None else {"mass": self.target_mass}
+        striker: Table = {"mass": self.mass, "velocity": self.velocity}
+        target: Table = {} if self.target_mass is None else {"mass": self.target_mass}
         if self.shape is not None and self.material is not None:
             own, held = tables(self.shape, self.target, self.material, self.striker_material)
             striker, target = own | striker, held | target
@@ -180,6 +180,12 @@ class Scene:
         known = {} if self.shape is None else places(self.shape, self.target, "striker.velocity")
         return addressed(self.source, known)
 
+    def check_law(self) -> None:
+        """Raise BadInput for a law of the scene's own that has no answer for it."""
+        if self.law is not None:
+            with self.addressed():
+                _LAWS.get(self.law.name).of(self)
+
     def check_single(self, method: str) -> None:
         """Raise BadInput for several impacts, which need a memory that `method` does not have."""
         if self.motion.impacts > 1:
@@ -195,7 +201,7 @@ class Scene:
             )
 
     def check_sunk(self, depth: float, contact_radius: float = 0.0) -> None:
-        """Raise BadInput where an impact went deeper, m, than target or striker go, or its contact too wide, m."""
+        """Raise BadInput where an impact went to a depth, m, or a contact radius, m, that is too much."""
         target = self.geometry.target
         reason = target.check_depth(self.geometry.shape, depth) or target.check_contact(contact_radius)
         if reason:
@@ -206,3 +212,36 @@ class Scene:
         """The end time, where the scene alone tells it."""
         known = self.motion.end_time is not None or self.has_geometry or self.law is not None
         return {"end_time": self.end_time} if known else {}
+
+
+class _Timed(Protocol):
+    """A law made for a scene, as far as a scene asks."""
+
+    def elastic_contact_time(self, scene: Scene) -> float: ...
+
+
+class _LawKind(Protocol):
+    """A member of the folder of laws, as far as a scene asks."""
+
+    def of(self, scene: Scene, /) -> _Timed: ...
+
+
+_LAWS = Folder[_LawKind](LAWS.package)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answered(Scene):
+    """The scene, on this curve per unit contact modulus: laws that need no more than a curve follow it."""
+
+    curve: LoadCurve
+
+    @classmethod
+    def by(cls, scene: Scene, curve: LoadCurve) -> Answered:
+        """A scene with its curve."""
+        return cls(**{one.name: getattr(scene, one.name) for one in fields(Scene)}, curve=curve)
+
+    @property
+    def load_curve(self) -> LoadCurve:
+        """The one that was told."""
+        self.check_memory()
+        return self.curve

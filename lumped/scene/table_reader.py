@@ -6,21 +6,18 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from types import ModuleType
-from typing import Any, ClassVar
+from typing import ClassVar, TypeVar
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
-from lumped.materials.material import KEYS as MATERIAL_KEYS
+from lumped.materials.networks import NETWORKS
 from lumped.scene.tables import NAME_KEYS
-from lumped.schema.alternatives import alternatives
-from lumped.schema.key_table import placed, read_table, unknown_key
+from lumped.schema import Table
 from lumped.schema.keys import Key
-from lumped.schema.members import Member
+from lumped.schema.members import Member, alternatives
+from lumped.schema.record import keys_of, placed, read_table, unknown_key
 
-NETWORKS = "lumped.materials.networks"
-
-Table = dict[str, Any]
+Made = TypeVar("Made")
 
 
 class TableReader:
@@ -56,7 +53,7 @@ class TableReader:
         self.faults += faults
         return values
 
-    def made(self, path: str, make: Callable[..., Any], values: Table, *parts: str) -> Any:
+    def made(self, path: str, make: Callable[..., Made], values: Table, *parts: str) -> Made | None:
         """What is made of a table's checked values; None with a fault noted, which one of `parts` found at its key."""
         try:
             return make(**values)
@@ -70,13 +67,13 @@ class TableReader:
         """The material of a table, None with a fault noted."""
         own = max(alternatives(NETWORKS, table.get("law")), key=lambda keys: len(keys.keys() & table.keys()))
         known = len(self.faults)
-        values = self.checked(path, table, {"law": Member(NETWORKS), **own, **MATERIAL_KEYS})
+        shared = keys_of(Material)
+        values = self.checked(path, table, {"law": Key(Member(NETWORKS.package)), **own, **shared})
         if len(self.faults) > known:
             return None
-        common = {key: values.pop(key) for key in MATERIAL_KEYS if key in values}
-        law: ModuleType = values.pop("law")
+        common = {key: values.pop(key) for key in shared if key in values}
+        law = NETWORKS.get(values.pop("law"))
         young = self.made(path, law.of, placed(values, self.folder), "material", "samples", "prony fit")
         if young is None:
             return None
-        material: Material | None = self.made(path, partial(Material, young), common, "material")
-        return material
+        return self.made(path, partial(Material, young), common, "material")

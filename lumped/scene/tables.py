@@ -4,61 +4,49 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Annotated, ClassVar
 
 from lumped.errors import BadInput, Fault
-from lumped.schema.key_table import check_fields, read_table
+from lumped.schema import Table
 from lumped.schema.keys import Choice, Count, Flag, Key, Number, Text
-from lumped.schema.members import available, get
-from lumped.targets import Target
+from lumped.schema.members import Folder
+from lumped.schema.record import Described, Record, read_table
+from lumped.targets import TARGETS, Target
 
+LAWS = Folder[Described]("lumped.laws", source="law")  # they know scenes: here only the names of their keys are known
 LEAST_MASS = 1e-21
 END_IN_CONTACT_TIMES = 50.0
 DIRECTIONS = ("unsaid", "down", "horizontal")
-STRIKER_KEYS: Mapping[str, Key] = {
-    "mass": Number(0.0, 1e12, "kg"),
-    "velocity": Number(1e-9, 1e5, "m/s"),
-}
-MODEL_KEYS: Mapping[str, Key] = {
-    "inertia": Flag(required=False),
-    "profile": Choice(("exact", "parabola"), required=False),
-    "gravity": Number(-1e6, 1e6, "m/s2", required=False),
-    "direction": Choice(DIRECTIONS, required=False),
-}
-MOTION_KEYS: Mapping[str, Key] = {
-    "impacts": Count(1, 100, required=False),
-    "end_time": Number(1e-15, 1e12, "s", required=False),
-}
-NAME_KEYS: Mapping[str, Key] = {"name": Text(required=False)}
-SECOND_BODY_KEYS: Mapping[str, Key] = {"target_mass": Number(LEAST_MASS, 1e12, "kg", required=False)}
-LAWS, TARGETS = "lumped.laws", "lumped.targets"
+MASS = Key(Number(0.0, 1e12, "kg"), "mass of the striker")
+VELOCITY = Key(Number(1e-9, 1e5, "m/s"), "velocity of the striker at first touch")
+SECOND_MASS = Key(Number(LEAST_MASS, 1e12, "kg"), "mass of a free second body", required=False)
+NAME = Key(Text(), "name of the scene", required=False)
+STRIKER_KEYS: Mapping[str, Key] = {"mass": MASS, "velocity": VELOCITY}
+TARGET_KEYS: Mapping[str, Key] = {"mass": SECOND_MASS}
+NAME_KEYS: Mapping[str, Key] = {"name": NAME}
 
 
 @dataclass(frozen=True)
-class Model:
+class Model(Record):
     """The `[model]` table: inertia of deformable bodies, profile, gravity along the motion (m/s2), where that leads.
 
     No gravity is assumed; `direction` tells whether that leaves a weight out.
     """
 
-    inertia: bool = False
-    profile: str = "exact"
-    gravity: float = 0.0
-    direction: str = DIRECTIONS[0]
-
-    def __post_init__(self) -> None:
-        check_fields("model", self, MODEL_KEYS)
+    inertia: Annotated[bool, Key(Flag(), "whether deformable bodies have inertia")] = False
+    profile: Annotated[str, Key(Choice(("exact", "parabola")), "the striker's profile")] = "exact"
+    gravity: Annotated[float, Key(Number(-1e6, 1e6, "m/s2"), "gravity along the motion")] = 0.0
+    direction: Annotated[str, Key(Choice(DIRECTIONS), "where the motion leads")] = DIRECTIONS[0]
+    name: ClassVar[str] = "model"
 
 
 @dataclass(frozen=True)
-class Motion:
+class Motion(Record):
     """The `[motion]` table: how many impacts are followed, and until when (s; None: 50 contact times)."""
 
-    impacts: int = 1
-    end_time: float | None = None
-
-    def __post_init__(self) -> None:
-        check_fields("motion", self, MOTION_KEYS)
+    impacts: Annotated[int, Key(Count(1, 100), "how many impacts are followed")] = 1
+    end_time: Annotated[float | None, Key(Number(1e-15, 1e12, "s"), "when to stop")] = None
+    name: ClassVar[str] = "motion"
 
     def until(self, contact_time: float, flight: float) -> float:
         """When to stop, s: the end time, else time for every impact and for the flight, s, between two."""
@@ -70,10 +58,10 @@ class LawChoice:
     """The `[law]` table: a lumped law by its name, with parameters of its own."""
 
     name: str
-    values: Mapping[str, Any] = field(default_factory=dict)
+    values: Table = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        keys = get(LAWS, self.name, source="law").KEYS
+        (keys,) = LAWS.get(self.name).sets
         _, faults = read_table("law", "", self.values, keys)
         if faults:
             raise BadInput(faults)
@@ -116,6 +104,4 @@ def mass_faults(source: str, mass: float, swinging: float) -> list[Fault]:
 
 def _moving() -> str:
     """Names of the targets whose waves can be followed."""
-    members = [value for name in available(TARGETS) for value in vars(get(TARGETS, name)).values()]
-    targets = {member for member in members if isinstance(member, type) and issubclass(member, Target)}
-    return ", ".join(sorted(target.name for target in targets if getattr(target, "has_inertia", False)))
+    return ", ".join(name for name, target in TARGETS.members.items() if target.kind.has_inertia)

@@ -8,7 +8,6 @@ import math
 from array import array
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +21,7 @@ MOST_BYTES, MOST_ROWS = 50_000_000, 1_000_000
 FILE = f"a CSV file of at most {MOST_BYTES // 10**6} MB"
 
 
-def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
+def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
     """Rows of numbers and texts; a cell whose value is undefined or not finite is empty."""
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
@@ -83,7 +82,7 @@ def _columns(source: str, rows: Iterator[list[str]], places: Mapping[str, int], 
     return {name: np.array(column) for name, column in found.items()}
 
 
-def _cell(value: Any) -> str:
+def _cell(value: object) -> str:
     if value is None or (isinstance(value, float) and not math.isfinite(value)):
         return ""
     return repr(float(value)) if isinstance(value, float) else str(value)

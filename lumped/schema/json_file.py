@@ -15,13 +15,13 @@ import numpy as np
 GIVEN = "given argument"  # no field and no key of ours is called so
 
 
-def write_json(path: Path, content: Mapping[str, Any]) -> None:
+def write_json(path: Path, content: Mapping[str, object]) -> None:
     """An indented file with a line's end; `content` is :func:`plain`. Raises ValueError for what is not finite."""
     text = json.dumps(content, indent=2, allow_nan=False, ensure_ascii=False)
     path.write_text(text + "\n", encoding="utf-8")
 
 
-def plain(value: Any) -> Any:
+def plain(value: object) -> Any:  # as it was: a table of a mapping, a list of a sequence
     """Dictionaries, lists, texts and numbers of Python, None for a number that is not finite."""
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
@@ -36,7 +36,7 @@ def plain(value: Any) -> Any:
     return value
 
 
-def encoded(value: Any, given: Sequence[Any] = ()) -> Any:
+def encoded(value: object, given: Sequence[object] = ()) -> object:
     """Plain data for json.dumps, from which :func:`decoded` makes the value again; NaN and infinities stay.
 
     A dataclass becomes a dictionary of its fields; one that equals a `given` dataclass, its place among those.
@@ -55,11 +55,11 @@ def encoded(value: Any, given: Sequence[Any] = ()) -> Any:
     return value
 
 
-def decoded(kind: Any, content: Any, given: Sequence[Any] = ()) -> Any:
+def decoded(kind: Any, content: Any, given: Sequence[object] = ()) -> Any:  # types have no type of their own
     """The value of an annotated `kind` which :func:`encoded` made into `content`.
 
     A kind is a dataclass or a named tuple, a number, a text, an array, a tuple, a mapping whose keys are texts or
-    numbers, one of those or None, or Any: plain data.
+    numbers, one of those or None, or object: plain data.
     """
     kind = getattr(kind, "__value__", kind)  # what an alias stands for, as NDArray is one from numpy 2.5 on
     origin, parts = get_origin(kind), get_args(kind)

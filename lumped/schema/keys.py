@@ -1,4 +1,4 @@
-"""What a key of a scene accepts, one kind of value a class.
+"""A key of a table: the kind of its values, what it means, and its default; one kind of value a class.
 
 Ranges are generous but finite: inside them no product of a scene's scales leaves double precision.
 """
@@ -7,21 +7,36 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 
-class Key(Protocol):
+class Kind(Protocol):
     """A kind of value: says what it accepts, and turns a raw value into a checked one."""
-
-    @property
-    def required(self) -> bool: ...
 
     @property
     def accepted(self) -> str:
         """What is accepted, in words, with the range and the unit."""
 
-    def read(self, value: object) -> Any:
+    def read(self, value: object) -> object:
         """The checked value; raises ValueError when it is refused, its text what to say instead of `accepted`."""
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key of a table: its `kind` of values, what it means, in words, and whether a table has to have it.
+
+    It stands beside the dataclass field, or the argument of a function, which it fills, and is written once:
+    `thickness: Annotated[float, Key(Number(1e-9, 1e6, "m"), "thickness of the layer")]`. Required is what has no
+    default there; `name` is only said where the table has another name for it than the field. See
+    :func:`lumped.schema.record.keys_of`.
+    """
+
+    kind: Kind
+    meaning: str = ""
+    required: bool = True
+    default: object = None
+    name: str = ""
+    field: str = ""
 
 
 @dataclass(frozen=True)
@@ -31,7 +46,6 @@ class Number:
     low: float
     high: float
     unit: str = ""
-    required: bool = True
     above: bool = False
 
     @property
@@ -54,7 +68,6 @@ class Count:
 
     low: int
     high: int
-    required: bool = True
 
     @property
     def accepted(self) -> str:
@@ -72,7 +85,6 @@ class Numbers:
 
     each: Number
     most: int = 100
-    required: bool = True
 
     @property
     def accepted(self) -> str:
@@ -89,7 +101,6 @@ class Choice:
     """One of a few words."""
 
     options: tuple[str, ...]
-    required: bool = True
 
     @property
     def accepted(self) -> str:
@@ -105,7 +116,6 @@ class Choice:
 class Flag:
     """true or false."""
 
-    required: bool = True
     accepted: str = "true or false"
 
     def read(self, value: object) -> bool:
@@ -118,7 +128,6 @@ class Flag:
 class Text:
     """A printable text of one to 200 characters that may be part of a file's name."""
 
-    required: bool = True
     accepted: str = "a printable text of 1 to 200 characters without / and \\"
 
     def read(self, value: object) -> str:
@@ -133,7 +142,6 @@ class Text:
 class File:
     """A file's name, maybe with folders before it; it reads as a path, which `placed` puts where it belongs."""
 
-    required: bool = True
     accepted: str = "the name of a file, from the folder of the scene file"
 
     def read(self, value: object) -> Path:

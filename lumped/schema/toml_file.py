@@ -6,9 +6,9 @@ import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from lumped.errors import BadInput, Fault, shown
+from lumped.schema import Table
 from lumped.schema.bounded_file import content
 
 # No scene needs as much; what tomllib takes for a key of n parts or n brackets grows by n^2 or ends its recursion.
@@ -21,7 +21,7 @@ TOO_DEEP = f"nested too deep; accepted: dotted keys, tables and lists up to {MOS
 LINE = re.compile(r"at line (\d+)")
 
 
-def parsed(path: Path) -> dict[str, Any]:
+def parsed(path: Path) -> Table:
     """The raw tables of a TOML file; raises BadInput when it cannot be read or is no TOML."""
     source, kind = str(path), f"a TOML file of at most {MOST_BYTES} bytes"
     try:
@@ -54,9 +54,9 @@ def parse_assignment(text: str) -> tuple[str, object]:
     return key, table["value"] if len(table) == 1 else value
 
 
-def overridden(table: Mapping[str, Any], overrides: Mapping[str, object], source: str) -> dict[str, Any]:
+def overridden(table: Mapping[str, object], overrides: Mapping[str, object], source: str) -> Table:
     """A copy of the tables with the dotted keys of `overrides` set. Raises BadInput."""
-    result = dict(table)
+    result: Table = dict(table)
     for dotted, value in overrides.items():
         *path, last = dotted.split(".")
         place = result
@@ -70,7 +70,7 @@ def overridden(table: Mapping[str, Any], overrides: Mapping[str, object], source
     return result
 
 
-def _tables(text: str) -> dict[str, Any]:
+def _tables(text: str) -> Table:
     """What a text in TOML says; raises ValueError, a TOMLDecodeError where it is none, also of one too deep to read."""
     bare = TEXT_OR_COMMENT.sub(lambda found: "" if found[0].startswith("#") else "text", text)
     if DEEP_KEY.search(bare) or _brackets(bare) > MOST_DEPTH:

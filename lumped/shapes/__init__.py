@@ -1,11 +1,9 @@
-"""Striker profiles, one a file: `KEYS`, the keys of the scene file, and `of(**values)`, the Shape."""
+"""Striker profiles, one a file: a member is the class that a striker's table describes."""
 
-from lumped.schema.members import available as _available
-from lumped.shapes._parabola import Parabola as Parabola
+from lumped.schema.members import Folder
+from lumped.schema.record import Part
 from lumped.shapes.base import Shape as Shape
+from lumped.shapes.sphere import Parabola as Parabola
 from lumped.shapes.sphere import Sphere as Sphere
 
-
-def available() -> tuple[str, ...]:
-    """Names of the shapes."""
-    return _available(__name__)
+SHAPES = Folder[Part[Shape]](__name__)

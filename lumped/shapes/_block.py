@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,8 +13,11 @@ from lumped.errors import BadInput, Fault
 from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.hertz import HertzImpact, power_impact
 from lumped.materials import Material, Relaxation
-from lumped.schema.key_table import read_table
+from lumped.schema.keys import Choice, Key, Number
 from lumped.shapes.base import Shape
+
+THICKNESS = Key(Number(1e-9, 1e4, "m"), "between the faces, along the motion")
+SIDES = Key(Choice(("free", "confined")), "what holds the sides")
 
 
 @dataclass(frozen=True)
@@ -24,16 +28,10 @@ class Block(Shape):
     Raises BadInput.
     """
 
-    area: float
-    thickness: float
-    sides: str
-    faces: str
-
-    def __post_init__(self) -> None:
-        own = {key: value for key, value in self.to_dict().items() if key != "shape"}
-        _, faults = read_table(self.name, "", own, self.keys)
-        if faults:
-            raise BadInput(faults)
+    area: Annotated[float, Key(Number(1e-18, 1e8, "m2"), "area of a face")]
+    thickness: Annotated[float, THICKNESS]
+    sides: Annotated[str, SIDES]
+    faces: Annotated[str, Key(Choice(("sliding", "bonded")), "what holds the faces")] = "sliding"
 
     def height(self, r: ArrayLike) -> NDArray[np.float64]:
         """Zero on its face, infinite beyond."""

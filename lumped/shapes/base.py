@@ -1,10 +1,9 @@
-"""The contract of a striker's profile."""
+"""The contract of a striker's profile; outlines of what is round, over the distance r from the lowest point."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,23 +13,22 @@ from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
 from lumped.load_curves.line_profile import LineProfile
 from lumped.materials import Material, Relaxation
-from lumped.schema.keys import Key
+from lumped.schema import Table
+from lumped.schema.record import Record, written
 
 
-class Shape(ABC):
+class Shape(Record, ABC):
     """An axisymmetric convex profile: height above its lowest point over the distance r from the axis.
 
-    `name` and `keys` are those of the scene file. Lengths in m; radii are scalars or arrays. `plane`: in plane
-    strain instead, r the distance from the plane of symmetry; forces are totals over its `length`.
+    Its `name` is that of the scene file, its keys stand beside its fields. Lengths in m; radii are scalars or arrays.
+    `plane`: in plane strain instead, r the distance from the plane of symmetry; forces are totals over its `length`.
     """
 
-    name: ClassVar[str]
-    keys: ClassVar[Mapping[str, Key]]
     plane: ClassVar[bool] = False
 
     @abstractmethod
     def height(self, r: ArrayLike) -> NDArray[np.float64]:
-        """Height h(r), infinite where the profile has ended."""
+        """Height h(r), m, infinite where the profile has ended."""
 
     @abstractmethod
     def slope(self, r: ArrayLike) -> NDArray[np.float64]:
@@ -66,11 +64,11 @@ class Shape(ABC):
         return None
 
     def own_mass(self, density: float) -> float:
-        """Mass of a body of this shape, kg, that its scene does not give; 0 where the shape is a profile alone."""
+        """Mass, kg, of a body of a density, kg/m3, that its scene does not give; 0 of a profile alone."""
         return 0.0
 
     def whole_mass(self, density: float) -> float | None:
-        """Mass, kg, that its scene has to give of a body of this shape; None where the shape is a profile alone."""
+        """Mass, kg, of a body of a density, kg/m3, that its scene has to give; None where the shape is a profile."""
         return None
 
     @property
@@ -88,8 +86,32 @@ class Shape(ABC):
 
     @abstractmethod
     def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
-        """Scales of the elastic impact by the profile's tip, contact modulus in Pa."""
+        """Scales of the elastic impact by the profile's tip: contact modulus, Pa, mass, kg, velocity, m/s."""
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Table:
         """The shape's part of the striker's table."""
-        return {"shape": self.name} | {key: getattr(self, key) for key in self.keys}
+        return {"shape": self.name} | written(self)
+
+
+def circle(r: ArrayLike, radius: float) -> NDArray[np.float64]:
+    """R - sqrt(R^2-r^2) = r^2/(R + sqrt(R^2-r^2)), m, which cancels no digit; infinite beyond R."""
+    square = (np.asarray(r, dtype=float) / radius) ** 2
+    rise = radius * square / (1.0 + np.sqrt(np.maximum(1.0 - square, 0.0)))
+    return np.where(square <= 1.0, rise, np.inf)
+
+
+def circle_slope(r: ArrayLike, radius: float) -> NDArray[np.float64]:
+    """r/sqrt(R^2-r^2), infinite from R on."""
+    ratio = np.abs(np.asarray(r, dtype=float)) / radius
+    with np.errstate(divide="ignore"):
+        return np.where(ratio < 1.0, ratio / np.sqrt(np.maximum(1.0 - ratio**2, 0.0)), np.inf)
+
+
+def parabola(r: ArrayLike, radius: float) -> NDArray[np.float64]:
+    """r^2/(2R), m."""
+    return np.asarray(np.asarray(r, dtype=float) ** 2 / (2.0 * radius))
+
+
+def parabola_slope(r: ArrayLike, radius: float) -> NDArray[np.float64]:
+    """r/R."""
+    return np.asarray(np.abs(np.asarray(r, dtype=float)) / radius)

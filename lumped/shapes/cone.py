@@ -3,32 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.load_curves import cone
 from lumped.load_curves.hertz import HertzImpact, power_impact
-from lumped.schema.key_table import check_fields
 from lumped.schema.keys import Key, Number
+from lumped.schema.record import Part
 from lumped.shapes.base import Shape
-
-KEYS: Mapping[str, Key] = {"angle": Number(0.01, 80.0, "degrees, between face and undeformed surface")}
 
 
 @dataclass(frozen=True)
 class Cone(Shape):
     """A cone whose face stands at `angle`, degrees, to the undeformed surface: Table 1's theta. Raises BadInput."""
 
-    angle: float
+    angle: Annotated[
+        float, Key(Number(0.01, 80.0, "degrees, between face and undeformed surface"), "how steep the face is")
+    ]
     name: ClassVar[str] = "cone"
-    keys: ClassVar[Mapping[str, Key]] = KEYS
-
-    def __post_init__(self) -> None:
-        check_fields("cone", self, KEYS)
 
     def height(self, r: ArrayLike) -> NDArray[np.float64]:
         """r tan(angle)."""
@@ -65,6 +60,4 @@ class Cone(Shape):
         return math.tan(math.radians(self.angle))
 
 
-def of(angle: float) -> Cone:
-    """A cone of `angle`, degrees."""
-    return Cone(angle)
+MEMBER = Part(Cone)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,26 +13,19 @@ from lumped.errors import BadInput, Fault
 from lumped.load_curves import line_profile
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
-from lumped.schema.key_table import check_fields
 from lumped.schema.keys import Key, Number
-from lumped.shapes._outlines import circle, circle_slope, parabola, parabola_slope
-from lumped.shapes.base import Shape
-
-KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "length": Number(1e-9, 1e6, "m")}
+from lumped.schema.record import Part
+from lumped.shapes.base import Shape, circle, circle_slope, parabola, parabola_slope
 
 
 @dataclass(frozen=True)
 class Cylinder(Shape):
     """A cylinder of this radius and length, m; r is the distance from the plane through its axis. Raises BadInput."""
 
-    radius: float
-    length: float
+    radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the cylinder")]
+    length: Annotated[float, Key(Number(1e-9, 1e6, "m"), "length along the surface")]
     name: ClassVar[str] = "cylinder"
-    keys: ClassVar[Mapping[str, Key]] = KEYS
     plane: ClassVar[bool] = True
-
-    def __post_init__(self) -> None:
-        check_fields("cylinder", self, KEYS)
 
     def height(self, r: ArrayLike) -> NDArray[np.float64]:
         """R - sqrt(R^2-r^2), infinite beyond R."""
@@ -110,6 +102,4 @@ class ParabolicCylinder(Cylinder):
         return self
 
 
-def of(radius: float, length: float) -> Cylinder:
-    """A cylinder of `radius` and `length`, m."""
-    return Cylinder(radius, length)
+MEMBER = Part(Cylinder)

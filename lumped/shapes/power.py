@@ -2,36 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.load_curves.hertz import HertzImpact, power_impact
 from lumped.load_curves.power import Power
-from lumped.schema.key_table import check_fields
 from lumped.schema.keys import Key, Number
+from lumped.schema.record import Part
 from lumped.shapes.base import Shape
-
-KEYS: Mapping[str, Key] = {
-    "coefficient": Number(1e-300, 1e300, "m^(1-n)"),
-    "exponent": Number(1.0, 20.0),
-}
 
 
 @dataclass(frozen=True)
 class PowerProfile(Shape):
     """height = coefficient r^exponent. Raises BadInput for a value out of range."""
 
-    coefficient: float
-    exponent: float
+    coefficient: Annotated[float, Key(Number(1e-300, 1e300, "m^(1-n)"), "c of the height c r^n")]
+    exponent: Annotated[float, Key(Number(1.0, 20.0), "n of the height c r^n")]
     name: ClassVar[str] = "power"
-    keys: ClassVar[Mapping[str, Key]] = KEYS
-
-    def __post_init__(self) -> None:
-        check_fields("power", self, KEYS)
 
     def height(self, r: ArrayLike) -> NDArray[np.float64]:
         """c r^n."""
@@ -65,6 +55,4 @@ class PowerProfile(Shape):
         return power_impact(self.load_curve, self.exponent_of_force, modulus, mass, velocity)
 
 
-def of(coefficient: float, exponent: float) -> PowerProfile:
-    """The profile of a coefficient c, m^(1-n), and an exponent n."""
-    return PowerProfile(coefficient, exponent)
+MEMBER = Part(PowerProfile)

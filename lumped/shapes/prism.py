@@ -2,32 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, ClassVar
+from dataclasses import dataclass, replace
+from typing import Annotated, ClassVar
 
-from lumped.schema.keys import Choice, Key, Number
-from lumped.shapes._block import Block
+from lumped.schema.record import Part
+from lumped.shapes._block import SIDES, THICKNESS, Block
 
-KEYS: Mapping[str, Key] = {
-    "area": Number(1e-18, 1e8, "m2"),
-    "height": Number(1e-9, 1e4, "m"),
-    "sides": Choice(("free", "confined"), required=False),
-    "faces": Choice(("sliding", "bonded"), required=False),
-}
+HEIGHT = replace(THICKNESS, name="height")
 
 
+@dataclass(frozen=True)
 class Prism(Block):
-    """A block by its area, m2, and height, m. Raises BadInput for a value out of range."""
+    """A block by its area, m2, and height, m, which is its thickness. Raises BadInput for a value out of range."""
 
+    thickness: Annotated[float, HEIGHT]
+    sides: Annotated[str, SIDES] = "free"
     name: ClassVar[str] = "prism"
-    keys: ClassVar[Mapping[str, Key]] = KEYS
-
-    def to_dict(self) -> dict[str, Any]:
-        """Its part of the striker's table."""
-        own = {"area": self.area, "height": self.thickness, "sides": self.sides, "faces": self.faces}
-        return {"shape": self.name} | own
 
 
-def of(area: float, height: float, sides: str = "free", faces: str = "sliding") -> Prism:
-    """A prism of `area`, m2, and `height`, m."""
-    return Prism(area, height, sides, faces)
+MEMBER = Part(Prism)

@@ -2,32 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.load_curves import fixed_area
 from lumped.load_curves.hertz import HertzImpact, power_impact
-from lumped.schema.key_table import check_fields
 from lumped.schema.keys import Key, Number
+from lumped.schema.record import Part
 from lumped.shapes.base import Shape
-
-KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m")}
 
 
 @dataclass(frozen=True)
 class Punch(Shape):
     """A flat end of this radius, m. Raises BadInput for a radius out of range."""
 
-    radius: float
+    radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the flat end")]
     name: ClassVar[str] = "punch"
-    keys: ClassVar[Mapping[str, Key]] = KEYS
-
-    def __post_init__(self) -> None:
-        check_fields("punch", self, KEYS)
 
     def height(self, r: ArrayLike) -> NDArray[np.float64]:
         """Zero up to the rim, infinite beyond."""
@@ -65,6 +58,4 @@ class Punch(Shape):
         return power_impact(self.load_curve, self.exponent_of_force, modulus, mass, velocity)
 
 
-def of(radius: float) -> Punch:
-    """A punch of `radius`, m."""
-    return Punch(radius)
+MEMBER = Part(Punch)

@@ -1,25 +1,44 @@
-"""The sphere."""
+"""The sphere, and the paraboloid which stands for it when `model.profile = "parabola"`: a tip of one radius."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.load_curves.hertz import Hertz, HertzImpact, hertz_impact
 from lumped.load_curves.sneddon_sphere import SneddonSphere
-from lumped.shapes import _round
-from lumped.shapes._outlines import circle, circle_slope
-from lumped.shapes._parabola import Parabola
-from lumped.shapes.base import Shape
-
-KEYS = _round.KEYS
+from lumped.schema.keys import Key, Number
+from lumped.schema.record import Part
+from lumped.shapes.base import Shape, circle, circle_slope, parabola, parabola_slope
 
 
 @dataclass(frozen=True)
-class Sphere(_round.RoundShape):
+class RoundShape(Shape):
+    """A profile with this radius at its tip, m. Raises BadInput for a radius out of range."""
+
+    radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the sphere")]
+
+    @property
+    def exponent_of_force(self) -> float:
+        """3/2."""
+        return 1.5
+
+    @property
+    def tip_radius(self) -> float:
+        """Its radius, m."""
+        return self.radius
+
+    def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
+        """Scales of the Hertz impact, exact for the paraboloid."""
+        return hertz_impact(self.radius, modulus, mass, velocity)
+
+
+@dataclass(frozen=True)
+class Sphere(RoundShape):
     """A sphere of this radius, m. Raises BadInput for a radius out of range."""
 
     name: ClassVar[str] = "sphere"
@@ -52,6 +71,32 @@ class Sphere(_round.RoundShape):
         return Parabola(self.radius) if profile == "parabola" else self
 
 
-def of(radius: float) -> Sphere:
-    """A sphere of `radius`, m."""
-    return Sphere(radius)
+@dataclass(frozen=True)
+class Parabola(RoundShape):
+    """h(r) = r^2/(2R), R in m: no shape of a scene file, but what its sphere may resolve to."""
+
+    name: ClassVar[str] = "parabola"
+
+    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+        """r^2/(2R)."""
+        return parabola(r, self.radius)
+
+    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+        """r/R."""
+        return parabola_slope(r, self.radius)
+
+    def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
+        """x^2/R."""
+        return np.asarray(np.asarray(x, dtype=float) ** 2 / self.radius)
+
+    @property
+    def load_curve(self) -> Hertz:
+        """Hertz's closed form."""
+        return Hertz(self.radius)
+
+    def resolved(self, profile: str) -> Shape:
+        """Itself."""
+        return self
+
+
+MEMBER = Part(Sphere)

@@ -6,39 +6,33 @@ As printed, V_2' of "(2)" breaks the balance of momentum, and its loss is (1+e)/
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated, ClassVar
 
 from lumped.errors import BadInput, Fault
-from lumped.schema.key_table import check_fields
 from lumped.schema.keys import Key, Number
+from lumped.schema.record import Record
 
-VELOCITY = Number(-1e9, 1e9, "m/s")
-KEYS: Mapping[str, Key] = {
-    "mass_1": Number(1e-21, 1e12, "kg"),
-    "velocity_1": VELOCITY,
-    "velocity_2": VELOCITY,
-    "e": Number(0.0, 1.0),
-    "mass_2": Number(1e-21, math.inf, "kg"),
-}
+MASS, VELOCITY = Number(1e-21, 1e12, "kg"), Number(-1e9, 1e9, "m/s")
 
 
 @dataclass(frozen=True)
-class Collision:
+class Collision(Record):
     """Body 1 runs into body 2: masses in kg, velocities before in m/s along one line, V_1 > V_2.
 
     `e` is the coefficient of restitution; without `mass_2` the second body is a wall, which may move.
     Raises BadInput for values out of range, and for bodies which do not approach each other.
     """
 
-    mass_1: float
-    velocity_1: float
-    velocity_2: float
-    e: float
-    mass_2: float = math.inf
+    mass_1: Annotated[float, Key(MASS, "mass of body 1")]
+    velocity_1: Annotated[float, Key(VELOCITY, "its velocity before")]
+    velocity_2: Annotated[float, Key(VELOCITY, "velocity of body 2 before")]
+    e: Annotated[float, Key(Number(0.0, 1.0), "coefficient of restitution")]
+    mass_2: Annotated[float, Key(Number(1e-21, math.inf, "kg"), "mass of body 2")] = math.inf
+    name: ClassVar[str] = "collision"
 
     def __post_init__(self) -> None:
-        check_fields("collision", self, KEYS)
+        super().__post_init__()
         _check_approach(self.velocity_1, self.velocity_2)
 
     @property

@@ -1,10 +1,8 @@
-"""Targets, one a file: `KEYS`, the keys of the scene file, and `of(**values)`, the Target."""
+"""Targets, one a file: a member is the class that a target's table describes."""
 
-from lumped.schema.members import available as _available
+from lumped.schema.members import Folder
+from lumped.schema.record import Part
 from lumped.targets.base import Target as Target
 from lumped.targets.half_space import HalfSpace as HalfSpace
 
-
-def available() -> tuple[str, ...]:
-    """Names of the targets."""
-    return _available(__name__)
+TARGETS = Folder[Part[Target]](__name__)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,11 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
-from lumped.schema.key_table import check_fields
+from lumped.schema.keys import Choice, Key, Number
 from lumped.shapes.base import Shape
 from lumped.targets.base import MOVES, Target, vibrations
 
 SUPPORTS = ("free", "held")
+SUPPORT = Key(Choice(SUPPORTS), "what balances the struck body")
 
 
 @dataclass(frozen=True)
@@ -29,14 +30,11 @@ class RoundTarget(Target):
     None, it is taken as a half-space. Depth is the approach of the centres of mass. Raises BadInput.
     """
 
-    radius: float
-    support: str | None
+    radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the struck body")]
+    support: Annotated[str | None, SUPPORT]
     strikers: ClassVar[tuple[str, str]]
     has_inertia: ClassVar[bool] = False
     yielding_strikers: ClassVar[bool] = True
-
-    def __post_init__(self) -> None:
-        check_fields(self.name, self, self.keys)
 
     @property
     @abstractmethod
@@ -82,8 +80,3 @@ class RoundTarget(Target):
         """Not deeper than the smaller body is round."""
         radius = min(self.radius, shape.tip_radius or self.radius)
         return f"accepted below the smaller radius {radius:g} m" if depth >= radius else ""
-
-    def to_dict(self) -> dict[str, Any]:
-        """Its part of the target's table."""
-        table = {"shape": self.name, "radius": self.radius}
-        return table if self.support is None else table | {"support": self.support}

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,7 +13,8 @@ from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse, radiated_share
-from lumped.schema.keys import Key
+from lumped.schema import Table
+from lumped.schema.record import Record, written
 from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
 
@@ -24,15 +24,13 @@ MOVES = "{:.2g} of the striker's mass moves with it"
 LOST_FORCE = 0.3  # of the peak, relatively, over the share of the energy that is lost
 
 
-class Target(ABC):
-    """The geometry of a struck body; `name` and `keys` are those of the scene file.
+class Target(Record, ABC):
+    """The geometry of a struck body; its `name` is that of the scene file, its keys stand beside its fields.
 
     `deformable`: whether it has a material; `yielding_strikers`: whether its striker may have one. `has_inertia`:
     whether its waves can be followed; `only_with_inertia`: whether nothing is left of it without them.
     """
 
-    name: ClassVar[str]
-    keys: ClassVar[Mapping[str, Key]]
     has_inertia: ClassVar[bool]
     only_with_inertia: ClassVar[bool] = False
     deformable: ClassVar[bool] = True
@@ -107,7 +105,7 @@ class Target(ABC):
         return [Fault(source, "striker.material", reason)]
 
     def whole_mass(self, density: float) -> float | None:
-        """Mass, kg, of the whole body, which flies when struck; None where it is held."""
+        """Mass, kg, of the whole body of a density, kg/m3, which flies when struck; None where it is held."""
         return None
 
     def inertia_faults(self, source: str, striker: Material | None) -> list[Fault]:
@@ -132,9 +130,9 @@ class Target(ABC):
         """What is wrong with a contact as wide, m; empty where nothing is."""
         return ""
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Table:
         """The geometry's part of the target's table."""
-        return {"shape": self.name} | {key: getattr(self, key) for key in self.keys}
+        return {"shape": self.name} | written(self)
 
 
 def vibrations(material: Material, pulse: Pulse, whole: float) -> tuple[float | None, str]:

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import ClassVar
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
 
-from lumped.schema.keys import Choice, Key, Number
+from lumped.schema.record import Part
 from lumped.shapes.cylinder import Cylinder as Profile
-from lumped.targets._round import SUPPORTS, RoundTarget
-
-KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "support": Choice(SUPPORTS)}
+from lumped.targets._round import SUPPORT, RoundTarget
 
 
+@dataclass(frozen=True)
 class CylinderTarget(RoundTarget):
     """A cylinder of this radius, m: finite, since in plane strain two half-spaces have no finite approach."""
 
+    support: Annotated[str, SUPPORT]
     name: ClassVar[str] = "cylinder"
-    keys: ClassVar[Mapping[str, Key]] = KEYS
     strikers: ClassVar[tuple[str, str]] = ("cylinder", "parabolic_cylinder")
 
     @property
@@ -25,6 +24,4 @@ class CylinderTarget(RoundTarget):
         return Profile(self.radius, 1.0)
 
 
-def of(radius: float, support: str) -> CylinderTarget:
-    """A cylinder of `radius`, m."""
-    return CylinderTarget(radius, support)
+MEMBER = Part(CylinderTarget)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,10 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.schema.keys import Key, Number
+from lumped.schema.record import Part
 from lumped.shapes.base import Shape
 from lumped.targets.base import Target
-
-KEYS: Mapping[str, Key] = {"datum_depth": Number(1e-9, 1e9, "m", required=False)}
 
 
 @dataclass(frozen=True)
@@ -25,9 +23,8 @@ class HalfSpace(Target):
     `datum_depth`, m: in plane strain depth is measured relative to the point so far below; None otherwise.
     """
 
-    datum_depth: float | None = None
+    datum_depth: Annotated[float | None, Key(Number(1e-9, 1e9, "m"), "how far below touch the datum lies")] = None
     name: ClassVar[str] = "half_space"
-    keys: ClassVar[Mapping[str, Key]] = KEYS
     has_inertia: ClassVar[bool] = True
     yielding_strikers: ClassVar[bool] = True
 
@@ -77,11 +74,5 @@ class HalfSpace(Target):
             return ""
         return f"contact {contact_radius:.3g} m wide; accepted below the datum's depth {self.datum_depth:g} m"
 
-    def to_dict(self) -> dict[str, Any]:
-        """Its part of the target's table."""
-        return {"shape": self.name} | ({} if self.datum_depth is None else {"datum_depth": self.datum_depth})
 
-
-def of(datum_depth: float | None = None) -> HalfSpace:
-    """The half-space, or the half-plane with a datum, m."""
-    return HalfSpace(datum_depth)
+MEMBER = Part(HalfSpace)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,13 +12,11 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
-from lumped.schema.key_table import check_fields
 from lumped.schema.keys import Key, Number
+from lumped.schema.record import Part
 from lumped.shapes.base import Shape
 from lumped.shapes.sphere import Sphere
 from lumped.targets.base import MOVES, NEEDS_DENSITY, Target
-
-KEYS: Mapping[str, Key] = {"mean_radius": Number(1e-9, 1e4, "m"), "section_radius": Number(1e-9, 1e4, "m")}
 
 
 @dataclass(frozen=True)
@@ -29,14 +26,13 @@ class ORing(Target):
     Two contacts alike: the depth is the approach of the two planes, half of it at each.
     """
 
-    mean_radius: float
-    section_radius: float
+    mean_radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "from the axis to the middle of the section")]
+    section_radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the section")]
     name: ClassVar[str] = "o_ring"
-    keys: ClassVar[Mapping[str, Key]] = KEYS
     has_inertia: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        check_fields("o_ring", self, KEYS)
+        super().__post_init__()
         if self.section_radius >= self.mean_radius:
             reason = f"{self.section_radius:g}: accepted below the mean radius {self.mean_radius:g} m"
             raise BadInput(Fault("o_ring", "section_radius", reason))
@@ -86,6 +82,4 @@ class ORing(Target):
         return f"accepted below the ring's thickness {thickness:g} m" if depth >= thickness else ""
 
 
-def of(mean_radius: float, section_radius: float) -> ORing:
-    """A ring of `mean_radius` and `section_radius`, m."""
-    return ORing(mean_radius, section_radius)
+MEMBER = Part(ORing)

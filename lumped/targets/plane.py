@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -14,13 +13,11 @@ from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
-from lumped.schema.keys import Key
+from lumped.schema.record import Part
 from lumped.shapes._block import Block
-from lumped.shapes._round import RoundShape
 from lumped.shapes.base import Shape
+from lumped.shapes.sphere import RoundShape
 from lumped.targets.base import NEEDS_DENSITY, Target, vibrations
-
-KEYS: Mapping[str, Key] = {}
 
 
 @dataclass(frozen=True)
@@ -28,7 +25,6 @@ class Plane(Target):
     """A plane that does not yield."""
 
     name: ClassVar[str] = "plane"
-    keys: ClassVar[Mapping[str, Key]] = KEYS
     has_inertia: ClassVar[bool] = True
     deformable: ClassVar[bool] = False
     yielding_strikers: ClassVar[bool] = True
@@ -75,6 +71,4 @@ class Plane(Target):
         return f"accepted below the block's {shape.thickness:g} m" if depth >= shape.thickness else ""
 
 
-def of() -> Plane:
-    """The plane."""
-    return Plane()
+MEMBER = Part(Plane)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,29 +12,27 @@ from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
-from lumped.schema.key_table import check_fields
 from lumped.schema.keys import Key, Number
+from lumped.schema.record import Part
 from lumped.shapes.base import Shape
 from lumped.targets.base import Target
 from lumped.targets.layer import Layer
 
 # Inner radius over thickness: the waves in the annulus' answer grow with it, and with them the time, to seconds here.
 THINNEST = 1000.0
-KEYS: Mapping[str, Key] = {"inner_radius": Number(1e-9, 1e4, "m"), "thickness": Number(1e-9, 1e4, "m")}
 
 
 @dataclass(frozen=True)
 class Ring(Target):
     """A ring of these dimensions, m; its places are angles from the line of motion, rad. Raises BadInput."""
 
-    inner_radius: float
-    thickness: float
+    inner_radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the hole")]
+    thickness: Annotated[float, Key(Number(1e-9, 1e4, "m"), "between the hole and what holds the ring")]
     name: ClassVar[str] = "ring"
-    keys: ClassVar[Mapping[str, Key]] = KEYS
     has_inertia: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        check_fields("ring", self, KEYS)
+        super().__post_init__()
         if self.inner_radius > THINNEST * self.thickness:
             reason = f"{self.thickness:g}: accepted from {self.inner_radius / THINNEST:g} m on in a ring as wide"
             raise BadInput(Fault("ring", "thickness", reason))
@@ -85,6 +82,4 @@ class Ring(Target):
         return super().check_depth(shape, depth)
 
 
-def of(inner_radius: float, thickness: float) -> Ring:
-    """A ring of `inner_radius` and `thickness`, m."""
-    return Ring(inner_radius, thickness)
+MEMBER = Part(Ring)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
-from lumped.schema.key_table import check_fields
 from lumped.schema.keys import Choice, Key, Number
+from lumped.schema.record import Part
 from lumped.shapes.base import Shape
 from lumped.targets.base import LOST_FORCE, Target
 
@@ -22,11 +22,6 @@ from lumped.targets.base import LOST_FORCE, Target
 ECHOES: Mapping[str, float] = {"fixed": -1.0, "free": 1.0, "absorbing": 0.0}
 # int F^2 dt/(F_max^2 T) of the Hertz pulse: 0.8 B(8/5, 1/2)/(T v/depth), T v/depth = 2.943275.
 HERTZ_SQUARE = 0.8 / 2.943275 * math.gamma(1.6) * math.gamma(0.5) / math.gamma(2.1)
-KEYS: Mapping[str, Key] = {
-    "area": Number(1e-18, 1e6, "m2"),
-    "length": Number(1e-9, 1e6, "m"),
-    "end": Choice(tuple(ECHOES)),
-}
 
 
 @dataclass(frozen=True)
@@ -37,16 +32,12 @@ class Rod(Target):
     would a half-space of the rod's material, and what it presses with goes down the rod.
     """
 
-    area: float
-    length: float
-    end: str
+    area: Annotated[float, Key(Number(1e-18, 1e6, "m2"), "area of the section")]
+    length: Annotated[float, Key(Number(1e-9, 1e6, "m"), "length of the rod")]
+    end: Annotated[str, Key(Choice(tuple(ECHOES)), "what becomes of waves at the other end")]
     name: ClassVar[str] = "rod"
-    keys: ClassVar[Mapping[str, Key]] = KEYS
     has_inertia: ClassVar[bool] = True
     only_with_inertia: ClassVar[bool] = True
-
-    def __post_init__(self) -> None:
-        check_fields("rod", self, KEYS)
 
     @property
     def echo(self) -> float:
@@ -94,6 +85,4 @@ class Rod(Target):
             raise BadInput(Fault(source, "striker.shape", reason))
 
 
-def of(area: float, length: float, end: str) -> Rod:
-    """A rod of `area`, m2, and `length`, m, with this other `end`."""
-    return Rod(area, length, end)
+MEMBER = Part(Rod)

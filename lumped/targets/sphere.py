@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import ClassVar
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
 
 from lumped.errors import Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.two_profiles import TwoProfiles
 from lumped.materials import Material
-from lumped.schema.keys import Choice, Key, Number
+from lumped.schema.record import Part
 from lumped.shapes import Sphere as Profile
 from lumped.shapes.base import Shape
-from lumped.targets._round import SUPPORTS, RoundTarget
-
-KEYS: Mapping[str, Key] = {"radius": Number(1e-9, 1e4, "m"), "support": Choice(SUPPORTS, required=False)}
+from lumped.targets._round import SUPPORT, RoundTarget
 
 
+@dataclass(frozen=True)
 class SphereTarget(RoundTarget):
     """A sphere of this radius, m: a half-space under the gap of two spheres, finite where its support is said."""
 
+    support: Annotated[str | None, SUPPORT] = None
     name: ClassVar[str] = "sphere"
-    keys: ClassVar[Mapping[str, Key]] = KEYS
     has_inertia: ClassVar[bool] = True
     strikers: ClassVar[tuple[str, str]] = ("sphere", "parabola")
 
@@ -58,6 +57,4 @@ class SphereTarget(RoundTarget):
         return TwoProfiles(shape.load_curve, self.matching(shape).load_curve)
 
 
-def of(radius: float, support: str | None = None) -> SphereTarget:
-    """A sphere of `radius`, m."""
-    return SphereTarget(radius, support)
+MEMBER = Part(SphereTarget)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,34 +12,26 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
-from lumped.schema.key_table import check_fields
 from lumped.schema.keys import Choice, Key, Number
+from lumped.schema.record import Part
 from lumped.shapes.base import Shape
-from lumped.targets._layer_mass import moving_share
 from lumped.targets.base import MOVES, NEEDS_DENSITY, Target
-
-KEYS: Mapping[str, Key] = {
-    "inner_radius": Number(1e-9, 1e4, "m"),
-    "outer_radius": Number(1e-9, 1e4, "m"),
-    "height": Number(1e-9, 1e4, "m"),
-    "base": Choice(("bonded", "sliding")),
-}
+from lumped.targets.layer import moving_share
 
 
 @dataclass(frozen=True)
 class Washer(Target):
     """A washer of these dimensions, m, bonded to its foundation or sliding on it, always in touch. Raises BadInput."""
 
-    inner_radius: float
-    outer_radius: float
-    height: float
-    base: str
+    inner_radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the hole")]
+    outer_radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the rim")]
+    height: Annotated[float, Key(Number(1e-9, 1e4, "m"), "thickness of the washer")]
+    base: Annotated[str, Key(Choice(("bonded", "sliding")), "what holds it on its foundation")]
     name: ClassVar[str] = "washer"
-    keys: ClassVar[Mapping[str, Key]] = KEYS
     has_inertia: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        check_fields("washer", self, KEYS)
+        super().__post_init__()
         if self.inner_radius >= self.outer_radius:
             reason = f"{self.inner_radius:g}: accepted below the outer radius {self.outer_radius:g} m"
             raise BadInput(Fault("washer", "inner_radius", reason))
@@ -81,6 +72,4 @@ class Washer(Target):
         return f"accepted below the washer's height {self.height:g} m" if depth >= self.height else ""
 
 
-def of(inner_radius: float, outer_radius: float, height: float, base: str) -> Washer:
-    """A washer of these dimensions, m, on a `base`."""
-    return Washer(inner_radius, outer_radius, height, base)
+MEMBER = Part(Washer)

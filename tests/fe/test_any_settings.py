@@ -17,8 +17,8 @@ from fe_contact.budget.certify import certify, other_mesh, other_setting
 from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs
 from fe_contact.methods import simulate as fe
-from fe_contact.reference import strike_of
 from fe_contact.settings import RANGES
+from fe_contact.steppers.march import Strike
 from lumped import FeContactError, Relaxation, Result, Scene, laws, simulate
 
 IMPACTS, SEED, END_TO_END = 120, 20261124, 0.95
@@ -171,7 +171,7 @@ def test_where_a_variation_fails_the_force_is_known_to_no_more_than_itself(monke
         return None if settings.penalty != numerics.penalty else whole(self, number, settings)
 
     monkeypatch.setattr(Runs, "curve", curve)
-    found = certify(strike_of(scene), scene.geometry, numerics)
+    found = certify(Strike.of(scene), scene.geometry, numerics)
     times = np.linspace(0.0, found.curve.duration, 50)
     assert found.force_error(times).min() >= found.curve.dense_force.max()
     assert np.isinf(found.total("peak_force"))

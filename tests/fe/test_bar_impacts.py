@@ -15,7 +15,7 @@ import pytest
 
 import fe_contact
 from fe_contact.cli import main
-from fe_contact.waves.falling_block import PAUSE
+from fe_contact.waves.targets._block import PAUSE
 from lumped import Scene
 from lumped.errors import BadInput
 from lumped.result.result import Result

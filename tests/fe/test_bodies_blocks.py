@@ -12,7 +12,8 @@ from lumped import BadInput, Material, Relaxation
 from lumped.load_curves.layer import PointLayer
 from lumped.load_curves.layer_curve import LayerPunch
 from lumped.scene.indenter import Indenter
-from lumped.shapes import plate, prism
+from lumped.shapes.plate import Plate
+from lumped.shapes.prism import Prism
 from lumped.shapes.punch import Punch
 from lumped.targets.plane import Plane
 from lumped.targets.washer import Washer
@@ -28,7 +29,7 @@ def polymer(nu: float = 0.3) -> Material:
 
 
 def block(height: float, sides: str, faces: str, nu: float = 0.3) -> Indenter:
-    return Indenter(prism.of(AREA, height, sides, faces), polymer(nu), Plane())
+    return Indenter(Prism(AREA, height, sides, faces), polymer(nu), Plane())
 
 
 def washer(radius: float, base: str, nu: float = 0.3, height: float = 0.01) -> Indenter:
@@ -55,7 +56,7 @@ def test_uniform_strain_is_exact(height: float, nu: float) -> None:
 
 
 def test_a_plate_is_confined_unless_it_says_else() -> None:
-    found = indent(Indenter(plate.of(AREA, 0.002), polymer(), Plane()), (DEPTH,), {})
+    found = indent(Indenter(Plate(AREA, 0.002), polymer(), Plane()), (DEPTH,), {})
     assert found.force[0] == pytest.approx(confined(0.3) * AREA * DEPTH / 0.002, rel=1e-9)
     assert found.modulus == pytest.approx(confined(0.3))
 
@@ -141,9 +142,9 @@ def test_a_wide_washer_with_a_needle_hole_is_the_layer(base: str, outer_radius: 
     [
         ("inner_radius", lambda: Washer(0.01, 0.01, 0.01, "bonded")),
         ("striker.radius", lambda: washer(0.004, "bonded")),
-        ("striker.shape", lambda: Indenter(prism.of(AREA, 0.1), polymer(), Washer(0.005, 0.01, 0.01, "bonded"))),
+        ("striker.shape", lambda: Indenter(Prism(AREA, 0.1), polymer(), Washer(0.005, 0.01, 0.01, "bonded"))),
         ("striker.shape", lambda: Indenter(Punch(0.01), polymer(), Plane())),
-        ("striker.shape", lambda: Indenter(prism.of(AREA, 0.1), polymer())),
+        ("striker.shape", lambda: Indenter(Prism(AREA, 0.1), polymer())),
         ("--depths", lambda: indent(washer(0.02, "bonded"), (0.011,), {})),
         ("--depths", lambda: indent(block(0.01, "free", "bonded"), (0.01,), {})),
     ],

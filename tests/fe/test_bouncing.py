@@ -18,7 +18,7 @@ from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs
 from fe_contact.cli import main
 from fe_contact.march.flight import Released
-from fe_contact.reference import strike_of
+from fe_contact.steppers.march import Strike
 from lumped.laws import mdr
 from lumped.materials import Relaxation
 
@@ -85,7 +85,7 @@ def test_a_layer_gives_back_what_it_got_too(scene_of: Scenes) -> None:
     """On a mesh that stays, by the steps of the march alone, which lose a thousandth."""
     layer = {"shape": "layer", "thickness": 4e-3, "base": "bonded", "material": ELASTIC | {"nu": 0.3}}
     scene = thrown(scene_of, ELASTIC, target=layer)
-    followed = Runs(strike_of(scene), scene.geometry, 2).follow(plan(scene, {"tolerance": 3e-3}).numerics)
+    followed = Runs(Strike.of(scene), scene.geometry, 2).follow(plan(scene, {"tolerance": 3e-3}).numerics)
     first, second = followed.contacts
     assert second.strike.depth == pytest.approx(0.0, abs=1e-9 * first.march.depth.max())
     assert second.strike.velocity == pytest.approx(scene.velocity, rel=2e-3)
@@ -155,7 +155,7 @@ def test_a_finer_run_is_within_both_bars(polymer: tuple[lumped.Scene, lumped.Res
 def test_later_contacts_keep_the_schemes_order(polymer: tuple[lumped.Scene, lumped.Result]) -> None:
     scene, _ = polymer
     numerics = plan(scene, {"tolerance": 1e-3}).numerics
-    runs = Runs(strike_of(scene), scene.geometry, 3)
+    runs = Runs(Strike.of(scene), scene.geometry, 3)
     found = []
     for steps in (80, 40, 20):
         settings = numerics.varied(steps=steps)
@@ -175,7 +175,7 @@ def test_energy_is_accounted_for_over_contacts_and_flights(polymer: tuple[lumped
     assert abs(energy["residual"]) < 1e-4 * energy["in"]
     spent = energy["stored"] + energy["viscous"]
     assert spent == pytest.approx(given - energy["out"], abs=sum(result.energy_error[n] for n in ("out", "viscous")))
-    followed = Runs(strike_of(scene), scene.geometry, 3).follow(plan(scene, {"tolerance": 1e-3}).numerics)
+    followed = Runs(Strike.of(scene), scene.geometry, 3).follow(plan(scene, {"tolerance": 1e-3}).numerics)
     first, second, third = (contact.march.energy for contact in followed.contacts)
     assert 0.0 < first["viscous"] < second["viscous"] < third["viscous"]
     for terms in (first, second, third):

@@ -15,9 +15,11 @@ import fe_contact
 from fe_contact.budget.curve import Curve
 from fe_contact.cli import main
 from fe_contact.march.flight import Grounded
+from fe_contact.march.impacts import follow
 from fe_contact.methods import simulate
-from fe_contact.reference import strike_of
-from fe_contact.waves.bounces import Bounces, follow
+from fe_contact.steppers.march import Strike
+from fe_contact.waves.bounces import WaveBouncer
+from fe_contact.waves.certify import WaveRun
 from fe_contact.waves.half_space_body import moving
 from fe_contact.waves.impact import motion, record
 from fe_contact.waves.targets import half_space
@@ -35,13 +37,16 @@ def thrown(material: Mapping[str, Any] | None = None, **changes: Any) -> Scene:
     return Scene.load("ball-bouncing-waves", {"motion.impacts": 2, **given, **changes})
 
 
-def followed(scene: Scene, **given: Any) -> Bounces:
+def followed(scene: Scene, **given: Any) -> WaveRun:
     numerics = half_space.plan(scene, QUICK | given).numerics
-    return follow(moving(scene, numerics), scene, strike_of(scene), numerics)
+    body = moving(scene, numerics)
+    bouncer = WaveBouncer(body, scene, numerics)
+    found = follow(bouncer, Strike.of(scene), scene.motion.impacts)
+    return WaveRun(found, body.body.size, bouncer.flights)
 
 
-def quantities(bounces: Bounces, number: int) -> dict[str, float]:
-    contact = bounces.contacts[number]
+def quantities(bounces: WaveRun, number: int) -> dict[str, float]:
+    contact = bounces.followed.contacts[number]
     found = Curve.of(contact.march, contact.strike).quantities
     known = {name: value for name, value in found.items() if value is not None}
     return known | {"start": contact.strike.touched_at, "velocity": contact.strike.velocity}
@@ -87,24 +92,24 @@ def test_without_density_a_memory_recovers_as_it_does_without_inertia() -> None:
 
 
 @pytest.fixture(scope="module")
-def steel() -> tuple[Scene, Bounces]:
+def steel() -> tuple[Scene, WaveRun]:
     """A flight of 20 000 contact times, after which all is at rest."""
     scene = Scene.load("steel-ball-waves", {"motion": {"impacts": 2, "end_time": 1.0}, "model.gravity": 9.81})
     return scene, followed(scene)
 
 
-def test_after_a_long_flight_a_contact_is_a_first_one_at_its_speed(steel: tuple[Scene, Bounces]) -> None:
+def test_after_a_long_flight_a_contact_is_a_first_one_at_its_speed(steel: tuple[Scene, WaveRun]) -> None:
     scene, bounces = steel
-    first, second = (contact.strike for contact in bounces.contacts)
+    first, second = (contact.strike for contact in bounces.followed.contacts)
     assert second.depth == pytest.approx(0.0, abs=1e-6 * quantities(bounces, 0)["peak_depth"])
-    assert bounces.steps < 600
+    assert bounces.flights.steps < 600
     later = Scene.load(
         "steel-ball-waves",
         {"striker.velocity": second.velocity, "motion": {"impacts": 1, "end_time": 1.0}, "model.gravity": 9.81},
     )
     numerics = half_space.plan(scene, QUICK).numerics
     body = moving(later, numerics)
-    curve = Curve.of(record(body, motion(body, later, numerics), later), strike_of(later))
+    curve = Curve.of(record(body, motion(body, later, numerics), later), Strike.of(later))
     for name, value in quantities(bounces, 1).items():
         if name in curve.quantities:
             assert curve.quantities[name] == pytest.approx(value, rel=1e-6), name
@@ -113,10 +118,10 @@ def test_after_a_long_flight_a_contact_is_a_first_one_at_its_speed(steel: tuple[
     assert second.velocity < first.velocity
 
 
-def test_the_share_that_goes_down_in_waves_falls_with_the_speed_to_three_fifths(steel: tuple[Scene, Bounces]) -> None:
+def test_the_share_that_goes_down_in_waves_falls_with_the_speed_to_three_fifths(steel: tuple[Scene, WaveRun]) -> None:
     _, bounces = steel
     losses = [1.0 - quantities(bounces, number)["restitution"] ** 2 for number in (0, 1)]
-    speeds = [contact.strike.velocity for contact in bounces.contacts]
+    speeds = [contact.strike.velocity for contact in bounces.followed.contacts]
     assert math.log(losses[1] / losses[0]) / math.log(speeds[1] / speeds[0]) == pytest.approx(0.6, abs=0.1)
 
 
@@ -125,10 +130,10 @@ def test_one_ledger_runs_through_contacts_and_flights() -> None:
     for material in (None, ELASTIC):
         scene = thrown(material, **{"motion.impacts": 3})
         bounces = followed(scene)
-        last = bounces.contacts[-1].march
+        last = bounces.followed.contacts[-1].march
         energy = last.energy
         given = 0.5 * scene.mass * scene.velocity**2 + scene.mass * scene.gravity * last.depth[-1]
-        assert len(bounces.contacts) == 3
+        assert len(bounces.followed.contacts) == 3
         assert abs(energy["residual"]) < 1e-9 * energy["in"]
         assert energy["in"] == pytest.approx(given, rel=5e-3)  # counted to the end of the step that parts
         assert abs(energy["numerical"]) < 1e-2 * energy["radiated"]
@@ -192,9 +197,9 @@ def test_fewer_contacts_than_asked_for_have_a_reason(
 ) -> None:
     scene = thrown(**changes)
     bounces = followed(scene, steps=40, elements_per_contact=2.0)
-    assert bounces.grounded is grounded
-    assert len(bounces.contacts) == count or count is None
-    assert bounces.contacts[-1].march.separated == (grounded is not None)
+    assert bounces.followed.grounded is grounded
+    assert len(bounces.followed.contacts) == count or count is None
+    assert bounces.followed.contacts[-1].march.separated == (grounded is not None)
 
 
 def test_rods_follow_one_impact() -> None:

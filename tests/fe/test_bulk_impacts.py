@@ -10,9 +10,10 @@ import pytest
 from scipy.optimize import nnls
 
 import fe_contact
-from fe_contact.budget.certify import CAUSES, Certified, certify
-from fe_contact.budget.plan import SETTING, plan
-from fe_contact.reference import strike_of
+from fe_contact.budget.budget import CAUSES, SETTING
+from fe_contact.budget.certify import Certified, certify
+from fe_contact.budget.plan import plan
+from fe_contact.steppers.march import Strike
 from lumped import Material, Relaxation, Result, Scene, laws, simulate
 from lumped.shapes.punch import Punch
 from lumped.targets.layer import Layer
@@ -98,7 +99,7 @@ def test_constant_nu_would_err_by_less_than_the_ledger_says(campaign_size: Calla
 def certified(**changes: float) -> Certified:
     scene = Scene.load("polymer-layer", {"target.material.constant": "bulk"})
     numerics = plan(scene, {}).numerics.varied(**{SETTING[cause]: FINE[cause] for cause in CAUSES})
-    return certify(strike_of(scene), scene.geometry, numerics.varied(**changes))
+    return certify(Strike.of(scene), scene.geometry, numerics.varied(**changes))
 
 
 @pytest.fixture(scope="module")

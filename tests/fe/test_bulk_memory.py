@@ -24,19 +24,19 @@ from fe_contact.bodies.zone import held
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import plan
 from fe_contact.march.impact import march
-from fe_contact.reference import strike_of
-from fe_contact.schemes import backward_euler, galerkin
-from fe_contact.settings import TARGETS
-from fe_contact.steppers.chosen import struck
+from fe_contact.schemes.base import SCHEMES
+from fe_contact.steppers.march import Strike
 from fe_contact.targets import _round, layer, o_ring, ring, washer
+from fe_contact.targets.base import TARGETS, struck
 from lumped import BadInput, Material, Relaxation, Scene, laws, simulate
 from lumped.materials.laplace import inverse
-from lumped.schema.members import get
 from lumped.shapes.prism import Prism
 from lumped.shapes.punch import Punch
 from lumped.targets.layer import Layer
 from lumped.targets.plane import Plane
 from lumped.targets.washer import Washer
+
+backward_euler, galerkin = SCHEMES.get("backward_euler"), SCHEMES.get("galerkin")
 
 BULK = {"target.material.constant": "bulk"}
 SIZES = (3.0, 0.3, 1.0, 3.0)  # a coarse layer as thick as its contact is wide
@@ -185,9 +185,9 @@ def test_where_both_moduli_relax_alike_the_surface_alone_remembers(name: str, mo
     numerics, geometry = plan(scene, {"elements_per_contact": 1.0}).numerics, scene.geometry
     monkeypatch.setattr(Moduli, "of", alike)
     materials = {"material": of_bulk(geometry.material), "striker_material": of_bulk(geometry.striker_material)}
-    body = get(TARGETS, scene.target.name).relaxing(replace(geometry, **materials), numerics)
+    body = TARGETS.get(scene.target.name).relaxing(replace(geometry, **materials), numerics)
     _round._together.cache_clear()  # it knows the moduli of this test
-    surface, bulk = (march(strike_of(scene), b, numerics) for b in (struck(geometry, numerics), body))
+    surface, bulk = (march(Strike.of(scene), b, numerics) for b in (struck(geometry, numerics), body))
     for field in ("time", "depth", "impulse", "radius"):
         one, other = getattr(surface, field), getattr(bulk, field)
         np.testing.assert_allclose(other, one, rtol=0.0, atol=1e-9 * np.abs(one).max())
@@ -225,7 +225,7 @@ def test_at_once_and_in_the_end_the_body_is_elastic(name: str, tau: float, insta
     still = replace(scene, material=scene.geometry.material.elastic(instant))
     numerics = plan(still, {}).numerics
     curves = [
-        Curve.of(march(strike_of(s), struck(s.geometry, numerics), numerics), strike_of(s)).quantities
+        Curve.of(march(Strike.of(s), struck(s.geometry, numerics), numerics), Strike.of(s)).quantities
         for s in (scene, still)
     ]
     assert not scene.geometry.surface_remembers
@@ -261,7 +261,7 @@ def test_factorisations_do_not_grow_with_the_steps(monkeypatch: pytest.MonkeyPat
     numerics = plan(scene, {}).numerics
     for steps in (20, 40):
         body = struck(scene.geometry, numerics.varied(steps=steps))
-        done = march(strike_of(scene), body, numerics.varied(steps=steps))
+        done = march(Strike.of(scene), body, numerics.varied(steps=steps))
         assert len(done.time) > steps
         assert counts == {"factorizations": body.factorizations, "solves": body.solves}
     assert body.factorizations <= 4

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -12,17 +14,22 @@ from scipy.sparse import linalg
 import fe_contact
 import lumped
 from fe_contact import reference
-from fe_contact.budget.certify import CAUSES, Certified, certify
-from fe_contact.budget.plan import SETTING, plan, refined
+from fe_contact.budget.budget import CAUSES, SETTING
+from fe_contact.budget.certify import Certified, certify
+from fe_contact.budget.plan import plan
+from fe_contact.budget.refine import dominant
 from fe_contact.budget.softening import Softening
-from fe_contact.contact.enforcement import corrected
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import solve
-from fe_contact.reference import result_of, strike_of
+from fe_contact.reference import result_of
 from fe_contact.settings import Numerics
+from fe_contact.steppers.march import Strike
 from fe_contact.targets import half_space
 from lumped import laws, load_curves
 from lumped.laws import mdr
 from lumped.result.result import RULED_RELATIVE
+
+corrected = ENFORCEMENTS.get("corrected")
 
 Scenes = Callable[..., lumped.Scene]
 RULED = (*RULED_RELATIVE, "restitution")
@@ -44,7 +51,7 @@ def case(request: pytest.FixtureRequest, scene_of: Scenes) -> tuple[lumped.Scene
 
 def certified(scene: lumped.Scene, **changes: Any) -> Certified:
     numerics = plan(scene, {"tolerance": 1e-3}).numerics.varied(**{SETTING[cause]: FINE[cause] for cause in CAUSES})
-    return certify(strike_of(scene), scene.geometry, numerics.varied(**changes))
+    return certify(Strike.of(scene), scene.geometry, numerics.varied(**changes))
 
 
 def exact_values(scene: lumped.Scene, scales: mdr.ImpactScales) -> dict[str, float]:
@@ -119,7 +126,7 @@ def test_the_counted_work_is_the_work_done(monkeypatch: pytest.MonkeyPatch, scen
         return solution
 
     monkeypatch.setattr(linalg, "splu", Counted)
-    monkeypatch.setattr(corrected, "solve", counted)
+    monkeypatch.setattr("fe_contact.contact.enforcement.corrected.solve", counted)
     half_space._surface.cache_clear()
     scene = scene_of(MATERIALS["sls"] | {"nu": 0.123456})
     work = certified(scene, steps=40).work
@@ -148,7 +155,8 @@ def exact_laws_raise(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
 
     def arm() -> None:
         for name in laws.available():
-            module = laws.get(name)
+            module = import_module(f"lumped.laws.{name}")
+            monkeypatch.setattr(module, "MEMBER", replace(module.MEMBER, of=refuse))
             for entry in ("of", "estimate", "coarse", "problem_of"):
                 if hasattr(module, entry):
                     monkeypatch.setattr(module, entry, refuse)
@@ -194,9 +202,13 @@ def test_misplaced_scales_move_the_answer_by_less_than_its_bar(scene_of: Scenes)
 @pytest.mark.parametrize("cause", CAUSES)
 def test_refinement_touches_the_setting_of_its_cause_only(cause: str, scene_of: Scenes) -> None:
     numerics: Numerics = plan(scene_of(MATERIALS["elastic"]), {}).numerics
-    before, after = numerics.as_dict(), refined(numerics, cause).as_dict()
+    errors = {one: 1.0 if one == cause else 0.1 for one in CAUSES}
+    finer = dominant(errors, numerics, ())
+    assert finer is not None
+    before, after = numerics.as_dict(), finer.as_dict()
     assert {key for key in before if before[key] != after[key]} == {SETTING[cause]}
     assert after[SETTING[cause]] > before[SETTING[cause]]
+    assert dominant(errors, numerics, (SETTING[cause],)) is None
 
 
 def test_pinned_settings_are_kept_and_the_rest_is_refined(scene_of: Scenes) -> None:

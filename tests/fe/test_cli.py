@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fe_contact.cli import COMMANDS, main
+from fe_contact.cli import main
+from fe_contact.commands import COMMANDS
 from fe_contact.steppers import stepping
 from fe_contact.targets import half_space
 from lumped import Scene, laws
 from lumped.schema.data import scene_names
-from lumped.schema.members import available
 from meshes import session
 from meshes.errors import APT_LINE, GmshMissing
 
@@ -354,13 +354,13 @@ def test_plan_says_settings_and_ledger_and_solves_nothing(
     assert is_empty(empty)
 
 
-@pytest.mark.parametrize("name", available(COMMANDS))
+@pytest.mark.parametrize("name", COMMANDS.names)
 def test_every_command_explains_itself(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert exit_code(name, "--help") == 0
     assert name in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("name", [c for c in available(COMMANDS) if c not in ("laws", "scenes")])
+@pytest.mark.parametrize("name", [c for c in COMMANDS.names if c not in ("laws", "scenes")])
 def test_every_command_that_takes_a_scene_refuses_a_bad_one(
     name: str, empty: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -389,7 +389,7 @@ def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["--help"])
     assert ended.value.code == 0
-    assert set(available(COMMANDS)) - {"base"} <= set(capsys.readouterr().out.split())
+    assert set(COMMANDS.names) - {"base"} <= set(capsys.readouterr().out.split())
 
 
 def test_the_module_runs_as_a_process(empty: Path) -> None:

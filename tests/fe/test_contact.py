@@ -12,10 +12,12 @@ from scipy.optimize import minimize
 
 from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.contact import problem as contact
-from fe_contact.contact.enforcement import augmented, corrected, exact, penalty
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem, ContactSolution, solve
-from fe_contact.settings import ENFORCEMENTS
-from lumped.schema.members import available, get
+
+augmented, corrected, exact, penalty = (
+    ENFORCEMENTS.get(name) for name in ("augmented", "corrected", "exact", "penalty")
+)
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -209,30 +211,31 @@ def test_an_exhausted_budget_is_flagged(monkeypatch: pytest.MonkeyPatch) -> None
     assert flagged > 25
 
 
-@pytest.mark.parametrize("name", available(ENFORCEMENTS))
+@pytest.mark.parametrize("name", ENFORCEMENTS.names)
 def test_every_enforcement_passes_the_flag_on(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     problem = random_problem(3)
     touching = np.zeros(len(problem.overlap), bool)
-    assert get(ENFORCEMENTS, name).enforce(problem, touching).converged
+    assert ENFORCEMENTS.get(name).enforce(problem, touching).converged
     monkeypatch.setattr(contact, "MAX_ITERATIONS", 1)
-    assert not get(ENFORCEMENTS, name).enforce(problem, touching).converged
+    assert not ENFORCEMENTS.get(name).enforce(problem, touching).converged
 
 
-@pytest.mark.parametrize("name", available(ENFORCEMENTS))
+@pytest.mark.parametrize("name", ENFORCEMENTS.names)
 def test_every_enforcement_counts_its_contact_problems(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    module, calls = get(ENFORCEMENTS, name), []
+    member, calls = ENFORCEMENTS.get(name), []
 
     def counted(problem: ContactProblem, touching: np.ndarray) -> ContactSolution:
         calls.append(solve(problem, touching))
         return calls[-1]
 
-    monkeypatch.setattr(module, "solve", counted, raising=name != "exact")  # which has a solver of its own
+    module = f"fe_contact.contact.enforcement.{name}.solve"
+    monkeypatch.setattr(module, counted, raising=name != "exact")  # which has a solver of its own
     problem = random_problem(3)
-    solution = module.enforce(problem, np.zeros(len(problem.overlap), bool))
+    solution = member.enforce(problem, np.zeros(len(problem.overlap), bool))
     assert solution.converged
-    assert len(calls) <= module.SOLVES
+    assert len(calls) <= member.solves
     if name in ("penalty", "corrected"):
-        assert len(calls) == module.SOLVES
+        assert len(calls) == member.solves
     if name != "exact":
         assert solution.iterations == sum(call.iterations for call in calls)
 
@@ -333,16 +336,16 @@ def test_one_solve_of_two_that_fails_fails_the_correction(failing: int, monkeypa
         calls.append(replace(solve(problem, touching), converged=len(calls) != failing))
         return calls[-1]
 
-    monkeypatch.setattr(corrected, "solve", fails_once)
+    monkeypatch.setattr("fe_contact.contact.enforcement.corrected.solve", fails_once)
     problem = random_problem(3)
     assert not corrected.enforce(problem, np.ones(len(problem.overlap), bool)).converged
 
 
-@pytest.mark.parametrize("name", available(ENFORCEMENTS))
+@pytest.mark.parametrize("name", ENFORCEMENTS.names)
 @given(SEEDS)
 def test_a_larger_overlap_of_the_same_form_presses_as_much_harder(name: str, seed: int) -> None:
     """No threshold decides what touches: contact without adhesion has no size of its own, at any number of metres."""
-    rng, enforce = np.random.default_rng(seed), get(ENFORCEMENTS, name).enforce
+    rng, enforce = np.random.default_rng(seed), ENFORCEMENTS.get(name).enforce
     unknowns, points = (int(n) for n in np.sort(rng.integers(1, 10, 2))[::-1])
     chain = np.diag(rng.uniform(1, 3, unknowns)) - 0.4 * (np.eye(unknowns, k=1) + np.eye(unknowns, k=-1))
     surface = PressedSurface(chain, np.eye(unknowns)[:points], rng.uniform(0.5, 2, points))

@@ -15,20 +15,24 @@ from scipy.linalg import eigh, expm
 
 from fe_contact.assembly.interior import factorized
 from fe_contact.bodies.bar import Bar, falling
-from fe_contact.contact.enforcement import augmented, corrected, exact, penalty
-from fe_contact.dynamics import explicit, implicit, mass, schemes
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
+from fe_contact.dynamics import explicit, implicit
 from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
 from fe_contact.dynamics.march import Choices, Motion, march, safe_step
+from fe_contact.dynamics.mass.base import MASSES
 from fe_contact.dynamics.pressed import Enforced
+from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.errors import MotionUnbounded
 from lumped.errors import BadInput
 from lumped.materials import Relaxation
-from lumped.schema.members import available, get
 
-MASSES, SCHEMES = mass.__name__, schemes.__name__
+augmented, corrected, exact, penalty = (
+    ENFORCEMENTS.get(name) for name in ("augmented", "corrected", "exact", "penalty")
+)
+
 SEEDS = st.integers(0, 2**32 - 1)
-ORDER = dict.fromkeys(available(SCHEMES), 2) | {"fully_implicit": 1}
-IMPLICIT = [name for name in available(SCHEMES) if not get(SCHEMES, name).of(0.8).explicit]
+ORDER = dict.fromkeys(WAVE_SCHEMES.names, 2) | {"fully_implicit": 1}
+IMPLICIT = [name for name in WAVE_SCHEMES.names if not WAVE_SCHEMES.get(name).of(0.8).explicit]
 AWAY = -1e9  # clearance of a body that never touches
 
 
@@ -40,14 +44,14 @@ def oscillator(relaxation: Relaxation, clearance: float = AWAY, dashpot: float =
 
 
 def moved(body: BodyWithMass, scheme: str, step: float, end: float, rho: float = 0.8, hard: float = 1.0) -> Motion:
-    choices = Choices(get(SCHEMES, scheme).of(rho), Enforced(penalty, hard), step)
+    choices = Choices(WAVE_SCHEMES.get(scheme).of(rho), Enforced(penalty, hard), step)
     return march(body, np.ones(body.size), choices, end, np.eye(body.size))
 
 
 # schemes
 
 
-@pytest.mark.parametrize("name", available(SCHEMES))
+@pytest.mark.parametrize("name", WAVE_SCHEMES.names)
 def test_the_order_of_a_scheme(name: str) -> None:
     """A damped oscillator against its matrix exponential, displacement and velocity."""
     body, end = oscillator(Relaxation(2.0), dashpot=0.3), 4.0
@@ -82,7 +86,7 @@ def test_the_order_is_kept_where_steps_are_doubled(name: str) -> None:
     errors = []
     for steps in (40, 80, 160, 320):
         enforced, doubled = Enforced(penalty, 1.0), (0.3 * end, 0.6 * end)
-        choices = Choices(get(SCHEMES, name).of(0.8), enforced, end / steps / 2.0, doubled)
+        choices = Choices(WAVE_SCHEMES.get(name).of(0.8), enforced, end / steps / 2.0, doubled)
         found = march(body, np.ones(1), choices, end, np.eye(1))
         lengths = np.diff(found.time)
         assert lengths.max() == pytest.approx(4.0 * lengths.min())
@@ -95,7 +99,7 @@ def test_the_order_is_kept_where_steps_are_doubled(name: str) -> None:
     assert rates[-1] == pytest.approx(ORDER[name], abs=0.15)
 
 
-@pytest.mark.parametrize("name", available(SCHEMES))
+@pytest.mark.parametrize("name", WAVE_SCHEMES.names)
 def test_a_bulk_with_memory_keeps_the_order(name: str) -> None:
     """A mass on a standard linear solid: u'' = -(u + 0.7 z), z' = u' - z/0.4, solved by its exponential."""
     body, end = oscillator(Relaxation(1.0, (0.7,), (0.4,))), 4.0
@@ -110,7 +114,7 @@ def test_a_bulk_with_memory_keeps_the_order(name: str) -> None:
 def test_generalised_alpha_damps_the_fastest_oscillations_by_rho(rho: float) -> None:
     """One step of an oscillator a million times faster than the step: its amplification matrix's eigenvalues."""
     dt, stiff = 1.0, 1e12
-    alpha_m, alpha_f, beta, gamma = get(SCHEMES, "generalised_alpha").of(rho)
+    alpha_m, alpha_f, beta, gamma = WAVE_SCHEMES.get("generalised_alpha").of(rho)
     # rows: Newmark's displacement, its velocity, the balance; columns u, v, a
     new = np.array([[1, 0, -beta * dt**2], [0, 1, -gamma * dt], [(1 - alpha_f) * stiff, 0, 1 - alpha_m]])
     old = np.array([[1, dt, (0.5 - beta) * dt**2], [0, 1, (1 - gamma) * dt], [-alpha_f * stiff, 0, -alpha_m]])
@@ -127,7 +131,7 @@ def test_central_difference_is_stable_up_to_two_over_omega() -> None:
         moved(body, "central_difference", 2.01, 2000.0)
 
 
-@pytest.mark.parametrize("name", available(MASSES))
+@pytest.mark.parametrize("name", MASSES.names)
 @given(SEEDS)
 def test_a_stage_keeps_the_limit_of_every_chain(name: str, seed: int) -> None:
     """The bound without an eigenvalue against 2/omega_max with the contact closed: never above, rarely far below."""
@@ -164,11 +168,11 @@ def elements(seed: int) -> tuple[np.ndarray, np.ndarray, int]:
     return local, 2 * np.arange(count)[:, None] + np.arange(3), 2 * count + 1
 
 
-@pytest.mark.parametrize("name", available(MASSES))
+@pytest.mark.parametrize("name", MASSES.names)
 @given(SEEDS)
 def test_every_mass_matrix_keeps_the_mass(name: str, seed: int) -> None:
     local, dofs, size = elements(seed)
-    matrix = get(MASSES, name).of(local, dofs, size, np.array([0])).toarray()
+    matrix = MASSES.get(name).of(local, dofs, size, np.array([0])).toarray()
     assert matrix.sum() == pytest.approx(local.sum(), rel=1e-12)
     least = np.linalg.eigvalsh(matrix)[0]
     assert least >= (0.0 if name in ("redistributed", "spread") else 1e-6)
@@ -179,7 +183,7 @@ def test_every_mass_matrix_keeps_the_mass(name: str, seed: int) -> None:
 def test_only_the_contact_is_without_mass(name: str, seed: int) -> None:
     local, dofs, size = elements(seed)
     contact = np.array([0, size - 1])
-    diagonal = get(MASSES, name).of(local, dofs, size, contact).diagonal()
+    diagonal = MASSES.get(name).of(local, dofs, size, contact).diagonal()
     assert set(np.flatnonzero(diagonal == 0.0)) == set(contact)
 
 
@@ -191,7 +195,7 @@ def chain(seed: int, name: str, viscous: bool) -> tuple[BodyWithMass, np.ndarray
     rng = np.random.default_rng(seed)
     count = int(rng.integers(3, 9))
     bar = Bar(1.0, 1.0, 1.0, Relaxation(1.0, tuple(rng.uniform(0.2, 1, 2)), (0.02, 0.4)), end_mass=rng.uniform(0, 1))
-    body = falling(bar, count, get(MASSES, name), gravity=rng.uniform(0, 1), gap=rng.uniform(0, 0.1))
+    body = falling(bar, count, MASSES.get(name), gravity=rng.uniform(0, 1), gap=rng.uniform(0, 0.1))
     dashpots = sparse.diags(np.append(rng.uniform(0, 0.2, count), 0.0)[::-1]).tocsc()
     relaxation = Relaxation(1.0, (0.3,), (0.2,), viscosity=0.01 if viscous else 0.0)
     parts = (*body.parts, Part(body.parts[0].stiffness, relaxation))
@@ -199,8 +203,8 @@ def chain(seed: int, name: str, viscous: bool) -> tuple[BodyWithMass, np.ndarray
     return whole, -rng.uniform(0.1, 1, whole.size)
 
 
-@pytest.mark.parametrize("scheme", available(SCHEMES))
-@pytest.mark.parametrize("mass_name", available(MASSES))
+@pytest.mark.parametrize("scheme", WAVE_SCHEMES.names)
+@pytest.mark.parametrize("mass_name", MASSES.names)
 def test_the_ledger_closes_in_every_step(scheme: str, mass_name: str, campaign_size: Callable[[int], int]) -> None:
     """Every term is computed on its own, the scheme's loss by its numbers: nothing may be left over."""
     for seed in range(campaign_size(100)):
@@ -210,7 +214,7 @@ def test_the_ledger_closes_in_every_step(scheme: str, mass_name: str, campaign_s
 def ledger_closes(scheme: str, mass_name: str, seed: int) -> None:
     body, velocity = chain(seed, mass_name, viscous=scheme in IMPLICIT)
     enforcement = (penalty, corrected, augmented, exact)[seed % 4]
-    choices = Choices(get(SCHEMES, scheme).of(0.7), Enforced(enforcement, 50.0), 0.02)
+    choices = Choices(WAVE_SCHEMES.get(scheme).of(0.7), Enforced(enforcement, 50.0), 0.02)
     motion = march(body, velocity, choices, 0.6, np.eye(body.size))
     ledgers = [sample.energies for sample in motion.samples]
     size = max(e.work + abs(e.numerical) for e in ledgers)
@@ -224,12 +228,14 @@ def ledger_closes(scheme: str, mass_name: str, seed: int) -> None:
 def test_the_trapezoidal_rule_loses_nothing_and_a_damped_scheme_only_what_oscillates_fast() -> None:
     """Free vibration of a bar: 0, a little, much, by the scheme's own formula and by what is left in the bar."""
     bar = Bar(1.0, 1.0, 1.0, Relaxation(1.0))
-    body = falling(bar, 20, get(MASSES, "consistent"), gravity=0.0, gap=1e9)
+    body = falling(bar, 20, MASSES.get("consistent"), gravity=0.0, gap=1e9)
     velocity = np.cos(np.pi * np.linspace(0, 1, 21))
     lost = {}
     for name in IMPLICIT:
         energies = (
-            march(body, velocity, Choices(get(SCHEMES, name).of(0.8), Enforced(penalty, 1.0), 0.02), 4.0, np.eye(21))
+            march(
+                body, velocity, Choices(WAVE_SCHEMES.get(name).of(0.8), Enforced(penalty, 1.0), 0.02), 4.0, np.eye(21)
+            )
             .samples[-1]
             .energies
         )
@@ -243,13 +249,13 @@ def test_the_trapezoidal_rule_loses_nothing_and_a_damped_scheme_only_what_oscill
 # contact
 
 
-@pytest.mark.parametrize("name", available(SCHEMES))
+@pytest.mark.parametrize("name", WAVE_SCHEMES.names)
 def test_a_mass_on_its_penalty_spring_bounces_by_half_a_sine(name: str) -> None:
     """Duration pi sqrt(m/k), restitution one: touch and separation lie within the steps, not at their ends."""
     hard, errors = 40.0, []
     for step in (0.02, 0.01, 0.005, 0.0025):
         body = oscillator(Relaxation(1e-12), clearance=-0.1037)
-        choices = Choices(get(SCHEMES, name).of(0.8), Enforced(penalty, hard), step)
+        choices = Choices(WAVE_SCHEMES.get(name).of(0.8), Enforced(penalty, hard), step)
         motion = march(body, -np.ones(1), choices, 1.0, np.ones((1, 1)))
         ((start, end),) = motion.contacts
         assert start == pytest.approx(0.1037, abs=1e-9)
@@ -265,8 +271,8 @@ def test_every_enforcement_is_nearer_to_rigid_contact_than_the_raw_penalty(enfor
     bar = Bar(1.0, 1.0, 1.0, Relaxation(1.0), end_mass=3.0)
     deepest = {}
     for member in (penalty, enforcement):
-        body = falling(bar, 20, get(MASSES, "redistributed"), gravity=0.0)
-        choices = Choices(get(SCHEMES, "generalised_alpha").of(0.6), Enforced(member, 20.0), 0.025)
+        body = falling(bar, 20, MASSES.get("redistributed"), gravity=0.0)
+        choices = Choices(WAVE_SCHEMES.get("generalised_alpha").of(0.6), Enforced(member, 20.0), 0.025)
         motion = march(body, -np.ones(21), choices, 2.0, np.eye(21))
         deepest[member] = max(sample.overlap.max() for sample in motion.samples)
     assert deepest[enforcement] < share * deepest[penalty]
@@ -275,10 +281,10 @@ def test_every_enforcement_is_nearer_to_rigid_contact_than_the_raw_penalty(enfor
 def test_a_light_bar_under_a_rigid_mass_is_a_spring() -> None:
     """Density to zero: half a sine of the mass on E A/L, contact for pi sqrt(m L/(E A)), by every mass matrix."""
     duration = math.pi * math.sqrt(2.0)
-    for name in available(MASSES):
+    for name in MASSES.names:
         bar = Bar(1.0, 1.0, 1e-8, Relaxation(1.0), end_mass=2.0)
-        body = falling(bar, 10, get(MASSES, name), gravity=0.0)
-        choices = Choices(get(SCHEMES, "generalised_alpha").of(0.0), Enforced(corrected, 1e3), duration / 400)
+        body = falling(bar, 10, MASSES.get(name), gravity=0.0)
+        choices = Choices(WAVE_SCHEMES.get("generalised_alpha").of(0.0), Enforced(corrected, 1e3), duration / 400)
         motion = march(body, -np.ones(11), choices, 1.2 * duration, np.eye(11))
         start, end = motion.contacts[0]
         assert end - start == pytest.approx(duration, rel=1e-4)
@@ -288,7 +294,7 @@ def test_a_light_bar_under_a_rigid_mass_is_a_spring() -> None:
 
 def test_a_striker_is_one_more_degree_of_freedom() -> None:
     """A rigid mass that strikes a bar, by its own depth, and the same bar striking a plane with the mass at rest."""
-    size, line = 11, falling(Bar(1.0, 1.0, 1.0, Relaxation(1.0)), 10, get(MASSES, "consistent"), gravity=0.0)
+    size, line = 11, falling(Bar(1.0, 1.0, 1.0, Relaxation(1.0)), 10, MASSES.get("consistent"), gravity=0.0)
     push = sparse.lil_matrix((size + 1, 2))
     push[0, 0], push[size, 1] = 1.0, -1.0
     whole = BodyWithMass(
@@ -299,7 +305,7 @@ def test_a_striker_is_one_more_degree_of_freedom() -> None:
         gravity=np.zeros(size + 1),
         pressing=Pressing(push.tocsc(), np.ones((1, 2)), np.ones(1), np.zeros(1)),
     )
-    choices = Choices(get(SCHEMES, "generalised_alpha").of(0.6), Enforced(corrected, 30.0), 0.05)
+    choices = Choices(WAVE_SCHEMES.get("generalised_alpha").of(0.6), Enforced(corrected, 30.0), 0.05)
     struck = march(whole, np.append(np.zeros(size), 1.0), choices, 1.5, np.eye(size + 1))
     striking = march(line, -np.ones(size), choices, 1.5, np.eye(size))
     np.testing.assert_allclose(struck.force, striking.force, atol=1e-7)
@@ -309,17 +315,17 @@ def test_one_factorisation_serves_a_whole_march(monkeypatch: pytest.MonkeyPatch)
     calls = []
     for module in (implicit, explicit):
         monkeypatch.setattr(module, "factorized", lambda matrix: calls.append(matrix.shape) or factorized(matrix))
-    body = falling(Bar(1.0, 1.0, 1.0, Relaxation(1.0)), 10, get(MASSES, "redistributed"), gravity=0.0)
+    body = falling(Bar(1.0, 1.0, 1.0, Relaxation(1.0)), 10, MASSES.get("redistributed"), gravity=0.0)
     for name, wanted in (("trapezoidal", [(11, 11)]), ("central_difference", [(10, 10), (1, 1)])):
         calls.clear()
-        choices = Choices(get(SCHEMES, name).of(1.0), Enforced(exact, 1.0), 0.05)
+        choices = Choices(WAVE_SCHEMES.get(name).of(1.0), Enforced(exact, 1.0), 0.05)
         march(body, -np.ones(11), choices, 5.0, np.eye(11))
         assert calls == wanted
 
 
 def test_a_constraint_on_a_surface_with_mass_acts_from_the_first_instant() -> None:
     """A lumped bar at its own limit step carries a jump without error: density c v from t = 0 for two transits."""
-    body = falling(Bar(1.0, 1.0, 1.0, Relaxation(1.0)), 50, get(MASSES, "lumped"), gravity=0.0)
-    choices = Choices(get(SCHEMES, "central_difference").of(1.0), Enforced(exact, 1.0), 0.02)
+    body = falling(Bar(1.0, 1.0, 1.0, Relaxation(1.0)), 50, MASSES.get("lumped"), gravity=0.0)
+    choices = Choices(WAVE_SCHEMES.get("central_difference").of(1.0), Enforced(exact, 1.0), 0.02)
     motion = march(body, -np.ones(51), choices, 1.98, np.eye(51))
     np.testing.assert_allclose(motion.force, 1.0, atol=1e-9)

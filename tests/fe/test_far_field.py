@@ -17,8 +17,7 @@ from fe_contact.budget.certify import certify
 from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs
 from fe_contact.budget.softening import compliance_change
-from fe_contact.contact.enforcement import corrected
-from fe_contact.reference import strike_of
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.settings import Numerics
 from fe_contact.steppers.march import Strike
 from fe_contact.steppers.scaled_surface import ScaledSurface
@@ -26,6 +25,8 @@ from fe_contact.targets import half_space
 from lumped import Relaxation, Scene
 from lumped.load_curves import Hertz
 from lumped.shapes import Parabola
+
+corrected = ENFORCEMENTS.get("corrected")
 
 RNG = np.random.default_rng(5)
 POISSON = (0.0, 0.3, 0.4999, float(RNG.uniform(0, 0.5)))
@@ -170,7 +171,7 @@ def test_the_far_fields_share_of_a_bar_covers_what_a_larger_mesh_changes(shape: 
     scene = replace(scene, material=replace(material, young=Relaxation(1e6, viscosity=1e6 * contact * damping)))
     planned = plan(scene, {"tolerance": 1e-3}).numerics.varied(steps=60, far_radius=10.0)
     near, far = (
-        certify(strike_of(scene), scene.geometry, planned.varied(far_radius=radius)) for radius in (10.0, 40.0)
+        certify(Strike.of(scene), scene.geometry, planned.varied(far_radius=radius)) for radius in (10.0, 40.0)
     )
     for name in ("peak_force", "peak_depth", "duration"):
         change = abs((near.curve.quantities[name] or 0.0) - (far.curve.quantities[name] or 0.0))
@@ -183,7 +184,7 @@ def test_a_lift_of_the_whole_contact_changes_the_force_by_twice_its_share() -> N
     """
     scene, lift = Scene.load("steel-ball"), 1e-4
     numerics = plan(scene, {"tolerance": 1e-3}).numerics
-    surface = Runs(strike_of(scene), scene.geometry, 1).surface(numerics)
+    surface = Runs(Strike.of(scene), scene.geometry, 1).surface(numerics)
     assert isinstance(surface, ScaledSurface)
     lifted = replace(surface, operator=replace(surface.operator, response=surface.operator.response + lift))
     assert compliance_change(surface, lifted) == pytest.approx(1.5 * lift * 4.0 / 3.0, rel=1e-3)

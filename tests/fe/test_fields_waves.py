@@ -12,8 +12,8 @@ import pytest
 from fe_contact.assembly.absorbing import wave_speeds
 from fe_contact.cli import main
 from fe_contact.fields import STRESSES, Fields
+from fe_contact.settings import WaveNumerics
 from fe_contact.waves.fields import fields_at
-from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.targets import half_space
 from lumped import Scene
 

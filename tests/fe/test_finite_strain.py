@@ -19,7 +19,7 @@ from skfem import (
 )
 
 import meshes
-from lumped.result.model_ledger.kinematics import FIRST_ORDER
+from lumped.result.model_ledger import FIRST_ORDER
 
 RNG = np.random.default_rng(13)
 

@@ -16,7 +16,8 @@ from fe_contact.steppers.flat_end import FlatStepper
 from fe_contact.steppers.march import Strike
 from lumped import BadInput, Material, Model, Relaxation, Result, Scene, laws, simulate
 from lumped.scene.scene import Motion
-from lumped.shapes import plate, prism
+from lumped.shapes.plate import Plate
+from lumped.shapes.prism import Prism
 from lumped.shapes.punch import Punch
 from lumped.targets import HalfSpace
 from lumped.targets.layer import Layer
@@ -48,8 +49,8 @@ def random_scene(seed: int) -> Scene:
     shape, target = (
         (Punch(radius), HalfSpace()),
         (Punch(radius), Layer(max(length, 0.3 * radius), str(rng.choice(["bonded", "sliding"])))),
-        (prism.of(math.pi * radius**2, length), Plane()),
-        (plate.of(math.pi * radius**2, length), Plane()),
+        (Prism(math.pi * radius**2, length), Plane()),
+        (Plate(math.pi * radius**2, length), Plane()),
     )[seed % 4]
     return Scene(shape, MASS, float(10.0 ** rng.uniform(-3.0, -2.0)), soft, target=target)
 
@@ -82,7 +83,7 @@ def test_the_dashpot_is_felt_at_first_touch(agree: Callable[..., None]) -> None:
 def test_a_covered_washer_on_a_sliding_base_is_a_prism(agree: Callable[..., None]) -> None:
     soft = Material(Relaxation(YOUNG, (YOUNG,), (2e-3,)), 0.4)
     washer = Scene(Punch(0.02), MASS, 0.05, soft, target=Washer(0.005, 0.01, 0.004, "sliding"))
-    block = prism.of(math.pi * (0.01**2 - 0.005**2), 0.004)
+    block = Prism(math.pi * (0.01**2 - 0.005**2), 0.004)
     agree(fe_contact.run(washer, TOLERANCE), exact(replace(washer, shape=block, target=Plane())))
 
 
@@ -108,8 +109,8 @@ def test_a_confined_plate_of_constant_bulk_modulus_relaxes_by_its_shear_alone(ag
     soft = Material(Relaxation(YOUNG, (share * YOUNG,), (2e-3,)), nu, constant="bulk")
     third = 4.0 / 3.0 * YOUNG / (2.0 * (1.0 + nu))
     by_hand = Material(Relaxation(YOUNG / (3.0 * (1.0 - 2.0 * nu)) + third, (share * third,), (2e-3,)), 0.0)
-    scene = Scene(plate.of(4e-4, 0.004, "confined", "sliding"), MASS, 0.01, soft, target=Plane())
-    twin = replace(scene, shape=prism.of(4e-4, 0.004), material=by_hand)
+    scene = Scene(Plate(4e-4, 0.004, "confined", "sliding"), MASS, 0.01, soft, target=Plane())
+    twin = replace(scene, shape=Prism(4e-4, 0.004), material=by_hand)
     agree(fe_contact.run(scene, tolerance=TOLERANCE), simulate(laws.correspondence.of(twin), twin, 1e-8))
 
 

@@ -9,7 +9,7 @@ import pytest
 import scipy.sparse as sparse
 from scipy.optimize import brentq
 
-from fe_contact.contact.enforcement import penalty
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics import ledger
 from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
 from fe_contact.dynamics.march import Choices, Moment
@@ -18,6 +18,8 @@ from fe_contact.dynamics.schemes import generalised_alpha
 from fe_contact.dynamics.state import BodyState, internal, undeformed
 from fe_contact.waves.bounces import Flights
 from lumped.materials import Relaxation
+
+penalty = ENFORCEMENTS.get("penalty")
 
 STEP, PATIENCE = 0.02, 32
 RELAXATION = Relaxation(1.0, (0.7,), (5.0,))

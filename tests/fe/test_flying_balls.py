@@ -16,13 +16,12 @@ from fe_contact.budget.curve import Curve
 from fe_contact.cli import main
 from fe_contact.dynamics.march import Motion, march
 from fe_contact.methods import simulate
-from fe_contact.reference import strike_of
-from fe_contact.settings import RANGES
+from fe_contact.settings import RANGES, WaveNumerics
+from fe_contact.steppers.march import Strike
 from fe_contact.waves import half_space_body
 from fe_contact.waves.flying_ball import on_ball, on_half_space, on_plane
 from fe_contact.waves.impact import choices_of, energies, motion, record
 from fe_contact.waves.moving import Moving
-from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.targets import half_space, plane, sphere
 from lumped import BadInput, Result, Scene
 from lumped.materials.radiation import radiation_coefficient
@@ -73,7 +72,7 @@ def moved(scene: Scene, **given: Any) -> tuple[Moving, Motion]:
 
 def curve_of(scene: Scene, **given: Any) -> Curve:
     moving, numerics = begun(scene, **given)
-    return Curve.of(record(moving, motion(moving, scene, numerics), scene), strike_of(scene))
+    return Curve.of(record(moving, motion(moving, scene, numerics), scene), Strike.of(scene))
 
 
 def test_a_ball_that_touches_nothing_flies_without_strain() -> None:
@@ -224,7 +223,7 @@ def test_a_much_stiffer_ball_is_a_rigid_one() -> None:
     yielding = curve_of(soft)
     numerics = half_space.plan(rigid, {}).numerics
     moving = half_space_body.moving(rigid, numerics)
-    known = Curve.of(record(moving, motion(moving, rigid, numerics), rigid), strike_of(rigid))
+    known = Curve.of(record(moving, motion(moving, rigid, numerics), rigid), Strike.of(rigid))
     for name in WHOLE:
         assert yielding.quantities[name] == pytest.approx(known.quantities[name], rel=5e-4), name
 

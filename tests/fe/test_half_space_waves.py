@@ -18,8 +18,7 @@ from fe_contact.assembly.absorbing import wave_speeds
 from fe_contact.budget.curve import Curve
 from fe_contact.cli import main
 from fe_contact.methods import simulate
-from fe_contact.reference import strike_of
-from fe_contact.steppers.march import March
+from fe_contact.steppers.march import March, Strike
 from fe_contact.waves.half_space_body import moving
 from fe_contact.waves.impact import motion, parting, record
 from fe_contact.waves.targets import half_space
@@ -34,7 +33,7 @@ def marched(scene: Scene, **given: Any) -> tuple[March, Curve]:
     numerics = half_space.plan(scene, given).numerics
     body = moving(scene, numerics)
     found = record(body, motion(body, scene, numerics), scene)
-    return found, Curve.of(found, strike_of(scene))
+    return found, Curve.of(found, Strike.of(scene))
 
 
 def predicted(scene: Scene, curve: Curve) -> float:

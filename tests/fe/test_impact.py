@@ -17,14 +17,14 @@ from fe_contact.assembly.operators import system_matrix
 from fe_contact.budget.certify import certify
 from fe_contact.budget.plan import plan
 from fe_contact.contact import problem as contact
-from fe_contact.contact.enforcement import corrected
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactSolution
 from fe_contact.errors import ContactNotSettled, MemoryTooSmall, TooManySteps
 from fe_contact.march import impact
 from fe_contact.march.impact import march
 from fe_contact.methods import simulate
-from fe_contact.reference import strike_of
-from fe_contact.settings import SCHEMES, Numerics
+from fe_contact.schemes.base import SCHEMES
+from fe_contact.settings import Numerics
 from fe_contact.steppers import stepping
 from fe_contact.steppers.march import March, Strike
 from fe_contact.steppers.scaled_surface import ScaledSurface
@@ -33,8 +33,9 @@ from fe_contact.targets import half_space
 from lumped.laws import mdr
 from lumped.materials import Relaxation
 from lumped.scene.scene import Scene
-from lumped.schema.members import available, get
 from lumped.shapes import Parabola
+
+corrected = ENFORCEMENTS.get("corrected")
 
 Strikes = Callable[..., Strike]
 Settings = Callable[..., Numerics]
@@ -84,11 +85,11 @@ def test_an_elastic_impact_is_hertzs(case: int, scene_of: Scenes) -> None:
         assert found.value == pytest.approx(value, rel=1e-4 if name != "peak_time" else 1e-3)
 
 
-@pytest.mark.parametrize("name", available(SCHEMES))
+@pytest.mark.parametrize("name", SCHEMES.names)
 def test_duration_and_restitution_converge_in_the_order_of_the_scheme(
     name: str, hertz_strike: Strikes, settings_of: Settings
 ) -> None:
-    strike, order = hertz_strike(), get(SCHEMES, name).ORDER
+    strike, order = hertz_strike(), SCHEMES.get(name).order
     exact = HERTZ_TIME * 0.01 / strike.velocity
     runs = [marched(strike, settings_of(strike, steps=n, scheme=name)) for n in (16, 32, 64)]
     late = [abs(run.time[-1] / exact - 1) for run in runs]
@@ -182,7 +183,7 @@ def test_a_fluid_creeps_and_is_never_said_to_separate(scene_of: Scenes) -> None:
     scene = scene_of({"law": "maxwell", "E": 1e6, "eta": 200.0})
     assert mdr.estimate(scene).duration is None
     chosen = plan(scene, {"tolerance": 1e-3}).numerics
-    certified = certify(strike_of(scene), scene.geometry, chosen)
+    certified = certify(Strike.of(scene), scene.geometry, chosen)
     assert not certified.curve.separated
     assert certified.curve.duration == pytest.approx(scene.end_time)
 
@@ -469,7 +470,7 @@ def test_condensing_to_the_surface_changes_nothing(
     numerics = settings_of(strike, steps=12, order=3, elements_per_contact=1.0)
     condensed = half_space.surface(0.3, numerics)
     expected = march(strike, condensed, numerics)
-    monkeypatch.setattr(corrected, "solve", solve_whole)
+    monkeypatch.setattr("fe_contact.contact.enforcement.corrected.solve", solve_whole)
     found = march(strike, Uncondensed(condensed.operator), numerics)
     assert found.work.steps == expected.work.steps >= 8
     for name in ("time", "depth", "impulse", "radius"):

@@ -14,8 +14,7 @@ from fe_contact.indentation import indent, press, settings
 from lumped import BadInput, Material, Relaxation
 from lumped.indentation.indentation import Indentation
 from lumped.scene.indenter import Indenter
-from lumped.schema.members import get
-from lumped.shapes import Shape, Sphere
+from lumped.shapes import SHAPES, Shape, Sphere
 from lumped.targets import HalfSpace, Target
 from lumped.targets.layer import Layer
 from lumped.targets.ring import Ring
@@ -56,8 +55,7 @@ class Case:
 
 
 def shaped(name: str, *values: float) -> Shape:
-    made: Shape = get("lumped.shapes", name).of(*values)
-    return made
+    return SHAPES.get(name).kind(*values)
 
 
 def to_width(shape: Shape, target: Target, nu: float, length: float, rng: np.random.Generator, most: float) -> Case:

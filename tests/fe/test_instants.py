@@ -16,9 +16,8 @@ import lumped
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import plan
 from fe_contact.march.impact import march
-from fe_contact.reference import strike_of
 from fe_contact.steppers import instants
-from fe_contact.steppers.march import March, Snapshot
+from fe_contact.steppers.march import March, Snapshot, Strike
 from fe_contact.studies.compare import law_pressure
 from fe_contact.studies.compare.law_pressure import LawPressure
 from fe_contact.targets import half_space
@@ -46,7 +45,7 @@ class Case:
 
 
 def marched(scene: lumped.Scene, tolerance: float) -> Case:
-    numerics, strike = plan(scene, {"tolerance": tolerance}).numerics, strike_of(scene)
+    numerics, strike = plan(scene, {"tolerance": tolerance}).numerics, Strike.of(scene)
     surface = half_space.surface(scene.material.nu, numerics)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(law_pressure, "PATH_POINTS", PATH_POINTS)
@@ -102,7 +101,7 @@ def test_the_pressure_adds_up_to_the_force(cases: tuple[float, list[Case]]) -> N
     for case in impacts:
         shots = case.march.snapshots
         forces = np.array([s.force for s in shots])
-        expected = Curve.of(case.march, strike_of(case.scene)).force(np.array([s.time for s in shots]))
+        expected = Curve.of(case.march, Strike.of(case.scene)).force(np.array([s.time for s in shots]))
         for shot in shots:
             added = shot.contact_radius**2 * float(case.weights @ shot.pressure)
             assert shot.force == pytest.approx(added, rel=1e-9)

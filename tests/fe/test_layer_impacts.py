@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import fe_contact
-from fe_contact.reference import strike_of
+from fe_contact.steppers.march import Strike
 from lumped import BadInput, Material, Model, Relaxation, Result, Scene, Sphere, laws, simulate
 from lumped.result.score import normalized_error
 from lumped.shapes.cone import Cone
@@ -72,7 +72,7 @@ def test_a_rod_in_a_ring_agrees_with_ting(campaign_size: Callable[[int], int], a
 def test_a_march_overlaps_a_rod_with_its_ring_as_circles_do() -> None:
     """From the ring's middle a ray at an angle leaves the rod, pushed out by clearance and depth, beyond the ring."""
     scene, rng = Scene.load("rod-in-ring"), np.random.default_rng(5)
-    overlap, ring = strike_of(scene).overlap, scene.target
+    overlap, ring = Strike.of(scene).overlap, scene.target
     assert isinstance(ring, Ring)
     assert overlap is not None
     radius, inner = scene.geometry.shape.tip_radius, ring.inner_radius

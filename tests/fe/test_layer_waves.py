@@ -16,28 +16,25 @@ from fe_contact.budget.curve import Curve
 from fe_contact.cli import main
 from fe_contact.dynamics.march import Motion
 from fe_contact.methods import simulate
-from fe_contact.reference import strike_of
-from fe_contact.settings import WAVES
-from fe_contact.steppers.march import March
+from fe_contact.steppers.march import March, Strike
 from fe_contact.waves import half_space_body, layer_body
 from fe_contact.waves.impact import motion, record
 from fe_contact.waves.targets import layer
+from fe_contact.waves.targets.base import WAVES
 from lumped import BadInput, Scene, laws
 from lumped.load_curves.hertz import hertz_impact
-from lumped.schema.members import get
-from lumped.targets._layer_mass import moving_share
-from lumped.targets.layer import Layer
+from lumped.targets.layer import Layer, moving_share
 
 RULED = ("peak_force", "duration", "restitution", "peak_depth", "impulse")
 MOVING = {"half_space": half_space_body.moving, "layer": layer_body.moving}
 
 
 def marched(scene: Scene, **given: Any) -> tuple[March, Curve, Motion]:
-    numerics = get(WAVES, scene.target.name).plan(scene, given).numerics
+    numerics = WAVES.get(scene.target.name).plan(scene, given).numerics
     body = MOVING[scene.target.name](scene, numerics)
     moved = motion(body, scene, numerics)
     found = record(body, moved, scene)
-    return found, Curve.of(found, strike_of(scene)), moved
+    return found, Curve.of(found, Strike.of(scene)), moved
 
 
 @pytest.mark.parametrize("base", ["bonded", "sliding"])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact import run
-from fe_contact.budget.plan import plan
+from fe_contact.reference import plan
 from lumped import FeContactError, Scene
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.schema.data import scene_names

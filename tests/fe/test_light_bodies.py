@@ -11,7 +11,7 @@ import pytest
 
 from fe_contact.budget.curve import Curve
 from fe_contact.methods import simulate
-from fe_contact.reference import strike_of
+from fe_contact.steppers.march import Strike
 from fe_contact.waves.half_space_body import moving
 from fe_contact.waves.impact import motion, record
 from fe_contact.waves.targets import half_space
@@ -79,7 +79,7 @@ def test_what_the_ledger_says_of_inertia_is_what_waves_take(campaign_size: Calla
         coarse = {"elements_per_contact": 4.0, "steps": 120, "penalty": 60.0}
         numerics = half_space.plan(moved, coarse).numerics
         body = moving(moved, numerics)
-        peak = Curve.of(record(body, motion(body, moved, numerics), moved), strike_of(moved)).quantities["peak_force"]
+        peak = Curve.of(record(body, motion(body, moved, numerics), moved), Strike.of(moved)).quantities["peak_force"]
         change = 1.0 - (peak or 0.0) / (still.quantities["peak_force"].value or 1.0)
         assert change > 0.01
         assert 0.5 < (estimate or 0.0) / change < 2.0, moved

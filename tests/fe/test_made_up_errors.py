@@ -11,8 +11,9 @@ import pytest
 from scipy.special import beta, betainc
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.certify import CAUSES, SAFETY, Budget, Causes, _rows, _time_steps
-from fe_contact.budget.change import Change
+from fe_contact.budget.budget import CAUSES, Budget, Causes
+from fe_contact.budget.certify import _rows, _time_steps
+from fe_contact.budget.change import SAFETY, Change
 from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.trusted_order import trust
 from fe_contact.settings import Numerics
@@ -86,7 +87,7 @@ def judged(
     steps = _time_steps(run, settings, flat)
     changes: dict[str, Causes] = dict.fromkeys(CAUSES, ())
     nothing: Any = None
-    return Budget(steps.value, nothing, changes | {"time_step": (*steps.changes, *steps.jitter)}, nothing)
+    return Budget(steps.value, nothing, changes | {"time_step": (*steps.changes, *steps.jitter)}, nothing, nothing)
 
 
 def over(found: Budget, *names: str) -> dict[str, float]:
@@ -194,7 +195,7 @@ def test_ends_that_are_read_badly_are_known_no_better() -> None:
         ]
         found = extrapolated(ends[0], ends[1], int(rng.integers(1, 4)))
         nothing: Any = None
-        bar = Budget(found, nothing, dict.fromkeys(CAUSES, ()), nothing).total("duration")
+        bar = Budget(found, nothing, dict.fromkeys(CAUSES, ()), nothing, nothing).total("duration")
         used = max(used, abs(found.duration - 1.0) / bar)
         assert abs(found.duration - 1.0) <= bar * (1.0 + 1e-9)
     assert used > 0.99, "nor any worse"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -11,8 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fe_contact.bodies.memory import SurfaceMemory, area_weights, graded, interpolate, product, step_law
-from fe_contact.schemes import backward_euler, galerkin
+from fe_contact.schemes.base import SCHEMES, MemoryScheme
 from lumped.materials import Relaxation
+
+backward_euler, galerkin = SCHEMES.get("backward_euler"), SCHEMES.get("galerkin")
 
 SEEDS = st.integers(0, 2**32 - 1)
 RADII = np.linspace(0.0, 2.0, 7)
@@ -59,7 +60,7 @@ def hereditary(relaxation: Relaxation, steps: np.ndarray, strains: np.ndarray, a
 
 
 def recursion(
-    relaxation: Relaxation, scheme: ModuleType, steps: np.ndarray, strains: np.ndarray
+    relaxation: Relaxation, scheme: MemoryScheme, steps: np.ndarray, strains: np.ndarray
 ) -> tuple[np.ndarray, list[SurfaceMemory]]:
     """Stress of every step as the march finds it, and the states between the steps."""
     states, stresses = [SurfaceMemory.at_rest(AREA, relaxation, fields=2)], []
@@ -72,7 +73,7 @@ def recursion(
 
 @pytest.mark.parametrize("scheme", [galerkin, backward_euler])
 @given(seed=SEEDS)
-def test_the_recursion_equals_the_hereditary_integral(scheme: ModuleType, seed: int) -> None:
+def test_the_recursion_equals_the_hereditary_integral(scheme: MemoryScheme, seed: int) -> None:
     rng = np.random.default_rng(seed)
     relaxation, (steps, strains) = random_relaxation(rng), random_path(rng)
     found, states = recursion(relaxation, scheme, steps, strains)
@@ -133,7 +134,7 @@ def test_an_elastic_surface_forgets_nothing_and_heats_nothing(seed: int) -> None
 
 
 @pytest.mark.parametrize("scheme", [galerkin, backward_euler])
-def test_a_fast_branch_is_a_dashpot_and_a_slow_one_a_spring(scheme: ModuleType) -> None:
+def test_a_fast_branch_is_a_dashpot_and_a_slow_one_a_spring(scheme: MemoryScheme) -> None:
     rng = np.random.default_rng(0)
     steps, strains = random_path(rng)
     fast = Relaxation(1.0, (1e9 * 0.7,), (1e-9,)), Relaxation(1.0, viscosity=0.7)

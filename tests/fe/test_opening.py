@@ -8,9 +8,11 @@ from scipy.integrate import quad
 
 from fe_contact.bodies.memory import step_law
 from fe_contact.bodies.pressing import contact_end
-from fe_contact.schemes import galerkin
+from fe_contact.schemes.base import SCHEMES
 from fe_contact.steppers.fixed_stepping import just_open, opened
 from lumped.materials import Relaxation
+
+galerkin = SCHEMES.get("galerkin")
 
 SOLID = Relaxation(1.0, (2.0, 0.7), (0.05, 0.6))
 PLACES = np.linspace(0.5, 1.2, 141)

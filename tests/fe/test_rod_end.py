@@ -17,7 +17,7 @@ from fe_contact.assembly.surface import flat
 from fe_contact.bodies.zone import held
 from fe_contact.methods import simulate
 from lumped import Scene, laws
-from lumped.result.model_ledger.kinematics import ROD_END
+from lumped.result.model_ledger import ROD_END
 from lumped.solvers.rod.tipped import RodScales, TippedImpact
 from lumped.solvers.rod.waves import Waves
 

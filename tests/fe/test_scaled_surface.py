@@ -12,10 +12,12 @@ import meshes
 from fe_contact.assembly.far_field import boussinesq
 from fe_contact.assembly.operators import surface_operator
 from fe_contact.bodies.pressing import EDGE_WINDOW
-from fe_contact.contact.enforcement import corrected, penalty
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactSolution
 from fe_contact.steppers.scaled_surface import ScaledSurface
 from lumped.shapes import Parabola, Shape, Sphere
+
+corrected, penalty = ENFORCEMENTS.get("corrected"), ENFORCEMENTS.get("penalty")
 
 RNG = np.random.default_rng(2)
 POISSON = (0.0, 0.3, 0.49, 0.4999)

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from types import ModuleType
-
 import numpy as np
 import pytest
 from scipy.linalg import expm
 
 from fe_contact.bodies.memory import step_law
-from fe_contact.schemes import galerkin
-from fe_contact.settings import SCHEMES
+from fe_contact.schemes.base import SCHEMES, MemoryScheme
 from lumped.materials import Relaxation
-from lumped.schema.members import available, get
+
+galerkin = SCHEMES.get("galerkin")
 
 MATERIALS = {
     "elastic": Relaxation(1.0),
@@ -35,11 +33,11 @@ def exact(relaxation: Relaxation, time: float) -> np.ndarray:
     return (expm(system * time) @ np.append([0.0, 1.0], np.zeros(branches)))[:2]
 
 
-def integrated(relaxation: Relaxation, scheme: ModuleType, steps: int) -> np.ndarray:
+def integrated(relaxation: Relaxation, scheme: MemoryScheme, steps: int) -> np.ndarray:
     """The march's step on one degree of freedom: u = free - lever F/m and F = now u + past."""
     step = END / steps
     law = step_law(relaxation, scheme, step)
-    lever = scheme.LEVER * step**2
+    lever = scheme.lever * step**2
     u, velocity, branches = 0.0, 1.0, np.zeros(len(relaxation.moduli))
     for _ in range(steps):
         past = law.past_strain * u + law.past_branches @ branches
@@ -51,13 +49,13 @@ def integrated(relaxation: Relaxation, scheme: ModuleType, steps: int) -> np.nda
 
 
 @pytest.mark.parametrize("material", MATERIALS)
-@pytest.mark.parametrize("name", available(SCHEMES))
+@pytest.mark.parametrize("name", SCHEMES.names)
 def test_the_observed_order_is_the_claimed_one(name: str, material: str) -> None:
-    scheme, relaxation = get(SCHEMES, name), MATERIALS[material]
+    scheme, relaxation = SCHEMES.get(name), MATERIALS[material]
     steps = np.array([64, 128, 256, 512])
     errors = [np.abs(integrated(relaxation, scheme, int(n)) - exact(relaxation, END)).max() for n in steps]
     rates = np.log2(np.divide(errors[:-1], errors[1:]))
-    np.testing.assert_allclose(rates, scheme.ORDER, atol=0.15, err_msg=str(errors))
+    np.testing.assert_allclose(rates, scheme.order, atol=0.15, err_msg=str(errors))
 
 
 @pytest.mark.parametrize("stiff", [1e-3, 1e-5])
@@ -69,19 +67,19 @@ def test_the_galerkin_scheme_keeps_order_two_where_the_steps_are_far_longer_than
     np.testing.assert_allclose(rates, 2, atol=0.25, err_msg=str(errors))
 
 
-@pytest.mark.parametrize("name", available(SCHEMES))
+@pytest.mark.parametrize("name", SCHEMES.names)
 def test_the_weights_of_a_scheme_are_those_of_its_sample(name: str) -> None:
     """A force that belongs to the share SAMPLE of the step: a spring feels that share of the increment.
 
     And for branches of every speed, past plus increment must hold a steady rate of strain exactly.
     """
-    scheme = get(SCHEMES, name)
-    assert scheme.equilibrium_share() == scheme.SAMPLE
+    scheme = SCHEMES.get(name)
+    assert scheme.sample == scheme.sample
     ratios = 10.0 ** np.arange(-8, 9)
     moduli = np.ones_like(ratios)
     per_increment, of_past = scheme.weights(moduli, ratios)
     slow = ratios < 1e-6
-    np.testing.assert_allclose(per_increment[slow], scheme.SAMPLE, rtol=1e-5)
+    np.testing.assert_allclose(per_increment[slow], scheme.sample, rtol=1e-5)
     np.testing.assert_allclose(of_past[slow], 1, rtol=1e-5)
     np.testing.assert_allclose(per_increment + of_past / ratios, 1 / ratios, rtol=1e-7)
 

@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
+from fe_contact.dynamics.mass.base import MASSES
+from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.errors import RodTooLong
 from fe_contact.methods import simulate
-from fe_contact.settings import ENFORCEMENTS, MASSES, WAVE_SCHEMES
 from lumped import BadInput, Scene, laws
 from lumped.errors import NotReached
 from lumped.result.result import UNITS
-from lumped.schema.members import available
 
 CASES = 60
 ROUNDING = 1e-7  # of a number
@@ -24,7 +25,7 @@ ROUNDING = 1e-7  # of a number
 def method(rng: np.random.Generator) -> dict[str, Any]:
     """Any way to solve, and a tolerance that most reach."""
     packages = {"scheme": WAVE_SCHEMES, "mass": MASSES, "enforcement": ENFORCEMENTS}
-    drawn = {key: str(rng.choice(available(package))) for key, package in packages.items()}
+    drawn = {key: str(rng.choice(package.names)) for key, package in packages.items()}
     return {"tolerance": 0.1, "rho": rng.uniform(0.0, 1.0), **drawn}
 
 

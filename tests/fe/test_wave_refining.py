@@ -13,20 +13,19 @@ from scipy.sparse import linalg
 import meshes
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.plan import EARLY_PEAK
-from fe_contact.reference import strike_of
+from fe_contact.budget.refine import AIM, factors
 from fe_contact.steppers.march import March, Strike, Work
-from fe_contact.waves import refining
-from fe_contact.waves.certify import ORDER, WaveRuns, certify
+from fe_contact.waves.certify import AT, ORDER, ROWS, WaveRuns, certify, curve_of, reading
 from fe_contact.waves.half_space_body import moving
+from fe_contact.waves.impact import graded
 from fe_contact.waves.plan import viscous_share
-from fe_contact.waves.reading import AT, ROWS, curve_of, reading
-from fe_contact.waves.refining import AIM, MOST, factors
-from fe_contact.waves.steps import graded
+from fe_contact.waves.refining import GROWTH
 from fe_contact.waves.targets import half_space
 from lumped import Scene
 from lumped.materials import Relaxation
 
 ROOMY = dict.fromkeys(ORDER, math.inf)
+MOST = {cause: growth.most for cause, growth in GROWTH.items()}
 
 
 def test_steps_are_short_about_an_early_peak_and_grow_with_the_time_since_touch() -> None:
@@ -96,10 +95,10 @@ def test_a_smaller_tolerance_keeps_more_rows() -> None:
 def test_only_what_is_missing_is_refined_and_the_cheapest_first() -> None:
     """Shares of the tolerance, by two quantities."""
     small = {"mesh": [0.3, 0.1], "penalty": [0.35, 0.0], "time_step": [0.36, 0.1], "far_field": [0.0, 0.0]}
-    chosen = factors({cause: np.array(share) for cause, share in small.items()}, ROOMY)
+    chosen = factors({cause: np.array(share) for cause, share in small.items()}, GROWTH, ROOMY)
     assert chosen == {"mesh": 1.0, "penalty": 2.0, "time_step": 1.0, "far_field": 1.0}
     alone = {"mesh": [1.01], "penalty": [0.0], "time_step": [0.0], "far_field": [0.0]}
-    chosen = factors({cause: np.array(share) for cause, share in alone.items()}, ROOMY)
+    chosen = factors({cause: np.array(share) for cause, share in alone.items()}, GROWTH, ROOMY)
     assert 1.0 < chosen.pop("mesh") < 1.2
     assert set(chosen.values()) == {1.0}
 
@@ -109,10 +108,10 @@ def test_bars_are_predicted_to_hold_or_there_is_no_room_left() -> None:
     for _ in range(200):
         shares = {cause: 10 ** rng.uniform(-4, 1, 6) for cause in ORDER}
         room = {cause: float(rng.choice([1.0, MOST[cause]])) for cause in ORDER}
-        chosen = factors(shares, room)
+        chosen = factors(shares, GROWTH, room)
         assert all(1.0 <= chosen[cause] <= room[cause] for cause in ORDER)
         bars = np.sum([shares[cause] / chosen[cause] ** ORDER[cause] for cause in ORDER], axis=0)
-        full = all(chosen[cause] * refining.STEP[cause] > room[cause] for cause in ORDER)
+        full = all(chosen[cause] * GROWTH[cause].step > room[cause] for cause in ORDER)
         assert bars.max() <= AIM or full
         least = np.sum([shares[cause] for cause in ORDER], axis=0).max()
         assert least > AIM or set(chosen.values()) == {1.0}
@@ -120,14 +119,14 @@ def test_bars_are_predicted_to_hold_or_there_is_no_room_left() -> None:
 
 def test_what_could_not_be_varied_is_refined_as_far_as_there_is_room() -> None:
     shares = {cause: np.array([np.inf if cause == "mesh" else 0.1]) for cause in ORDER}
-    chosen = factors(shares, MOST)
+    chosen = factors(shares, GROWTH, MOST)
     assert chosen["mesh"] == pytest.approx(MOST["mesh"])
 
 
 def test_twice_the_steps_take_one_march_more() -> None:
     scene = Scene.load("steel-ball-waves")
     numerics = half_space.plan(scene, {"elements_per_contact": 3.0, "steps": 48, "tolerance": 0.05}).numerics
-    runs = WaveRuns(scene, strike_of(scene), moving, 24)
+    runs = WaveRuns(scene, Strike.of(scene), moving, 24)
     first = certify(runs, numerics)
     assert first.work.marches == 5
     second = certify(runs, numerics.varied(steps=96))
@@ -171,7 +170,7 @@ def test_counted_factorisations_are_those_of_every_length_of_step(monkeypatch: p
     coarse = {"elements_per_contact": 3.0, "steps": 40, "far_radius": 4.0, "penalty": 20.0}
     numerics = half_space.plan(scene, coarse).numerics.varied(peak_share=0.05)
     assert len(graded(numerics)[1]) > 1
-    runs = WaveRuns(scene, strike_of(scene), moving, 20)
+    runs = WaveRuns(scene, Strike.of(scene), moving, 20)
     certify(runs, numerics)
     work = runs.work()
     assert work.marches == 5

@@ -17,14 +17,13 @@ from fe_contact.dynamics import march
 from fe_contact.errors import BodyTooFine, TooManySteps, WavesTooDear
 from fe_contact.march.flight import Grounded
 from fe_contact.methods import simulate
-from fe_contact.settings import WAVES
-from fe_contact.steppers.chosen import struck
+from fe_contact.targets.base import struck
 from fe_contact.waves import cost, doubling
 from fe_contact.waves.certify import WaveRuns
+from fe_contact.waves.targets.base import WAVES
 from lumped import Scene
 from lumped.result.result import meets
 from lumped.scene.file import load
-from lumped.schema.members import get
 
 COARSE = {"tolerance": 3e-2, "elements_per_contact": 3.0, "steps": 64, "order": 2}
 QUICK = [f"--set=numerics.{key}={value}" for key, value in COARSE.items() if key != "tolerance"]
@@ -44,9 +43,9 @@ def test_a_body_too_fine_is_refused_before_its_matrix(name: str, bound: str, mon
 
 def test_a_finer_body_that_is_refused_leaves_what_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     scene, given = Scene.load("steel-ball"), {"tolerance": 1e-5, "steps": 16, "order": 2}
-    monkeypatch.setattr(reference, "ROUNDS", 0)
+    monkeypatch.setattr(reference.Statics, "rounds", 0)
     first = simulate(scene, "fe", given)
-    monkeypatch.setattr(reference, "ROUNDS", 4)
+    monkeypatch.setattr(reference.Statics, "rounds", 4)
     monkeypatch.setattr(operators, "MOST_UNKNOWNS", first.work["degrees_of_freedom"])
     found = simulate(scene, "fe", given)
     assert not found.converged
@@ -106,7 +105,7 @@ def test_a_word_is_said_before_and_while_bodies_are_meshed(monkeypatch: pytest.M
         return struck(*given)
 
     monkeypatch.setattr("fe_contact.budget.runs.struck", body)
-    monkeypatch.setattr(reference, "ROUNDS", 0)
+    monkeypatch.setattr(reference.Statics, "rounds", 0)
     given = {"elements_per_contact": 2.0, "steps": 16, "order": 1}
     reference.solve(scene, given, lambda message, *_: told.append(message))
     assert built[0] >= 2  # what is expected, and the march that is begun
@@ -135,9 +134,9 @@ def test_the_cost_of_waves_is_known_before(name: str, monkeypatch: pytest.Monkey
         return found
 
     monkeypatch.setattr(WaveRuns, "follow", followed)
-    monkeypatch.setattr("fe_contact.waves.refining.ROUNDS", 0)
+    monkeypatch.setattr("fe_contact.waves.refining.Waves.rounds", 0)
     scene = Scene.load(name)
-    target = get(WAVES, scene.target.name)
+    target = WAVES.get(scene.target.name)
     expected = target.cost(scene, target.plan(scene, COARSE).numerics)
     simulate(scene, "fe", COARSE)
     share = expected.work / (expected.unknowns + cost.STEP) * expected.unknowns / spent[-1]
@@ -153,7 +152,7 @@ def test_waves_that_cost_too_much_are_refused_before_the_first_step(monkeypatch:
 
 def test_finer_waves_that_cost_too_much_leave_what_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
     scene, given = Scene.load("polymer-sphere-waves"), {"tolerance": 3e-3, "elements_per_contact": 2.0, "order": 1}
-    target = get(WAVES, scene.target.name)
+    target = WAVES.get(scene.target.name)
     first = target.cost(scene, target.plan(scene, given).numerics)
     monkeypatch.setattr(cost, "MOST_WORK", 1.01 * first.work)
     found = simulate(scene, "fe", given)
@@ -170,7 +169,7 @@ def test_a_march_ends_after_so_much_work(monkeypatch: pytest.MonkeyPatch) -> Non
 
 def test_lines_are_doubled_as_far_as_their_work_is_bearable(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(doubling, "MOST_WORK", 1.0)
-    found, free = simulate(Scene.load("bar"), "fe", {}), get(WAVES, "plane").plan(Scene.load("bar"), {})
+    found, free = simulate(Scene.load("bar"), "fe", {}), WAVES.get("plane").plan(Scene.load("bar"), {})
     assert not found.converged
     assert found.numerics["steps"] == free.numerics.steps
 

@@ -14,7 +14,7 @@ from fe_contact.budget import plan as planning
 from fe_contact.budget.runs import PILOT_STEPS, PLACED, Runs
 from fe_contact.budget.scales import scales
 from fe_contact.march.impact import share_of_rest, step_length
-from fe_contact.reference import strike_of
+from fe_contact.steppers.march import Strike
 from lumped import Result, Scene, laws, simulate
 
 SCENES = ("polymer-sphere", "polymer-layer", "rod-in-ring", "polymer-cone")
@@ -98,7 +98,7 @@ def test_a_coarse_march_tells_how_long_contact_lasts_and_when_it_peaks(
     misjudged(times, 1.0)
     scene, truth = Scene.load("polymer-sphere"), exact("polymer-sphere").quantities
     numerics = planning.plan(scene, {"tolerance": 1e-3}).numerics
-    placed = Runs(strike_of(scene), scene.geometry, 1).placed(numerics, PILOT_STEPS)
+    placed = Runs(Strike.of(scene), scene.geometry, 1).placed(numerics, PILOT_STEPS)
     duration, peak_time = truth["duration"].value, truth["peak_time"].value
     assert abs(numerics.contact_time / duration - 1.0) > 0.5
     assert placed.contact_time == pytest.approx(duration, rel=PLACED)

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from lumped import BadInput, Model, Motion, Scene, laws, simulate
 from lumped.laws.correspondence import Correspondence
 from lumped.result.result import Result
-from lumped.solvers.point import memory
+from lumped.solvers.point.memory import RULES
 
 Build = Callable[..., Scene]
 Array = NDArray[np.float64]
@@ -67,7 +67,7 @@ def followed(scene: Scene, rule: str, contacts: int) -> list[tuple[float, float,
     return found
 
 
-@pytest.mark.parametrize("rule", memory.available())
+@pytest.mark.parametrize("rule", RULES.names)
 def test_every_memory_against_direct_integration(rule: str, impact: Build) -> None:
     scene = bouncing(impact, 3)
     result = simulate(Correspondence(memory=rule), scene, 1e-7)
@@ -85,7 +85,7 @@ def test_memories_differ_only_while_something_is_remembered(impact: Build) -> No
         scene = bouncing(impact, 2, gravity)
         return float(simulate(Correspondence(memory=rule), scene, 1e-7).contacts[1]["restitution"] or 0.0)
 
-    flights = {gravity: [second(rule, gravity) for rule in memory.available()] for gravity in (0.05, 0.6)}
+    flights = {gravity: [second(rule, gravity) for rule in RULES.names] for gravity in (0.05, 0.6)}
     spread = {gravity: np.ptp(values) for gravity, values in flights.items()}
     assert spread[0.05] < 1e-6  # a flight of some hundred relaxation times
     assert spread[0.6] > 1e-5

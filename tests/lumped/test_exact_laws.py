@@ -18,7 +18,7 @@ from lumped.laws._assembly import Answer
 from lumped.result.ending import End
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
-from lumped.solvers.mdr.coarse import coarse, problem_of
+from lumped.solvers.mdr.march import coarse, problem_of
 from lumped.solvers.mdr.memory import fading
 from lumped.solvers.mdr.nest import Grid, Nest, limit, predicted_turn
 

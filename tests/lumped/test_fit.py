@@ -55,7 +55,7 @@ def test_a_law_gets_its_own_parameters_back(law: str) -> None:
 
 
 def test_every_law_of_two_masses_is_among_these() -> None:
-    with_numbers = {name for name in laws.available() if any(key in laws.get(name).KEYS for key in ("k", "k1"))}
+    with_numbers = {name for name in laws.available() if any(key in laws.get(name).keys for key in ("k", "k1"))}
     assert with_numbers == set(TRUTHS)
 
 

@@ -20,8 +20,8 @@ from lumped.solvers.point.bodies import Bodies, Stage
 
 OF_GEOMETRY = {"correspondence", "ting", "mdr", "rod_waves"}
 NAMES = sorted(set(laws.available()) - OF_GEOMETRY)
-DAMPED = [name for name in NAMES if "e" in laws.get(name).KEYS]
-FREE = [name for name in NAMES if "alpha" in laws.get(name).KEYS]
+DAMPED = [name for name in NAMES if "e" in laws.get(name).keys]
+FREE = [name for name in NAMES if "alpha" in laws.get(name).keys]
 # One impact for all: k = 1e6 N/m^alpha, the damping by its own key where the law has one.
 OWN: dict[str, dict[str, float]] = {
     "hertz": {},
@@ -209,7 +209,7 @@ def test_other_published_dampings_too(name: str, formula: str, exit: str, pairs:
 def test_every_published_formula_of_the_family_can_be_asked_for(name: str) -> None:
     families = {"hertzdamp": "hunt_crossley", "khatiwada": "khatiwada", "impact_bilinear": None}
     family = families.get(name, name)
-    offered = laws.get(name).KEYS["damping"].options if "damping" in laws.get(name).KEYS else (restitution.EXACT,)
+    offered = laws.get(name).keys["damping"].kind.options if "damping" in laws.get(name).keys else (restitution.EXACT,)
     if family is not None:
         assert offered == (restitution.EXACT, *restitution.get(family).published)
 
@@ -394,10 +394,10 @@ STIFF = {"xi": 1e6, "c": 1e12, "chi": 1e6, "A": 1e6, "alpha_t": 1e6}
 
 
 @pytest.mark.parametrize("exit", ["force", "depth"])
-@pytest.mark.parametrize("name", [name for name in NAMES if set(STIFF) & set(laws.get(name).KEYS)])
+@pytest.mark.parametrize("name", [name for name in NAMES if set(STIFF) & set(laws.get(name).keys)])
 def test_enormous_damping_ends_with_the_right_limit_or_says_why_not(name: str, exit: str) -> None:
     """Nothing comes back of the energy; where the tolerance is not reached the result says so."""
-    for key in sorted(set(STIFF) & set(laws.get(name).KEYS)):
+    for key in sorted(set(STIFF) & set(laws.get(name).keys)):
         case = scene(name, exit=exit, **{key: STIFF[key]})
         result = laws.get(name).of(case).simulate(case, 1e-3)
         assert result.converged or "not reached" in result.message

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from lumped import Scene, laws, simulate
-from lumped.paper.table1 import TableRow, punch
+from lumped.paper.table1 import ROWS, PunchRow, TableRow
 from lumped.result.result import Quantity, Result
 from lumped.schema.json_file import decoded, encoded
 
@@ -95,7 +95,7 @@ def test_numbers_of_numpy_come_back_as_pythons() -> None:
 
 def test_what_was_given_is_not_kept_but_taken() -> None:
     """By its value: another one of its kind is no argument."""
-    row, other = punch.EXAMPLE, punch.PunchRow(radius=0.02)
+    row, other = ROWS["punch"], PunchRow(radius=0.02)
     content = encoded({"row": row, "other": other}, (1.0, row))
     assert content["other"] == {"radius": 0.02}
     assert decoded(Mapping[str, TableRow], {"row": content["row"]}, (1.0, row))["row"] is row

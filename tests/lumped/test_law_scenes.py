@@ -19,7 +19,7 @@ BARE: dict[str, Any] = {
     "law": {"name": "jankowski", "k": 1e6, "e": 0.6, "alpha": 1.4, "gap": 1e-12, "exit": "force"},
 }
 FORCE_LAWS = sorted(set(laws.available()) - {"correspondence", "ting", "mdr", "rod_waves"})
-DAMPED = [name for name in FORCE_LAWS if "e" in laws.get(name).KEYS]
+DAMPED = [name for name in FORCE_LAWS if "e" in laws.get(name).keys]
 
 
 def changed(**law: Any) -> dict[str, Any]:
@@ -50,7 +50,7 @@ def test_a_law_alone_is_a_scene_and_comes_back_from_its_tables() -> None:
 @pytest.mark.parametrize("name", FORCE_LAWS)
 def test_every_key_of_a_law_is_read(name: str) -> None:
     """Each value reaches the law, or something that it has computed from it."""
-    keys, k = laws.get(name).KEYS, {"k": 1e6}
+    keys, k = laws.get(name).keys, {"k": 1e6}
     bare = read(Scene, of_law(name, **k, **({"e": 0.5} if "e" in keys else {})), "scene.toml")[0]
     before = laws.get(name).of(bare).parameters
     values = {"k": 2e6, "alpha": 1.7, "gap": 1e-3, "exit": "depth", "e": 0.7}
@@ -60,12 +60,12 @@ def test_every_key_of_a_law_is_read(name: str) -> None:
             assert laws.get(name).of(read(Scene, table, "scene.toml")[0]).parameters != before, key
 
 
-@pytest.mark.parametrize("name", [name for name in FORCE_LAWS if "damping" in laws.get(name).KEYS])
+@pytest.mark.parametrize("name", [name for name in FORCE_LAWS if "damping" in laws.get(name).keys])
 def test_a_formula_is_for_e_and_no_other_damping(name: str) -> None:
-    formula = laws.get(name).KEYS["damping"].options[-1]
+    formula = laws.get(name).keys["damping"].kind.options[-1]
     read(Scene, of_law(name, k=1e6, e=0.9, damping=formula), "scene.toml")
     assert "law.damping" in faults(of_law(name, k=1e6, e=0.9, damping="guess"))
-    own = set(laws.get(name).KEYS) & {"xi", "c", "chi", "A", "alpha_t"}
+    own = set(laws.get(name).keys) & {"xi", "c", "chi", "A", "alpha_t"}
     for key in own:
         assert "accepted: e with it" in faults(of_law(name, k=1e6, damping=formula, **{key: 0.1}))
 
@@ -132,7 +132,7 @@ def test_a_law_takes_what_it_needs_from_geometry_and_material(name: str, impact:
     scene = impact(0.5, (0.5,), (1.0,))
     exact = simulate(laws.get("mdr").of(scene), scene, 1e-4).quantities["restitution"].value
     found = simulate(laws.get(name).of(scene), scene, 1e-6)
-    damped = "e" in laws.get(name).KEYS
+    damped = "e" in laws.get(name).keys
     assert found.quantities["restitution"].value == pytest.approx(exact if damped else 1.0, abs=1e-6)
     assert found.history.contact_radius.max() > 0.0
     assert "Hertz" in found.message
@@ -154,7 +154,7 @@ def test_a_fixed_contact_area_has_a_restitution_to_take_too(name: str) -> None:
     scene, _ = read(Scene, {"striker": striker, "target": {"shape": "half_space", "material": material}})
     exact = simulate(laws.get("correspondence").of(scene), scene, 1e-6).quantities["restitution"].value
     found = simulate(laws.get(name).of(scene), scene, 1e-6).quantities["restitution"].value
-    assert found == pytest.approx(exact if "e" in laws.get(name).KEYS else 1.0, abs=1e-6)
+    assert found == pytest.approx(exact if "e" in laws.get(name).keys else 1.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("name", DAMPED)

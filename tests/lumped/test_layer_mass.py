@@ -8,7 +8,7 @@ import pytest
 
 from lumped import Scene, laws
 from lumped.result.model_ledger import Peak, model_ledger
-from lumped.targets._layer_mass import THICK, moving_share
+from lumped.targets.layer import THICK, moving_share
 
 
 @pytest.mark.parametrize("plane", [False, True])

@@ -75,8 +75,8 @@ def test_elastic_contact_modulus_does_not_know_what_is_constant() -> None:
 
 
 def test_both_parameterisations_of_the_three_parameter_solid_agree() -> None:
-    springs = sls.of(E1=1.8e6, E2=0.9e6, C1=1.8e4)
-    ratios = sls.of(E0=0.6e6, R1=0.5, R2=0.01)
+    springs = sls.of_springs(E1=1.8e6, E2=0.9e6, C1=1.8e4)
+    ratios = sls.of_ratios(E0=0.6e6, R1=0.5, R2=0.01)
     assert springs.relaxed == pytest.approx(ratios.relaxed, rel=1e-15)
     assert springs.moduli == pytest.approx(ratios.moduli, rel=1e-15)
     assert springs.times == pytest.approx(ratios.times, rel=1e-15)
@@ -87,7 +87,7 @@ def test_operators_of_the_three_parameter_solid_are_the_solid() -> None:
     # "(12)" corrected: C1 dsigma + (E1+E2) sigma = E2 (E1 epsilon + C1 depsilon)
     first, second, dashpot = 1.8e6, 0.9e6, 1.8e4
     found = operators.of((first + second, dashpot), (first * second, second * dashpot))
-    expected = sls.of(E1=first, E2=second, C1=dashpot)
+    expected = sls.of_springs(E1=first, E2=second, C1=dashpot)
     np.testing.assert_allclose(found.operational(FREQUENCIES), expected.operational(FREQUENCIES), rtol=1e-13)
 
 

@@ -12,9 +12,14 @@ from typing import Any
 import pytest
 
 from lumped import BadInput, Relaxation, Scene, laws, simulate
+from lumped.materials import Material
+from lumped.materials.networks import NETWORKS
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS
-from lumped.schema import members
+from lumped.scene.tables import Model, Motion
+from lumped.schema.record import keys_of
+from lumped.shapes import SHAPES as SHAPE_KINDS
 from lumped.shapes import Shape
+from lumped.targets import TARGETS as TARGET_KINDS
 from lumped.targets import Target
 
 SAMPLES: dict[str, list[dict[str, Any]]] = {
@@ -50,26 +55,35 @@ TARGETS: dict[str, dict[str, object]] = {
 
 
 def test_samples_cover_every_member() -> None:
-    assert set(SAMPLES) == set(members.available("lumped.materials.networks"))
-    assert set(SHAPES) == set(members.available("lumped.shapes"))
-    assert set(TARGETS) == set(members.available("lumped.targets"))
+    assert set(SAMPLES) == set(NETWORKS.names)
+    assert set(SHAPES) == set(SHAPE_KINDS.names)
+    assert set(TARGETS) == set(TARGET_KINDS.names)
     assert {"hertz", "correspondence", "ting", "mdr"} <= set(laws.available())
+
+
+def test_every_key_stands_beside_what_it_fills_and_says_what_it_means() -> None:
+    kinds = [*SHAPE_KINDS.members.values(), *TARGET_KINDS.members.values(), *NETWORKS.members.values()]
+    sets = [keys for kind in (*kinds, *map(laws.get, laws.available())) for keys in kind.sets]
+    for keys in (*sets, *map(keys_of, (Scene, Material, Model, Motion))):
+        assert all(key.meaning and key.kind.accepted for key in keys.values())
+    assert not any(key.required for name in laws.available() for key in laws.get(name).keys.values())
 
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_network_makes_a_relaxation_of_each_set_of_keys(name: str) -> None:
-    module = members.get("lumped.materials.networks", name)
-    for keys, values in zip(module.KEYS, SAMPLES[name], strict=True):
+    network = NETWORKS.get(name)
+    for keys, values in zip(network.sets, SAMPLES[name], strict=True):
         assert {key for key in keys if keys[key].required} <= set(values) <= set(keys)
-        assert isinstance(module.of(**values), Relaxation)
+        assert isinstance(network.of(**values), Relaxation)
         assert all(
-            keys[key].read(list(value) if isinstance(value, tuple) else value) == value for key, value in values.items()
+            keys[key].kind.read(list(value) if isinstance(value, tuple) else value) == value
+            for key, value in values.items()
         )
 
 
 @pytest.mark.parametrize("name", SHAPES)
 def test_shape_is_frozen_and_named_like_its_file(name: str) -> None:
-    shape = members.get("lumped.shapes", name).of(**SHAPES[name])
+    shape = SHAPE_KINDS.get(name).of(**SHAPES[name])
     assert isinstance(shape, Shape)
     assert shape.name == name
     assert shape.to_dict() == {"shape": name, **SHAPES[name]}
@@ -79,7 +93,7 @@ def test_shape_is_frozen_and_named_like_its_file(name: str) -> None:
 
 @pytest.mark.parametrize("name", TARGETS)
 def test_target_is_named_like_its_file(name: str) -> None:
-    target = members.get("lumped.targets", name).of(**TARGETS[name])
+    target = TARGET_KINDS.get(name).of(**TARGETS[name])
     assert isinstance(target, Target)
     assert target.to_dict() == {"shape": name, **TARGETS[name]}
 

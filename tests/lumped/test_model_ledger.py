@@ -17,7 +17,7 @@ from lumped.materials.radiation import SINE_PULSE, line_coefficient, pulse_energ
 from lumped.result.model_ledger import Peak, ledger_at_rest, model_ledger
 from lumped.result.sufficiency import ABOVE, NO_KEY, OPEN, UNKNOWN, WITHIN, good_to, sufficient
 from lumped.scene.indenter import Indenter
-from lumped.shapes import plate
+from lumped.shapes.plate import Plate
 from lumped.shapes.punch import Punch
 from lumped.targets.layer import Layer
 from lumped.targets.o_ring import ORing
@@ -174,7 +174,7 @@ def test_strain_is_that_of_the_body_where_it_is_flattened_as_a_whole() -> None:
     soft = Material(Relaxation(1e6), 0.4)
     for shape, target, depth, radius, strain in (
         (Sphere(10.0), Layer(1e-3, "bonded"), 5e-4, 0.1, 0.5),
-        (plate.of(1e-4, 2e-3), Plane(), 1e-4, 5.6e-3, 0.05),
+        (Plate(1e-4, 2e-3), Plane(), 1e-4, 5.6e-3, 0.05),
         (Punch(0.03), ORing(0.02, 2e-3), 1e-3, 2e-3, 0.25),
     ):
         peak = Peak(force=1.0, depth=depth, contact_radius=radius, duration=math.inf)

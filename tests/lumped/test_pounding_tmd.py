@@ -17,19 +17,19 @@ from scipy.integrate import solve_ivp
 from scipy.special import gamma
 
 from lumped import BadInput, Relaxation
-from lumped.materials.networks import sls
+from lumped.materials.networks.sls import of_ratios
 from lumped.ptmd import Memory, Oscillator, PoundingDamper, PtmdResult, PtmdRing, Start, simulate
 from lumped.ptmd import exact as exact_route
 from lumped.ptmd.crossing import first_fall
 from lumped.ptmd.equations import Equations, Stages
 from lumped.ptmd.exact import Flow, exponential
+from lumped.ptmd.free_vibration import most_rows
 from lumped.ptmd.integrated import Rates
-from lumped.ptmd.march import most_rows
 from lumped.ptmd.phase import ROWS_PER_PERIOD
 from lumped.ptmd.surface import SideStage
 
 POLE, DAMPER = Oscillator(20.0, 7248.9, 7.615), Oscillator(1.67, 592.9, 0.6312)
-SOLID = sls.of(E0=0.6e6, R1=0.5, R2=0.01)
+SOLID = of_ratios(E0=0.6e6, R1=0.5, R2=0.01)
 GAP, LENGTH = 0.02, 0.003
 BOTH, STRUCTURE = Start.both(0.05), Start.structure(0.05)
 
@@ -285,9 +285,12 @@ SYSTEMS = {
     "inside": (with_ring(lining()), STRUCTURE),
     "reset": (with_ring(lining(memory=Memory.RESET)), STRUCTURE),
     "continuous": (with_ring(lining(memory=Memory.CONTINUOUS)), STRUCTURE),
-    "slow memory": (with_ring(lining(young=sls.of(E0=0.6e6, R1=3.0, R2=0.8))), BOTH),
-    "slow and continuous": (with_ring(lining(young=sls.of(E0=6e6, R1=3.0, R2=0.8), memory=Memory.CONTINUOUS)), BOTH),
-    "slow and reset": (with_ring(lining(young=sls.of(E0=6e6, R1=3.0, R2=0.8), memory=Memory.RESET)), BOTH),
+    "slow memory": (with_ring(lining(young=of_ratios(E0=0.6e6, R1=3.0, R2=0.8))), BOTH),
+    "slow and continuous": (
+        with_ring(lining(young=of_ratios(E0=6e6, R1=3.0, R2=0.8), memory=Memory.CONTINUOUS)),
+        BOTH,
+    ),
+    "slow and reset": (with_ring(lining(young=of_ratios(E0=6e6, R1=3.0, R2=0.8), memory=Memory.RESET)), BOTH),
     "fluid": (with_ring(lining(young=Relaxation(0.0, (1e6, 3e6), (0.02, 0.3)))), STRUCTURE),
     "fluid and dashpot": (with_ring(lining(young=Relaxation(0.0, (1e6,), (0.2,), 3e3))), BOTH),
     "no gap": (with_ring(replace(lining(), gap=0.0, memory=Memory.CONTINUOUS)), Start(0.05, 0.02, 0.0, 0.3)),
@@ -499,7 +502,7 @@ RETARDATION = 0.8
 
 def dents(memory: Memory) -> list[tuple[float, float, float]]:
     """Depth at which a slow ring is left and at which it is met next on the same side, m, and the time between, s."""
-    slow = sls.of(E0=0.6e6, R1=3.0, R2=RETARDATION)
+    slow = of_ratios(E0=0.6e6, R1=3.0, R2=RETARDATION)
     result = simulate(with_ring(lining(young=slow, memory=memory)), BOTH, 2.0)
     depth = {time: float(value) for time, value in zip(result.motion.time, result.motion.depth, strict=True)}
     same = [contact for contact in result.contacts if contact.side == 1]
@@ -567,7 +570,10 @@ def test_exponentials_with_a_closed_form() -> None:
         (lambda: simulate(ALONE, BOTH, route="exakt"), "exact"),
         (lambda: simulate(with_ring(replace(lining(), exponent=1.5)), BOTH, route="exact"), "integrated"),
         (lambda: simulate(ALONE, BOTH, 1e8), "end_time"),
-        (lambda: simulate(with_ring(lining(young=sls.of(E0=1e6, R1=1.0, R2=1e-12))), BOTH), "leave that term out"),
+        (
+            lambda: simulate(with_ring(lining(young=of_ratios(E0=1e6, R1=1.0, R2=1e-12))), BOTH),
+            "leave that term out",
+        ),
     ],
 )
 def test_bad_input_is_named(bad: Any, named: str) -> None:

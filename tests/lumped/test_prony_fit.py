@@ -248,7 +248,7 @@ def test_a_fit_travels_with_the_table_of_its_material() -> None:
     known = fractional_zener.of(1e6, 2e6, 0.01, 0.5)
     table = Material(known, 0.3).to_dict()
     kept = {key: tuple(value) if isinstance(value, list) else value for key, value in table.items()}
-    again = prony.of(**{key: kept[key] for key in kept if key in prony.KEYS[0]})
+    again = prony.of(**{key: kept[key] for key in kept if key in prony.MEMBER.sets[0]})
     assert again == known
 
 

@@ -16,10 +16,13 @@ from scipy.integrate import solve_ivp
 
 from lumped import restitution
 from lumped.errors import BadInput
-from lumped.restitution import hunt_crossley, jankowski, kelvin, kuwabara_kono, mahmoud, tsuji
+from lumped.restitution import kuwabara_kono as taylor
 
 EXITS = ("force", "depth")
 BOTH = [(name, exit) for name in restitution.available() for exit in EXITS]
+hunt_crossley, jankowski, kelvin, kuwabara_kono, mahmoud, tsuji = map(
+    restitution.get, ("hunt_crossley", "jankowski", "kelvin", "kuwabara_kono", "mahmoud", "tsuji")
+)
 ONE_EXIT = ("hunt_crossley", "jankowski", "khatiwada", "mahmoud")
 
 
@@ -217,8 +220,8 @@ def test_kuwabara_kono_inverts_in_few_impacts(monkeypatch: pytest.MonkeyPatch) -
         calls.append(x)
         return single(x, exit)
 
-    single = kuwabara_kono.log_restitution
-    monkeypatch.setattr(kuwabara_kono, "log_restitution", counted)
+    single = taylor.log_restitution
+    monkeypatch.setattr(taylor, "log_restitution", counted)
     for e in np.linspace(1e-3, 0.999, 50):
         calls.clear()
         kuwabara_kono.damping(float(e))
@@ -336,7 +339,7 @@ def test_kuwabara_kono_of_the_literature(x: float, e: float) -> None:
 
 
 def test_kuwabara_kono_series_is_of_second_order() -> None:
-    assert pytest.approx(1.15344, abs=1e-5) == kuwabara_kono.C1
+    assert pytest.approx(1.15344, abs=1e-5) == taylor.C1
     series = kuwabara_kono.published["series"]
     for e in (0.6, 0.8, 0.99):
         x = series(e)

@@ -16,7 +16,7 @@ from lumped.scene.tables import LawChoice
 from lumped.shapes.power import PowerProfile
 from lumped.targets.layer import Layer
 
-NAMES = [name for name in laws.available() if "k" in laws.get(name).KEYS]
+NAMES = [name for name in laws.available() if "k" in laws.get(name).keys]
 DAMPINGS = ("xi", "c", "chi", "A", "alpha_t")
 # Each law has this many impacts in the whole campaign.
 CASES = 60
@@ -26,7 +26,7 @@ def corner(rng: np.random.Generator, name: str) -> Scene:
     """Stiffness, mass, speed and damping over decades; a gap hardly there; either exit; gravity, or none, that changes
     the speed by a tenth within the contact.
     """
-    keys = laws.get(name).KEYS
+    keys = laws.get(name).keys
     values: dict[str, Any] = {"k": 10.0 ** rng.uniform(-3.0, 15.0), "exit": str(rng.choice(["force", "depth"]))}
     values["gap"] = float(rng.choice([0.0, 1e-12]))
     if "alpha" in keys:

@@ -10,7 +10,7 @@ import pytest
 
 from lumped.errors import BadInput
 from lumped.load_curves import ConeCurve, Hertz, PunchCurve
-from lumped.paper.table1 import Elastic, TableRow, cone, contact_modulus, examples, prism, punch, sphere, two_spheres
+from lumped.paper.table1 import ROWS, ConeRow, Elastic, PunchRow, SphereRow, TableRow, TwoSpheres, contact_modulus
 
 STEEL = Elastic(2.0e11, 0.23)
 SOFT = Elastic(1.0e6, 0.45)
@@ -21,12 +21,12 @@ def bodies(row: TableRow) -> tuple[Elastic, ...]:
 
 
 def test_eight_rows_in_their_order() -> None:
-    assert [row.number for row in examples()] == list(range(1, 9))
-    assert [row.alpha for row in examples()] == [1.0, 1.0, 1.0, 1.5, 1.0, 2.0, 1.5, 1.0]
-    assert [row.bodies for row in examples()] == [1, 1, 1, 1, 1, 1, 2, 2]
+    assert [row.number for row in ROWS.values()] == list(range(1, 9))
+    assert [row.alpha for row in ROWS.values()] == [1.0, 1.0, 1.0, 1.5, 1.0, 2.0, 1.5, 1.0]
+    assert [row.bodies for row in ROWS.values()] == [1, 1, 1, 1, 1, 1, 2, 2]
 
 
-@pytest.mark.parametrize("row", examples(), ids=lambda row: row.name)
+@pytest.mark.parametrize("row", ROWS.values(), ids=lambda row: row.name)
 def test_depths_are_compared_with_the_length_that_is_named(row: TableRow) -> None:
     """Two bodies: the radius of the gap between them, 1/R = 1/R1 + 1/R2."""
     own = row.to_dict()
@@ -37,7 +37,7 @@ def test_depths_are_compared_with_the_length_that_is_named(row: TableRow) -> Non
         assert row.length == own[row.length_name]
 
 
-@pytest.mark.parametrize("row", examples(), ids=lambda row: row.name)
+@pytest.mark.parametrize("row", ROWS.values(), ids=lambda row: row.name)
 def test_a_correction_is_explained_and_nothing_else_is(row: TableRow) -> None:
     assert bool(row.correction) == (row.printed != row.corrected)
     assert row.validity
@@ -46,9 +46,9 @@ def test_a_correction_is_explained_and_nothing_else_is(row: TableRow) -> None:
 @pytest.mark.parametrize(
     ("row", "curve"),
     [
-        (sphere.SphereRow(0.02), Hertz(0.02)),
-        (cone.ConeRow(30.0), ConeCurve(30.0)),
-        (punch.PunchRow(0.03), PunchCurve(0.03)),
+        (SphereRow(0.02), Hertz(0.02)),
+        (ConeRow(30.0), ConeCurve(30.0)),
+        (PunchRow(0.03), PunchCurve(0.03)),
     ],
     ids=["sphere", "cone", "punch"],
 )
@@ -58,7 +58,7 @@ def test_corrected_rows_are_the_exact_load_curves(row: TableRow, curve: Hertz | 
     assert row.force(depth, STEEL) == pytest.approx(modulus * np.asarray(curve.force(depth)), rel=1e-13)
 
 
-@pytest.mark.parametrize("row", examples(), ids=lambda row: row.name)
+@pytest.mark.parametrize("row", ROWS.values(), ids=lambda row: row.name)
 def test_the_scene_has_the_corrected_modulus_and_the_exponent(row: TableRow) -> None:
     """Two routes to E*: the row's formula, and the materials of the scene that is pressed."""
     for scene in (row.scene(*bodies(row)), row.whole_scene(*bodies(row))):
@@ -68,7 +68,7 @@ def test_the_scene_has_the_corrected_modulus_and_the_exponent(row: TableRow) -> 
 
 def test_the_cone_lacks_one_minus_nu_squared() -> None:
     """5.3 % for steel, 25 % when incompressible."""
-    row = cone.EXAMPLE
+    row = ROWS["cone"]
     for nu, short in ((0.23, 0.0529), (0.5, 0.25)):
         body = Elastic(1.0, nu)
         assert 1.0 - row.printed_modulus(body) / row.modulus(body) == pytest.approx(short, abs=1e-12)
@@ -81,20 +81,20 @@ def test_two_bodies_of_steel_have_the_modulus_of_23() -> None:
 
 def test_a_sphere_on_one_far_larger_and_stiffer_is_a_rigid_sphere_on_a_plane() -> None:
     rigid = Elastic(1e20, 0.3)
-    pair = two_spheres.TwoSpheres(1e-3, 1e4)
-    assert pair.force(1e-5, rigid, SOFT) == pytest.approx(sphere.SphereRow(1e-3).force(1e-5, SOFT), rel=1e-6)
+    pair = TwoSpheres(1e-3, 1e4)
+    assert pair.force(1e-5, rigid, SOFT) == pytest.approx(SphereRow(1e-3).force(1e-5, SOFT), rel=1e-6)
 
 
 def test_a_confined_plate_is_a_prism_without_poisson() -> None:
     """At nu = 0 all moduli of the table are Young's."""
-    for row in examples():
+    for row in ROWS.values():
         loose = tuple(Elastic(1e9, 0.0) for _ in range(row.bodies))
         assert row.modulus(*loose) == pytest.approx(row.printed_modulus(*loose), rel=1e-14)
         assert row.modulus(*loose) == pytest.approx(1e9 / row.bodies, rel=1e-14)
 
 
 def test_line_contact_has_no_d_of_its_own() -> None:
-    lines = [row for row in examples() if not row.single]
+    lines = [row for row in ROWS.values() if not row.single]
     assert [row.number for row in lines] == [5, 8]
     for row in lines:
         assert row.factor == pytest.approx(0.25 * pi * 0.01, rel=1e-14)
@@ -103,11 +103,11 @@ def test_line_contact_has_no_d_of_its_own() -> None:
 
 def test_impossible_geometry_names_its_key() -> None:
     with pytest.raises(BadInput, match="angle"):
-        cone.ConeRow(90.0)
+        ConeRow(90.0)
     with pytest.raises(BadInput, match="height"):
-        replace(prism.EXAMPLE, height=0.0)
+        replace(ROWS["prism"], height=0.0)
 
 
 def test_the_number_of_bodies_is_checked() -> None:
     with pytest.raises(BadInput, match="accepted 2, got 1"):
-        two_spheres.EXAMPLE.force(1e-5, STEEL)
+        ROWS["two_spheres"].force(1e-5, STEEL)

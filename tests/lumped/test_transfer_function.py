@@ -73,7 +73,7 @@ def test_two_routes_are_one_whatever_the_step(impact: Build) -> None:
 
 def test_ramp_on_the_three_parameter_solid() -> None:
     """int_0^t E: E0 t + E0 R1 tau (1 - exp(-t/tau)), whatever the step."""
-    solid = sls.of(E0=2.0, R1=3.0, R2=0.4)
+    solid = sls.of_ratios(E0=2.0, R1=3.0, R2=0.4)
     exact = 2.0 * TIMES - 6.0 * 0.1 * np.expm1(-TIMES / 0.1)
     network = TransferFunction(*operators.polynomials(solid)).force(STEP, TIMES)
     np.testing.assert_allclose(network, exact, rtol=1e-11, atol=1e-13)
@@ -129,7 +129,7 @@ def test_hereditary_sum_agrees_with_quadrature() -> None:
 
 def test_polynomials_are_those_of_the_network() -> None:
     first, second, dashpot = 1.8e6, 0.9e6, 1.8e4
-    p, q = operators.polynomials(sls.of(E1=first, E2=second, C1=dashpot))
+    p, q = operators.polynomials(sls.of_springs(E1=first, E2=second, C1=dashpot))
     scale = first + second
     assert p == pytest.approx((1.0, dashpot / scale), rel=1e-14)  # "(12)", divided by E1 + E2
     assert q == pytest.approx((first * second / scale, second * dashpot / scale), rel=1e-14)

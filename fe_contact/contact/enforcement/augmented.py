@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from fe_contact.contact.enforcement.base import Enforcement
 from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching, solve
 
 SOLVES = 60  # at most; a stiff penalty needs some eight
@@ -34,3 +35,6 @@ def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:
         stiffer = penalty * (STIFFER if change > SLOW * last else 1.0)
         penalty, last = min(stiffer, STIFFEST * problem.penalty), change
     return replace(found, iterations=iterations, converged=False)
+
+
+MEMBER = Enforcement(enforce, solves=SOLVES)

@@ -8,10 +8,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from fe_contact.contact.enforcement.base import Enforcement
 from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching, count, moved, solve
-
-SOLVES = 2
-SOFT = True
 
 
 def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:
@@ -28,3 +26,6 @@ def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:
         converged=first.converged and second.converged,
         sets=first.sets + second.sets,
     )
+
+
+MEMBER = Enforcement(enforce, solves=2, soft=True)

@@ -14,9 +14,9 @@ import numpy as np
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.contact import problem as contact
+from fe_contact.contact.enforcement.base import Enforcement
 from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching
 
-SOLVES = 1
 SURFACES_KEPT = 8
 
 
@@ -59,3 +59,6 @@ def independent(trace: Array) -> Array:
 def _solution(signed_pressure: Array, iterations: int, converged: bool) -> ContactSolution:
     """Where open, the signed pressure is the overlap's, negative."""
     return ContactSolution(signed_pressure, iterations, converged, (signed_pressure > 0.0,))
+
+
+MEMBER = Enforcement(enforce)

@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.assembly.forms import Array
+from fe_contact.contact.enforcement.base import Enforcement
 from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching, solve
-
-SOLVES = 1
-SOFT = True
 
 
 def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:
@@ -19,3 +17,6 @@ def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:
 def signed_pressure(overlap: Array, penalty: float) -> Array:
     """The law itself, where the overlap (q,) is known: Pa, negative where open."""
     return np.asarray(penalty * overlap)
+
+
+MEMBER = Enforcement(enforce, soft=True, law=signed_pressure)

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy.typing as npt
-
-from fe_contact.assembly.forms import Array, scatter
-
-Nodes = npt.NDArray[Any]
+from fe_contact.assembly.forms import Array, Indices, Matrix, scatter
+from fe_contact.dynamics.mass.base import Mass
 
 
-def of(local: Array, dofs: Nodes, size: int, contact: Nodes) -> Any:
+def of(local: Array, dofs: Indices, size: int, contact: Indices) -> Matrix:
     """The element matrices as they are."""
     return scatter(local, dofs, size).tocsc()
+
+
+MEMBER = Mass(of)

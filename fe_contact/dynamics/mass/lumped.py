@@ -5,16 +5,14 @@ Hinton, Rock and Zienkiewicz 1976, doi:10.1002/eqe.4290040305: positive for ever
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sparse
 
-from fe_contact.assembly.forms import Array
-from fe_contact.dynamics.mass.consistent import Nodes
+from fe_contact.assembly.forms import Array, Indices, Matrix
+from fe_contact.dynamics.mass.base import Mass
 
 
-def of(local: Array, dofs: Nodes, size: int, contact: Nodes) -> Any:
+def of(local: Array, dofs: Indices, size: int, contact: Indices) -> Matrix:
     """A diagonal that keeps every element's mass."""
     return sparse.diags(np.bincount(dofs.ravel(), shares(local).ravel(), size)).tocsc()
 
@@ -23,3 +21,6 @@ def shares(local: Array) -> Array:
     """Mass of every element's nodes, (e, k), kg."""
     diagonal = np.einsum("ekk->ek", local)
     return np.asarray(diagonal * (local.sum(axis=(1, 2)) / diagonal.sum(axis=1))[:, None])
+
+
+MEMBER = Mass(of)

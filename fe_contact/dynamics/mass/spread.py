@@ -6,19 +6,20 @@ peak; but the whole body is heavier than it should be, by the share of the conta
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import scipy.sparse as sparse
 
-from fe_contact.assembly.forms import Array
-from fe_contact.dynamics.mass.consistent import Nodes
+from fe_contact.assembly.forms import Array, Indices, Matrix
+from fe_contact.dynamics.mass.base import Mass
 from fe_contact.dynamics.mass.lumped import shares
 
 
-def of(local: Array, dofs: Nodes, size: int, contact: Nodes) -> Any:
+def of(local: Array, dofs: Indices, size: int, contact: Indices) -> Matrix:
     """A diagonal that keeps the body's mass, zero at the contact."""
     diagonal = np.bincount(dofs.ravel(), shares(local).ravel(), size)
     total = diagonal.sum()
     diagonal[contact] = 0.0
     return sparse.diags(diagonal * (total / diagonal.sum())).tocsc()
+
+
+MEMBER = Mass(of)

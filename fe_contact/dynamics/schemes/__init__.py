@@ -1,3 +1,1 @@
-"""Time integrators as numbers, one a file: each offers ``of(rho)``, the :class:`~.base.Scheme` whose spectral radius
-for infinitely fast oscillations is ``rho``, as far as the family leaves a choice.
-"""
+"""Time integrators as numbers, one a file, each a :class:`~fe_contact.dynamics.schemes.base.Family`."""

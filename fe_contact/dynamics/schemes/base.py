@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import NamedTuple
+
+from lumped.schema.members import Folder
 
 
 class Scheme(NamedTuple):
@@ -27,3 +31,15 @@ class Scheme(NamedTuple):
     def staged(self) -> bool:
         """Whether a step is taken in as many equal stages as it asks for."""
         return False
+
+
+@dataclass(frozen=True)
+class Family:
+    """``of(rho)``: the scheme whose spectral radius for infinitely fast oscillations is ``rho``, as far as the family
+    leaves a choice.
+    """
+
+    of: Callable[[float], Scheme]
+
+
+WAVE_SCHEMES = Folder[Family]("fe_contact.dynamics.schemes", "numerics", "scheme")

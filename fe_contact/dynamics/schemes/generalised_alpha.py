@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from fe_contact.dynamics.schemes.base import Scheme
+from fe_contact.dynamics.schemes.base import Family, Scheme
 
 
 def of(rho: float) -> Scheme:
     """``rho`` 1: no damping at all; 0: the fastest oscillations are gone after one step."""
     alpha_m, alpha_f = (2 * rho - 1) / (rho + 1), rho / (rho + 1)
     return Scheme(alpha_m, alpha_f, beta=(1 - alpha_m + alpha_f) ** 2 / 4, gamma=0.5 - alpha_m + alpha_f)
+
+
+MEMBER = Family(of)

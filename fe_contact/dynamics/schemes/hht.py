@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fe_contact.dynamics.schemes.base import Scheme
+from fe_contact.dynamics.schemes.base import Family, Scheme
 
 LEAST = 0.5  # spectral radius below which the family's order or stability is lost
 
@@ -12,3 +12,6 @@ def of(rho: float) -> Scheme:
     radius = max(rho, LEAST)
     alpha = (1 - radius) / (1 + radius)
     return Scheme(alpha_m=0.0, alpha_f=alpha, beta=(1 + alpha) ** 2 / 4, gamma=0.5 + alpha)
+
+
+MEMBER = Family(of)

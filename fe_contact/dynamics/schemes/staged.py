@@ -6,7 +6,7 @@ of equal length carry waves without dispersion wherever a stage is the time in w
 
 from __future__ import annotations
 
-from fe_contact.dynamics.schemes.base import Scheme
+from fe_contact.dynamics.schemes.base import Family, Scheme
 
 
 class _Staged(Scheme):
@@ -22,3 +22,6 @@ class _Staged(Scheme):
 def of(rho: float) -> Scheme:
     """One member only."""
     return _Staged(alpha_m=0.0, alpha_f=0.0, beta=0.0, gamma=0.5)
+
+
+MEMBER = Family(of)

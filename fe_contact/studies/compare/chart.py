@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -20,7 +20,7 @@ from fe_contact.studies.compare.law_pressure import LawPressure
 from fe_contact.studies.compare.study import Comparison
 from fe_contact.studies.compare.verdict import verdicts
 from fe_contact.studies.history_chart import caption
-from fe_contact.studies.style import prefixed, readable
+from fe_contact.studies.style import Look, prefixed, readable
 from lumped.result.history import History
 from lumped.result.score import Curve as Measured
 
@@ -29,14 +29,14 @@ TITLE_WIDTH = 134  # characters
 LEAST_SHOWN = 1e-6  # of the peak: the lower end of the logarithmic panel
 MOST_TENSION = 0.6  # of the largest pressure: a viscous law's tension at the edge is singular, and cut there
 # One colour and one dash a candidate: the reference is a broad grey line below all of them.
-STYLES: dict[str, dict[str, Any]] = {
+STYLES: dict[str, Look] = {
     "hertz": {"color": style.ORANGE, "linestyle": (0, (1, 1.2))},
     "correspondence": {"color": style.VERMILION, "linestyle": "-"},
     "ting": {"color": style.BLUE, "linestyle": (0, (5, 2.2))},
     "mdr": {"color": style.GREEN, "linestyle": (2.5, (2.2, 5))},
     "measured": {"color": style.PURPLE, "linestyle": "-", "linewidth": 0.9},
 }
-REFERENCE: dict[str, Any] = {"color": "#b8b8b8", "linewidth": 4.2, "solid_capstyle": "butt"}
+REFERENCE: Look = {"color": "#b8b8b8", "linewidth": 4.2, "solid_capstyle": "butt"}
 
 
 def plot_comparison(comparison: Comparison, where: Path) -> tuple[Path, Path]:
@@ -59,7 +59,7 @@ def plot_comparison(comparison: Comparison, where: Path) -> tuple[Path, Path]:
         return style.save(figure, where, "compare")
 
 
-def _candidates(comparison: Comparison) -> Iterator[tuple[History | Measured, dict[str, Any]]]:
+def _candidates(comparison: Comparison) -> Iterator[tuple[History | Measured, Look]]:
     """Every candidate's curve and its line."""
     for name, law in comparison.laws.items():
         yield law.history, line_of(name)
@@ -67,14 +67,14 @@ def _candidates(comparison: Comparison) -> Iterator[tuple[History | Measured, di
         yield comparison.measured, line_of("measured")
 
 
-def line_of(name: str) -> dict[str, Any]:
+def line_of(name: str) -> Look:
     """Colour and dashes of a candidate, the same in every chart."""
     return STYLES.get(name, {"color": style.BLACK, "linestyle": (0, (3, 1, 1, 1))})
 
 
 def _legend(figure: Figure, comparison: Comparison, height: float) -> None:
     names = [judgement.name for judgement in comparison.judgements]
-    handles: list[Any] = [Line2D([], [], **REFERENCE)]
+    handles: list[Artist] = [Line2D([], [], **REFERENCE)]
     handles += [Patch(color=style.SKY, alpha=0.45, linewidth=0)]
     handles += [Line2D([], [], **line_of(name)) for name in names]
     labels = ["finite elements", "their error bar", *names]

@@ -21,7 +21,7 @@ from fe_contact.assembly.forms import Array
 from lumped.load_curves import LoadCurve
 from lumped.materials import Relaxation
 from lumped.result.result import Result
-from lumped.scene.answered import Answered
+from lumped.scene.scene import Answered
 from lumped.targets import HalfSpace
 
 FOLLOWING, EXACT = ("hertz", "correspondence"), ("ting", "mdr")

@@ -24,9 +24,8 @@ from lumped.load_curves.sampled import SampledCurve
 from lumped.result.result import RULED_RELATIVE, Result
 from lumped.result.score import Curve as Measured
 from lumped.result.score import score
-from lumped.scene.answered import Answered
 from lumped.scene.indenter import Indenter
-from lumped.scene.scene import Scene
+from lumped.scene.scene import Answered, Scene
 
 DEFAULT_LAWS = ("hertz", "correspondence", "ting", "mdr")
 LAW_TOLERANCE = 1e-6  # of a law's own integration: far below any reference's bar

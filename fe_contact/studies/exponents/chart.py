@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from fe_contact.studies import style
 from fe_contact.studies.exponents.check import Check
 from fe_contact.studies.exponents.study import ExponentCurve
+from fe_contact.studies.style import Look
 
 PANEL = 2.35  # height of a panel, in
 TITLE_WIDTH = 132  # characters
@@ -112,7 +113,7 @@ def _limits(axes: Axes, curves: Sequence[ExponentCurve]) -> None:
     axes.set(ylim=(row - 0.06 * span, row + 1.1 * span))
 
 
-def _look(curve: ExponentCurve) -> dict[str, Any]:
+def _look(curve: ExponentCurve) -> Look:
     sliding = curve.base == "sliding"
     return {"color": COLOURS[curve.nu], "linewidth": 1.0, "linestyle": (0, (1.2, 1.0)) if sliding else "-"}
 
@@ -121,5 +122,5 @@ def _layer(curve: ExponentCurve) -> str:
     return "sliding, any ν" if curve.nu is None else f"{curve.base}, ν = {curve.nu:g}"
 
 
-def _of_punch(found: Sequence[Any]) -> list[Any]:
+def _of_punch(found: Sequence[Any]) -> list[object]:
     return [one for one in found if np.isinf(one.profile.n)]

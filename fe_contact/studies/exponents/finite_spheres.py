@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -16,9 +15,10 @@ from fe_contact.studies.exponents.study import KEPT
 from lumped.indentation.finite_size import FiniteSize
 from lumped.materials import Material, Relaxation
 from lumped.scene.indenter import Indenter
-from lumped.shapes import sphere
-from lumped.targets import sphere as spheres
+from lumped.schema import Table
+from lumped.shapes.sphere import Sphere
 from lumped.targets._round import SUPPORTS
+from lumped.targets.sphere import SphereTarget
 
 RATIOS, FEW_RATIOS = (0.0, 0.3, 0.49), (0.3,)
 SHARES = np.geomspace(0.01, 0.1, 7)  # a/R
@@ -34,11 +34,11 @@ class Pair:
     size: FiniteSize
     converged: bool
 
-    def to_dict(self) -> dict[str, Any]:
+    def to_dict(self) -> Table:
         """Its part of exponents.json."""
         return {"support": self.support, "nu": self.nu, "converged": self.converged, **self.size.to_dict()}
 
-    def rows(self) -> list[list[Any]]:
+    def rows(self) -> list[list[object]]:
         """Its lines of finite_spheres.csv."""
         size = self.size
         columns = zip(size.share.tolist(), size.deviation.tolist(), size.error.tolist(), strict=True)
@@ -68,7 +68,7 @@ def pairs(quick: bool, where: Path, progress: Progress = silent) -> tuple[Pair, 
 def pair(support: str, nu: float) -> Pair:
     """Two unit spheres of one material at contact radii `SHARES`; raises NotReached."""
     alike = Material(Relaxation(1.0), nu)
-    scene = Indenter(sphere.of(1.0), alike, target=spheres.of(1.0, support), striker_material=alike)
+    scene = Indenter(Sphere(1.0), alike, target=SphereTarget(1.0, support), striker_material=alike)
     found = indent(scene, tuple(map(float, 2.0 * SHARES**2)), {"tolerance": TOLERANCE})
     assert found.finite_size is not None
     return Pair(support, nu, found.finite_size, found.converged)

@@ -23,7 +23,11 @@ from lumped.load_curves.layer_curve import LayerCurve, LayerPunch
 from lumped.load_curves.line_layer import LineLayer
 from lumped.load_curves.line_profile import ParabolaProfile
 from lumped.load_curves.tabulated import TabulatedCurve
-from lumped.shapes import Shape, cone, cylinder, power, sphere
+from lumped.shapes import Shape
+from lumped.shapes.cone import Cone
+from lumped.shapes.cylinder import Cylinder
+from lumped.shapes.power import PowerProfile
+from lumped.shapes.sphere import Sphere
 
 INCOMPRESSIBLE = 0.5
 FULL, QUICK = (0.0, 0.3, 0.45, 0.49, INCOMPRESSIBLE), (0.3, INCOMPRESSIBLE)
@@ -67,12 +71,12 @@ class Profile:
         radius = 0.5 / self.coefficient
         match self.name:
             case "sphere":
-                return sphere.of(radius)
+                return Sphere(radius)
             case "cylinder":
-                return cylinder.of(radius, 1.0)
+                return Cylinder(radius, 1.0)
             case "cone":
-                return cone.of(math.degrees(math.atan(self.coefficient)))
-        return power.of(self.coefficient, self.n)
+                return Cone(math.degrees(math.atan(self.coefficient)))
+        return PowerProfile(self.coefficient, self.n)
 
     @property
     def factor(self) -> float:

@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 
 from fe_contact.studies import style
 from fe_contact.studies.paper.memory_chart import plot_memory
+from fe_contact.studies.style import Look
 from lumped.paper.examples.concrete_impacts import cut_at_measured_peak, proposed
 from lumped.paper.examples.given import Steel
 from lumped.paper.examples.steel_impacts import R1_of_peak, damped_of_peak, elastic_of_peak, hertz, solid
@@ -23,9 +24,9 @@ MICRO = 1e6
 TITLE_WIDTH = 130  # characters
 POINTS = 401  # of a curve
 HEIGHT_6, HEIGHT_GRID, HEIGHT_10 = 3.7, 5.4, 2.9  # in
-THIN: dict[str, Any] = {"linewidth": 0.6, "alpha": 0.75}
-BROAD: dict[str, Any] = {"linewidth": 3.2, "alpha": 0.6}
-DASHED: dict[str, Any] = {"linestyle": (0, (3, 1.6)), "linewidth": 0.8}
+THIN: Look = {"linewidth": 0.6, "alpha": 0.75}
+BROAD: Look = {"linewidth": 3.2, "alpha": 0.6}
+DASHED: Look = {"linestyle": (0, (3, 1.6)), "linewidth": 0.8}
 LAW_KEY = (
     Line2D([], [], color=style.GREY, label="correspondence, cut at zero force"),
     Line2D([], [], color=style.GREY, label="exact (Ting)", **DASHED),
@@ -54,10 +55,10 @@ def _fig6(study: PaperStudy, where: Path) -> tuple[Path, Path]:
     return style.save(figure, where, "fig6")
 
 
-def _curves_6(steel: Steel) -> list[tuple[str, Result, dict[str, Any]]]:
+def _curves_6(steel: Steel) -> list[tuple[str, Result, Look]]:
     """Name, impact and look of every curve, those of one family named once."""
     R1, peak = R1_of_peak(steel).value, steel.measured_peak
-    curves: list[tuple[str, Result, dict[str, Any]]] = [
+    curves: list[tuple[str, Result, Look]] = [
         (f"proposed, R1 = {steel.R1:g} as printed", solid(steel, steel.R1, steel.R2), {"color": style.VERMILION}),
         ("nonlinear elastic, theoretical", hertz(steel, steel.contact_modulus), {"color": style.PURPLE}),
         ("nonlinear elastic, equal peak", elastic_of_peak(steel, "hertz", peak), {"color": style.SKY, **BROAD}),

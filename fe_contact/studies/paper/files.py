@@ -11,6 +11,7 @@ from lumped.paper.claims import JudgedClaim, counts
 from lumped.paper.examples.value import Value
 from lumped.paper.study import GridRow, PaperStudy
 from lumped.result.result import provenance
+from lumped.schema import Table
 from lumped.schema.csv_file import write_csv
 from lumped.schema.json_file import plain, write_json
 
@@ -31,7 +32,7 @@ GRID_QUANTITIES = {
 }
 
 
-def write_study(study: PaperStudy, where: Path) -> dict[str, Any]:
+def write_study(study: PaperStudy, where: Path) -> Table:
     """Write ``paper.csv``, three more tables and ``paper.json`` into a folder, made when it is not there.
 
     Returns the content of the last.
@@ -50,9 +51,9 @@ def write_study(study: PaperStudy, where: Path) -> dict[str, Any]:
     return content
 
 
-def study_content(study: PaperStudy) -> dict[str, Any]:
+def study_content(study: PaperStudy) -> Table:
     """The content of ``paper.json``: plain numbers, null where undefined."""
-    content: dict[str, Any] = plain(
+    content: Table = plain(
         {
             "schema": SCHEMA,
             "name": study.examples.name,
@@ -70,7 +71,7 @@ def study_content(study: PaperStudy) -> dict[str, Any]:
     return content
 
 
-def _claim(one: JudgedClaim) -> dict[str, Any]:
+def _claim(one: JudgedClaim) -> Table:
     claim = {name: value for name, value in vars(one.claim).items() if name != "rule"}
     judged = {"deviation": one.deviation, "verdict": one.verdict, "rule": one.claim.rule.name}
     return claim | _numbers(one.values) | judged
@@ -80,8 +81,8 @@ def _numbers(values: Sequence[Value]) -> dict[str, list[float]]:
     return {"recomputed": [value.value for value in values], "error": [value.error for value in values]}
 
 
-def _grid_row(row: GridRow) -> dict[str, Any]:
-    found: dict[str, Any] = {"figure": row.figure, "panel": "abcd"[row.panel], "R1": row.R1, "R2_s": row.R2}
+def _grid_row(row: GridRow) -> Table:
+    found: Table = {"figure": row.figure, "panel": "abcd"[row.panel], "R1": row.R1, "R2_s": row.R2}
     for result in (row.clipped, row.exact):
         own = {f"{result.method}_{name}": result.quantities[key].value for key, name in GRID_QUANTITIES.items()}
         found |= own

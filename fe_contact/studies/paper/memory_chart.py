@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fe_contact.studies import style
+from fe_contact.studies.style import Look
 from lumped.paper.examples.dented_surface import DentedSurface
 from lumped.paper.examples.given import Examples
 
@@ -19,7 +19,7 @@ HEIGHT, TITLE_WIDTH = 3.3, 130  # in, characters
 POINTS, PAUSES = 241, 16
 # Times in units of R2: how long the surface is shown, and the shortest and longest pause.
 SHOWN, SHORTEST, LONGEST = 4.0, 1e-2, 1e1
-DASHED: dict[str, Any] = {"linestyle": (0, (3, 1.6)), "linewidth": 0.8}
+DASHED: Look = {"linestyle": (0, (3, 1.6)), "linewidth": 0.8}
 KEY = (
     Line2D([], [], color=style.GREY, label="surface"),
     Line2D([], [], color=style.GREY, label="ball after parting", **DASHED),

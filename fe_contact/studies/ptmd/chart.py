@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fe_contact.studies import style
-from fe_contact.studies.style import prefixed, readable
+from fe_contact.studies.style import Look, prefixed, readable
 from lumped.ptmd.study import BARE, FULL, PLAIN, PtmdStudy
 
 PANEL = 1.35  # height of a panel, in
 TITLE_WIDTH = 130  # characters
-LINES: dict[str, dict[str, Any]] = {
+LINES: dict[str, Look] = {
     BARE: {"color": style.GREY, "linewidth": 0.8},
     PLAIN: {"color": style.ORANGE, "linewidth": 0.9, "linestyle": (0, (4, 1.6))},
     FULL: {"color": style.BLUE, "linewidth": 1.1},

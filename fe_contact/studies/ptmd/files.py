@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from lumped.ptmd.result import COLUMNS
 from lumped.ptmd.study import SMALL, PtmdStudy
 from lumped.result.folder import publish
 from lumped.result.result import provenance
+from lumped.schema import Table
 from lumped.schema.csv_file import write_csv
 from lumped.schema.json_file import plain, write_json
 
@@ -26,7 +26,7 @@ CONTACT_COLUMNS = {
 }
 
 
-def write_study(study: PtmdStudy, where: Path) -> dict[str, Any]:
+def write_study(study: PtmdStudy, where: Path) -> Table:
     """Write ``ptmd.csv``, ``contacts.csv`` and ``ptmd.json`` into a folder; the content of the last."""
     motion = study.main.motion
     table = np.column_stack([getattr(motion, name) for name in COLUMNS])
@@ -45,10 +45,10 @@ def write_failure(case: Case, message: str, where: Path) -> None:
     publish(where, lambda folder: write_json(folder / RECORD, known), RECORD)
 
 
-def study_content(study: PtmdStudy) -> dict[str, Any]:
+def study_content(study: PtmdStudy) -> Table:
     """The content of ``ptmd.json``; SI units, null where undefined."""
     message = study.convergence.message
-    content: dict[str, Any] = plain(
+    content: Table = plain(
         {
             "schema": SCHEMA,
             "name": study.case.name,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,6 +11,7 @@ from matplotlib.figure import Figure
 
 from fe_contact.studies import style
 from fe_contact.studies.restitution.table import RestitutionLine
+from fe_contact.studies.style import Look
 from lumped.restitution import EXACT
 
 COLUMNS, PANEL = 3, 2.45  # panels in a row; height of one, in
@@ -65,7 +65,7 @@ def _panel(axes: Axes, lines: Sequence[RestitutionLine]) -> None:
 
 def _curves(axes: Axes, lines: Sequence[RestitutionLine], name: str, colour: str) -> None:
     for line in lines[:1] if _same(*lines) else lines:
-        look: dict[str, Any] = {"linestyle": LINES[line.exit], "color": colour, "linewidth": 1.0}
+        look: Look = {"linestyle": LINES[line.exit], "color": colour, "linewidth": 1.0}
         values = [np.nan if got is None else got for got in line.obtained]
         axes.plot(line.asked, values, label=name if line is lines[0] else None, **look)
 

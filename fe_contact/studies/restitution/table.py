@@ -1,20 +1,31 @@
-"""Restitution asked for against obtained, for every law, its exact damping and every published one, at both exits."""
+"""Restitution asked for against obtained, for every law, its exact damping and every published one, at both exits.
+
+What ``fe-contact restitution`` writes: a row an impact as CSV, a line a formula as JSON.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 from lumped import laws, restitution
 from lumped.errors import BadInput
+from lumped.laws._force_law import between_masses
 from lumped.scene.scene import Scene
 from lumped.scene.tables import LawChoice, Motion
+from lumped.schema import Table
+from lumped.schema.csv_file import write_csv
+from lumped.schema.json_file import plain, write_json
+from lumped.schema.keys import Choice
 
 ASKED = (0.01, *(round(0.05 * i, 2) for i in range(1, 20)), 0.99, 0.999)
 EXITS = ("force", "depth")
 TOLERANCE = 1e-7
 # The restitution does not depend on mass, stiffness and velocity when it is what the law is given.
 UNIT, LATEST = 1.0, 1e12
+SCHEMA = "fe-contact/restitution/1"
+COLUMNS = ("law", "damping", "exit", "asked", "obtained", "difference")
 
 
 class RestitutionLine(NamedTuple):
@@ -48,9 +59,10 @@ def table(asked: Sequence[float] = ASKED) -> tuple[RestitutionLine, ...]:
 def formulas() -> Iterator[tuple[str, str]]:
     """Every law that takes e, with the names of its formulas, the exact one first."""
     for name in laws.available():
-        keys = laws.get(name).KEYS
+        keys = laws.get(name).keys
         if "e" in keys:
-            options = keys["damping"].options if "damping" in keys else (restitution.EXACT,)
+            choice = keys["damping"].kind if "damping" in keys else None
+            options = choice.options if isinstance(choice, Choice) else (restitution.EXACT,)
             yield from ((name, formula) for formula in options)
 
 
@@ -60,8 +72,27 @@ def obtained(name: str, formula: str, exit: str, e: float) -> float | None:
     law = LawChoice(name, {"k": UNIT, "e": e, "exit": exit, **chosen})
     scene = Scene(None, UNIT, UNIT, law=law, motion=Motion(end_time=LATEST))
     try:
-        model = laws.get(name).of(scene)
+        model = between_masses(name, scene)
     except BadInput:
         return None
-    found: float | None = model.outcome(scene, TOLERANCE).restitution
-    return found
+    return model.outcome(scene, TOLERANCE).restitution
+
+
+def write_restitution(lines: Sequence[RestitutionLine], where: Path) -> Table:
+    """Write ``restitution.csv`` and ``restitution.json`` into a folder; the content of the latter."""
+    where.mkdir(parents=True, exist_ok=True)
+    rows = [
+        [line.law, line.damping, line.exit, e, got, None if got is None else got - e]
+        for line in lines
+        for e, got in zip(line.asked, line.obtained, strict=True)
+    ]
+    write_csv(where / "restitution.csv", COLUMNS, rows)
+    described = [{**line._asdict(), "worst": _worst(line)} for line in lines]
+    content: Table = plain({"schema": SCHEMA, "lines": described})
+    write_json(where / "restitution.json", content)
+    return content
+
+
+def _worst(line: RestitutionLine) -> dict[str, float] | None:
+    worst = line.worst
+    return None if worst is None else {"difference": worst[0], "asked": worst[1]}

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fe_contact.studies import style
 from fe_contact.studies.rings.study import SMALL_STRAIN, RingCurve
+from fe_contact.studies.style import Look
 
 TITLE_WIDTH = 132  # characters
 PANEL = 2.7  # height, in
@@ -31,7 +31,7 @@ def plot_rings(curves: Sequence[RingCurve], where: Path) -> tuple[Path, Path]:
         grid.update(left=0.075, right=0.985, top=1 - above / height, bottom=below / height)
         left, right = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1])
         for colour, curve in zip((*style.CYCLE, style.BLACK), curves, strict=False):
-            look: dict[str, Any] = {"color": colour, "marker": "o", "markersize": 2.4, "linewidth": 1.0}
+            look: Look = {"color": colour, "marker": "o", "markersize": 2.4, "linewidth": 1.0}
             left.errorbar(curve.strain, curve.factor, yerr=curve.factor_error, label=curve.case.name, **look)
             right.errorbar(curve.strain, curve.exponent, yerr=curve.exponent_error, **look)
         left.set(yscale="log", ylabel="F over the row's")

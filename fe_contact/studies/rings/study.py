@@ -24,9 +24,7 @@ from lumped.materials.networks import sls
 from lumped.paper.examples.given import Examples
 from lumped.result.sufficiency import LedgerEntry
 from lumped.scene.indenter import Indenter
-from lumped.shapes import cylinder
 from lumped.shapes.cylinder import Cylinder
-from lumped.targets import ring
 from lumped.targets.o_ring import ORing
 from lumped.targets.ring import Ring
 from lumped.targets.washer import Washer
@@ -77,11 +75,11 @@ class RingCurve:
 def cases() -> tuple[RingCase, ...]:
     """The packaged rings, and the paper's: its rod and gap, one for each thickness that may be meant."""
     paper = Examples.load()
-    material = Material(sls.of(E0=paper.ring.E0, R1=paper.ring.R1, R2=paper.ring.R2), paper.ring.nu)
+    material = Material(sls.of_ratios(E0=paper.ring.E0, R1=paper.ring.R1, R2=paper.ring.R2), paper.ring.nu)
     radius = 0.5 * paper.ring.rod_diameter
-    rod, inner = cylinder.of(radius, paper.ring.width), radius + paper.ptmd.gap
+    rod, inner = Cylinder(radius, paper.ring.width), radius + paper.ptmd.gap
     own = [
-        Indenter(rod, material, ring.of(inner, thickness), name=f"paper-ring-{1e3 * thickness:g}mm")
+        Indenter(rod, material, Ring(inner, thickness), name=f"paper-ring-{1e3 * thickness:g}mm")
         for thickness in paper.ring.thickness
     ]
     return tuple(_case(one) for one in (*map(Indenter.load, PACKAGED), *own))

@@ -3,31 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.bodies.bar import TIP, Bar, falling, pitch
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics.march import Choices, Motion, march
+from fe_contact.dynamics.mass.base import MASSES
 from fe_contact.dynamics.pressed import Enforced
-from fe_contact.settings import ENFORCEMENTS
+from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
+from fe_contact.settings import Given
 from fe_contact.studies.stability.base import Case
 from lumped.materials import Relaxation
-from lumped.schema.members import get
+from lumped.schema import Table
 from lumped.solvers.bar import Bounces, StraightBar, bounces
 
-SCHEMES, MASSES = "fe_contact.dynamics.schemes", "fe_contact.dynamics.mass"
 BAR = Bar(length=10.0, area=1.0, density=1.0, relaxation=Relaxation(900.0))
 SPEED, IMPEDANCE, VELOCITY, GRAVITY = 30.0, 30.0, 10.0, 10.0
 TRANSIT = BAR.length / SPEED
 PERIOD = 16 * TRANSIT  # two contacts of two transits each
 TENTH = 10  # contact whose start is judged, or the last of fewer
 MIDDLE = (0.1, 0.9)  # of a plateau, where its ripple is measured
-DEFAULT: Mapping[str, Any] = {  # what ``fe-contact run bar`` takes
+DEFAULT: Given = {  # what ``fe-contact run bar`` takes
     "scheme": "staged",
     "rho": 1.0,
     "mass": "redistributed",
@@ -42,8 +42,8 @@ def choices(case: Case) -> Choices:
     """Scheme, enforcement and step; ``cfl`` is speed x step / element, ``penalty`` in units of modulus / element."""
     size = pitch(BAR.length, case["elements"], case["tip"])
     return Choices(
-        scheme=get(SCHEMES, case["scheme"]).of(case["rho"]),
-        enforced=Enforced(get(ENFORCEMENTS, case["enforcement"]), case["penalty"] * 900.0 / size),
+        scheme=WAVE_SCHEMES.get(case["scheme"]).of(case["rho"]),
+        enforced=Enforced(ENFORCEMENTS.get(case["enforcement"]), case["penalty"] * 900.0 / size),
         step=case["cfl"] * size / SPEED,
     )
 
@@ -51,7 +51,7 @@ def choices(case: Case) -> Choices:
 def bounced(case: Case, gap: float = 0.0, gravity: float = GRAVITY) -> Motion:
     """The bar's motion over some periods; raises the named failures of a march."""
     elements = case["elements"]
-    body = falling(BAR, elements, get(MASSES, case["mass"]), gravity, gap, case["tip"])
+    body = falling(BAR, elements, MASSES.get(case["mass"]), gravity, gap, case["tip"])
     watch = np.full((1, elements + 1), 1.0 / (elements + 1))
     return march(body, np.full(elements + 1, -VELOCITY), choices(case), case["periods"] * PERIOD, watch)
 
@@ -62,7 +62,7 @@ def exact(periods: float) -> Bounces:
     return bounces(StraightBar(BAR.length, SPEED, IMPEDANCE), VELOCITY, GRAVITY, 0.0, periods * PERIOD)
 
 
-def measured(case: Case) -> dict[str, Any]:
+def measured(case: Case) -> Table:
     """What went wrong by how much; see :data:`fe_contact.studies.stability.bouncing.CHART`."""
     motion, wanted = bounced(case), exact(case["periods"])
     time, force, step = motion.time, motion.force, choices(case).step

@@ -14,9 +14,9 @@ from matplotlib.axes import Axes
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 
+from fe_contact.settings import Given
 from fe_contact.studies import style
 from fe_contact.studies.stability.base import STUDIES, Chart, Measure, Row
-from lumped.schema.members import get
 
 CELL, LETTER = 0.16, 0.062  # height of a row, width of a letter of its name, in
 TALLEST = 9.0  # panels that are taller together stand beside each other, in
@@ -36,9 +36,9 @@ def plot_stability(rows: Sequence[Row], where: Path) -> list[Path]:
     found = list[Path]()
     for study in dict.fromkeys(row["study"] for row in rows):
         own = [row for row in rows if row["study"] == study]
-        module = get(STUDIES, study)
+        member = STUDIES.get(study)
         with style.look():
-            figure = _map(own, module.TITLE, module.CHART)
+            figure = _map(own, member.title, member.chart)
             found += style.save(figure, where, study)
     return found
 
@@ -141,7 +141,7 @@ def _labels(rows: Sequence[Row], keys: Sequence[str]) -> list[str]:
     return list(dict.fromkeys(_label(row, keys) for row in ordered))
 
 
-def _label(row: Mapping[str, Any], keys: Sequence[str]) -> str:
+def _label(row: Given, keys: Sequence[str]) -> str:
     return ", ".join(_words(key, row[key]) for key in keys).replace("_", " ").replace("cfl", "CFL")
 
 

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from itertools import product
-from typing import Any
 
 from fe_contact.bodies.bar import TIP
-from fe_contact.contact.enforcement import is_soft
-from fe_contact.settings import ENFORCEMENTS
-from fe_contact.studies.stability._bar import DEFAULT, MASSES, SCHEMES, measured
-from fe_contact.studies.stability.base import Case, Chart, Measure
-from lumped.schema.members import available
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
+from fe_contact.dynamics.mass.base import MASSES
+from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
+from fe_contact.studies.stability._bar import DEFAULT, measured
+from fe_contact.studies.stability.base import Case, Chart, Measure, MethodStudy
+from lumped.schema import Table
 
-TITLE = "Bouncing bar, two periods: every scheme, mass and enforcement"
 RHO = 0.8
-SOFT = [name for name in available(ENFORCEMENTS) if is_soft(name)]
+SOFT = [name for name in ENFORCEMENTS.names if ENFORCEMENTS.get(name).soft]
 CHART = Chart(
     rows=("scheme", "mass", "tip"),
     columns=("cfl", "enforcement", "penalty"),
@@ -33,9 +32,9 @@ CHART = Chart(
 def cases(quick: bool) -> list[Case]:
     """Quick: fewer elements, one penalty, two steps."""
     steps, penalties, elements = ((1.0, 2.0), (1.0,), 20) if quick else ((0.5, 1.0, 2.0), (0.1, 1.0, 10.0), 60)
-    ways = [(name, penalty) for name in available(ENFORCEMENTS) for penalty in (penalties if name in SOFT else (1.0,))]
-    bodies = [*((name, 1.0) for name in available(MASSES)), (DEFAULT["mass"], TIP)]
-    every = product(available(SCHEMES), bodies, ways, steps)
+    ways = [(name, penalty) for name in ENFORCEMENTS.names for penalty in (penalties if name in SOFT else (1.0,))]
+    bodies = [*((name, 1.0) for name in MASSES.names), (DEFAULT["mass"], TIP)]
+    every = product(WAVE_SCHEMES.names, bodies, ways, steps)
     return [
         {"scheme": scheme, "rho": RHO, "mass": mass, "tip": tip, "enforcement": enforcement, "penalty": penalty}
         | {"cfl": cfl, "elements": elements, "periods": 2}
@@ -43,6 +42,9 @@ def cases(quick: bool) -> list[Case]:
     ]
 
 
-def measure(case: Case) -> dict[str, Any]:
+def measure(case: Case) -> Table:
     """Errors against the exact motion; raises MotionUnbounded or ContactNotSettled."""
     return measured(case)
+
+
+MEMBER = MethodStudy("Bouncing bar, two periods: every scheme, mass and enforcement", cases, measure, CHART)

@@ -8,23 +8,22 @@ from __future__ import annotations
 
 from functools import lru_cache
 from itertools import product
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.bodies.pressing import FixedStill
-from fe_contact.contact.enforcement import is_soft
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem, ContactSolution
 from fe_contact.indentation import settings
-from fe_contact.settings import ENFORCEMENTS, TARGETS
-from fe_contact.studies.stability.base import Case, Chart, Measure
+from fe_contact.studies.stability.base import Case, Chart, Measure, MethodStudy
+from fe_contact.targets.base import TARGETS
 from lumped.load_curves.base import LoadCurve
 from lumped.scene.indenter import Indenter
-from lumped.schema.members import available, get
+from lumped.schema import Table
 
-TITLE = "Penalty, in units of modulus over contact radius, over conditioning"
 CHART = Chart(
     rows=("enforcement",),
     columns=("penalty",),
@@ -52,15 +51,15 @@ def cases(quick: bool) -> list[Case]:
     """Penalties over a dozen decades; enforcements that find their own are asked at a few."""
     few = (1e3,) if quick else (1e1, 1e3, 1e5)
     many = (1.0, 1e3, 1e9) if quick else (1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e11)
-    every = [product((name,), many if is_soft(name) else few) for name in available(ENFORCEMENTS)]
+    every = [product((name,), many if ENFORCEMENTS.get(name).soft else few) for name in ENFORCEMENTS.names]
     return [{"enforcement": name, "penalty": penalty} for pairs in every for name, penalty in pairs]
 
 
-def measure(case: Case) -> dict[str, Any]:
+def measure(case: Case) -> Table:
     """Worst of some depths; contacts that do not settle are counted, and tell no force."""
     indenter, curve, body = layer()
     operator, surface = body.surface.operator, body.surface.pressed
-    enforcement, biases, ripples, conditions, iterations = get(ENFORCEMENTS, case["enforcement"]), [], [], [], 0
+    enforcement, biases, ripples, conditions, iterations = ENFORCEMENTS.get(case["enforcement"]), [], [], [], 0
     for depth, radius in zip(DEPTHS, curve.contact_radius(DEPTHS), strict=True):
         overlap = indenter.target.overlap(indenter.profile, body.stretch * operator.points, depth)
         problem = ContactProblem(surface, overlap, case["penalty"] * body.reference / radius)
@@ -90,6 +89,9 @@ def layer() -> PressedSample:
     indenter = Indenter.load(LAYER, {"target.material.nu": NU}).elastic(instant=False)
     curve = indenter.target.load_curve(indenter.profile, NU)
     numerics = settings({}, indenter.shape)
-    body = get(TARGETS, indenter.target.name).still(indenter, curve.contact_radius(DEPTHS), numerics)
+    body = TARGETS.get(indenter.target.name).still(indenter, curve.contact_radius(DEPTHS), numerics)
     assert isinstance(body, FixedStill)
     return PressedSample(indenter, curve, body)
+
+
+MEMBER = MethodStudy("Penalty, in units of modulus over contact radius, over conditioning", cases, measure, CHART)

@@ -7,17 +7,16 @@ with an overlap already there may add energy. The share of it that holds is meas
 from __future__ import annotations
 
 from itertools import product
-from typing import Any
 
 import numpy as np
 from scipy.linalg import eigh
 
 from fe_contact.bodies.bar import falling
-from fe_contact.studies.stability._bar import BAR, ENERGY, GRAVITY, MASSES, SPEED, bounced
-from fe_contact.studies.stability.base import Case, Chart, Measure
-from lumped.schema.members import get
+from fe_contact.dynamics.mass.base import MASSES
+from fe_contact.studies.stability._bar import BAR, ENERGY, GRAVITY, SPEED, bounced
+from fe_contact.studies.stability.base import Case, Chart, Measure, MethodStudy
+from lumped.schema import Table
 
-TITLE = "Central difference with a penalty: share of 2/omega_max that holds"
 GAPS = (0.0, 0.0137, 0.0291, 0.0613)  # m: touches at several moments of a step
 CHART = Chart(
     rows=("mass", "penalty"), columns=("share",), measures={"gain": Measure("energy gain, worst of four gaps", 0.01)}
@@ -32,7 +31,7 @@ def cases(quick: bool) -> list[Case]:
     return [{"mass": m, "penalty": p, "share": s, "elements": 20 if quick else 40, "periods": 1} for m, p, s in every]
 
 
-def measure(case: Case) -> dict[str, Any]:
+def measure(case: Case) -> Table:
     """Largest energy gain over the energy at the start, the worst of some gaps; raises MotionUnbounded."""
     size = BAR.length / case["elements"]
     step = case["share"] * linear_limit(case["mass"], case["penalty"], case["elements"])
@@ -50,7 +49,7 @@ def measure(case: Case) -> dict[str, Any]:
 
 def linear_limit(mass: str, penalty: float, elements: int) -> float:
     """2/omega_max of the bar with its contact closed, s; a surface without mass condensed."""
-    body = falling(BAR, elements, get(MASSES, mass), GRAVITY)
+    body = falling(BAR, elements, MASSES.get(mass), GRAVITY)
     stiffness = 900.0 * body.parts[0].stiffness.toarray()
     stiffness[0, 0] += penalty * 900.0 / (BAR.length / elements)
     heavy, light = body.massive, body.massless
@@ -60,3 +59,6 @@ def linear_limit(mass: str, penalty: float, elements: int) -> float:
         inside = inside - across @ np.linalg.solve(stiffness[np.ix_(light, light)], across.T)
     fastest = eigh(inside, body.inertia.toarray()[np.ix_(heavy, heavy)], eigvals_only=True)[-1]
     return float(2.0 / np.sqrt(fastest))
+
+
+MEMBER = MethodStudy("Central difference with a penalty: share of 2/omega_max that holds", cases, measure, CHART)

@@ -9,20 +9,19 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import lru_cache
 from itertools import product
-from typing import Any
 
 import numpy as np
 
 from fe_contact.assembly.absorbing import wave_speeds
 from fe_contact.dynamics.march import Motion
-from fe_contact.studies.stability.base import Case, Chart, Measure
+from fe_contact.settings import WaveNumerics
+from fe_contact.studies.stability.base import Case, Chart, Measure, MethodStudy
 from fe_contact.waves.half_space_body import moving
 from fe_contact.waves.impact import motion
-from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.plan import TRAVEL, plan
 from lumped import Scene
+from lumped.schema import Table
 
-TITLE = "Far radius over the travel of a pressure wave in a contact: what the half-space takes away"
 CHART = Chart(
     rows=("dashpots",),
     columns=("share",),
@@ -39,7 +38,7 @@ def cases(quick: bool) -> list[Case]:
     return [{"dashpots": dashpots, "share": share} for dashpots, share in product((True, False), shares)]
 
 
-def measure(case: Case) -> dict[str, Any]:
+def measure(case: Case) -> Table:
     """Relative errors against a far end that no wave comes back from, on the same fine mesh."""
     found, far = struck(case["share"], case["dashpots"]), struck(FAR, True)
     return {
@@ -76,3 +75,8 @@ def settled() -> tuple[Scene, WaveNumerics]:
     fastest = wave_speeds(NU)[0] * np.sqrt(scene.contact_modulus.glassy / (scene.geometry.material.density or 1.0))
     travel = TRAVEL * float(fastest) * numerics.contact_time / numerics.contact_radius
     return scene, replace(numerics, far_radius=travel)
+
+
+MEMBER = MethodStudy(
+    "Far radius over the travel of a pressure wave in a contact: what the half-space takes away", cases, measure, CHART
+)

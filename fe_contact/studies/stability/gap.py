@@ -7,7 +7,6 @@ A surface without mass finds the touch within the step.
 from __future__ import annotations
 
 from itertools import product
-from typing import Any
 
 import numpy as np
 
@@ -23,10 +22,10 @@ from fe_contact.studies.stability._bar import (
     bounced,
     choices,
 )
-from fe_contact.studies.stability.base import Case, Chart, Measure
+from fe_contact.studies.stability.base import Case, Chart, Measure, MethodStudy
+from lumped.schema import Table
 from lumped.solvers.bar import StraightBar, bounces
 
-TITLE = "Gap before the first touch, m: what a moment within a step changes in one contact"
 CHART = Chart(
     rows=("scheme", "mass", "tip", "enforcement"),
     columns=("gap",),
@@ -56,7 +55,7 @@ def cases(quick: bool) -> list[Case]:
     return [{**way, **fixed, "gap": gap} for way, gap in product(WAYS, gaps)]
 
 
-def measure(case: Case) -> dict[str, Any]:
+def measure(case: Case) -> Table:
     """Errors of the first contact against the exact waves; raises MotionUnbounded or ContactNotSettled."""
     gap, step = case["gap"], choices(case).step
     exact = bounces(StraightBar(BAR.length, SPEED, IMPEDANCE), VELOCITY, GRAVITY, gap, 3.0 * TRANSIT)
@@ -75,3 +74,8 @@ def measure(case: Case) -> dict[str, Any]:
         "steps": len(motion.samples) - 1,
         "iterations": sum(sample.iterations for sample in motion.samples),
     }
+
+
+MEMBER = MethodStudy(
+    "Gap before the first touch, m: what a moment within a step changes in one contact", cases, measure, CHART
+)

@@ -7,16 +7,15 @@ layer's stays finite.
 from __future__ import annotations
 
 from itertools import product
-from typing import Any
 
 import numpy as np
 
 from fe_contact.budget.plan import DEFAULTS
 from fe_contact.indentation import press, settings
-from fe_contact.studies.stability.base import Case, Chart, Measure
+from fe_contact.studies.stability.base import Case, Chart, Measure, MethodStudy
 from lumped.scene.indenter import Indenter
+from lumped.schema import Table
 
-TITLE = "Locking: force on a thin bonded layer by the order of the elements, over Poisson's ratio"
 CHART = Chart(
     rows=("order", "elements"), columns=("nu",), measures={"error": Measure("error of the force, worst of four", 1e-3)}
 )
@@ -32,7 +31,7 @@ def cases(quick: bool) -> list[Case]:
     return [{"order": order, "elements": elements, "nu": nu} for (order, elements), nu in product(ways, ratios)]
 
 
-def measure(case: Case) -> dict[str, Any]:
+def measure(case: Case) -> Table:
     """Largest error of the force; raises IndentationNotSettled."""
     indenter = Indenter.load(LAYER, {"target.material.nu": case["nu"]}).elastic(instant=False)
     curve = indenter.target.load_curve(indenter.profile, case["nu"])
@@ -40,3 +39,8 @@ def measure(case: Case) -> dict[str, Any]:
     found = press(indenter, DEPTHS, curve.contact_radius(DEPTHS), numerics)
     error = found.force / curve.force(DEPTHS) - 1.0
     return {"error": float(error[np.abs(error).argmax()]), **found.work}
+
+
+MEMBER = MethodStudy(
+    "Locking: force on a thin bonded layer by the order of the elements, over Poisson's ratio", cases, measure, CHART
+)

@@ -6,19 +6,17 @@ Branches are integrated exactly, so that no ratio is stiff; what is left is the 
 from __future__ import annotations
 
 from itertools import product
-from typing import Any
 
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import plan
 from fe_contact.march.impact import march
-from fe_contact.reference import strike_of
-from fe_contact.settings import SCHEMES
-from fe_contact.steppers.chosen import struck
-from fe_contact.studies.stability.base import Case, Chart, Measure
+from fe_contact.schemes.base import SCHEMES
+from fe_contact.steppers.march import Strike
+from fe_contact.studies.stability.base import Case, Chart, Measure, MethodStudy
+from fe_contact.targets.base import struck
 from lumped import Scene, laws, simulate
-from lumped.schema.members import available
+from lumped.schema import Table
 
-TITLE = "Relaxation time over time step: one march of a sphere on a standard linear solid"
 CHART = Chart(
     rows=("scheme", "steps"),
     columns=("ratio",),
@@ -37,15 +35,15 @@ def cases(quick: bool) -> list[Case]:
     """Steps along the contact, and relaxation times from a hundredth of a step to a thousand."""
     steps = (40,) if quick else (20, 40, 80, 160)
     ratios = (0.01, 1.0, 100.0) if quick else (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 1000.0)
-    every = product(available(SCHEMES), steps, ratios)
+    every = product(SCHEMES.names, steps, ratios)
     return [{"scheme": scheme, "steps": count, "ratio": ratio} for scheme, count, ratio in every]
 
 
-def measure(case: Case) -> dict[str, Any]:
+def measure(case: Case) -> Table:
     """Relative errors; raises the named failures of a march."""
     scene = relaxing(case["ratio"] / case["steps"])
     numerics = plan(scene, {"steps": case["steps"], "scheme": case["scheme"]}).numerics
-    strike = strike_of(scene)
+    strike = Strike.of(scene)
     found = march(strike, struck(scene.geometry, numerics), numerics)
     exact = simulate(laws.mdr.of(scene), scene, PRECISE).quantities
     value = Curve.of(found, strike).quantities
@@ -59,3 +57,8 @@ def relaxing(share: float) -> Scene:
     table = {"law": "prony", "E_inf": RELAXED, "E": [FADING], "tau": [1.0], "nu": 0.3}
     contact_time = Scene.load(SCENE, {"target.material": table}).elastic_contact_time
     return Scene.load(SCENE, {"target.material": {**table, "tau": [share * contact_time]}})
+
+
+MEMBER = MethodStudy(
+    "Relaxation time over time step: one march of a sphere on a standard linear solid", cases, measure, CHART
+)

@@ -5,14 +5,12 @@ Exact and penalty enforcement on the usual mass; damped schemes; a surface witho
 
 from __future__ import annotations
 
-from typing import Any
-
 from fe_contact.bodies.bar import TIP
 from fe_contact.studies.stability._bar import measured
-from fe_contact.studies.stability.base import Case, Chart
+from fe_contact.studies.stability.base import Case, Chart, MethodStudy
 from fe_contact.studies.stability.bouncing import CHART as MAP
+from lumped.schema import Table
 
-TITLE = "Bouncing bar, ten periods: the schemes of the paper cited"
 CHART = Chart(rows=("scheme", "mass", "tip", "enforcement"), columns=("cfl",), measures=MAP.measures)
 JUDGED = ("drift", "ripple", "duration_steps", "start")
 ROWS = (
@@ -46,8 +44,11 @@ def cases(quick: bool) -> list[Case]:
     return [{**dict(zip(KEYS, row, strict=True)), **fixed, "cfl": cfl} for row in rows for cfl in steps]
 
 
-def measure(case: Case) -> dict[str, Any]:
+def measure(case: Case) -> Table:
     """Errors against the exact motion, and whether all limits are kept."""
     found = measured(case)
     kept = all(abs(found[name]) <= CHART.measures[name].limit for name in JUDGED)
     return found | {"all_kept": kept}
+
+
+MEMBER = MethodStudy("Bouncing bar, ten periods: the schemes of the paper cited", cases, measure, CHART)

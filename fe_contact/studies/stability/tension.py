@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import math
 from itertools import product
-from typing import Any
 
 import fe_contact
-from fe_contact.studies.stability.base import Case, Chart, Measure
+from fe_contact.studies.stability.base import Case, Chart, Measure, MethodStudy
 from lumped import Scene, laws, simulate
 from lumped.restitution import kelvin
+from lumped.schema import Table
 
-TITLE = "Exit with tension: Kelvin's solid by damping, contact ended by force or by depth"
 CHART = Chart(
     rows=("way",),
     columns=("xi",),
@@ -36,7 +35,7 @@ def cases(quick: bool) -> list[Case]:
     return [{"way": way, "xi": xi} for way, xi in product(WAYS, dampings)]
 
 
-def measure(case: Case) -> dict[str, Any]:
+def measure(case: Case) -> Table:
     """Tension, and the restitution's distance from exp(-2 xi arccos(xi)/sqrt(1 - xi^2))."""
     xi = case["xi"]
     if case["way"] == WAYS[0]:
@@ -60,3 +59,8 @@ def oscillator(xi: float, way: str) -> Scene:
     """The same by Kelvin's law."""
     law = {"name": "kelvin", "k": STIFFNESS, "xi": xi, "exit": way}
     return Scene.from_dict({"name": "kelvin", "striker": {"mass": MASS, "velocity": VELOCITY}, "law": law})
+
+
+MEMBER = MethodStudy(
+    "Exit with tension: Kelvin's solid by damping, contact ended by force or by depth", cases, measure, CHART
+)

@@ -10,11 +10,10 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.indentation import indent
-from lumped.paper.table1 import Elastic, TableRow
-from lumped.paper.table1.base import pressed
+from lumped.paper.table1 import Elastic, TableRow, pressed
 from lumped.result.result import Quantity
-from lumped.shapes import plate
-from lumped.targets import plane
+from lumped.shapes.plate import Plate
+from lumped.targets.plane import Plane
 
 WIDTHS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)  # radius of a disc over its thickness
 DEPTH = 1e-3  # over the thickness: every answer is linear
@@ -37,7 +36,7 @@ def blocks(body: Elastic) -> tuple[Block, ...]:
 
 def _pressed(body: Elastic, width: float) -> Block:
     area = float(np.pi * width**2)
-    scene = pressed("bonded", plate.of(area, 1.0, "free", "bonded"), plane.of(), body)
+    scene = pressed("bonded", Plate(area, 1.0, "free", "bonded"), Plane(), body)
     found = indent(scene, (DEPTH,), {"tolerance": TOLERANCE})
     scale = 1.0 / (area * DEPTH)
     return Block(body, width, Quantity(scale * float(found.force[0]), scale * float(found.force_error[0]), "Pa"))

@@ -13,13 +13,14 @@ from lumped.load_curves.layer import PointLayer
 from lumped.load_curves.line_curve import LineCurve
 from lumped.load_curves.line_layer import LineLayer
 from lumped.load_curves.line_profile import CylinderProfile as Profile
-from lumped.paper.table1 import Elastic, TableRow
-from lumped.paper.table1.base import pressed
+from lumped.paper.table1 import Elastic, TableRow, pressed
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
-from lumped.shapes import cylinder
-from lumped.targets import Target, half_space, layer
-from lumped.targets import cylinder as cylinders
+from lumped.shapes.cylinder import Cylinder
+from lumped.targets import Target
+from lumped.targets.cylinder import CylinderTarget
+from lumped.targets.half_space import HalfSpace
+from lumped.targets.layer import Layer
 
 DEPTH = 0.01  # over the radius R of the gap
 CHORD = (1 / 1.1, 1.0, 1.1)  # depths around it, between which the exponent is taken
@@ -91,15 +92,15 @@ def _once(line: LineCurve) -> float | None:
 def _body(row: TableRow, bodies: tuple[Elastic, ...], support: str, share: float) -> Place:
     """A rigid cylinder on a body of finite elements."""
     length = share * row.length
-    target: Target = half_space.of(length) if support == "datum" else layer.of(length, "bonded")
-    return _found(pressed(row.name, cylinder.of(row.length, 1.0), target, *bodies), row, support, share)
+    target: Target = HalfSpace(length) if support == "datum" else Layer(length, "bonded")
+    return _found(pressed(row.name, Cylinder(row.length, 1.0), target, *bodies), row, support, share)
 
 
 def _cylinders(row: TableRow, bodies: tuple[Elastic, ...], support: str, share: float) -> Place:
     """Two cylinders; 1/R = 1/R_a + 1/R_b gives the striker's radius."""
     struck = share * row.length
-    striker = cylinder.of(1.0 / (1.0 / row.length - 1.0 / struck), 1.0)
-    return _found(pressed(row.name, striker, cylinders.of(struck, support), *bodies), row, support, share)
+    striker = Cylinder(1.0 / (1.0 / row.length - 1.0 / struck), 1.0)
+    return _found(pressed(row.name, striker, CylinderTarget(struck, support), *bodies), row, support, share)
 
 
 def _found(scene: Indenter, row: TableRow, support: str, share: float) -> Place:

@@ -23,7 +23,7 @@ from fe_contact.studies.table1.impact import FromImpact, line_impacts, power_law
 from fe_contact.studies.table1.reach import Reach, reach
 from lumped.errors import NotReached
 from lumped.indentation.indentation import Indentation, power_law
-from lumped.paper.table1 import Elastic, TableRow, examples
+from lumped.paper.table1 import ROWS, Elastic, TableRow
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
 
@@ -70,12 +70,12 @@ def table1(where: Path, progress: Progress = silent, jobs: int = WORKERS) -> tup
     The longest work first: line contact at all its places, then two bodies before one, then the bonded blocks, which
     two rows share. Raises NotReached.
     """
-    order = sorted(examples(), key=lambda row: (row.single, -row.bodies))
+    order = sorted(ROWS.values(), key=lambda row: (row.single, -row.bodies))
     calls: dict[str, partial[Any]] = {_named(row): partial(trial, row) for row in order}
     stuck = {f"bonded blocks, nu = {nu:g}": partial(blocks, Elastic(YOUNG, nu)) for nu in RATIOS if nu}
     found = journal.rows(where / KEPT, calls | stuck, progress, jobs)
     bonded = tuple(block for name in stuck for block in found[name])
-    tried = (found[_named(row)] for row in examples())
+    tried = (found[_named(row)] for row in ROWS.values())
     return tuple(replace(one, bonded=bonded) if one.row.block and not one.failure else one for one in tried)
 
 

@@ -17,6 +17,7 @@ from matplotlib.lines import Line2D
 
 from fe_contact.studies import style
 from fe_contact.studies.history_chart import caption
+from fe_contact.studies.style import Look
 from fe_contact.studies.tradeoff.front import Measure, finite_elements, front, known_to, verdict
 from fe_contact.studies.tradeoff.point import Point
 from lumped.scene.scene import Scene
@@ -27,8 +28,8 @@ LEAST, MOST = 1e-9, 1.0  # what lies beyond is drawn at the ends of the error ax
 COLUMNS, ROW = 4, 0.185  # of the legend; height of a row, in
 COLOURS = (style.BLUE, style.GREEN, style.ORANGE, style.SKY, style.BLACK, style.VERMILION)
 MARKERS = ("o", "s", "^", "v")
-STAR: dict[str, Any] = {"color": "#F0E442", "markeredgecolor": style.BLACK, "markeredgewidth": 0.7}
-LAWS: dict[str, dict[str, Any]] = {
+STAR: Look = {"color": "#F0E442", "markeredgecolor": style.BLACK, "markeredgewidth": 0.7}
+LAWS: dict[str, Look] = {
     "mdr row": {"color": style.PURPLE, "marker": "D", "label": "row of springs, 25 to 400"},
     "mdr": {"color": style.PURPLE, "marker": "s", "label": "mdr, to its bar"},
     "ting": {"color": style.BLACK, "marker": "^", "label": "ting, to its bar"},
@@ -130,7 +131,7 @@ class Signs:
         colours = dict(zip(sorted(found[key], key=str, reverse=not several), COLOURS, strict=False))
         return cls(key, colours, dict(zip(sorted(found["mass"], key=str), MARKERS, strict=False)))
 
-    def of_point(self, point: Point) -> dict[str, Any]:
+    def of_point(self, point: Point) -> Look:
         """Marker and colours of a point of finite elements; hollow with a raw penalty."""
         colour = self.colours[point.settings[self.key]]
         raw = point.settings["enforcement"] == "penalty"
@@ -154,7 +155,7 @@ class Signs:
         return found + [_sign(look["marker"], look["color"], look["label"]) for n, look in LAWS.items() if n in present]
 
 
-def _edge() -> dict[str, Any]:
+def _edge() -> Look:
     return {key: value for key, value in STAR.items() if key != "color"}
 
 

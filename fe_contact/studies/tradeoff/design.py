@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import product
 from typing import Any
 
 from fe_contact.budget.plan import plan
-from fe_contact.settings import Numerics
+from fe_contact.settings import Given, Numerics
 from lumped.scene.scene import Scene
+from lumped.schema import Table
 
 MARKED = (1e-3, 1e-4)  # tolerances whose defaults are marked
 
-Settings = dict[str, Any]
+Settings = Table
 
 
-def defaults(scene: Scene, given: Mapping[str, Any]) -> dict[float, Numerics]:
+def defaults(scene: Scene, given: Given) -> dict[float, Numerics]:
     """The planned settings of the marked tolerances, and of the one given. Raises NotReached."""
     asked = dict.fromkeys((*MARKED, float(given.get("tolerance", MARKED[0]))))
     return {tolerance: plan(scene, {**given, "tolerance": tolerance}).numerics for tolerance in asked}
 
 
-def variations(base: Numerics, given: Mapping[str, Any], quick: bool) -> tuple[Numerics, ...]:
+def variations(base: Numerics, given: Given, quick: bool) -> tuple[Numerics, ...]:
     """Settings around ``base``, each once; those the user gave stay as they are."""
     chosen = _quick(base) if quick else _full(base)
     kept = [{key: value for key, value in change.items() if key not in given} for change in chosen]

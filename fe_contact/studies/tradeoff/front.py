@@ -1,18 +1,46 @@
-"""The Pareto front of a trade-off, and how near to it the planned defaults lie, in words."""
+"""The Pareto front of a trade-off, and how near to it the planned defaults lie, in words.
+
+Error against cost as files: a row a method in CSV, described with the verdict in JSON.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
 
 import numpy as np
 
 from fe_contact.settings import RANGES
 from fe_contact.studies.tradeoff.point import REFERENCE, Point
+from lumped.scene.scene import Scene
+from lumped.schema import Table
+from lumped.schema.csv_file import write_csv
+from lumped.schema.json_file import plain, write_json
 
 NEAR = 2.0  # a default that costs at most this multiple of the cheapest setting that does as well is near the front
 WIDEST = RANGES["tolerance"][1]
-
 Measure = Callable[[Point], float]
+SCHEMA = "fe-contact/tradeoff/1"
+SETTING_COLUMNS = (
+    "tolerance", "elements", "order", "elements_per_contact", "steps", "enforcement", "penalty", "far_radius",
+    "scheme", "rho", "mass",
+)  # fmt: skip
+ERROR_COLUMNS = {
+    "peak_force": "peak_force_error",
+    "duration": "duration_error",
+    "restitution": "restitution_error",
+    "history": "history_error",
+}
+WORK_COLUMNS = {
+    "operations": "operations",
+    "degrees_of_freedom": "degrees_of_freedom",
+    "factorizations": "factorizations",
+    "solves": "solves",
+    "marches": "marches",
+    "steps": "steps_taken",
+    "contact_problems": "contact_problems",
+    "iterations": "iterations",
+}
 
 
 def finite_elements(points: Iterable[Point]) -> tuple[Point, ...]:
@@ -72,3 +100,30 @@ def _sentence(point: Point, tried: tuple[Point, ...]) -> str:
 def _times(factor: float) -> str:
     """Cost beside the least."""
     return "the cheapest" if factor == 1.0 else f"{factor:.2f} times the cheapest"
+
+
+def write_tradeoff(scene: Scene, points: Sequence[Point], where: Path) -> Table:
+    """Write ``tradeoff.csv`` and ``tradeoff.json`` into a folder, made when it is not there; the latter's content."""
+    where.mkdir(parents=True, exist_ok=True)
+    rows = [
+        [
+            point.method,
+            *(point.settings.get(key) for key in SETTING_COLUMNS),
+            point.default_for,
+            point.cpu,
+            point.error,
+            point.bar,
+            *(point.errors.get(key) for key in ERROR_COLUMNS),
+            *(point.work.get(key) for key in WORK_COLUMNS),
+            point.failure or None,
+        ]
+        for point in points
+    ]
+    header = ["method", *SETTING_COLUMNS, "default_for", "cpu_s", "error", "bar"]
+    header += [*ERROR_COLUMNS.values(), *WORK_COLUMNS.values(), "failure"]
+    write_csv(where / "tradeoff.csv", header, rows)
+    described = [vars(point) | {"error": point.error} for point in points]
+    content = {"schema": SCHEMA, "scene": scene.to_dict(), "verdict": verdict(points), "points": described}
+    plain_content: Table = plain(content)
+    write_json(where / "tradeoff.json", plain_content)
+    return plain_content

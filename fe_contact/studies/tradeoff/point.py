@@ -5,10 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
+from fe_contact.settings import Given
 from lumped.result.result import Result
 
 MEASURED = ("peak_force", "duration", "restitution")
@@ -27,7 +28,7 @@ class Point:
     """
 
     method: str
-    settings: Mapping[str, Any]
+    settings: Given
     cpu: float = np.nan
     errors: Mapping[str, float] = field(default_factory=dict)
     bar: float | None = None
@@ -41,7 +42,7 @@ class Point:
         return max(self.errors.values(), default=np.inf)
 
 
-def errors_of(exact: Mapping[str, float | None], values: Mapping[str, Any]) -> dict[str, float]:
+def errors_of(exact: Mapping[str, float | None], values: Given) -> dict[str, float]:
     """Errors of the measured quantities that both define."""
     found = {}
     for name in MEASURED:

@@ -7,11 +7,10 @@ tolerance, and Ting's solution for the row of springs itself.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from functools import cache, partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -19,14 +18,16 @@ from fe_contact.assembly.forms import Array
 from fe_contact.budget.certify import Certified, certify
 from fe_contact.budget.runs import operations
 from fe_contact.progress import Progress
-from fe_contact.reference import check_target, strike_of
-from fe_contact.settings import Numerics
+from fe_contact.reference import check_target
+from fe_contact.settings import Given, Numerics
+from fe_contact.steppers.march import Strike
 from fe_contact.studies import journal
 from fe_contact.studies.tradeoff.design import defaults, variations
 from fe_contact.studies.tradeoff.point import Point, errors_of, largest_bar, timed, values_of
 from fe_contact.targets import half_space
 from lumped import laws, simulate
 from lumped.errors import FeContactError, NotReached
+from lumped.laws import mdr
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 
@@ -41,7 +42,7 @@ MODELS = ("hertz", "correspondence")
 Exact = Callable[[], Result]  # computed where a point is still to measure
 
 
-def tradeoff(scene: Scene, given: Mapping[str, Any], quick: bool, where: Path, progress: Progress) -> tuple[Point, ...]:
+def tradeoff(scene: Scene, given: Given, quick: bool, where: Path, progress: Progress) -> tuple[Point, ...]:
     """Measure every point of the study; points are kept, with the time they took, in the folder `where`.
 
     Raises NotReached where the exact impact itself has no answer.
@@ -91,7 +92,7 @@ def _fe(scene: Scene, numerics: Numerics, default_for: float | None, count: int,
 def _certify(scene: Scene, numerics: Numerics) -> Certified:
     """A certified impact with no operator at hand."""
     half_space._surface.cache_clear()
-    return certify(strike_of(scene), scene.geometry, numerics)
+    return certify(Strike.of(scene), scene.geometry, numerics)
 
 
 def _rows(scene: Scene, exact: Exact) -> dict[str, partial[Point]]:
@@ -102,7 +103,7 @@ def _rows(scene: Scene, exact: Exact) -> dict[str, partial[Point]]:
 def _row(scene: Scene, elements: int, exact: Exact) -> Point:
     """One march, no bar, no history."""
     truth = exact()
-    scales, cpu = timed(partial(laws.get("mdr").estimate, scene, elements=elements), REPEATS)
+    scales, cpu = timed(partial(mdr.estimate, scene, elements=elements), REPEATS)
     return Point("mdr row", {"elements": elements}, cpu, _errors(truth, vars(scales)), work={"elements": elements})
 
 
@@ -132,9 +133,7 @@ def _simulate(scene: Scene, name: str, tolerance: float) -> Result:
     return simulate(laws.get(name).of(scene), scene, tolerance)
 
 
-def _errors(
-    exact: Result, values: Mapping[str, Any], time: Array | None = None, force: Array | None = None
-) -> dict[str, float]:
+def _errors(exact: Result, values: Given, time: Array | None = None, force: Array | None = None) -> dict[str, float]:
     """Errors of the measured quantities that both define, and of the history where there is one."""
     found = errors_of(values_of(exact), values)
     if time is not None and force is not None:

@@ -7,7 +7,7 @@ a quarter of the tolerance, and what lies within its bar cannot be told from it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -16,18 +16,18 @@ from typing import Any
 import numpy as np
 
 from fe_contact.progress import Progress
-from fe_contact.settings import KEYS, WAVES
+from fe_contact.reference import fe
+from fe_contact.settings import KEYS, Given, WaveNumerics
 from fe_contact.studies import journal
 from fe_contact.studies.tradeoff.point import REFERENCE, Point, largest_bar, timed
+from fe_contact.studies.tradeoff.tried import TRIED
 from fe_contact.studies.tradeoff.truth import Truth
-from fe_contact.waves.numerics import WaveNumerics
 from lumped import laws, simulate
 from lumped.errors import FeContactError, NotReached
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
-from lumped.schema.members import get
+from lumped.schema import Table
 
-TARGETS = "fe_contact.studies.tradeoff.targets"
 SHARE = 0.25  # of the tolerance, asked of a reference
 LAWS = ("rod_waves", "mdr", "hertz")  # exact waves, and what is without any
 LAW_TOLERANCE = 1e-6
@@ -51,12 +51,12 @@ class Attempt:
         return self.result
 
 
-def tradeoff(scene: Scene, given: Mapping[str, Any], quick: bool, where: Path, progress: Progress) -> tuple[Point, ...]:
+def tradeoff(scene: Scene, given: Given, quick: bool, where: Path, progress: Progress) -> tuple[Point, ...]:
     """Measure every point of the study; what runs give is kept, with the time they took, in the folder `where`.
 
     Raises BadInput for a target whose waves have no trade-off, NotReached where default or reference have no answer.
     """
-    study = get(TARGETS, scene.target.name, scene.source, "target.shape").of(scene)
+    study = TRIED.get(scene.target.name, scene.source, "target.shape").of(scene)
     attempts = partial(journal.rows, where / KEPT, progress=progress)
     default = attempts({"finite elements as planned": partial(_fe, scene, given)}).popitem()[1]
     base = WaveNumerics(**default.reached.numerics)
@@ -81,14 +81,13 @@ def tradeoff(scene: Scene, given: Mapping[str, Any], quick: bool, where: Path, p
     )
 
 
-def _fe(scene: Scene, given: Mapping[str, Any]) -> Attempt:
+def _fe(scene: Scene, given: Given) -> Attempt:
     """An impact with no operator at hand."""
-    study = get(TARGETS, scene.target.name).of(scene)
+    study = TRIED.get(scene.target.name).of(scene)
 
     def run() -> Result:
         study.forget()
-        result: Result = get(WAVES, scene.target.name).fe(scene, given)
-        return result
+        return fe(scene, given)
 
     return _attempt(run, NotReached)
 
@@ -107,15 +106,13 @@ def _attempt(run: Callable[[], Result], named: type[FeContactError]) -> Attempt:
         return Attempt(None, failure=str(failure))
 
 
-def _chosen(
-    base: WaveNumerics, given: Mapping[str, Any], changes: Iterator[Mapping[str, Any]]
-) -> tuple[WaveNumerics, ...]:
+def _chosen(base: WaveNumerics, given: Given, changes: Iterator[Given]) -> tuple[WaveNumerics, ...]:
     """Settings around the default's, each once and never its own; those the user gave stay as they are."""
     kept = ({key: value for key, value in change.items() if key not in given} for change in changes)
     return tuple(numerics for numerics in dict.fromkeys(base.varied(**change) for change in kept) if numerics != base)
 
 
-def _fixed(numerics: WaveNumerics) -> dict[str, Any]:
+def _fixed(numerics: WaveNumerics) -> Table:
     """All settings, so that nothing is refined."""
     return {key: value for key, value in numerics.as_dict().items() if key in KEYS}
 

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
 
-from fe_contact.progress import Progress, silent
+from fe_contact.budget.plan import Plan
+from fe_contact.progress import Progress
+from fe_contact.settings import WaveNumerics
 from fe_contact.waves.cost import Cost
-from fe_contact.waves.fields import write_fields as write_fields
+from fe_contact.waves.fields import write_fields
 from fe_contact.waves.flying_ball import on_half_space
 from fe_contact.waves.half_space_body import moving
 from fe_contact.waves.moving import Moving
-from fe_contact.waves.numerics import WaveNumerics
-from fe_contact.waves.plan import plan as plan
-from fe_contact.waves.refining import cost_of, refined_to_tolerance
+from fe_contact.waves.plan import plan
+from fe_contact.waves.refining import Waves, cost_of
 from fe_contact.waves.refusals import changing, too_fast
+from fe_contact.waves.targets.base import WaveTarget
 from lumped.errors import BadInput, Fault
-from lumped.result.result import Result
 from lumped.scene.scene import Scene
 
 
@@ -25,10 +25,9 @@ def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
     return cost_of(scene, numerics, _body(scene))
 
 
-def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
-    """Force history with error bars. Raises BadInput for a scene it is not for, NotReached where no march ends."""
-    check(scene)
-    return refined_to_tolerance(scene, plan(scene, given), _body(scene), progress)
+def way(scene: Scene, chosen: Plan, progress: Progress) -> Waves:
+    """Marched with waves, refined by what is missing."""
+    return Waves.of(scene, chosen, _body(scene), progress)
 
 
 def _body(scene: Scene) -> Callable[[Scene, WaveNumerics], Moving]:
@@ -45,3 +44,6 @@ def check(scene: Scene) -> None:
         faults.append(Fault(scene.source, "striker.shape", reason))
     if faults:
         raise BadInput(faults)
+
+
+MEMBER = WaveTarget(check=check, plan=plan, cost=cost, way=way, write_fields=write_fields)

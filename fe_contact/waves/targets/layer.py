@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
 from fe_contact.assembly.forms import check_compressible
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.scales import scales
-from fe_contact.progress import Progress, silent
-from fe_contact.settings import RANGES
+from fe_contact.progress import Progress
+from fe_contact.settings import RANGES, Given, WaveNumerics
 from fe_contact.waves.cost import Cost
 from fe_contact.waves.layer_body import moving
-from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.plan import DEFAULTS, SPREAD, TRAVEL, contact_time, placed
-from fe_contact.waves.refining import cost_of, refined_to_tolerance
+from fe_contact.waves.refining import Waves, cost_of
 from fe_contact.waves.refusals import too_fast
+from fe_contact.waves.targets.base import WaveTarget
 from lumped.errors import BadInput, Fault
 from lumped.laws.mdr import ImpactScales
-from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.targets.layer import Layer
 
@@ -28,7 +25,7 @@ SPARE = 1.2  # a resonance may press the striker deeper than statics
 # echoes no wave fast enough to come back is left either.
 NEAREST, FARTHEST = 8.0, 20.0
 LEAST = 4.0  # contact radii, of which half still holds the contact
-ROUGH: Mapping[str, Any] = {
+ROUGH: Given = {
     "tolerance": 1e-2,
     "elements_per_contact": 2.0,
     "penalty": 100.0,
@@ -40,7 +37,7 @@ ROUGH: Mapping[str, Any] = {
 }
 
 
-def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
+def plan(scene: Scene, given: Given) -> Plan:
     """Choose what ``given`` (checked settings) leaves open; the impact without inertia places mesh and steps.
 
     Raises NotReached where even that does not come to an end, BadInput for a contact beyond its load curve.
@@ -56,9 +53,9 @@ def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
     return cost_of(scene, numerics, moving)
 
 
-def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
-    """Force history with error bars. Raises BadInput for a scene it is not for, NotReached where no march ends."""
-    return refined_to_tolerance(scene, plan(scene, given), moving, progress)
+def way(scene: Scene, chosen: Plan, progress: Progress) -> Waves:
+    """Marched with waves, refined by what is missing."""
+    return Waves.of(scene, chosen, moving, progress)
 
 
 def check(scene: Scene) -> None:
@@ -90,3 +87,6 @@ def _far_radius(scene: Scene, size: ImpactScales) -> float:
     spread = SPREAD * math.sqrt(confined.viscosity * duration / density)
     width = min(max(travel, spread, NEAREST * target.thickness), FARTHEST * target.thickness)
     return min(max(1.0 + width / (SPARE * size.contact_radius), LEAST), RANGES["far_radius"][1])
+
+
+MEMBER = WaveTarget(check=check, plan=plan, cost=cost, way=way)

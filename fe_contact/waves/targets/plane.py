@@ -2,37 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from types import ModuleType
 from typing import Any
 
 from fe_contact.budget.plan import Plan
-from fe_contact.progress import Progress, silent
-from fe_contact.waves import falling_ball, falling_block
+from fe_contact.budget.refine import ImpactWay
+from fe_contact.progress import Progress
+from fe_contact.settings import Given, WaveNumerics
 from fe_contact.waves.cost import Cost
-from fe_contact.waves.numerics import WaveNumerics
-from lumped.result.result import Result
+from fe_contact.waves.targets._ball import BALL
+from fe_contact.waves.targets._block import BLOCK
+from fe_contact.waves.targets.base import WaveTarget
 from lumped.scene.scene import Scene
 from lumped.shapes._block import Block
 
 
-def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
+def check(scene: Scene) -> None:
+    """Raise BadInput for a scene it is not for."""
+    _of(scene).check(scene)
+
+
+def plan(scene: Scene, given: Given) -> Plan:
     """Choose what ``given`` (checked settings) leaves open."""
-    found: Plan = _of(scene).plan(scene, given)
-    return found
+    return _of(scene).plan(scene, given)
 
 
 def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
     """Of an error budget with these settings. Raises BodyTooFine."""
-    found: Cost = _of(scene).cost(scene, numerics)
-    return found
+    return _of(scene).cost(scene, numerics)
 
 
-def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
-    """History with error bars. Raises BadInput for a scene it is not for, NotReached where no march ends."""
-    result: Result = _of(scene).fe(scene, given, progress)
-    return result
+def way(scene: Scene, chosen: Plan, progress: Progress) -> ImpactWay[Any]:
+    """How it is solved."""
+    return _of(scene).way(scene, chosen, progress)
 
 
-def _of(scene: Scene) -> ModuleType:
-    return falling_block if isinstance(scene.geometry.shape, Block) else falling_ball
+def _of(scene: Scene) -> WaveTarget:
+    return BLOCK if isinstance(scene.geometry.shape, Block) else BALL
+
+
+MEMBER = WaveTarget(check=check, plan=plan, cost=cost, way=way)

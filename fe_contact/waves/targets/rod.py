@@ -1,36 +1,38 @@
-"""The rod: waves that come back, forces that jump; steps and elements go together, a wave crosses one in each."""
+"""The rod: waves that come back, forces that jump; steps and elements go together, a wave crosses one in each.
+
+A dent in the end of a rod: the force that a half-space of its material would answer with, given by the model.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 
 from fe_contact.budget.plan import Plan
+from fe_contact.contact.enforcement.base import ENFORCEMENTS, Enforcement
+from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching
 from fe_contact.dynamics.march import Choices, march
 from fe_contact.dynamics.pressed import Enforced
+from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.errors import RodTooLong
-from fe_contact.progress import Progress, silent
-from fe_contact.settings import ENFORCEMENTS, RANGES, WAVE_SCHEMES
+from fe_contact.progress import Progress
+from fe_contact.settings import RANGES, Given, WaveNumerics
 from fe_contact.waves.cost import Cost
-from fe_contact.waves.dent import Dent
-from fe_contact.waves.doubling import certified
+from fe_contact.waves.doubling import Doubling, witness
 from fe_contact.waves.impact import energies, left
-from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.rod_body import elements, moving, rod_mass, transit
 from fe_contact.waves.rod_reading import read
 from fe_contact.waves.rod_record import Run
-from fe_contact.waves.usual import witness
+from fe_contact.waves.targets.base import WaveTarget
 from lumped.errors import BadInput, Fault
+from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
 from lumped.result.model_ledger import Peak, model_ledger
-from lumped.result.result import Result
 from lumped.scene.scene import Scene
-from lumped.schema.members import get
+from lumped.schema import Table
 from lumped.targets.rod import Rod
 
 DEFAULT_TOLERANCE = 1e-3
@@ -43,9 +45,11 @@ FRONT = 40.0  # of them which it crosses while the dent's force grows to that of
 RELAXED = 6.0  # of them which it crosses in the shortest relaxation time
 COARSEST = 8  # of them that a user's own steps may leave
 ROUNDING = 1e-9  # of the striker's velocity, below which it does not leave the rod
+MOST_STEPS = 60
+PRECISE = 1e-13  # of the overlap
 
 
-def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
+def plan(scene: Scene, given: Given) -> Plan:
     """Choose what ``given`` (checked settings) leaves open."""
     check(scene)
     rod = scene.target
@@ -95,19 +99,15 @@ def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
     return Cost.of(elements(scene, numerics), numerics, scene.motion.impacts)
 
 
-def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
-    """Force history with error bars. Raises BadInput for a scene it is not for, NotReached where no march ends."""
-    chosen = plan(scene, given)
-    steps = chosen.numerics.steps
-    assert isinstance(chosen.numerics, WaveNumerics)
-    most = MOST * steps / elements(scene, chosen.numerics)
-    found = certified(scene, chosen, partial(run, scene), partial(_varied, scene), most, progress)
-    if scene.profile.fixed_radius is not None:
-        return found
-    return replace(found, model_ledger=model_ledger(scene, Peak.of(found.quantities, found.history)))
+def way(scene: Scene, chosen: Plan, progress: Progress) -> Doubling:
+    """Marched with steps and elements together; a dent tells what is left out when it is known."""
+    numerics = chosen.numerics
+    assert isinstance(numerics, WaveNumerics)
+    most, dented = MOST * numerics.steps / elements(scene, numerics), scene.profile.fixed_radius is None
+    return Doubling(scene, chosen, partial(run, scene), partial(_varied, scene), most, dented, progress)
 
 
-def _usual(scene: Scene) -> dict[str, Any]:
+def _usual(scene: Scene) -> Table:
     """Our method: steps that follow a wave; a flat end's mass takes its jumps, a dent needs a surface without."""
     mass = "redistributed" if scene.profile.fixed_radius is None else "lumped"
     return {"enforcement": "exact", "scheme": "central_difference", "mass": mass}
@@ -148,7 +148,7 @@ def run(scene: Scene, numerics: WaveNumerics) -> Run:
     body = moving(scene, numerics)
     count = elements(scene, numerics)
     step = transit(scene) / count
-    choices = Choices(get(WAVE_SCHEMES, numerics.scheme).of(numerics.rho), _enforced(scene, numerics), step)
+    choices = Choices(WAVE_SCHEMES.get(numerics.scheme).of(numerics.rho), _enforced(scene, numerics), step)
     gone = partial(left, slow=ROUNDING * scene.velocity)  # of a light striker's force an echo finds but rounding
     found = march(body.body, body.velocity, choices, scene.end_time, body.watch, gone)
     reading = read(found, scene, count, gone(found.samples[-1]))
@@ -158,5 +158,36 @@ def run(scene: Scene, numerics: WaveNumerics) -> Run:
 def _enforced(scene: Scene, numerics: WaveNumerics) -> Enforced:
     """A flat end keeps to the rod's; any other dents it first."""
     if scene.profile.fixed_radius is not None:
-        return Enforced(get(ENFORCEMENTS, numerics.enforcement), numerics.penalty * scene.contact_modulus.glassy)
-    return Enforced(Dent(scene.contact_modulus.glassy, scene.profile.load_curve), 1.0)
+        return Enforced(ENFORCEMENTS.get(numerics.enforcement), numerics.penalty * scene.contact_modulus.glassy)
+    return Enforced(Enforcement(Dent(scene.contact_modulus.glassy, scene.profile.load_curve).enforce), 1.0)
+
+
+MEMBER = WaveTarget(check=check, plan=plan, cost=cost, way=way)
+
+
+@dataclass(frozen=True)
+class Dent:
+    """A way to keep rod and striker apart at one point: force = modulus x load curve of the overlap that is left."""
+
+    modulus: float
+    curve: LoadCurve
+
+    def enforce(self, problem: ContactProblem, *guesses: Touching) -> ContactSolution:
+        """Newton on dent + yielding x force = overlap, convex, from above; a budget used up is not converged."""
+        trace, free = problem.surface.trace, float(problem.overlap[0])
+        yielding = float(trace[0] @ np.linalg.solve(problem.surface.stiffness, trace[0]))
+        dent, iteration = free, 0
+        while dent > 0.0 and iteration < MOST_STEPS:
+            iteration += 1
+            force, slope = self._force(dent)
+            change = (dent + yielding * force - free) / (1.0 + yielding * slope)
+            dent -= change
+            if abs(change) <= PRECISE * free:
+                break
+        signed = np.array([self._force(dent)[0] if dent > 0.0 else dent])
+        return ContactSolution(signed, iteration, iteration < MOST_STEPS, (signed > 0.0,))
+
+    def _force(self, dent: float) -> tuple[float, float]:
+        """N, and N/m."""
+        force, slope = self.curve.force_and_slope(dent)
+        return self.modulus * float(force), self.modulus * float(slope)

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 from fe_contact.budget.plan import Plan
-from fe_contact.progress import Progress, silent
+from fe_contact.progress import Progress
+from fe_contact.settings import Given, WaveNumerics
 from fe_contact.waves.cost import Cost
-from fe_contact.waves.falling_ball import check, flying
 from fe_contact.waves.flying_ball import on_ball
-from fe_contact.waves.numerics import WaveNumerics
-from fe_contact.waves.refining import cost_of, refined_to_tolerance
+from fe_contact.waves.refining import Waves, cost_of
+from fe_contact.waves.targets._ball import check, flying
+from fe_contact.waves.targets.base import WaveTarget
 from lumped.laws import correspondence
-from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.targets.sphere import SphereTarget
 
 
-def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
+def plan(scene: Scene, given: Given) -> Plan:
     """Choose what ``given`` (checked settings) leaves open; two half-spaces without inertia place mesh and steps.
 
     Raises NotReached where even that does not come to an end.
@@ -35,7 +33,9 @@ def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
     return cost_of(scene, numerics, on_ball)
 
 
-def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
-    """Force history with error bars. Raises BadInput for a scene it is not for, NotReached where no march ends."""
-    check(scene)
-    return refined_to_tolerance(scene, plan(scene, given), on_ball, progress)
+def way(scene: Scene, chosen: Plan, progress: Progress) -> Waves:
+    """Marched with waves, refined by what is missing."""
+    return Waves.of(scene, chosen, on_ball, progress)
+
+
+MEMBER = WaveTarget(check=check, plan=plan, cost=cost, way=way)

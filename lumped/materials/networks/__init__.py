@@ -1,4 +1,6 @@
-"""Spring-dashpot networks, one a file: `KEYS`, the alternative sets of keys, and `of(**values)`.
+"""Spring-dashpot networks, one a file: a member makes the Relaxation that a material's table describes."""
 
-`of` returns the Relaxation of the network and raises ValueError, with a message, for values which make none.
-"""
+from lumped.materials.networks.base import Network as Network
+from lumped.schema.members import Folder
+
+NETWORKS = Folder[Network](__name__)

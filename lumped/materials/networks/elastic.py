@@ -1,11 +1,12 @@
 """A spring."""
 
-from lumped.materials.networks._ranges import MODULUS
+from lumped.materials.networks.base import Modulus, Network
 from lumped.materials.relaxation import Relaxation
 
-KEYS = ({"E": MODULUS},)
 
-
-def of(E: float) -> Relaxation:
+def of(E: Modulus) -> Relaxation:
     """sigma = E epsilon."""
     return Relaxation(E)
+
+
+MEMBER = Network((of,))

@@ -4,33 +4,29 @@ The Prony series that stands for it has a stated accuracy at times in `window`, 
 """
 
 from functools import cache
+from typing import Annotated
 
 import numpy as np
 
 from lumped.errors import NotReached
 from lumped.materials.laplace import Complex
-from lumped.materials.networks._ranges import MODULUS, TIME
+from lumped.materials.networks.base import TIME, Modulus, Network, Time
 from lumped.materials.prony_fit import of_operational
 from lumped.materials.relaxation import Relaxation
-from lumped.schema.keys import Number, Numbers
+from lumped.schema.keys import Key, Number, Numbers
 
-KEYS = (
-    {
-        "E_inf": MODULUS,
-        "E_glass": MODULUS,
-        "tau": TIME,
-        "alpha": Number(0.05, 0.95),
-        "window": Numbers(TIME, most=2, required=False),
-        "accuracy": Number(1e-8, 1e-2, required=False),
-    },
-)
 # In units of tau: impacts far shorter or longer need a window of their own, and the model ledger says so.
 WINDOW = (1e-6, 1e3)
 ACCURACY = 1e-6
 
 
 def of(
-    E_inf: float, E_glass: float, tau: float, alpha: float, window: tuple[float, ...] = (), accuracy: float = ACCURACY
+    E_inf: Modulus,
+    E_glass: Modulus,
+    tau: Time,
+    alpha: Annotated[float, Key(Number(0.05, 0.95), "order of the springpot")],
+    window: Annotated[tuple[float, ...], Key(Numbers(TIME, most=2), "shortest and longest time to be right at")] = (),
+    accuracy: Annotated[float, Key(Number(1e-8, 1e-2), "relative deviation allowed there")] = ACCURACY,
 ) -> Relaxation:
     """E(s) = E_inf + (E_glass - E_inf) (s tau)^alpha / (1 + (s tau)^alpha): E(t) is a Mittag-Leffler function.
 
@@ -57,3 +53,6 @@ def _series(
         return np.asarray(E_inf + (E_glass - E_inf) * share / (1.0 + share))
 
     return of_operational(operational, window, accuracy, relaxed=E_inf, glassy=E_glass).relaxation
+
+
+MEMBER = Network((of,))

@@ -1,11 +1,12 @@
 """A spring and a dashpot side by side."""
 
-from lumped.materials.networks._ranges import MODULUS, VISCOSITY
+from lumped.materials.networks.base import Modulus, Network, Viscosity
 from lumped.materials.relaxation import Relaxation
 
-KEYS = ({"E": MODULUS, "eta": VISCOSITY},)
 
-
-def of(E: float, eta: float) -> Relaxation:
+def of(E: Modulus, eta: Viscosity) -> Relaxation:
     """sigma = E epsilon + eta depsilon/dt."""
     return Relaxation(E, viscosity=eta)
+
+
+MEMBER = Network((of,))

@@ -1,20 +1,25 @@
 """A material given by its differential operators, P sigma = Q epsilon, "(13)"."""
 
+from typing import Annotated
+
 import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
+from lumped.materials.networks.base import Network
 from lumped.materials.relaxation import Relaxation
-from lumped.schema.keys import Number, Numbers
+from lumped.schema.keys import Key, Number, Numbers
 
 COEFFICIENT = Number(-1e30, 1e30)
-KEYS = ({"p": Numbers(COEFFICIENT, most=21), "q": Numbers(COEFFICIENT, most=22)},)
 NEGLIGIBLE = 1e-11
 
 Array = NDArray[np.float64]
 
 
-def of(p: tuple[float, ...], q: tuple[float, ...]) -> Relaxation:
+def of(
+    p: Annotated[tuple[float, ...], Key(Numbers(COEFFICIENT, most=21), "coefficients of P, ascending")],
+    q: Annotated[tuple[float, ...], Key(Numbers(COEFFICIENT, most=22), "coefficients of Q, ascending")],
+) -> Relaxation:
     """Partial fractions of Q(s)/(s P(s)): the weight at s = -1/tau_k is the modulus of that Prony term.
 
     `p`, `q`: coefficients in ascending powers of d/dt. Raises ValueError unless the operators are those of a
@@ -76,3 +81,6 @@ def _poles(below: Array) -> Array:
     if spread.size and spread.min() < 1e-9 * np.abs(roots).min():
         raise ValueError("no network of springs and dashpots: P has a double root")
     return np.asarray(roots.real, dtype=float)
+
+
+MEMBER = Network((of,))

@@ -5,37 +5,26 @@ A series fitted to another modulus may say how well: `fit_window`, s, and the re
 """
 
 import math
-from dataclasses import replace
+from typing import Annotated
 
 from lumped.materials.fidelity import Fidelity
-from lumped.materials.networks._ranges import MODULUS_OR_ZERO, TIME, VISCOSITY
+from lumped.materials.networks.base import MODULUS_OR_ZERO, TIME, Network, Viscosity
 from lumped.materials.relaxation import Relaxation
-from lumped.schema.keys import Number, Numbers
+from lumped.schema.keys import Key, Number, Numbers
 
-DEVIATION = Number(0.0, 1e6, required=False)
-KEYS = (
-    {
-        "E_inf": MODULUS_OR_ZERO,
-        "E": Numbers(MODULUS_OR_ZERO, required=False),
-        "tau": Numbers(TIME, required=False),
-        "eta": replace(VISCOSITY, required=False),
-        "fit_window": Numbers(TIME, most=2, required=False),
-        "fit_error": DEVIATION,
-        "fit_error_before": DEVIATION,
-        "fit_error_after": DEVIATION,
-    },
-)
+DEVIATION = Number(0.0, 1e6)
+WINDOW = Numbers(TIME, most=2)
 
 
 def of(
-    E_inf: float,
-    E: tuple[float, ...] = (),
-    tau: tuple[float, ...] = (),
-    eta: float = 0.0,
-    fit_window: tuple[float, ...] = (),
-    fit_error: float | None = None,
-    fit_error_before: float = math.inf,
-    fit_error_after: float = math.inf,
+    E_inf: Annotated[float, Key(MODULUS_OR_ZERO, "modulus of the spring beside them all")],
+    E: Annotated[tuple[float, ...], Key(Numbers(MODULUS_OR_ZERO), "moduli of the branches")] = (),
+    tau: Annotated[tuple[float, ...], Key(Numbers(TIME), "their times of relaxation")] = (),
+    eta: Viscosity = 0.0,
+    fit_window: Annotated[tuple[float, ...], Key(WINDOW, "shortest and longest time of a fit")] = (),
+    fit_error: Annotated[float | None, Key(DEVIATION, "relative deviation in the window")] = None,
+    fit_error_before: Annotated[float, Key(DEVIATION, "relative deviation at shorter times")] = math.inf,
+    fit_error_after: Annotated[float, Key(DEVIATION, "relative deviation at longer times")] = math.inf,
 ) -> Relaxation:
     """E(t) = E_inf + sum_k E_k exp(-t/tau_k) + eta dirac(t)."""
     if len(E) != len(tau):
@@ -52,3 +41,6 @@ def _fidelity(window: tuple[float, ...], inside: float | None, before: float, af
     if inside is None or len(window) != 2 or window[0] > window[1]:
         raise ValueError("fit_window and fit_error belong together; accepted: fit_window = [shortest, longest] in s")
     return Fidelity((window[0], window[1]), inside, before, after)
+
+
+MEMBER = Network((of,))

@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 @cache
 def proposed(concrete: Concrete, radius: float, velocity: float) -> Result:
     """The 3-parameter solid on a round head of this radius, m, at a velocity, m/s. Raises NotReached."""
-    material = Material(sls.of(E1=concrete.E1, E2=concrete.E2, C1=concrete.C1), NU)
+    material = Material(sls.of_springs(E1=concrete.E1, E2=concrete.E2, C1=concrete.C1), NU)
     parabola = Model(profile="parabola")
     scene = Scene(Sphere(radius), concrete.mass, velocity, material, model=parabola, name="concrete striker")
     return correspondence.of(scene).simulate(scene, TOLERANCE)

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.laws._hereditary_force import HereditaryForce, law_of
+from lumped.laws.correspondence import HereditaryForce, law_of
 from lumped.materials.networks import sls
 from lumped.paper.examples.given import Steel
 from lumped.paper.examples.steel_impacts import TOLERANCE, scene
@@ -63,7 +63,7 @@ class DentedSurface:
 
     @cached_property
     def _law(self) -> HereditaryForce:
-        return law_of(scene(self.steel, sls.of(E0=self.steel.contact_modulus, R1=self.R1, R2=self.R2)))
+        return law_of(scene(self.steel, sls.of_ratios(E0=self.steel.contact_modulus, R1=self.R1, R2=self.R2)))
 
     @cached_property
     def _contact(self) -> Contact:

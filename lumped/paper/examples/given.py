@@ -5,66 +5,57 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, get_type_hints
 
 from lumped.errors import BadInput, Fault
+from lumped.schema import Table
 from lumped.schema.data import directory
-from lumped.schema.key_table import read_table, unknown_key
 from lumped.schema.keys import Key, Number, Numbers
+from lumped.schema.record import keys_of, read_table, unknown_key
 from lumped.schema.toml_file import overridden, parsed
 
-LENGTH, MASS, VELOCITY = Number(1e-9, 1e4, "m"), Number(1e-9, 1e12, "kg"), Number(1e-9, 1e5, "m/s")
-MODULUS, TIME, DENSITY = Number(1.0, 1e15, "Pa"), Number(1e-15, 1e12, "s"), Number(1e-3, 1e6, "kg/m3")
-RATIO, FORCE, NU = Number(1e-9, 1e9), Number(1e-15, 1e15, "N"), Number(-0.99, 0.5)
-STIFFNESS, DAMPING = Number(1e-9, 1e18, "N/m"), Number(1e-15, 1e15, "N s/m")
-KEYS: Mapping[str, Mapping[str, Key]] = {
-    "steel": {
-        "diameter": LENGTH, "drop": LENGTH, "young": MODULUS, "nu": NU, "contact_modulus": MODULUS, "R1": RATIO,
-        "R2": TIME, "measured_peak": FORCE, "theoretical_peak": FORCE,
-        "pulse_peaks": Numbers(FORCE), "pulse_durations": Numbers(TIME), "density": DENSITY,
-        "gravity": Number(1e-3, 1e6, "m/s2"), "restitutions": Numbers(Number(1e-3, 1.0)),
-        "yield_strength": Numbers(MODULUS),
-    },
-    "grids": {
-        "fig7_R1": Numbers(RATIO), "fig7_R2": Numbers(TIME), "fig8_R1": Numbers(RATIO), "fig8_R2": Numbers(TIME),
-        "stiff_R2": TIME, "soft_R2": TIME,
-    },
-    "concrete": {
-        "mass": MASS, "velocities": Numbers(VELOCITY), "E1": MODULUS, "E2": MODULUS, "C1": Number(1e-9, 1e18, "Pa s"),
-        "peak_error": RATIO, "jankowski_peak_error": RATIO, "radii": Numbers(LENGTH), "density": DENSITY,
-        "sides": Numbers(LENGTH), "strength": Numbers(MODULUS),
-    },
-    "ring": {
-        "E0": MODULUS, "R1": RATIO, "R2": TIME, "rod_diameter": LENGTH, "width": LENGTH, "nu": NU,
-        "nus": Numbers(NU), "thickness": Numbers(LENGTH), "density": Numbers(DENSITY),
-    },
-    "ptmd": {
-        "m1": MASS, "m2": MASS, "k1": STIFFNESS, "k2": STIFFNESS, "c1": DAMPING, "c2": DAMPING, "gap": LENGTH,
-        "displacement": LENGTH, "frequency": RATIO, "damping_ratio": RATIO, "damper_pounds": RATIO,
-        "end_time": TIME, "window": TIME,
-    },
-}  # fmt: skip
+LENGTH, VELOCITY, MODULUS = Number(1e-9, 1e4, "m"), Number(1e-9, 1e5, "m/s"), Number(1.0, 1e15, "Pa")
+TIME, DENSITY, FORCE = Number(1e-15, 1e12, "s"), Number(1e-3, 1e6, "kg/m3"), Number(1e-15, 1e15, "N")
+RATIO, NU = Number(1e-9, 1e9), Number(-0.99, 0.5)
+Length = Annotated[float, Key(LENGTH, "length")]
+Mass = Annotated[float, Key(Number(1e-9, 1e12, "kg"), "mass")]
+Modulus = Annotated[float, Key(MODULUS, "modulus")]
+Time = Annotated[float, Key(TIME, "time")]
+Density = Annotated[float, Key(DENSITY, "density")]
+Ratio = Annotated[float, Key(RATIO, "ratio")]
+Force = Annotated[float, Key(FORCE, "force")]
+Poisson = Annotated[float, Key(NU, "Poisson's ratio")]
+Stiffness = Annotated[float, Key(Number(1e-9, 1e18, "N/m"), "stiffness")]
+Damping = Annotated[float, Key(Number(1e-15, 1e15, "N s/m"), "damping")]
+Lengths = Annotated[tuple[float, ...], Key(Numbers(LENGTH), "length, several")]
+Velocities = Annotated[tuple[float, ...], Key(Numbers(VELOCITY), "velocity, several")]
+Moduli = Annotated[tuple[float, ...], Key(Numbers(MODULUS), "modulus, several")]
+Times = Annotated[tuple[float, ...], Key(Numbers(TIME), "time, several")]
+Densities = Annotated[tuple[float, ...], Key(Numbers(DENSITY), "density, several")]
+Ratios = Annotated[tuple[float, ...], Key(Numbers(RATIO), "ratio, several")]
+Forces = Annotated[tuple[float, ...], Key(Numbers(FORCE), "force, several")]
+Poissons = Annotated[tuple[float, ...], Key(Numbers(NU), "Poisson's ratio, several")]
 
 
 @dataclass(frozen=True)
 class Steel:
     """Section 4.1: the steel ball. Lengths in m, moduli in Pa, forces in N."""
 
-    diameter: float
-    drop: float
-    young: float
-    nu: float
-    contact_modulus: float
-    R1: float
-    R2: float
-    measured_peak: float
-    theoretical_peak: float
-    pulse_peaks: tuple[float, ...]
-    pulse_durations: tuple[float, ...]
-    density: float
-    gravity: float
-    restitutions: tuple[float, ...]
-    yield_strength: tuple[float, ...]
+    diameter: Length
+    drop: Length
+    young: Modulus
+    nu: Poisson
+    contact_modulus: Modulus
+    R1: Ratio
+    R2: Time
+    measured_peak: Force
+    theoretical_peak: Force
+    pulse_peaks: Forces
+    pulse_durations: Times
+    density: Density
+    gravity: Annotated[float, Key(Number(1e-3, 1e6, "m/s2"))]
+    restitutions: Annotated[tuple[float, ...], Key(Numbers(Number(1e-3, 1.0)))]
+    yield_strength: Moduli
 
     @property
     def radius(self) -> float:
@@ -86,63 +77,63 @@ class Steel:
 class Grids:
     """Section 4.2: the parameters of Fig. 7 and 8 in the order of the panels, and the thresholds of R2; s."""
 
-    fig7_R1: tuple[float, ...]
-    fig7_R2: tuple[float, ...]
-    fig8_R1: tuple[float, ...]
-    fig8_R2: tuple[float, ...]
-    stiff_R2: float
-    soft_R2: float
+    fig7_R1: Ratios
+    fig7_R2: Times
+    fig8_R1: Ratios
+    fig8_R2: Times
+    stiff_R2: Time
+    soft_R2: Time
 
 
 @dataclass(frozen=True)
 class Concrete:
     """Section 4.3: the striker of concrete, kg, m/s, Pa, Pa s; radii of its head and sides of the pole in m."""
 
-    mass: float
-    velocities: tuple[float, ...]
-    E1: float
-    E2: float
-    C1: float
-    peak_error: float
-    jankowski_peak_error: float
-    radii: tuple[float, ...]
-    density: float
-    sides: tuple[float, ...]
-    strength: tuple[float, ...]
+    mass: Mass
+    velocities: Velocities
+    E1: Modulus
+    E2: Modulus
+    C1: Annotated[float, Key(Number(1e-9, 1e18, "Pa s"))]
+    peak_error: Ratio
+    jankowski_peak_error: Ratio
+    radii: Lengths
+    density: Density
+    sides: Lengths
+    strength: Moduli
 
 
 @dataclass(frozen=True)
 class RingLining:
     """Section 5.2: the ring's polymer, Pa and s, and its sizes, m; ranges of what is not printed."""
 
-    E0: float
-    R1: float
-    R2: float
-    rod_diameter: float
-    width: float
-    nu: float
-    nus: tuple[float, ...]
-    thickness: tuple[float, ...]
-    density: tuple[float, ...]
+    E0: Modulus
+    R1: Ratio
+    R2: Time
+    rod_diameter: Length
+    width: Length
+    nu: Poisson
+    nus: Poissons
+    thickness: Lengths
+    density: Densities
 
 
 @dataclass(frozen=True)
 class Ptmd:
     """Section 5.2: structure 1, damper 2, gap, release and duration of the free vibration; SI, but lb for a mass."""
 
-    m1: float
-    m2: float
-    k1: float
-    k2: float
-    c1: float
-    c2: float
-    gap: float
-    displacement: float
-    frequency: float
-    damping_ratio: float
-    damper_pounds: float
-    end_time: float
-    window: float
+    m1: Mass
+    m2: Mass
+    k1: Stiffness
+    k2: Stiffness
+    c1: Damping
+    c2: Damping
+    gap: Length
+    displacement: Length
+    frequency: Ratio
+    damping_ratio: Ratio
+    damper_pounds: Ratio
+    end_time: Time
+    window: Time
 
 
 @dataclass(frozen=True)
@@ -165,18 +156,13 @@ class Examples:
         """The packaged examples with dotted keys changed, as {"steel.density": 8000.0}. Raises BadInput."""
         path = directory() / "paper" / "examples.toml"
         table = overridden(parsed(path), overrides or {}, path.name)
-        faults = [Fault(path.name, name, unknown_key(name, KEYS)) for name in table if name not in KEYS]
-        found: dict[str, dict[str, Any]] = {}
-        for name, keys in KEYS.items():
+        kinds = get_type_hints(cls)
+        faults = [Fault(path.name, name, unknown_key(name, kinds)) for name in table if name not in kinds]
+        found: dict[str, Table] = {}
+        for name, kind in kinds.items():
             part = table.get(name)
-            values, more = read_table(path.name, name, part if isinstance(part, Mapping) else {}, keys)
+            values, more = read_table(path.name, name, part if isinstance(part, Mapping) else {}, keys_of(kind))
             found[name], faults = values, faults + more
         if faults:
             raise BadInput(faults)
-        return cls(
-            Steel(**found["steel"]),
-            Grids(**found["grids"]),
-            Concrete(**found["concrete"]),
-            RingLining(**found["ring"]),
-            Ptmd(**found["ptmd"]),
-        )
+        return cls(**{name: kind(**found[name]) for name, kind in kinds.items()})

@@ -33,7 +33,7 @@ class RingImpact:
 
 def stiffness(ring: RingLining, nu: float) -> Relaxation:
     """K(t), N/m, "(29)"."""
-    young = sls.of(E0=ring.E0, R1=ring.R1, R2=ring.R2)
+    young = sls.of_ratios(E0=ring.E0, R1=ring.R1, R2=ring.R2)
     return young.scaled(0.25 * math.pi * ring.width / (1.0 - nu**2))
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from functools import cache
-from types import ModuleType
 
 from lumped import laws, restitution
 from lumped.errors import NotReached
+from lumped.laws import LawKind
 from lumped.laws._power_law import spring_of_peak
 from lumped.materials import Material
 from lumped.materials.networks import elastic, sls
@@ -35,7 +35,7 @@ def scene(steel: Steel, contact_modulus: Relaxation) -> Scene:
 @cache
 def solid(steel: Steel, R1: float, R2: float, law: str = "correspondence") -> Result:
     """The 3-parameter solid with E0 = E* of "(25)"; R2 in s. Raises NotReached."""
-    own = scene(steel, sls.of(E0=steel.contact_modulus, R1=R1, R2=R2))
+    own = scene(steel, sls.of_ratios(E0=steel.contact_modulus, R1=R1, R2=R2))
     return _simulated(laws.get(law), own)
 
 
@@ -90,6 +90,5 @@ def _bare(steel: Steel, law: str, values: dict[str, float]) -> Result:
     return _simulated(laws.get(law), own)
 
 
-def _simulated(law: ModuleType, own: Scene) -> Result:
-    result: Result = law.of(own).simulate(own, TOLERANCE)
-    return result
+def _simulated(law: LawKind, own: Scene) -> Result:
+    return law.of(own).simulate(own, TOLERANCE)

@@ -16,8 +16,7 @@ from lumped.paper.examples.free_vibration import ROUNDING, measure, with_ring
 from lumped.paper.examples.given import Examples
 from lumped.paper.examples.steel_impacts import hertz, solid
 from lumped.paper.examples.value import Value, Values, read
-from lumped.result.model_ledger import Peak, model_ledger
-from lumped.result.model_ledger.kinematics import IN_AN_IMPACT, finite_strain
+from lumped.result.model_ledger import IN_AN_IMPACT, Peak, finite_strain, model_ledger
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
@@ -82,7 +81,7 @@ def ring_strain(examples: Examples) -> Values:
 def ring_inertia(examples: Examples) -> Values:
     """Of the lining that moves with the rod, over its assumed thickness and density."""
     ring, ptmd, peak = examples.ring, examples.ptmd, _ring_peak(examples)
-    rod, young = 0.5 * ring.rod_diameter, sls.of(E0=ring.E0, R1=ring.R1, R2=ring.R2)
+    rod, young = 0.5 * ring.rod_diameter, sls.of_ratios(E0=ring.E0, R1=ring.R1, R2=ring.R2)
     mass, energy = 1.0 / (1.0 / ptmd.m1 + 1.0 / ptmd.m2), 0.5 * peak.force * peak.depth
     pulse = Pulse(peak.force, peak.duration, mass, energy, peak.contact_radius)
     estimates = [
@@ -146,7 +145,7 @@ def _left_out(effect: str, impact: Result, scene: Scene | None = None) -> Values
     return tuple(Value(value, abs(more - value)) for value, more in zip(*ends, strict=True))
 
 
-RECOMPUTED = {
+MEMBER = {
     function.__name__: function
     for function in (
         steel_strain, steel_inertia, steel_loss, steel_yield, concrete_strain, concrete_inertia, concrete_yield,

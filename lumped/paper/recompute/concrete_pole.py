@@ -53,4 +53,4 @@ def plateau(examples: Examples) -> Values:
     return tuple(Value(after / before, error * after / before) for before, after in (cut.duration, cut.impulse))
 
 
-RECOMPUTED = {function.__name__: function for function in (peaks, velocity_ratios, solid, memory, peak_ratios, plateau)}
+MEMBER = {function.__name__: function for function in (peaks, velocity_ratios, solid, memory, peak_ratios, plateau)}

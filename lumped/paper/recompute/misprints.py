@@ -92,7 +92,7 @@ def ring_instability(examples: Examples) -> Values:
     return closed(examples.ptmd.k2 - relaxed, relaxed * examples.ptmd.gap)
 
 
-RECOMPUTED = {
+MEMBER = {
     function.__name__: function
     for function in (
         momentum, energy_loss, kelvin_restitution, jankowski_restitution, power_transform, modulus_twice, losses,

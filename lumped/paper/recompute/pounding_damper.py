@@ -133,7 +133,7 @@ def _mass_in_dashpot(examples: Examples) -> float:
     return (ptmd.c2 / (2.0 * ptmd.damping_ratio)) ** 2 / ptmd.k2
 
 
-RECOMPUTED = {
+MEMBER = {
     function.__name__: function
     for function in (
         first_frequency, damping_ratio, damper_mass, structure_stiffness, structure_dashpot, damper_dashpot,

@@ -33,4 +33,4 @@ def intervals(examples: Examples) -> Values:
     return closed(POINTS - 1)
 
 
-RECOMPUTED = {"exponents": exponents, "strain_rate": strain_rate, "intervals": intervals}
+MEMBER = {"exponents": exponents, "strain_rate": strain_rate, "intervals": intervals}

@@ -42,4 +42,4 @@ def impacts(examples: Examples) -> Values:
     return closed(*(number for row in rows for number in row))
 
 
-RECOMPUTED = {function.__name__: function for function in (springs, loss_peak, relaxed_stiffnesses, impacts)}
+MEMBER = {function.__name__: function for function in (springs, loss_peak, relaxed_stiffnesses, impacts)}

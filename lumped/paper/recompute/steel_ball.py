@@ -163,7 +163,7 @@ def _from_elastic(examples: Examples, R1: float) -> Values:
     return tuple(read(damped, name).change_from(read(elastic, name)) for name in ("peak_force", "duration"))
 
 
-RECOMPUTED = {
+MEMBER = {
     function.__name__: function
     for function in (
         ball, fall, contact_modulus, fitted_R1, memory, springs, proposed_peak, proposed_peak_time, proposed_duration,

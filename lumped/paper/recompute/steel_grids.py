@@ -193,7 +193,7 @@ def _impulse_share(examples: Examples, R1: float, R2: float) -> Value:
     return read(solid(steel, R1, R2), "impulse", 1.0 / (2.0 * steel.mass * steel.velocity))
 
 
-RECOMPUTED = {
+MEMBER = {
     function.__name__: function
     for function in (
         peak_7a_small_R1, peak_7a_large_R1, duration_7a_small_R1, duration_7a_large_R1, duration_change_7a,

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from lumped.numbers import Real
 from lumped.solvers.point.nodes import Nodes
 
 Array = NDArray[np.float64]
@@ -107,10 +108,10 @@ class PointLaw(Protocol):
     def remembered(self, depth: Array) -> tuple[float, ...]:
         """The memory at the end of such a step, from the depths at its points, shape (s,)."""
 
-    def force(self, depth: Any, rate: Any, stage: Stage) -> Any:
+    def force(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """F, compression positive."""
 
-    def tangents(self, depth: Any, rate: Any, stage: Stage) -> tuple[Any, Any]:
+    def tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
         """dF/d depth, N/m, and dF/d rate, N s/m."""
 
     def corners(self, stage: Stage) -> tuple[float, ...]:
@@ -130,7 +131,7 @@ class PointLaw(Protocol):
     def carried(self, depth: float, stage: Stage) -> float:
         """The weight, N, under which a striker stays at rest at a depth; NaN of what creeps under every one."""
 
-    def lost(self, depth: Any, rate: Any, stage: Stage) -> Any:
+    def lost(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """The part of the force whose work is not stored, N."""
 
     def stored(self, depth: float, stage: Stage) -> float:

@@ -7,13 +7,13 @@ the loads y there, w_k = q_k w_k(0) + L_k y, so the force is too: F = b + B y.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Relaxation
+from lumped.numbers import Real
 from lumped.solvers.point.nodes import Nodes
 
 Array = NDArray[np.float64]
@@ -31,11 +31,11 @@ class HereditaryLoad:
         """The memory of a relaxed surface."""
         return (0.0,) * len(self.modulus.moduli)
 
-    def load(self, depth: Any) -> Any:
+    def load(self, depth: Real) -> Real:
         """y, zero above the surface."""
         return self.curve.force(np.maximum(depth, 0.0))
 
-    def slope(self, depth: Any) -> Any:
+    def slope(self, depth: Real) -> Real:
         """dy/d depth."""
         return self.curve.dforce_ddepth(np.maximum(depth, 0.0))
 
@@ -45,7 +45,7 @@ class HereditaryLoad:
         over_radius = np.asarray(self.curve.depth_slope(radius))
         return np.asarray(np.divide(2.0, over_radius, out=np.zeros_like(radius), where=over_radius > 0.0))
 
-    def force(self, depth: Any, rate: Any, memory: Any) -> Array:
+    def force(self, depth: Real, rate: Real, memory: Real) -> Array:
         """F, N; `memory` has the branches first, shape (K, ...)."""
         remembered = np.tensordot(np.array(self.modulus.moduli), np.asarray(memory), axes=(0, 0))
         viscous = self.modulus.viscosity * self.slope(depth) * rate

@@ -9,11 +9,13 @@ that of the time left, in which it is smooth.
 from __future__ import annotations
 
 from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
+
+from lumped.numbers import Real
 
 Array = NDArray[np.float64]
 STAGES = 8
@@ -89,7 +91,7 @@ def radau(count: int) -> Nodes:
     return Nodes(1, 0.0, False, points, pace, once, once @ once, last, series, first, leaving, points)
 
 
-def paced(place: Array, power: Any, begun: Any, mirrored: Any) -> tuple[Array, Array]:
+def paced(place: Array, power: Real, begun: Real, mirrored: Real) -> tuple[Array, Array]:
     """Shares of a step's time at places in it, and the time's slope over the place there; all of one shape."""
     low, high = begun ** (1.0 / power), (1.0 + begun) ** (1.0 / power)
     root = low + (high - low) * np.where(mirrored, 1.0 - place, place)

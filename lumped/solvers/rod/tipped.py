@@ -10,12 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import NotReached
+from lumped.numbers import Real
 from lumped.solvers.rod.waves import Waves
 
 Array = NDArray[np.float64]
@@ -33,6 +34,14 @@ class RodScales:
     time: float
 
 
+class _BetweenEchoes(Protocol):
+    """The states x, x', u between two echoes, at the times of an integrator's steps `ts`, s, and at any others."""
+
+    ts: Array
+
+    def __call__(self, t: Real) -> Array: ...
+
+
 @dataclass(frozen=True)
 class TippedImpact:
     """One impact: ``force`` over the dent's depth, N and m; mass, kg; velocity, m/s; gravity along the motion, m/s2.
@@ -42,7 +51,7 @@ class TippedImpact:
     """
 
     waves: Waves
-    force: Callable[[Any], Any]
+    force: Callable[[Real], Real]
     mass: float
     velocity: float
     gravity: float
@@ -52,7 +61,7 @@ class TippedImpact:
     longest: float = LONGEST
 
     @cached_property
-    def pieces(self) -> tuple[tuple[Any, ...], float, bool]:
+    def pieces(self) -> tuple[tuple[_BetweenEchoes, ...], float, bool]:
         """A dense answer an echo, when contact ends or is no longer followed, s, and whether it ended.
 
         Raises NotReached.
@@ -60,7 +69,7 @@ class TippedImpact:
         from scipy.integrate import solve_ivp
 
         longest = self.longest * min(self.scales.time, self.waves.delay)
-        state, found, begin = np.array([0.0, self.velocity, 0.0]), list[Any](), 0.0
+        state, found, begin = np.array([0.0, self.velocity, 0.0]), list[_BetweenEchoes](), 0.0
         tolerances = self.rtol * ABSOLUTE * np.array([self.scales.depth, self.velocity, self.scales.depth])
 
         def parted(_: float, y: Array) -> float:
@@ -83,7 +92,7 @@ class TippedImpact:
             state, begin = solved.y[:, -1], end
         raise NotReached(f"rod: more than {MOST_ECHOES} echoes; accepted: a heavier rod, an earlier motion.end_time")
 
-    def _rates(self, before: list[Any], begin: float) -> Callable[[float, Array], list[float]]:
+    def _rates(self, before: list[_BetweenEchoes], begin: float) -> Callable[[float, Array], list[float]]:
         """Rates between two echoes, ``before`` what was found of the time until ``begin``."""
         impedance, delay = self.waves.impedance, self.waves.delay
         chain = before[::-1]

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from fe_contact.settings import WaveNumerics
 from fe_contact.studies.tradeoff.design import Settings, grid
-from fe_contact.studies.tradeoff.targets._rod import forget as forget
-from fe_contact.studies.tradeoff.targets._rod import operations as operations
+from fe_contact.studies.tradeoff.targets._rod import forget, operations
+from fe_contact.studies.tradeoff.tried import TriedBody
 from fe_contact.studies.tradeoff.truth import Truth
-from fe_contact.waves.falling_block import checked
-from fe_contact.waves.numerics import WaveNumerics
+from fe_contact.waves.targets._block import bar_of
 from lumped.scene.scene import Scene
 from lumped.solvers.bar import Bounces, StraightBar, bounces
 
@@ -21,7 +21,7 @@ BEFORE = 1.0 - 1e-12  # of a time: what comes just before it
 
 def exact(scene: Scene) -> Truth | None:
     """By characteristics; None of a viscoelastic bar, or one with a mass behind it."""
-    bar = checked(scene)
+    bar = bar_of(scene)
     if not bar.relaxation.is_elastic or bar.end_mass > 0.0:
         return None
     speed = math.sqrt(bar.relaxation.glassy / bar.density)
@@ -55,3 +55,6 @@ def variations(base: WaveNumerics, quick: bool) -> Iterator[Settings]:
         yield from grid(scheme=("generalised_alpha", "trapezoidal"), rho=(0.8,), mass=("consistent", "spread"))
         yield from grid(scheme=("hht",), rho=(0.8,), mass=("redistributed", "spread"))
         yield from grid(enforcement=("penalty", "corrected", "augmented"), penalty=(1.0, 1e2))
+
+
+BLOCK = TriedBody(variations, exact, operations, forget)

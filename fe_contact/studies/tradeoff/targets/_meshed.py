@@ -6,12 +6,13 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from fe_contact.settings import WaveNumerics
 from fe_contact.studies.tradeoff.design import Settings, grid
+from fe_contact.studies.tradeoff.tried import TriedBody
 from fe_contact.studies.tradeoff.truth import Truth
 from fe_contact.waves.ball_body import unit_ball
 from fe_contact.waves.half_space_body import unit_body
 from fe_contact.waves.layer_body import unit_layer
-from fe_contact.waves.numerics import WaveNumerics
 from lumped.scene.scene import Scene
 
 
@@ -51,3 +52,6 @@ def operations(work: Mapping[str, float]) -> float:
     """
     unknowns = work["degrees_of_freedom"]
     return float(work["factorizations"] * unknowns**1.5 + work["solves"] * unknowns * np.log2(unknowns))
+
+
+MESHED = TriedBody(variations, exact, operations, forget)

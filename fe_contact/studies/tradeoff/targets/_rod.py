@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from fe_contact.settings import WaveNumerics
 from fe_contact.studies.tradeoff.design import Settings, grid
+from fe_contact.studies.tradeoff.tried import TriedBody
 from fe_contact.studies.tradeoff.truth import Truth
-from fe_contact.waves.numerics import WaveNumerics
 from lumped import laws
 from lumped.errors import BadInput
 from lumped.scene.scene import Scene
@@ -40,3 +41,6 @@ def variations(base: WaveNumerics, quick: bool) -> Iterator[Settings]:
 def operations(work: Mapping[str, float]) -> float:
     """A line of elements: every step some operations an unknown."""
     return work["steps"] * work["degrees_of_freedom"]
+
+
+ROD = TriedBody(variations, exact, operations, forget)

@@ -1,13 +1,8 @@
-"""The rod, struck flat or dented."""
+"""The rod, struck flat or dented: steps and elements are one."""
 
 from __future__ import annotations
 
-from types import ModuleType
+from fe_contact.studies.tradeoff.targets._rod import ROD
+from fe_contact.studies.tradeoff.tried import TriedTarget
 
-from fe_contact.studies.tradeoff.targets import _rod
-from lumped.scene.scene import Scene
-
-
-def of(scene: Scene) -> ModuleType:
-    """Steps and elements are one."""
-    return _rod
+MEMBER = TriedTarget(lambda scene: ROD)

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable
+from dataclasses import dataclass
 
 from lumped.solvers.point.bodies import Bodies, State
 from lumped.solvers.point.hereditary import HereditaryLoad
 
 
-class MemoryRule(Protocol):
-    """A module of this folder."""
+@dataclass(frozen=True)
+class MemoryRule:
+    """A member of this folder.
 
-    def returned(self, load: HereditaryLoad, bodies: Bodies, last: State) -> tuple[float, State] | None:
-        """How long the bodies are apart, s, and the state when contact begins again; None: they never meet."""
+    `returned`: from a load, its bodies and the state in which they parted, how long they are apart, s, and the state
+    when contact begins again; None: they never meet.
+    """
+
+    returned: Callable[[HereditaryLoad, Bodies, State], tuple[float, State] | None]

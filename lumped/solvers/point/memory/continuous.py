@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from lumped.solvers.point.bodies import Bodies, State
 from lumped.solvers.point.flight import bisected, flown, time_to_return
 from lumped.solvers.point.hereditary import HereditaryLoad, StepLoad
+from lumped.solvers.point.memory.base import MemoryRule
 from lumped.solvers.point.step import NODES
 
 Array = NDArray[np.float64]
@@ -48,3 +49,6 @@ def _run(
         depth = last.depth + times * (last.rate + 0.5 * bodies.gravity * times)
         memory = tuple(StepLoad.of(load, memory, length, NODES).memories(depth)[:, -1].tolist())
     return memory
+
+
+MEMBER = MemoryRule(returned)

@@ -11,6 +11,7 @@ from lumped.materials.recovery import Recovery
 from lumped.solvers.point.bodies import Bodies, State
 from lumped.solvers.point.flight import bisected, flown
 from lumped.solvers.point.hereditary import HereditaryLoad
+from lumped.solvers.point.memory.base import MemoryRule
 
 Array = NDArray[np.float64]
 
@@ -56,3 +57,6 @@ class FreeSurface:
             filled = np.divide(-np.expm1(-time * apart), apart, out=np.full_like(left, time), where=apart != 0.0)
             memories += amplitude * rates * slower * filled
         return np.append(self.load(time), memories)
+
+
+MEMBER = MemoryRule(returned)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from lumped.solvers.point.bodies import Bodies, State
 from lumped.solvers.point.flight import flown, time_to_return
 from lumped.solvers.point.hereditary import HereditaryLoad
+from lumped.solvers.point.memory.base import MemoryRule
 
 
 def returned(load: HereditaryLoad, bodies: Bodies, last: State) -> tuple[float, State] | None:
@@ -13,3 +14,6 @@ def returned(load: HereditaryLoad, bodies: Bodies, last: State) -> tuple[float, 
     if time is None:
         return None
     return time, flown(last, bodies.gravity, time)._replace(depth=0.0, memory=load.at_rest)
+
+
+MEMBER = MemoryRule(returned)

@@ -2,27 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 from fe_contact.assembly.forms import check_compressible
 from fe_contact.budget.plan import Plan
-from fe_contact.progress import Progress, silent
-from fe_contact.settings import RANGES
+from fe_contact.progress import Progress
+from fe_contact.settings import RANGES, Given, WaveNumerics
 from fe_contact.waves.cost import Cost
 from fe_contact.waves.flying_ball import on_plane
-from fe_contact.waves.numerics import WaveNumerics
 from fe_contact.waves.plan import SPRINGS, placed
-from fe_contact.waves.refining import cost_of, refined_to_tolerance
+from fe_contact.waves.refining import Waves, cost_of
 from fe_contact.waves.refusals import changing, too_fast
+from fe_contact.waves.targets.base import WaveTarget
 from lumped.errors import BadInput
 from lumped.laws import mdr
 from lumped.laws.mdr import ImpactScales
-from lumped.result.result import Result
 from lumped.scene.scene import Scene
 
 
-def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
+def plan(scene: Scene, given: Given) -> Plan:
     """Choose what ``given`` (checked settings) leaves open; the far end is that of the ball.
 
     Raises NotReached where even the row of springs does not come to an end.
@@ -30,7 +26,7 @@ def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
     return flying(scene, given, mdr.estimate(scene, SPRINGS), scene.geometry.shape.tip_radius or 0.0)
 
 
-def flying(scene: Scene, given: Mapping[str, Any], scales: ImpactScales, radius: float) -> Plan:
+def flying(scene: Scene, given: Given, scales: ImpactScales, radius: float) -> Plan:
     """What ``given`` leaves open for an impact of these scales on bodies that end with a ball of this radius, m."""
     check_compressible(scene)
     low, high = RANGES["far_radius"]
@@ -42,10 +38,9 @@ def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
     return cost_of(scene, numerics, on_plane)
 
 
-def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
-    """Force history with error bars. Raises BadInput for a scene it is not for, NotReached where no march ends."""
-    check(scene)
-    return refined_to_tolerance(scene, plan(scene, given), on_plane, progress)
+def way(scene: Scene, chosen: Plan, progress: Progress) -> Waves:
+    """Marched with waves, refined by what is missing."""
+    return Waves.of(scene, chosen, on_plane, progress)
 
 
 def check(scene: Scene) -> None:
@@ -54,3 +49,6 @@ def check(scene: Scene) -> None:
     faults = [*too_fast(scene), *changing(scene)]
     if faults:
         raise BadInput(faults)
+
+
+BALL = WaveTarget(check=check, plan=plan, cost=cost, way=way)

@@ -6,42 +6,41 @@ Depth and velocity are those of the centre of mass of block and rigid mass, whic
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from functools import partial
-from typing import Any
 
 import numpy as np
 
 from fe_contact.bodies.bar import TIP, Bar, falling, pitch
 from fe_contact.budget.plan import Plan
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics.march import Choices, march
+from fe_contact.dynamics.mass.base import MASSES
 from fe_contact.dynamics.pressed import Enforced
-from fe_contact.progress import Progress, silent
-from fe_contact.settings import ENFORCEMENTS, MASSES, WAVE_SCHEMES
+from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
+from fe_contact.progress import Progress
+from fe_contact.settings import Given, WaveNumerics
 from fe_contact.waves.bar_reading import Ending, read
 from fe_contact.waves.cost import Cost
-from fe_contact.waves.doubling import certified
-from fe_contact.waves.numerics import WaveNumerics
+from fe_contact.waves.doubling import Doubling, witness
 from fe_contact.waves.rod_record import Run
-from fe_contact.waves.usual import witness
+from fe_contact.waves.targets.base import WaveTarget
 from lumped.errors import BadInput, Fault
-from lumped.result.model_ledger.motion import gravity
-from lumped.result.result import Result
+from lumped.result.model_ledger import gravity
 from lumped.result.sufficiency import LedgerEntry
 from lumped.scene.scene import Scene
-from lumped.schema.members import get
+from lumped.schema import Table
 from lumped.shapes._block import Block
 
 DEFAULT_TOLERANCE = 3e-3
 STEPS, MANY, MOST = 200, 1600, 12_800  # while a wave goes to the far end and back: at first, and at all
 LIGHT = 32.0  # of them in the part of the bar that is as heavy as the mass behind it
-USUAL: dict[str, Any] = {"enforcement": "exact", "scheme": "staged"}
+USUAL: Table = {"enforcement": "exact", "scheme": "staged"}
 PAUSE = 0.25  # of that time within which several contacts count as one
 
 
-def plan(scene: Scene, given: Mapping[str, Any]) -> Plan:
+def plan(scene: Scene, given: Given) -> Plan:
     """Choose what ``given`` (checked settings) leaves open; a sudden force or the energy of many contacts is kept."""
-    bar, echo = checked(scene), echo_time(scene)
+    bar, echo = bar_of(scene), echo_time(scene)
     numerics = WaveNumerics(
         tolerance=DEFAULT_TOLERANCE,
         elements_per_contact=1.0,
@@ -64,10 +63,14 @@ def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
     return Cost.of(max(numerics.steps // 2, 2), numerics, scene.motion.impacts)
 
 
-def fe(scene: Scene, given: Mapping[str, Any], progress: Progress = silent) -> Result:
-    """History of one or several contacts with error bars. Raises BadInput, or NotReached where no march ends."""
-    chosen = plan(scene, given)
-    return certified(scene, chosen, partial(run, scene), partial(_varied, scene), MOST, progress)
+def way(scene: Scene, chosen: Plan, progress: Progress) -> Doubling:
+    """Marched with steps and elements together."""
+    return Doubling(scene, chosen, partial(run, scene), partial(_varied, scene), MOST, False, progress)
+
+
+def check(scene: Scene) -> None:
+    """Raise BadInput where waves in the block are not one-dimensional, or have no speed."""
+    bar_of(scene)
 
 
 def _steps(bar: Bar) -> int:
@@ -95,7 +98,7 @@ def _varied(scene: Scene, numerics: WaveNumerics) -> dict[str, WaveNumerics]:
     return {"time_step": half, **witness(numerics, USUAL | {"mass": usual_mass(scene)})}
 
 
-def checked(scene: Scene) -> Bar:
+def bar_of(scene: Scene) -> Bar:
     """The bar that the block is; raises BadInput where waves in it are not one-dimensional, or have no speed."""
     block, material, faults = _block(scene), scene.geometry.material, []
     if not block.uniform:
@@ -112,20 +115,20 @@ def checked(scene: Scene) -> Bar:
 
 def echo_time(scene: Scene) -> float:
     """2 L/c of the fastest waves, s."""
-    bar = checked(scene)
+    bar = bar_of(scene)
     return 2.0 * bar.length * math.sqrt(bar.density / bar.relaxation.glassy)
 
 
 def run(scene: Scene, numerics: WaveNumerics) -> Run:
     """One march, its steps those in which a wave crosses an element. Raises NotReached."""
-    bar, echo = checked(scene), echo_time(scene)
+    bar, echo = bar_of(scene), echo_time(scene)
     elements = max(numerics.steps // 2, 2)
     tip = usual_tip(scene)
-    body = falling(bar, elements, get(MASSES, numerics.mass), scene.gravity, tip=tip)
+    body = falling(bar, elements, MASSES.get(numerics.mass), scene.gravity, tip=tip)
     size = pitch(bar.length, elements, tip)
     choices = Choices(
-        scheme=get(WAVE_SCHEMES, numerics.scheme).of(numerics.rho),
-        enforced=Enforced(get(ENFORCEMENTS, numerics.enforcement), numerics.penalty * bar.relaxation.glassy / size),
+        scheme=WAVE_SCHEMES.get(numerics.scheme).of(numerics.rho),
+        enforced=Enforced(ENFORCEMENTS.get(numerics.enforcement), numerics.penalty * bar.relaxation.glassy / size),
         step=0.5 * echo * size / bar.length,
     )
     carried = np.asarray(body.inertia.sum(axis=0)).ravel()
@@ -170,3 +173,6 @@ def _ledger(scene: Scene, bar: Bar) -> tuple[LedgerEntry, ...]:
         LedgerEntry("finite strain", "small displacements", None, "v/c of either sign", spread=(-strain, strain)),
         gravity(scene, scene.model, force, bar.density * bar.area * bar.length + bar.end_mass),
     )
+
+
+BLOCK = WaveTarget(check=check, plan=plan, cost=cost, way=way)

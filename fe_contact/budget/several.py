@@ -1,6 +1,4 @@
-"""Several contacts as one result: one history through the flights between them, one account of energy.
-
-Certified contacts in a row: bars of every contact and of its touch.
+"""Several contacts as one answer: one history through the flights between them, one account of energy.
 
 When a contact begins is known no better than how the one before ended: its bar is the larger one of what the varied
 settings change of the touch itself and of what the bars before amount to over the flight, 2 v/g long but for the dent.
@@ -9,90 +7,116 @@ settings change of the touch itself and of what the bars before amount to over t
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.certify import CAUSES, Budget, Several
+from fe_contact.budget.budget import CAUSES, Budget, Contacts
 from fe_contact.budget.change import Change
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.softening import Softening
-from fe_contact.march.flight import UNFOLLOWED
-from fe_contact.results.told import history, quantities_of
+from fe_contact.march.flight import Grounded
+from fe_contact.march.impacts import Followed
+from fe_contact.settings import Numerics
 from fe_contact.steppers.march import Strike
 from lumped.result.history import COLUMNS, History
-from lumped.result.result import UNITS, Quantity, Result, unmet
+from lumped.result.result import UNITS, Quantity
 
 IN_FLIGHT = 65  # rows of a flight
-TOLD = ("duration", "restitution", "peak_force", "peak_depth")  # of every contact
+OF_EACH = ("duration", "restitution", "peak_force", "peak_depth")  # of every contact
 Shares = Mapping[str, float]  # of an error, by cause
 
 
-def whole(first: Result, certified: Several) -> Result:
-    """The result of all contacts, from that of the first."""
-    row, followed, last = Row(certified.row), certified.followed, certified.row[-1]
-    shares = {name: row.shares(name) for name in UNITS}
-    quantities = row.quantities(shares)
-    missed = [unmet(quantities_of(one), first.tolerance) for one in certified.row]
-    messages = [f"contact {number}: {message}" for number, message in enumerate(missed, start=1) if message]
-    if followed.grounded is not None:
-        messages.append(f"contacts followed: {len(missed)} of {first.scene.motion.impacts}; {followed.grounded.value}")
-    peak = quantities["peak_force"].value or np.inf
-    return replace(
-        first,
-        converged=not any(missed) and followed.grounded not in UNFOLLOWED,
-        separated=last.curve.separated,
-        history=_history(row, first.tolerance),
-        quantities=quantities,
-        contacts=tuple(row.told(number) for number in range(len(missed))),
-        error_budget={cause: value / peak for cause, value in shares["peak_force"].items()},
-        error_budget_by_quantity=shares,
-        energy=last.curve.energy,
-        energy_error={name: last.energy_error(name) for name in first.energy_error},
-        message="; ".join(messages),
-    )
+@dataclass(frozen=True)
+class Several(Budget):
+    """The budget of a first contact, all contacts ``followed`` in the finest run, and those of the ``later`` ones."""
 
+    followed: Followed
+    later: tuple[Budget, ...]
 
-def _history(row: Row, tolerance: float) -> History:
-    """Rows of all contacts and of the flights between them, by the clock of the first touch."""
-    tables = list[Array]()
-    for number, budget in enumerate(row.budgets):
-        if number:
-            tables.append(_flight(row.budgets[number - 1].curve, budget.curve.strike.touched_at))
-        told = history(budget, tolerance)
-        table = np.array([getattr(told, name) for name in COLUMNS])
-        table[0] += budget.curve.strike.touched_at
-        tables.append(table)
-    columns = dict(zip(COLUMNS, np.hstack(tables), strict=True))
-    for number, budget in enumerate(row.budgets):
-        columns["force_error"] += _late(budget.curve, columns["time"], row.late(number))
-    return History(**columns)
+    @property
+    def row(self) -> tuple[Budget, ...]:
+        """All contacts in order."""
+        return (self, *self.later)
 
-
-def _flight(curve: Curve, touch: float) -> Array:
-    """Rows between the end of a contact and the touch that follows, s."""
-    parted = curve.strike.touched_at + curve.duration
-    flown = np.linspace(parted, np.nextafter(touch, 0.0), IN_FLIGHT)[1:] - parted
-    velocity = curve.strike.gravity * flown - curve.leaving_speed
-    depth = curve.dense.depth[-1] + 0.5 * flown * (velocity - curve.leaving_speed)
-    return np.array([parted + flown, depth, velocity, *np.zeros((3, flown.size))])
-
-
-def _late(curve: Curve, time: Array, late: float) -> Array:
-    """What the force at times, s, changes where a contact comes as much earlier or later, N."""
-    since, shift = time - curve.strike.touched_at, min(late, curve.duration)
-    force = curve.force(since)
-    return np.maximum(np.abs(curve.force(since + shift) - force), np.abs(curve.force(since - shift) - force))
+    @property
+    def parts(self) -> tuple[Mapping[str, Quantity], ...]:
+        """The quantities of every contact."""
+        return tuple(one.quantities for one in self.row)
 
 
 @dataclass(frozen=True)
 class Row:
-    """Budgets of contacts in order."""
+    """All contacts as one: one history through the flights between them, one account of energy."""
 
-    budgets: tuple[Budget, ...]
+    several: Several
+
+    @property
+    def budgets(self) -> tuple[Budget, ...]:
+        """Those of the contacts, in order."""
+        return self.several.row
+
+    @property
+    def numerics(self) -> Numerics:
+        """The settings of the finest run."""
+        return self.several.numerics
+
+    @property
+    def separated(self) -> bool:
+        """Whether the last contact ended."""
+        return self.budgets[-1].separated
+
+    @property
+    def parts(self) -> tuple[Mapping[str, Quantity], ...]:
+        """The quantities of every contact."""
+        return self.several.parts
+
+    @property
+    def contacts(self) -> Contacts:
+        """As of a lumped law, and the bar of everything."""
+        return tuple(self._contact(number) for number in range(len(self.budgets)))
+
+    @property
+    def grounded(self) -> Grounded | None:
+        """Why there are fewer contacts than were asked for, None: there are not."""
+        return self.several.followed.grounded
+
+    @property
+    def energy(self) -> Mapping[str, float]:
+        """The account at the end of the last contact, J."""
+        return self.budgets[-1].energy
+
+    @property
+    def energy_errors(self) -> Mapping[str, float]:
+        """Bars of its terms, J; what is left over has none."""
+        return self.budgets[-1].energy_errors
+
+    @property
+    def counted(self) -> Mapping[str, int]:
+        """Counted work of all runs."""
+        return self.several.counted
+
+    def error(self, name: str, cause: str) -> float:
+        """Error of a quantity of all contacts by one cause, in its unit."""
+        return self._shares(name)[cause]
+
+    def history(self) -> History:
+        """Rows of all contacts and of the flights between them, by the clock of the first touch."""
+        tables = list[Array]()
+        for number, budget in enumerate(self.budgets):
+            if number:
+                tables.append(_flight(self.budgets[number - 1].curve, budget.curve.strike.touched_at))
+            pressed = budget.history()
+            table = np.array([getattr(pressed, name) for name in COLUMNS])
+            table[0] += budget.curve.strike.touched_at
+            tables.append(table)
+        columns = dict(zip(COLUMNS, np.hstack(tables), strict=True))
+        for number, budget in enumerate(self.budgets):
+            columns["force_error"] += _late(budget.curve, columns["time"], self.late(number))
+        return History(**columns)
 
     @cached_property
     def starts(self) -> tuple[Shares, ...]:
@@ -105,7 +129,7 @@ class Row:
             found.append({cause: max(moved[cause], found[-1][cause] + amount[cause]) for cause in CAUSES})
         return tuple(found)
 
-    def shares(self, name: str) -> Shares:
+    def _shares(self, name: str) -> Shares:
         """Error of a quantity of all contacts by cause, in its unit."""
         errors = [{cause: one.error(name, cause) for cause in CAUSES} for one in self.budgets]
         if name == "impulse":
@@ -116,7 +140,8 @@ class Row:
         late = self.starts[number] if name == "peak_time" else dict.fromkeys(CAUSES, 0.0)
         return {cause: late[cause] + errors[number][cause] for cause in CAUSES}
 
-    def quantities(self, shares: Mapping[str, Shares]) -> dict[str, Quantity]:
+    @cached_property
+    def quantities(self) -> Mapping[str, Quantity]:
         """Those of the hardest and the deepest contact, duration and restitution of the first, the whole impulse.
 
         The history's error is that of its worst contact, each by the clock of its own touch.
@@ -126,19 +151,19 @@ class Row:
         values["peak_time"] = self._start(self._teller("peak_time")) + (values["peak_time"] or 0.0)
         values["impulse"] = sum(one["impulse"] or 0.0 for one in known)
         values["history_l2"] = 0.0
-        bars = {name: sum(shares[name].values()) for name in UNITS}
+        bars = {name: sum(self._shares(name).values()) for name in UNITS}
         return {
             name: Quantity(values[name], None if values[name] is None else bars[name], unit)
             for name, unit in UNITS.items()
         }
 
-    def told(self, number: int) -> dict[str, float | None]:
-        """One contact of result.json: as of a lumped law, and the bar of everything."""
+    def _contact(self, number: int) -> dict[str, float | None]:
+        """One contact of result.json."""
         budget, start = self.budgets[number], self._start(number)
-        known, late = quantities_of(budget), self.late(number)
+        known, late = budget.quantities, self.late(number)
         found: dict[str, float | None] = {"start": start, "start_error": late}
         found |= {"velocity": budget.curve.strike.velocity, "velocity_error": self._velocity_error(number)}
-        for name in TOLD:
+        for name in OF_EACH:
             found |= {name: known[name].value, f"{name}_error": known[name].error}
         when = known["peak_time"]
         return found | {"peak_time": start + (when.value or 0.0), "peak_time_error": late + (when.error or 0.0)}
@@ -165,6 +190,22 @@ class Row:
         moved = _moved(now, lambda strike: strike.velocity)
         speed = before.curve.strike.velocity
         return sum(max(moved[cause], speed * before.error("restitution", cause)) for cause in CAUSES)
+
+
+def _flight(curve: Curve, touch: float) -> Array:
+    """Rows between the end of a contact and the touch that follows, s."""
+    parted = curve.strike.touched_at + curve.duration
+    flown = np.linspace(parted, np.nextafter(touch, 0.0), IN_FLIGHT)[1:] - parted
+    velocity = curve.strike.gravity * flown - curve.leaving_speed
+    depth = curve.dense.depth[-1] + 0.5 * flown * (velocity - curve.leaving_speed)
+    return np.array([parted + flown, depth, velocity, *np.zeros((3, flown.size))])
+
+
+def _late(curve: Curve, time: Array, late: float) -> Array:
+    """What the force at times, s, changes where a contact comes as much earlier or later, N."""
+    since, shift = time - curve.strike.touched_at, min(late, curve.duration)
+    force = curve.force(since)
+    return np.maximum(np.abs(curve.force(since + shift) - force), np.abs(curve.force(since - shift) - force))
 
 
 def _moved(budget: Budget, of: Callable[[Strike], float]) -> Shares:

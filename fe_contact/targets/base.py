@@ -1,0 +1,47 @@
+"""What finite elements know of a target."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from fe_contact.assembly.forms import Array
+from fe_contact.bodies.pressing import Still
+from fe_contact.settings import Numerics
+from fe_contact.steppers.flat_end import FlatEnd
+from fe_contact.steppers.struck import Deformable, Struck
+from lumped.scene.geometry import Geometry
+from lumped.scene.indenter import Indenter
+from lumped.schema.members import Folder
+
+
+@dataclass(frozen=True)
+class MeshedTarget:
+    """``still(indenter, radii, numerics)``: the target pressed slowly, ``radii``, m, those of the contacts expected.
+
+    ``struck(geometry, numerics)``: the target in an impact, whose surface alone remembers; ``relaxing``: the same of a
+    bulk that relaxes. None where there is no such impact in this version.
+    """
+
+    still: Callable[[Indenter, Array, Numerics], Still]
+    struck: Callable[[Geometry, Numerics], Deformable] | None = None
+    relaxing: Callable[[Geometry, Numerics], Deformable] | None = None
+
+
+TARGETS = Folder[MeshedTarget]("fe_contact.targets", "numerics", "target")
+
+
+def struck(geometry: Geometry, numerics: Numerics) -> Struck:
+    """The body that stands for a target in an impact, one that :func:`fe_contact.reference.check_target` lets pass.
+
+    One whose surface remembers where that is all, else its bulk. Under an end that no depth widens one stiffness is
+    enough.
+    """
+    target, flat = TARGETS.get(geometry.target.name), geometry.target.fixed_radius(geometry.shape)
+    if not geometry.surface_remembers:
+        assert target.relaxing is not None
+        return target.relaxing(geometry, numerics)
+    if flat is not None:
+        return FlatEnd.of(geometry, flat, numerics, target.still)
+    assert target.struck is not None
+    return target.struck(geometry, numerics)

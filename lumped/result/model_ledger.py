@@ -1,0 +1,271 @@
+"""What a model of impact or slow indentation leaves out, each effect estimated relative to peak force."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from numpy.polynomial import Polynomial
+
+from lumped.errors import FeContactError
+from lumped.materials.radiation import Pulse
+from lumped.result.history import History
+from lumped.result.result import Quantity
+from lumped.result.sufficiency import LedgerEntry
+from lumped.scene.indenter import Indenter
+from lumped.scene.scene import Scene
+from lumped.scene.tables import Model
+from lumped.shapes.base import Shape
+from lumped.targets.base import Target
+from lumped.targets.rod import Rod
+
+GRAVITY = 9.81
+INERTIA = "model.inertia"
+# c1 (1 - nu)^2, cubic in nu, of elastic energies with finite strains; tests/fe/test_finite_strain.py finds it again.
+FIRST_ORDER = {
+    "St Venant-Kirchhoff": Polynomial([-0.106722, -0.244066, 0.549732, -0.354504]),
+    "neo-Hooke": Polynomial([0.247781, -0.830110, 0.390577, 0.426889]),
+    "Hencky": Polynomial([0.425033, -1.477636, 1.302120, -0.093957]),
+}
+# By how much less a rod's end comes in than a half-space, its uniform shortening apart, over F/(E* b), b the rod's
+# radius: 0.61 at nu = -0.5 to 0.66 at 0.5; tests/fe/test_rod_end.py finds it again.
+ROD_END = 0.65
+IN_AN_IMPACT = 0.5  # of the change at one depth: W = (2/5) k d^(5/2) + (1/3) k c1 d^3/sqrt(R) is what was brought
+PROFILE = "model.profile = 'exact'"
+# Hertz: the first yield, below the surface, is where the peak pressure is 1.6 Y (Johnson, ISBN 978-0-521-34796-9).
+FIRST_YIELD = 1.6
+
+
+@dataclass(frozen=True)
+class Peak:
+    """Scales of an impact: N, m, m, s. `duration` may be twice the time of the peak."""
+
+    force: float
+    depth: float
+    contact_radius: float
+    duration: float
+
+    @classmethod
+    def of(cls, quantities: Mapping[str, Quantity], history: History) -> Peak:
+        """Of an impact; where its contact does not end, the pulse lasts twice as long as to its peak."""
+        number = {name: quantity.value or 0.0 for name, quantity in quantities.items()}
+        duration = number["duration"] or 2.0 * number["peak_time"]
+        return cls(number["peak_force"], number["peak_depth"], float(history.contact_radius.max()), duration)
+
+    @property
+    def steepness(self) -> float:
+        """depth/a: for a sphere a/R."""
+        return self.depth / self.contact_radius if self.contact_radius > 0.0 else 0.0
+
+
+def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[LedgerEntry, ...]:
+    """The ledger of a scene under `model` (default: the scene's own), with the scales of its impact."""
+    resolved = model or scene.model
+    if not scene.has_geometry:
+        return (gravity(scene, resolved, peak.force, scene.mass),)
+    dented = isinstance(scene.target, Rod) and scene.profile.fixed_radius is None
+    if dented:
+        peak = of_dent(scene, peak)
+    height = scene.geometry.target.pressed_height(scene.geometry.shape)
+    entries = [
+        inertia(scene, resolved, peak),
+        profile(scene.geometry.shape, resolved, peak),
+        finite_strain(scene.geometry.material.nu, height, peak, IN_AN_IMPACT),
+        sideways(scene, peak),
+        series(scene, peak),
+        striker(scene),
+        gravity(scene, resolved, peak.force, scene.mass),
+        plasticity(scene, peak),
+        adhesion(scene, peak),
+    ]
+    if scene.geometry.shape.plane:
+        entries.append(ends(scene.geometry.shape, scene.geometry.target, scene.geometry.material.nu))
+    if dented:
+        entries.append(rod_end(scene, peak))
+    return tuple(entries)
+
+
+def ledger_at_rest(indenter: Indenter, peak: Peak) -> tuple[LedgerEntry, ...]:
+    """The same of a slow indentation at its deepest, which has neither inertia nor time."""
+    shape, target, nu = indenter.shape, indenter.target, indenter.material.nu
+    entries = [finite_strain(nu, target.pressed_height(shape), peak)]
+    if target.fixed_radius(shape) is None:
+        entries.append(profile(shape, indenter.model, peak))
+    return (*entries, ends(shape, target, nu)) if shape.plane else tuple(entries)
+
+
+def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
+    """As the target knows it."""
+    effect = "target inertia"
+    if model.inertia:
+        return LedgerEntry(effect, "included", 0.0)
+    mass, geometry = scene.reduced_mass, scene.geometry
+    pulse = Pulse(peak.force, peak.duration, mass, 0.5 * mass * scene.velocity**2, peak.contact_radius)
+    estimate, note = scene.target.inertia_left_out(geometry.shape, geometry.material, pulse)
+    return LedgerEntry(effect, "neglected", estimate, note, INERTIA if scene.target.waves_under(geometry.shape) else "")
+
+
+def gravity(scene: Scene, model: Model, force: float, mass: float) -> LedgerEntry:
+    """The weight of a mass, kg, which presses only where the motion leads down, over the peak force, N."""
+    effect, weight = "gravity", GRAVITY * mass / force
+    if scene.target_mass is not None:
+        return LedgerEntry(effect, "none between two free bodies", 0.0)
+    if model.gravity != 0.0:
+        return LedgerEntry(effect, "included", 0.0)
+    if model.direction == "horizontal":
+        return LedgerEntry(effect, "across the motion", 0.0)
+    if model.direction == "down":
+        return LedgerEntry(effect, "neglected", weight, "m g", "model.gravity")
+    asked = f"model.direction: of a drop, 'down', it would be {weight:.2g}; else 'horizontal'"
+    return LedgerEntry(effect, "none assumed", None, asked)
+
+
+def profile(shape: Shape, model: Model, peak: Peak) -> LedgerEntry:
+    """The load curves of sphere and parabola at the peak depth; in plane strain their heights at its edge."""
+    effect = "parabola against true profile"
+    if model.profile == "exact":
+        return LedgerEntry(effect, "true profile", 0.0)
+    if shape.plane:
+        heights = [float(shape.resolved(name).height(peak.contact_radius)) for name in ("exact", "parabola")]
+        estimate = abs(heights[1] / heights[0] - 1.0) if heights[0] > 0.0 else 0.0
+        return LedgerEntry(effect, "parabola", estimate, key=PROFILE)
+    exact = float(shape.resolved("exact").load_curve.force(peak.depth))
+    parabola = float(shape.resolved("parabola").load_curve.force(peak.depth))
+    return LedgerEntry(effect, "parabola", abs(parabola / exact - 1.0), key=PROFILE)
+
+
+def finite_strain(nu: float, height: float | None, peak: Peak, share: float = 1.0) -> LedgerEntry:
+    """From small displacements to large ones a sphere's force at a depth becomes F (1 + c1 depth/a) to first order.
+
+    c1 is the work of the cubic terms of an elastic energy, and of the profile met by a surface that moves inward, in
+    Hertz's field: energies with the same E and nu differ in it, in sign too. Other profiles count with their own
+    depth/a; what is flattened as a whole by the share of the depth in its `height`, m, where that is more. In an
+    impact the work is given and the depth gives way: a `share` of it.
+    """
+    found = {name: share * peak.steepness * float(at(nu)) / (1.0 - nu) ** 2 for name, at in FIRST_ORDER.items()}
+    lowest, highest = (of(found, key=lambda name: found[name]) for of in (min, max))
+    spread, note = (found[lowest], found[highest]), f"{lowest} to {highest}: the scene gives no law of large strains"
+    effect, treated, sizes = "finite strain", "small displacements", [abs(change) for change in spread]
+    if height is not None and peak.depth > max(sizes) * height:
+        return LedgerEntry(effect, treated, peak.depth / height, "order of magnitude: depth over what is pressed")
+    least = min(sizes) if spread[0] * spread[1] > 0.0 else None
+    return LedgerEntry(effect, treated, least, note, spread=spread)
+
+
+def of_dent(scene: Scene, peak: Peak) -> Peak:
+    """With the depth of the dent in a rod's end, which goes as a^(1/(n - 1)), in place of the striker's way."""
+    shape, stiffness = scene.profile, _stiffness(scene)
+    known = shape.hertz_impact(stiffness, scene.reduced_mass, scene.velocity)
+    share = peak.contact_radius / known.contact_radius
+    return replace(peak, depth=known.depth * share ** (1.0 / (shape.exponent_of_force - 1.0)))
+
+
+def rod_end(scene: Scene, peak: Peak) -> LedgerEntry:
+    """A rod's end comes in less than a half-space of its material, by k F/(E* b), b the rod's radius.
+
+    What a half-space stores too much, k F^2/(2 E* b), is left to others, where the force goes as energy^(n/(n + 1)): to
+    the dent alone, whose energy is F d/(n + 1), or to all that the striker brought. The geometric mean of both.
+    """
+    assert isinstance(scene.target, Rod)
+    radius, n = math.sqrt(scene.target.area / math.pi), scene.profile.exponent_of_force
+    stored = 0.5 * ROD_END * peak.force**2 / (_stiffness(scene) * radius)
+    dented, brought = peak.force * peak.depth / (n + 1.0), 0.5 * scene.reduced_mass * scene.velocity**2
+    estimate = n / (n + 1.0) * stored / math.sqrt(dented * brought)
+    note = f"the contact over the rod's radius is {peak.contact_radius / radius:.2g}"
+    return LedgerEntry("dent of the rod's end", "a half-space's closed form", estimate, note)
+
+
+def _stiffness(scene: Scene) -> float:
+    """E*, Pa: relaxed, or that of a fluid at once."""
+    return scene.contact_modulus.relaxed or scene.contact_modulus.glassy
+
+
+def ends(shape: Shape, target: Target, nu: float) -> LedgerEntry:
+    """Plane strain against a finite length l: at an end E stands for E/(1 - nu^2), about as far in as the body is deep.
+
+    An order of magnitude: nu^2 times the share 2 h/l of the length.
+    """
+    effect, treated, depth = "finite length", "plane strain", target.body_depth
+    if depth is None:
+        return LedgerEntry(effect, treated, None, "how far the ends reach in is known of a layer or a ring only")
+    estimate = nu**2 * min(1.0, 2.0 * depth / shape.total)
+    return LedgerEntry(effect, treated, estimate, "order of magnitude: nu^2 2 h/l")
+
+
+def striker(scene: Scene) -> LedgerEntry:
+    """Unknown without a material of its own; nothing where it yields beside the target, or alone on a rigid one."""
+    effect = "striker compliance"
+    if scene.geometry.striking is not None:
+        return LedgerEntry(effect, "included", 0.0)
+    return LedgerEntry(effect, "rigid", None, "the scene gives the striker no material")
+
+
+def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
+    """At most what the instantaneous stiffness changes by, to the power 2/5 of a peak force.
+
+    That of the half-space by 4G(3K+G)/(3K+4G) over 2G/(1-nu); a body with lengths confines, in thin layers most.
+    """
+    effect, material = "constant nu against constant bulk modulus", scene.geometry.material
+    treated = "constant nu" if material.constant == "poisson" else "constant bulk modulus"
+    if material.young.is_elastic or math.isinf(material.bulk):
+        return LedgerEntry(effect, treated, 0.0, "elastic or incompressible: the same")
+    if material.young.viscosity > 0.0 or material.young.relaxed == 0.0:
+        return LedgerEntry(effect, treated, None, "no bound for a fluid or a dashpot in parallel")
+    shear, bulk = material.young.glassy / (2.0 * (1.0 + material.nu)), material.bulk
+    softer = 2.0 * (1.0 - material.nu) * (3.0 * bulk + shear) / (3.0 * bulk + 4.0 * shear)
+    if scene.target.has_length:
+        confined = _confined(scene, (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear)), peak.depth)
+        if confined is None:
+            return LedgerEntry(effect, treated, None, "no load curve tells it; run both of target.material.constant")
+        softer *= confined
+    return LedgerEntry(effect, treated, 1.0 - softer**0.4, "bound", "target.material.constant")
+
+
+def _confined(scene: Scene, nu: float, depth: float) -> float | None:
+    """Force of unit modulus with another Poisson's ratio, over that with the scene's own; None where none is known."""
+    forces = []
+    for poisson in (nu, scene.geometry.material.nu):
+        try:
+            forces.append(float(scene.target.load_curve(scene.profile, poisson).force(depth)))
+        except FeContactError:  # no load curve, or one that ends before this depth
+            return None
+    return forces[0] / forces[1] if forces[1] > 0.0 else None
+
+
+def series(scene: Scene, peak: Peak) -> LedgerEntry:
+    """How far a Prony series may be from the modulus which it was fitted to."""
+    effect, fidelity = "material series", scene.geometry.material.young.fidelity
+    if fidelity is None:
+        return LedgerEntry(effect, "the material itself", 0.0)
+    shortest, longest = fidelity.window
+    treated = f"fitted to {fidelity.inside:.2g} over {shortest:.3g} to {longest:.3g} s"
+    bound = fidelity.of_force(peak.duration)
+    return LedgerEntry(effect, treated, bound if math.isfinite(bound) else None, "bound until the contact recedes")
+
+
+def plasticity(scene: Scene, peak: Peak) -> LedgerEntry:
+    """Pressure capped at p_y = 1.6 Y: at the same depth F falls by 1 - (3q - q^3)/2, q = p_y/p_0.
+
+    Thornton 1997, doi 10.1115/1.2787319: F = F_y + pi R p_y (depth - depth_y) beyond the yield depth.
+    """
+    effect, strength = "plasticity", scene.geometry.material.yield_strength
+    if strength is None:
+        return LedgerEntry(effect, "neglected", None, "needs target.material.yield_strength")
+    if peak.contact_radius == 0.0:
+        return LedgerEntry(effect, "neglected", 0.0)
+    pressure = 1.5 * peak.force / (math.pi * peak.contact_radius**2)
+    share = min(FIRST_YIELD * strength / pressure, 1.0)
+    note = f"p0/(1.6 Y) = {pressure / (FIRST_YIELD * strength):.3g}"
+    return LedgerEntry(effect, "neglected", 1.0 - 0.5 * share * (3.0 - share**2), note)
+
+
+def adhesion(scene: Scene, peak: Peak) -> LedgerEntry:
+    """The pull-off force (3/2) pi w R of Johnson, Kendall and Roberts 1971, doi 10.1098/rspa.1971.0141."""
+    work = scene.geometry.material.work_of_adhesion
+    if work is None:
+        return LedgerEntry("adhesion", "neglected", None, "needs target.material.work_of_adhesion")
+    radius = scene.geometry.shape.tip_radius
+    if radius is None:
+        return LedgerEntry("adhesion", "neglected", None, "the pull-off force is known for a round tip only")
+    return LedgerEntry("adhesion", "neglected", 1.5 * math.pi * work * radius / peak.force, "JKR pull-off force")
