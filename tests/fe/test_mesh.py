@@ -221,14 +221,14 @@ QUICK = 8_000  # nodes that a test lets gmsh make
 
 @pytest.mark.parametrize("kind", RANDOM)
 def test_the_nodes_of_a_mesh_are_estimated_before_it_is_made(
-    kind: str, monkeypatch: pytest.MonkeyPatch, campaign_size: Callable[[int], int]
+    kind: str, monkeypatch: pytest.MonkeyPatch, campaign_size: Callable[..., int]
 ) -> None:
     """Within a factor of three, over all that the numbers may be."""
     monkeypatch.setattr(triangles, "MOST_NODES", QUICK)
     random, estimates, most = np.random.default_rng(12), [0.0], 0
     estimate = triangles.expected_nodes
     monkeypatch.setattr(triangles, "expected_nodes", lambda *asked: estimates.append(estimate(*asked)) or estimates[-1])
-    for _ in range(campaign_size(100)):
+    for _ in range(campaign_size(100, least=10)):
         numbers = RANDOM[kind](random)
         with suppress(MeshError):  # too large, or too small beside the body: refused by name
             nodes = getattr(meshes, kind)(*numbers).nvertices

@@ -150,10 +150,10 @@ def test_a_curve_cut_off_in_the_contact_tells_the_same() -> None:
 
 
 @pytest.mark.parametrize("law", ["kelvin", "hunt_crossley"])
-def test_the_truth_lies_within_the_interval_as_often_as_said(law: str, campaign_size: Callable[[int], int]) -> None:
+def test_the_truth_lies_within_the_interval_as_often_as_said(law: str, campaign_size: Callable[..., int]) -> None:
     """With 1 % noise, 95 % of the intervals should hold it."""
     generator, truth = np.random.default_rng(20), history(law, **TRUTHS[law])
-    fits = [fit(noisy(truth, 0.01, generator), law, BODY) for _ in range(campaign_size(300))]
+    fits = [fit(noisy(truth, 0.01, generator), law, BODY) for _ in range(campaign_size(300, least=20))]
     held = [holds(one, name, value) for one in fits for name, value in TRUTHS[law].items()]
     assert 0.90 <= np.mean(held) <= 0.99
 
@@ -165,6 +165,7 @@ def holds(found: Fit, name: str, value: float) -> bool:
     return estimate.low <= value <= estimate.high
 
 
+@pytest.mark.tenth
 def test_covariance_is_that_of_many_fits(campaign_size: Callable[[int], int]) -> None:
     """Against the scatter of fits to seeded noise: spread within its own sampling error, sign of the correlation."""
     generator, truth = np.random.default_rng(3), history("hunt_crossley", **TRUTHS["hunt_crossley"])
