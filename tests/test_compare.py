@@ -48,6 +48,7 @@ def judgement(comparison: Comparison, name: str) -> Judgement:
     return next(j for j in comparison.judgements if j.name == name)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("material", MATERIALS)
 @pytest.mark.parametrize("name", DEFAULT_LAWS)
 def test_the_pressure_of_a_law_adds_up_to_its_force(name: str, material: str) -> None:
@@ -155,6 +156,7 @@ def test_a_law_without_an_answer_is_told_and_the_others_go_on(tmp_path: Path) ->
     assert any(line.startswith("hertz: no answer") for line in verdicts(comparison))
 
 
+@pytest.mark.tenth
 def test_the_chart_is_reproducible(tmp_path: Path, compared: Comparison) -> None:
     first, again = (plot_comparison(compared, tmp_path / name) for name in ("first", "again"))
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]

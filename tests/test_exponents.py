@@ -157,6 +157,7 @@ def test_free_spheres_leave_hertz_by_the_share_of_their_radius(spheres: tuple[Pa
     assert free.slope.value != pytest.approx(held.slope.value, rel=0.02)
 
 
+@pytest.mark.tenth
 def test_the_chart_is_the_same_every_time(
     tmp_path: Path, found: tuple[ExponentCurve, ...], checked: tuple[Check, ...]
 ) -> None:
@@ -164,6 +165,7 @@ def test_the_chart_is_the_same_every_time(
     assert first == [path.read_bytes() for path in plot_exponents(found, checked, tmp_path / "two")]
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize(("converged", "code"), [(True, 0), (False, 3)], ids=["reached", "missed"])
 def test_the_command(
     tmp_path: Path,

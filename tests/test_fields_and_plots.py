@@ -153,6 +153,7 @@ def test_a_relaxing_body_of_constant_bulk_modulus_has_no_fields(tmp_path: Path) 
     check_fields(Scene.load("steel-ball", {"target.material.constant": "bulk"}))  # elastic: the two are one
 
 
+@pytest.mark.family
 def test_the_chart_of_an_impact_is_reproducible_and_well_formed(tmp_path: Path, case: Case) -> None:
     scene, solved = case
     result = result_of(scene, solved)

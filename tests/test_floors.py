@@ -74,6 +74,7 @@ def name(path: Path) -> str:
     return path.relative_to(ROOT).as_posix()
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("package", PACKAGES)
 def test_a_floor_imports_only_what_it_may(package: str) -> None:
     assert sources(package), f"{package} has no source"
@@ -181,6 +182,7 @@ def is_broad(node: ast.AST) -> bool:
     return isinstance(node, ast.Name) and node.id in ("Exception", "BaseException")
 
 
+@pytest.mark.tenth
 def test_nothing_is_pickled() -> None:
     """Results are text that a diff can show; a pickle runs code when it is read."""
     everywhere = sources(*PACKAGES, "tests")

@@ -178,6 +178,7 @@ def geometric(name: str) -> bool:
         return False
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", [name for name in scene_names() if geometric(name)])
 def test_packaged_scenes_are_pressed_within_their_bars(name: str, empty: Path) -> None:
     assert exit_code(name, "--depths", "2e-5", "--out", "fe") == 0

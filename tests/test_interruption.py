@@ -58,6 +58,7 @@ def is_whole(folder: Path) -> bool:
     return found == files
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_is_answered_by_one_line_even_in_a_library_that_does_not_come_back(number: signal.Signals) -> None:
     run = subprocess.Popen(
@@ -72,6 +73,7 @@ def test_a_signal_is_answered_by_one_line_even_in_a_library_that_does_not_come_b
         assert len(err.splitlines()) == 1, err
 
 
+@pytest.mark.tenth
 def test_a_run_killed_at_any_moment_leaves_a_whole_result(empty: Path, campaign_size: Callable[[int], int]) -> None:
     """Over older results of another kind, by every signal, from its start to its end."""
     rng = np.random.default_rng(77)
@@ -93,6 +95,7 @@ def test_a_run_killed_at_any_moment_leaves_a_whole_result(empty: Path, campaign_
     assert {path.name for path in results.iterdir()} == {"history.csv", "result.json"}
 
 
+@pytest.mark.tenth
 def test_a_limit_of_a_files_size_is_one_line_and_the_older_result_stays(empty: Path) -> None:
     assert ended(empty, *FAST).returncode == 0
     older = state(empty / "results")
@@ -158,6 +161,7 @@ def test_a_crash_that_can_be_written_nowhere_is_still_one_line(
     assert "a wire came loose" in err
 
 
+@pytest.mark.tenth
 def test_a_home_that_cannot_be_written_is_nothing_to_talk_about(empty: Path) -> None:
     home = {**os.environ, "HOME": "/proc/self", "XDG_CACHE_HOME": "", "XDG_CONFIG_HOME": "", "MPLCONFIGDIR": ""}
     done = ended(empty, *FAST, "--plot", env=home)

@@ -209,6 +209,7 @@ def written(study: str, where: Path) -> dict[str, Any]:
     return {str(place): {key: value for key, value in row.items() if key != "cpu_s"} for place, row in enumerate(table)}
 
 
+@pytest.mark.tenth
 def test_killed_studies_resume_byte_by_byte(request: pytest.FixtureRequest, tmp_path: Path) -> None:
     """Killed some time after so many rows: no process stays, no row is measured twice, the files are the same."""
     rng = np.random.default_rng(12)

@@ -92,6 +92,7 @@ def test_an_impact_through_the_body_is_refused(name: str, velocity: float, metho
         fe_contact.run(Scene.load(name, {"striker.velocity": velocity}), method=method)
 
 
+@pytest.mark.tenth
 def test_an_impact_too_hard_for_an_o_ring_names_a_cure_that_helps() -> None:
     """The contact leaves the section's top however wide it is planned: more steps would not hold it."""
     with pytest.raises(NotReached, match=r"cure: a lower striker\.velocity") as refused:

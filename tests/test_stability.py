@@ -35,6 +35,7 @@ def default() -> dict[str, Any]:
     return found()
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("cfl", [1.0, 2.0])
 def test_the_default_bounces_for_ten_periods(cfl: float) -> None:
     """A hundred elements: no energy, no beat and no ripple is lost, and the duration is known to a step."""
@@ -192,6 +193,7 @@ def test_the_command_writes_rows_and_counts(few: list[dict[str, Any]], tmp_path:
     assert content["steps"] == int(rows[0]["steps"])
 
 
+@pytest.mark.tenth
 def test_the_chart_shows_every_case(tmp_path: Path) -> None:
     from fe_contact.studies.stability._chart import plot_stability
 

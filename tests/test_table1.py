@@ -58,6 +58,7 @@ def covers(quantity: Quantity, exact: float) -> bool:
     return abs(value(quantity) - exact) <= (quantity.error or 0.0) + ROUNDING * abs(exact)
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("name", ["prism", "plate", "punch", "cone", "sphere", "two_spheres"])
 def test_exact_rows_are_identified(trials: Mapping[str, Trial], name: str) -> None:
     found = trials[name]
@@ -65,6 +66,7 @@ def test_exact_rows_are_identified(trials: Mapping[str, Trial], name: str) -> No
     assert value(found.factor) == pytest.approx(found.row.factor, rel=1e-3)
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("name", ["prism", "plate", "punch", "cone"])
 def test_the_bars_of_power_laws_cover_them(trials: Mapping[str, Trial], name: str) -> None:
     """Spheres are no power laws: their truth is tested below."""
@@ -75,6 +77,7 @@ def test_the_bars_of_power_laws_cover_them(trials: Mapping[str, Trial], name: st
     assert covers(found.factor, found.row.factor)
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("name", [row.name for row in ROWS.values()])
 def test_poissons_ratio_moves_the_modulus_as_the_corrected_row_says(trials: Mapping[str, Trial], name: str) -> None:
     found = trials[name]
@@ -85,6 +88,7 @@ def test_poissons_ratio_moves_the_modulus_as_the_corrected_row_says(trials: Mapp
         assert covers(modulus, exact)
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("name", [row.name for row in ROWS.values()])
 def test_impacts_identify_what_slow_indentation_does(trials: Mapping[str, Trial], name: str) -> None:
     """E* as corrected; alpha and D within what both bars and the profile of a true sphere leave open."""
@@ -101,6 +105,7 @@ def test_impacts_identify_what_slow_indentation_does(trials: Mapping[str, Trial]
             assert (ours.error or 0.0) < 2e-3 * value(ours)
 
 
+@pytest.mark.tenth
 def test_line_contact_from_impact_lies_on_the_exact_curve(trials: Mapping[str, Trial]) -> None:
     (place,) = (place for place in trials["cylinder"].datum if place.method == "impact")
     line = curve(place.support, place.length, RATIOS[1])
@@ -109,6 +114,7 @@ def test_line_contact_from_impact_lies_on_the_exact_curve(trials: Mapping[str, T
     assert {place.method for place in held} == {"fe", "impact"}
 
 
+@pytest.mark.tenth
 def test_the_sphere_leaves_its_row_where_the_exact_sphere_does(trials: Mapping[str, Trial]) -> None:
     reach = trials["sphere"].reach
     assert reach is not None
@@ -123,6 +129,7 @@ def test_the_sphere_leaves_its_row_where_the_exact_sphere_does(trials: Mapping[s
     assert value(found.factor) / found.row.factor == pytest.approx(ratio, abs=2e-5)
 
 
+@pytest.mark.tenth
 def test_whole_spheres_leave_their_row_far_earlier(trials: Mapping[str, Trial]) -> None:
     """Two spheres of their true size depart rather as a/R, depth^(1/2), than as (a/R)^2 like the profile alone."""
     reach = trials["two_spheres"].reach
@@ -132,6 +139,7 @@ def test_whole_spheres_leave_their_row_far_earlier(trials: Mapping[str, Trial]) 
     assert np.all((slope > 0.45) & (slope < 0.75))
 
 
+@pytest.mark.tenth
 def test_line_contact_covers_the_exact_curves(trials: Mapping[str, Trial]) -> None:
     checked = [place for place in trials["cylinder"].datum if place.method == "fe"]
     assert {place.support for place in checked} == {"datum", "bonded layer"}
@@ -153,6 +161,7 @@ def test_the_printed_d_of_line_contact_is_met_at_one_depth() -> None:
         assert once / 1e-4 == pytest.approx(number, abs=0.001)
 
 
+@pytest.mark.tenth
 def test_held_cylinders_are_stiffer_to_approach_differently(trials: Mapping[str, Trial]) -> None:
     """No two ways of holding agree, nor two sizes: there is no D."""
     pressed = [place for place in trials["two_cylinders"].datum if place.method == "fe"]
@@ -162,6 +171,7 @@ def test_held_cylinders_are_stiffer_to_approach_differently(trials: Mapping[str,
     assert all(1.05 < value(place.alpha) < 1.25 for place in pressed)
 
 
+@pytest.mark.tenth
 def test_bonded_blocks_go_from_young_to_confined(trials: Mapping[str, Trial]) -> None:
     assert trials["prism"].bonded == trials["plate"].bonded
     for nu in RATIOS[1:]:
@@ -192,6 +202,7 @@ def test_widths_within_a_limit() -> None:
     assert within(ROWS["prism"], made[:2], LIMIT) == (0.0, math.inf)
 
 
+@pytest.mark.tenth
 def test_verdicts(trials: Mapping[str, Trial]) -> None:
     words = {name: verdict(found).word for name, found in trials.items()}
     assert words == {
@@ -245,6 +256,7 @@ def test_one_d_for_every_datum_would_not_be_called_wrong() -> None:
     assert verdict(Trial(ROWS["cylinder"], moduli=moduli, datum=other)).word == WRONG
 
 
+@pytest.mark.tenth
 def test_files(tmp_path: Path, trials: Mapping[str, Trial]) -> None:
     content = write_table1(list(trials.values()), tmp_path)
     with (tmp_path / "table1.csv").open(newline="", encoding="utf-8") as file:
@@ -266,12 +278,14 @@ def test_files(tmp_path: Path, trials: Mapping[str, Trial]) -> None:
     assert [row["verdict"]["word"] for row in content["rows"]] == [verdict(found).word for found in trials.values()]
 
 
+@pytest.mark.tenth
 def test_the_chart_is_the_same_every_time(tmp_path: Path, trials: Mapping[str, Trial]) -> None:
     found = list(trials.values())
     first = [path.read_bytes() for path in plot_table1(found, tmp_path / "one")]
     assert first == [path.read_bytes() for path in plot_table1(found, tmp_path / "two")]
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize(("factor", "code"), [(1.0, 0), (1.01, 3)], ids=["decided", "undecided"])
 def test_the_command(
     tmp_path: Path,

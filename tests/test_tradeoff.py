@@ -145,6 +145,7 @@ def test_exact_laws_keep_their_bars_and_models_do_not_converge(points: tuple[Poi
     assert models["hertz"] > models["correspondence"] > 0.01
 
 
+@pytest.mark.tenth
 def test_the_command_writes_table_and_chart(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

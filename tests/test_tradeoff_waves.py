@@ -107,6 +107,7 @@ def test_exact_waves_are_known_of_elastic_rods_alone() -> None:
     assert rod.exact(Scene.load("rod", {"target.material": lossy})) is None
 
 
+@pytest.mark.tenth
 def test_the_default_keeps_its_promise_and_is_near_the_front(points: tuple[Point, ...]) -> None:
     (default,) = [point for point in points if point.default_for is not None]
     assert default.error <= (default.bar or 0.0) <= default.default_for == 1e-3
@@ -114,6 +115,7 @@ def test_the_default_keeps_its_promise_and_is_near_the_front(points: tuple[Point
     assert known_to(points) == 0.0
 
 
+@pytest.mark.tenth
 def test_finer_steps_err_less_and_cost_more(points: tuple[Point, ...]) -> None:
     """Order two, which the exact waves show; work grows as the square of the steps."""
     tried = [p for p in finite_elements(points) if p.settings["scheme"] == "central_difference"]
@@ -124,6 +126,7 @@ def test_finer_steps_err_less_and_cost_more(points: tuple[Point, ...]) -> None:
     np.testing.assert_allclose(np.diff(np.log(work)), 2.0 * np.diff(np.log(steps)), rtol=0.05)
 
 
+@pytest.mark.tenth
 def test_bars_that_claim_anything_cover(points: tuple[Point, ...]) -> None:
     claiming = [p for p in finite_elements(points) if (p.bar or np.inf) <= RANGES["tolerance"][1]]
     assert len(claiming) >= 5
@@ -138,6 +141,7 @@ def test_a_default_marches_each_choice_of_settings_once() -> None:
     assert result.work["marches"] == 4
 
 
+@pytest.mark.tenth
 def test_without_exact_waves_the_reference_is_finer_and_its_bar_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -154,6 +158,7 @@ def test_without_exact_waves_the_reference_is_finer_and_its_bar_is_told(
     assert all(0.003 < error < 0.03 for error in without.values())  # half of what is radiated
 
 
+@pytest.mark.tenth
 def test_the_command_writes_table_and_chart(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -164,6 +169,7 @@ def test_the_command_writes_table_and_chart(
     assert {"tradeoff.svg", "tradeoff.png", "tradeoff.csv"} <= {path.name for path in tmp_path.iterdir()}
 
 
+@pytest.mark.tenth
 def test_the_chart_tells_schemes_and_masses_apart(tmp_path: Path, points: tuple[Point, ...]) -> None:
     signs = Signs.of(points)
     assert signs.key == "scheme"

@@ -80,6 +80,7 @@ def missed(found: Result, exact: Result) -> dict[str, float]:
     return {name: ratio for name, ratio in over.items() if not ratio <= 1.0}
 
 
+@pytest.mark.tenth
 def test_values_lie_within_their_bars_whatever_is_set(campaign_size: Callable[[int], int]) -> None:
     rng, ended = np.random.default_rng(SEED), list[bool]()
     few = campaign_size(IMPACTS) < IMPACTS
@@ -143,6 +144,7 @@ FOUND: dict[str, tuple[str, float | None, Relaxation, dict[str, Any]]] = {
 }
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("kind", FOUND)
 def test_what_once_lay_outside_lies_within(kind: str) -> None:
     name, nu, young, given = FOUND[kind]

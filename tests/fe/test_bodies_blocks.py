@@ -87,6 +87,7 @@ def test_a_thin_nearly_incompressible_disc_is_a_film_of_fluid() -> None:
     assert abs(ratios[1] - 1.0) < abs(ratios[0] - 1.0)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.4999])
 @pytest.mark.parametrize("height", [0.1, 0.01, 0.002])
 def test_the_bar_of_a_bonded_block_covers(nu: float, height: float) -> None:
@@ -113,6 +114,7 @@ def test_a_bonded_washer_is_stiffer_than_a_sliding_one_and_softer_than_a_confine
     assert sliding < bonded < sliding * confined(0.3) / YOUNG
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("radius", "nu"), [(0.008, 0.3), (0.0055, 0.3), (0.0099, 0.45), (0.02, 0.4999)])
 @pytest.mark.parametrize("base", ["bonded", "sliding"])
 def test_the_bar_of_a_washer_covers(radius: float, nu: float, base: str) -> None:

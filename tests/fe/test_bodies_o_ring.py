@@ -57,6 +57,7 @@ def test_the_cylinder_is_the_limit_of_slender_rings() -> None:
     assert near / far == pytest.approx(4.0, rel=0.15)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("slenderness", "nu"), [(2.0, 0.3), (8.0, 0.49)])
 def test_the_bar_covers_wherever_the_edges_lie(slenderness: float, nu: float) -> None:
     scene, depths = pressed(slenderness * SECTION, nu), (1e-5, 3.7e-5, 2.3e-4)

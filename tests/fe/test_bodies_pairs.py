@@ -52,6 +52,7 @@ def test_parabolas_are_hertz_with_both_curvatures_and_both_moduli() -> None:
     np.testing.assert_allclose(found.contact_radius, np.sqrt(radius * depth), rtol=2e-3)
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("support", ["free", "held"])
 @pytest.mark.parametrize("striker", [None, STIFF])
 def test_finite_spheres_leave_hertz_like_a_over_r(support: str, striker: Material | None) -> None:

@@ -121,6 +121,7 @@ def fallen(rng: np.random.Generator, number: int) -> lumped.Scene:
     )
 
 
+@pytest.mark.tenth
 def test_contacts_in_a_row_are_within_their_bars_of_springs_that_remember(campaign_size: Callable[[int], int]) -> None:
     rng, ratios, widths = np.random.default_rng(SEED), [], []
     for number in range(campaign_size(SCENES)):

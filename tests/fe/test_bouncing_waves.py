@@ -52,6 +52,7 @@ def quantities(bounces: WaveRun, number: int) -> dict[str, float]:
     return known | {"start": contact.strike.touched_at, "velocity": contact.strike.velocity}
 
 
+@pytest.mark.tenth
 def test_a_light_elastic_body_gives_back_what_it_got() -> None:
     """Hertz's contact, a flight of 2 v/g, and the same again."""
     scene = thrown(
@@ -74,6 +75,7 @@ def test_a_light_elastic_body_gives_back_what_it_got() -> None:
             )
 
 
+@pytest.mark.tenth
 def test_without_density_a_memory_recovers_as_it_does_without_inertia() -> None:
     """Two routes: the bulk in motion, and a surface that remembers."""
     scene = thrown(**{"target.material.density": 1e-3})
@@ -125,6 +127,7 @@ def test_the_share_that_goes_down_in_waves_falls_with_the_speed_to_three_fifths(
     assert math.log(losses[1] / losses[0]) / math.log(speeds[1] / speeds[0]) == pytest.approx(0.6, abs=0.1)
 
 
+@pytest.mark.tenth
 def test_one_ledger_runs_through_contacts_and_flights() -> None:
     """What radiated and what the ball has left is what it had; of a memory the heat too."""
     for material in (None, ELASTIC):
@@ -167,6 +170,7 @@ def random_scene(rng: np.random.Generator) -> Scene:
     )
 
 
+@pytest.mark.tenth
 def test_bars_hold_the_answer_of_finer_settings(campaign_size: Callable[[int], int]) -> None:
     """And of elements of another order, and a far field further out."""
     rng = np.random.default_rng(4)
@@ -183,6 +187,7 @@ def test_bars_hold_the_answer_of_finer_settings(campaign_size: Callable[[int], i
                 assert contact[name] == pytest.approx(truth[name], abs=contact[f"{name}_error"]), (name, number, scene)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(
     ("changes", "count", "grounded"),
     [
@@ -207,6 +212,7 @@ def test_rods_follow_one_impact() -> None:
         simulate(Scene.load("rod", {"motion.impacts": 2, "model.gravity": 9.81}), "fe", {})
 
 
+@pytest.mark.tenth
 def test_the_packaged_ball_bounces_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     coarse = ["--tolerance", "0.05", "--set", "numerics.steps=60", "--set", "numerics.elements_per_contact=3"]
     assert main(["run", "ball-bouncing-waves", *coarse, "--out", str(tmp_path)]) == 0

@@ -63,6 +63,7 @@ def exact(scene: Scene) -> Result:
     return simulate(laws.ting.of(replace(scene, material=alike)), replace(scene, material=alike), 1e-6)
 
 
+@pytest.mark.tenth
 def test_a_flat_end_obeys_the_layers_integral_equation(campaign_size: Callable[[int], int]) -> None:
     """Until its rim, where the pressure's share changes as nu does, lets go: a little before the force is zero."""
     for nu, times in FLAT_ENDS[: campaign_size(len(FLAT_ENDS))]:
@@ -85,6 +86,7 @@ def agree(scene: Scene) -> None:
     assert np.all(errors <= found.history.force_error[rows] + 2e-4 * force.max())  # what two rows' line leaves
 
 
+@pytest.mark.tenth
 def test_constant_nu_would_err_by_less_than_the_ledger_says(campaign_size: Callable[[int], int]) -> None:
     for name in ("rubber-layer-bulk", "rod-in-ring-bulk")[: campaign_size(2)]:
         scene = Scene.load(name)
@@ -107,6 +109,7 @@ def fine() -> Certified:
     return certified()
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("cause", CAUSES)
 def test_coarsening_a_setting_fourfold_grows_its_entry_and_the_bar_covers(fine: Certified, cause: str) -> None:
     value = FINE[cause] / 4

@@ -176,6 +176,7 @@ def of_bulk(material: Material | None) -> Material | None:
 SOLID = Relaxation(1.2e6, (0.6e6, 0.9e6), (1e-3, 2e-2))
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", ["polymer-layer", "rod-in-ring", "polymer-o-ring", "two-cylinders"])
 def test_where_both_moduli_relax_alike_the_surface_alone_remembers(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Constant Poisson's ratio, by the bulk and by the surface: the same history."""
@@ -209,6 +210,7 @@ def test_a_washer_that_slides_is_a_column_of_the_uniaxial_modulus() -> None:
         assert value.error <= 1e-3 * max(true.value, 1.0 if key == "restitution" else 0.0), key
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize(
     ("name", "tau", "instant"),
     [
@@ -233,6 +235,7 @@ def test_at_once_and_in_the_end_the_body_is_elastic(name: str, tau: float, insta
         assert curves[0][key] == pytest.approx(curves[1][key], rel=5e-5), key
 
 
+@pytest.mark.tenth
 def test_a_thick_layer_is_the_half_space_of_the_same_bulk_modulus() -> None:
     """There the surface knows E*(t) alone, 4 G (3 K + G)/(3 K + 4 G): another memory, another far field."""
     scene = Scene.load("polymer-sphere", BULK)
@@ -267,6 +270,7 @@ def test_factorisations_do_not_grow_with_the_steps(monkeypatch: pytest.MonkeyPat
     assert body.factorizations <= 4
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", ["polymer-o-ring", "two-cylinders", "polymer-washer"])
 def test_like_marches_share_their_factorisations(name: str) -> None:
     """One body for every number of steps, as the counted work has it."""

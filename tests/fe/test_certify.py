@@ -72,6 +72,7 @@ def uncovered(found: Certified, exact: dict[str, float]) -> dict[str, tuple[floa
     return {name: (errors[name], bars[name]) for name in exact if errors[name] > bars[name] + TRUE_MARGIN * exact[name]}
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("cause", CAUSES)
 def test_coarsening_a_setting_fourfold_grows_its_entry_and_the_bar_still_covers(
     case: tuple[lumped.Scene, mdr.ImpactScales], cause: str
@@ -88,12 +89,14 @@ def test_coarsening_a_setting_fourfold_grows_its_entry_and_the_bar_still_covers(
     assert len(grown) == len(RULED), f"only {grown} noticed"
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("steps", [8, 12, 16, 32])
 def test_very_few_steps_are_still_covered(case: tuple[lumped.Scene, mdr.ImpactScales], steps: int) -> None:
     scene, scales = case
     assert not uncovered(certified(scene, steps=steps), exact_values(scene, scales))
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("scheme", ["backward_euler", "galerkin"])
 @pytest.mark.parametrize("enforcement", ["penalty", "corrected"])
 @pytest.mark.parametrize("order", [2, 4])
@@ -221,6 +224,7 @@ def test_pinned_settings_are_kept_and_the_rest_is_refined(scene_of: Scenes) -> N
     assert widest > 1e-4, "converged is what the bars say"
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("material", MATERIALS)
 @pytest.mark.parametrize("share", [-0.02, 0.02])
 def test_a_body_too_soft_or_too_stiff_errs_by_no_more_than_is_said_of_it(

@@ -64,6 +64,7 @@ def test_the_order_of_a_scheme(name: str) -> None:
     np.testing.assert_allclose(rates, ORDER[name], atol=0.2, err_msg=str(errors))
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", IMPLICIT)
 @pytest.mark.parametrize("tau", [1e-4, 0.03, 0.5])
 def test_the_order_does_not_depend_on_how_long_a_branch_remembers(name: str, tau: float) -> None:
@@ -203,6 +204,7 @@ def chain(seed: int, name: str, viscous: bool) -> tuple[BodyWithMass, np.ndarray
     return whole, -rng.uniform(0.1, 1, whole.size)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("scheme", WAVE_SCHEMES.names)
 @pytest.mark.parametrize("mass_name", MASSES.names)
 def test_the_ledger_closes_in_every_step(scheme: str, mass_name: str, campaign_size: Callable[[int], int]) -> None:

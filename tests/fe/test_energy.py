@@ -68,6 +68,7 @@ def drawn(random: np.random.Generator) -> Scene:
     return replace(scene, material=replace(material, young=Relaxation(young, moduli, times)))
 
 
+@pytest.mark.tenth
 def test_every_term_of_the_account_is_true_within_its_bar(campaign_size: Callable[[int], int]) -> None:
     random, wide = np.random.default_rng(1123), []
     for _ in range(campaign_size(SCENES)):
@@ -98,6 +99,7 @@ def closes(result: Result) -> None:
 OTHER_BODIES = ("polymer-layer", "polymer-layer-line", "polymer-prism", "polymer-punch", "rod-in-ring")
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("name", OTHER_BODIES)
 def test_what_other_bodies_keep_and_lose_is_what_the_exact_law_loses(name: str) -> None:
     scene = Scene.load(name)

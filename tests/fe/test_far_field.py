@@ -161,6 +161,7 @@ def test_a_line_force_is_carried_and_obeys_hooke(nu: float) -> None:
             np.testing.assert_allclose(flamant(place, np.array(direction), nu, 7.0)[1], wanted, rtol=1e-3, atol=2e-5)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("shape", ["polymer-sphere", "polymer-cone"])
 @pytest.mark.parametrize("damping", [0.0, 0.3, 2.0])
 def test_the_far_fields_share_of_a_bar_covers_what_a_larger_mesh_changes(shape: str, damping: float) -> None:

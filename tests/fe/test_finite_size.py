@@ -43,6 +43,7 @@ def bar(quantity: Quantity) -> float:
     return quantity.error
 
 
+@pytest.mark.tenth
 def test_the_slope_and_the_terms_hold_what_a_finer_mesh_finds_at_other_depths() -> None:
     """Parabolas, for which Hertz is exact by hand: F = 4/3 E* sqrt(Rg) depth^3/2, a = sqrt(Rg depth)."""
     scene, asked, other = replace(balls(0.2), model=Model(profile="parabola")), depths(6, 1), depths(8, 2)
@@ -58,12 +59,14 @@ def test_the_slope_and_the_terms_hold_what_a_finer_mesh_finds_at_other_depths() 
     assert np.all(np.abs(c + k * np.log(share) + d * share - slope) <= found.error.max() / share + 5e-3)
 
 
+@pytest.mark.tenth
 def test_the_logarithm_is_there_unless_the_spheres_are_incompressible() -> None:
     loose, tight = (deviation(balls(nu), depths(6, 3)).terms["k"] for nu in (0.2, 0.49))
     assert value(loose) > bar(loose)
     assert abs(value(tight)) <= bar(tight)
 
 
+@pytest.mark.tenth
 def test_the_deviation_knows_no_units() -> None:
     rng, depth = np.random.default_rng(5), depths(4, 4)
     length, modulus = 10.0 ** rng.uniform(-2.0, 2.0), 1e6 * 10.0 ** rng.uniform(-2.0, 2.0)

@@ -92,6 +92,7 @@ def cases() -> list[Case]:
     return [Case(rng) for _ in range(DRAWS)]
 
 
+@pytest.mark.tenth
 def test_no_touch_is_missed_and_finer_steps_find_it_when_it_comes(cases: list[Case]) -> None:
     """Though the plate swings: within a twelfth of its period by the coarsest steps; of order two."""
     coarsest, coarse, fine = (np.abs([late(case, steps) for case in cases]) for steps in (2, 16, PATIENCE))

@@ -88,6 +88,7 @@ def test_a_ball_that_touches_nothing_flies_without_strain() -> None:
     assert last.energies.deformable == pytest.approx(0.5 * MASS * (1.0 + 9.81e4 * last.time) ** 2, rel=1e-9)
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("target", [PLANE, HALF_SPACE])
 def test_the_force_takes_the_momentum_and_no_energy_is_lost_sight_of(target: dict[str, Any]) -> None:
     scene = ball(5.0, target)
@@ -102,6 +103,7 @@ def test_the_force_takes_the_momentum_and_no_energy_is_lost_sight_of(target: dic
     assert 0.0 <= terms["stored"] < 0.01 * terms["in"], "the ball rings a little, and what flies is no strain"
 
 
+@pytest.mark.tenth
 def test_a_slow_ball_is_the_one_without_inertia(
     campaign_size: Callable[[int], int], uncovered: Callable[..., dict[str, float]]
 ) -> None:
@@ -123,6 +125,7 @@ def test_the_ledger_knows_how_much_a_ball_without_inertia_leaves_out() -> None:
     assert not still.model_sufficient
 
 
+@pytest.mark.tenth
 def test_two_slow_balls_are_those_without_inertia(uncovered: Callable[..., dict[str, float]]) -> None:
     """Unlike in size and material, either of them as the striker: action is reaction."""
     other = {"radius": 3.1e-3, "material": {"E": 7e10, "nu": 0.2, "density": 2500.0}}
@@ -145,6 +148,7 @@ def test_two_equal_balls_are_one_on_a_rigid_plane_with_half_the_approach() -> No
         assert both.quantities[name] == pytest.approx(factor * known, rel=3e-4), name
 
 
+@pytest.mark.tenth
 def test_on_a_half_space_without_waves_two_compliances_add() -> None:
     """A finite ball is stiffer than Hertz's by a compliance that no contact changes: the same on either target.
 
@@ -198,6 +202,7 @@ def steel() -> Result:
     return simulate(Scene.load("steel-on-steel-waves"), "fe", {})
 
 
+@pytest.mark.tenth
 def test_steel_on_steel_loses_what_its_force_radiates(steel: Result) -> None:
     """Lamb's point force against momentum and mesh; the ball keeps next to nothing."""
     assert steel.converged, steel.message
@@ -216,6 +221,7 @@ def test_steel_on_steel_loses_what_its_force_radiates(steel: Result) -> None:
     assert entry.treated == "included"
 
 
+@pytest.mark.tenth
 def test_a_much_stiffer_ball_is_a_rigid_one() -> None:
     stiff = {"E": 1e4 * YOUNG, "density": DENSITY}
     soft = ball(1.0, HALF_SPACE, **stiff)
@@ -240,6 +246,7 @@ def random_scene(rng: np.random.Generator, target: dict[str, Any]) -> Scene:
     return Scene.from_dict(tables)
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize(("target", "many"), [(PLANE, 10), (HALF_SPACE, 10)])
 def test_bars_hold_the_answer_of_settings_for_a_quarter_of_the_tolerance(
     target: dict[str, Any], many: int, campaign_size: Callable[[int], int]
@@ -265,6 +272,7 @@ COARSE: list[dict[str, Any]] = [
 STEPS, FINER = 80, 2e-3
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("target", [PLANE, HALF_SPACE])
 def test_bars_hold_whatever_the_elements(target: dict[str, Any], campaign_size: Callable[[int], int]) -> None:
     """A ball in flight is stiff by its bulk too: against elements of the usual order, at a smaller tolerance."""
@@ -278,6 +286,7 @@ def test_bars_hold_whatever_the_elements(target: dict[str, Any], campaign_size: 
             assert abs(known.value - finer[name]) <= known.error, (name, scene, given)
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("key", ["elements_per_contact", "penalty", "far_radius"])
 def test_a_setting_at_the_end_of_its_range_is_varied_all_the_same(key: str) -> None:
     """A change from a setting to itself would be a bar of zero."""

@@ -178,6 +178,7 @@ def random_scene(rng: np.random.Generator) -> Scene:
     )
 
 
+@pytest.mark.tenth
 def test_bars_hold_the_answer_of_finer_settings(steel: Result, campaign_size: Callable[[int], int]) -> None:
     """And of elements of another order; the steel ball first, then random scenes."""
     rng = np.random.default_rng(3)

@@ -486,6 +486,7 @@ def test_the_paraboloid_of_these_tests_is_the_one_of_the_suite(hertz_strike: Str
     np.testing.assert_array_equal(hertz_strike().height(radii), Parabola(1.0).height(radii))
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("name", ["steel-ball", "polymer-sphere", "polymer-layer", "two-finite-spheres"])
 def test_every_enforcement_that_is_exact_in_the_limit_tells_the_same_impact(name: str) -> None:
     """The penalty with its bias removed and the augmented Lagrangian: one history within both bars."""

@@ -102,6 +102,7 @@ def cases(number: int) -> list[Case]:
     return [kinds[i % len(kinds)](rng) for i in range(number)]
 
 
+@pytest.mark.tenth
 def test_bodies_with_lengths_against_their_exact_curves(campaign_size: Callable[[int], int]) -> None:
     for case in cases(campaign_size(200)):
         found = case.found()
@@ -113,6 +114,7 @@ def test_bodies_with_lengths_against_their_exact_curves(campaign_size: Callable[
         assert np.abs(radius).max() <= 2e-3, case
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", EXACT_ROWS)
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.4999])
 def test_exact_rows_on_the_half_space(name: str, nu: float) -> None:
@@ -135,6 +137,7 @@ def test_exact_rows_on_the_half_space(name: str, nu: float) -> None:
         assert abs(quantity.value / wanted - 1.0) <= most
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("base", ["bonded", "sliding"])
 @pytest.mark.parametrize(("ratio", "nu"), [(0.01, 0.3), (1.0, 0.0), (1.0, 0.49), (3.0, 0.4999), (10.0, 0.3)])
 def test_flat_end_on_a_layer(base: str, ratio: float, nu: float) -> None:

@@ -80,6 +80,7 @@ def test_the_pressure_is_smooth_in_every_step(cases: tuple[float, list[Case]]) -
     assert not rough
 
 
+@pytest.mark.family
 def test_the_pressure_is_the_exact_one_while_the_contact_grows(cases: tuple[float, list[Case]]) -> None:
     """Later it is late or early with the whole impact; a contact still tiny has the error of its radius."""
     tolerance, impacts = cases

@@ -41,6 +41,7 @@ def exact(scene: Scene) -> Result:
     return simulate(laws.ting.of(scene), scene, 1e-6)
 
 
+@pytest.mark.tenth
 def test_finite_elements_agree_with_ting_within_bar_and_tolerance(
     campaign_size: Callable[[int], int], agree: Callable[..., None]
 ) -> None:
@@ -61,6 +62,7 @@ def random_ring(seed: int) -> Scene:
     return Scene(Cylinder(0.006, 0.03), 0.05, float(10.0 ** rng.uniform(-2.0, -1.0)), material, target=ring)
 
 
+@pytest.mark.tenth
 def test_a_rod_in_a_ring_agrees_with_ting(campaign_size: Callable[[int], int], agree: Callable[..., None]) -> None:
     for seed in range(campaign_size(IMPACTS) // 2 + 1):
         scene = random_ring(seed)
@@ -116,6 +118,7 @@ def test_what_cannot_be_struck_says_so() -> None:
         laws.mdr.of(random_scene(0))
 
 
+@pytest.mark.tenth
 def test_what_finer_settings_fail_to_better_stands_with_its_bars() -> None:
     """A cone whose first shorter steps touch no point of the mesh: the coarse answer is told, and not converged."""
     soft = Material(Relaxation(6.7e5, viscosity=9.8), 0.036)

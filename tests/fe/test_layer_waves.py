@@ -37,6 +37,7 @@ def marched(scene: Scene, **given: Any) -> tuple[March, Curve, Motion]:
     return found, Curve.of(found, Strike.of(scene)), moved
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("base", ["bonded", "sliding"])
 @pytest.mark.parametrize("thickness", [0.001, 0.02])
 def test_without_density_it_is_the_impact_without_inertia(base: str, thickness: float) -> None:
@@ -57,6 +58,7 @@ def test_without_density_a_line_contact_is_the_one_without_inertia() -> None:
         assert curve.quantities[key] == pytest.approx(truth[key].value, rel=1e-3), key
 
 
+@pytest.mark.tenth
 def test_without_density_volume_and_shape_relax_apart_as_without_inertia() -> None:
     changes = {"target.material.density": 1e-3, "model.inertia": True}
     curve = marched(Scene.load("rubber-layer-bulk", changes))[1]
@@ -65,6 +67,7 @@ def test_without_density_volume_and_shape_relax_apart_as_without_inertia() -> No
         assert curve.quantities[key] == pytest.approx(still[key].value, rel=1e-3), key
 
 
+@pytest.mark.tenth
 def test_before_its_base_echoes_a_thick_layer_is_the_half_space() -> None:
     material = {"law": "elastic", "E": 2.06e11, "nu": 0.1, "density": 7850.0}
     endless = Scene.load("steel-ball-waves", {"target.material": material})
@@ -127,6 +130,7 @@ def columns(scene: Scene, until: float, steps: int = 4000) -> tuple[float, Array
     return echo, step * np.arange(steps + 1), np.array(velocity), np.array(forces)
 
 
+@pytest.mark.tenth
 def test_a_thin_layer_under_a_broad_striker_rings_as_the_waves_across_it() -> None:
     """Twelve times as wide as thick; sheared columns at the rim cost the striker a few thousandths of its speed."""
     scene = broad_on_thin(12.0, 12.0)
@@ -140,6 +144,7 @@ def test_a_thin_layer_under_a_broad_striker_rings_as_the_waves_across_it() -> No
     assert near[np.gradient(curve.force(near), near).argmax()] == pytest.approx(echo, rel=0.02)  # the first echo
 
 
+@pytest.mark.tenth
 def test_the_packaged_layer_is_slow_beside_its_waves_and_keeps_its_energy(
     uncovered: Callable[..., dict[str, float]],
 ) -> None:
@@ -173,6 +178,7 @@ def random_layer(rng: np.random.Generator, law: str) -> Scene:
     return Scene.from_dict({"striker": striker, "target": target, "model": {"inertia": True}})
 
 
+@pytest.mark.tenth
 def test_the_ledger_knows_what_inertia_takes_from_the_peak(campaign_size: Callable[[int], int]) -> None:
     rng, told = np.random.default_rng(8), list[float]()
     while len(told) < campaign_size(30):
@@ -207,6 +213,7 @@ def test_the_moving_mass_is_that_of_the_field_at_rest(base: str) -> None:
         assert 0.5 < share / moving_share(nu, base, breadth, (far - 1.0) * breadth, False) < 2.0, (nu, breadth)
 
 
+@pytest.mark.tenth
 def test_bars_hold_the_answer_of_a_quarter_of_the_tolerance(
     uncovered: Callable[..., dict[str, float]], campaign_size: Callable[[int], int]
 ) -> None:

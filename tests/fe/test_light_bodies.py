@@ -43,6 +43,7 @@ def compared(found: Result, still: Result, names: tuple[str, ...], share: float)
         assert found.quantities[name].value == pytest.approx(still.quantities[name].value, rel=share), name
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("material", [ELASTIC, SLS])
 def test_a_block_and_a_rod_without_density_are_springs(material: dict[str, Any]) -> None:
     """Peak force too where the integrator damps the ripple of the waves, which fades as the root of the density."""

@@ -219,6 +219,7 @@ HARMLESS = 200  # nodes: of so coarse a mesh gmsh's own well-shaped triangles ma
 QUICK = 8_000  # nodes that a test lets gmsh make
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("kind", RANDOM)
 def test_the_nodes_of_a_mesh_are_estimated_before_it_is_made(
     kind: str, monkeypatch: pytest.MonkeyPatch, campaign_size: Callable[..., int]

@@ -83,6 +83,7 @@ def random_true_size(seed: int) -> Scene:
     return Scene(shape, mass, velocity, solid(rng, 5e-3, nu), target=target, striker_material=striker)
 
 
+@pytest.mark.tenth
 def test_bodies_of_true_size_follow_ting_on_their_own_curve(
     campaign_size: Callable[[int], int], agree: Callable[..., None]
 ) -> None:
@@ -94,6 +95,7 @@ def test_bodies_of_true_size_follow_ting_on_their_own_curve(
         assert abs(found.energy["residual"] or 0.0) <= 5e-3 * (found.energy["in"] or 0.0)
 
 
+@pytest.mark.tenth
 def test_two_materials_of_different_nu_agree_with_finer_settings(
     campaign_size: Callable[[int], int], agree: Callable[..., None]
 ) -> None:

@@ -59,9 +59,8 @@ def tings(scene: lumped.Scene, later: np.ndarray) -> np.ndarray:
     return np.array([strain(y) for y in solve_ivp(free, (0.0, later[-1]), start, t_eval=later, **precise).y.T])
 
 
-def test_random_impacts_leave_what_tings_path_leaves(
-    campaign_size: Callable[..., int], random_impact: Impact
-) -> None:
+@pytest.mark.tenth
+def test_random_impacts_leave_what_tings_path_leaves(campaign_size: Callable[..., int], random_impact: Impact) -> None:
     rng, ratios = np.random.default_rng(SEED), []
     for number in range(campaign_size(IMPACTS, least=3)):
         scene = random_impact(rng, number)

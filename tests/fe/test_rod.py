@@ -105,6 +105,7 @@ def test_every_number_of_a_rod_lies_within_its_bar(campaign_size: Callable[[int]
         assert np.abs(found.history.force - known_force)[away].max() < 1e-3 * force.max()
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("tolerance", [0.1, 1e-2, 1e-3])
 def test_no_bar_of_a_rod_is_too_small(
     tolerance: float, campaign_size: Callable[[int], int], uncovered: Callable[..., dict[str, float]]
@@ -125,6 +126,7 @@ def test_no_bar_of_a_rod_is_too_small(
     assert np.mean(converged) >= 0.95
 
 
+@pytest.mark.tenth
 def test_steps_that_agree_by_chance_make_no_bar_too_small(uncovered: Callable[..., dict[str, float]]) -> None:
     """What a quantity does as steps double crosses zero somewhere: at some of these steps for some quantity."""
     striker = {"shape": "sphere", "radius": 0.13, "mass": 12.0, "velocity": 0.058}
@@ -187,6 +189,7 @@ def test_a_relaxation_that_takes_for_ever_is_elastic_and_a_quick_one_costs_energ
     assert abs(found.energy["residual"]) < 1e-6 * found.energy["in"]
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", ["rod", "rod-free"])
 def test_the_exact_waves_lie_within_the_reference_of_a_comparison(name: str, tmp_path: Path) -> None:
     """Jumps at the same times, so that at no time between them the forces differ by more than the bar; the free rod's

@@ -34,6 +34,7 @@ def impact(seed: int) -> Scene:
     )
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
 def test_every_bar_covers(
     tolerance: float, campaign_size: Callable[[int], int], uncovered: Callable[..., dict[str, float]]

@@ -25,6 +25,7 @@ STEEP = {
 }
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("shape", STEEP.values(), ids=STEEP.keys())
 def test_force_and_contact_radius_under_steep_profiles(shape: Shape) -> None:
     layer, nu = Layer(THICKNESS, "bonded"), 0.37

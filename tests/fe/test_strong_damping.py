@@ -44,6 +44,7 @@ def exact(campaign_size: Callable[[int], int]) -> list[lumped.Result]:
     return [lumped.simulate(mdr.of(scene), scene, tolerance=REFERENCE_TOLERANCE) for scene in scenes]
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 def test_the_bars_cover_and_few_marches_do(exact: list[lumped.Result], tolerance: float) -> None:
     for answer in exact:
@@ -67,6 +68,7 @@ def roller(number: int) -> lumped.Scene:
     return lumped.Scene.from_dict({"name": f"roller-{number}", "striker": striker, "target": target})
 
 
+@pytest.mark.tenth
 def test_what_falls_with_the_steps_asks_for_no_finer_mesh(campaign_size: Callable[[int], int]) -> None:
     """A finer mesh would leave the touch of a dashpot as rough as it was, at a hundred times the cost."""
     for number in range(campaign_size(20)):

@@ -47,12 +47,14 @@ def blas_threads() -> set[int]:
     return {library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas"}
 
 
+@pytest.mark.tenth
 def test_python_gives_the_same_bytes_whatever_was_imported_first(tmp_path: Path) -> None:
     found = {run("-c", IMPACT, threads=threads, folder=tmp_path) for threads in SETTINGS}
     assert len(found) == 1
     assert len(found.pop()) > 1000
 
 
+@pytest.mark.tenth
 def test_the_command_line_gives_the_same_bytes(tmp_path: Path) -> None:
     asked = ("-m", "fe_contact", "indent", "polymer-layer", "--depths", "1e-5,2e-5,4e-5", "--quiet", "--out")
     for threads in SETTINGS:

@@ -58,6 +58,7 @@ def exact(scene: Scene) -> dict[str, float | None]:
     return {name: quantities[name].value for name in UNITS if name not in ("peak_time", "history_l2")}
 
 
+@pytest.mark.tenth
 def test_another_method_knows_what_it_errs_by(campaign_size: Callable[[int], int]) -> None:
     """Also where contact chatters: half the steps chatter alike, the usual method does not."""
     rng = np.random.default_rng(83)

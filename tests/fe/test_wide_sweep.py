@@ -55,6 +55,7 @@ def table(law: str, young: float, time: float, branch: float) -> dict[str, Any]:
     return {"law": law, **tables[law]}
 
 
+@pytest.mark.tenth
 def test_defaults_over_a_wide_range_of_scenes(
     campaign_size: Callable[[int], int], uncovered: Callable[..., dict[str, float]]
 ) -> None:

@@ -111,6 +111,7 @@ def check(found: Result, known: Result) -> None:
     assert abs(found.energy["residual"] or 0.0) < 1e-6 * (found.energy["in"] or 0.0)
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize(("drawn", "many"), [(ball, BALLS), (rod, RODS), (block, BLOCKS)])
 def test_defaults_with_inertia_over_a_wide_range_of_scenes(
     drawn: Callable[[np.random.Generator, int], dict[str, Any]], many: int, campaign_size: Callable[[int], int]

@@ -62,6 +62,7 @@ def test_rounds_end_where_the_next_one_takes_too_many_steps(monkeypatch: pytest.
     assert found.numerics["elements_per_contact"] == 2.0
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("bound", "what"), [("MOST_STEPS", "steps"), ("MOST_OPERATIONS", "operations")])
 def test_what_keeps_bars_from_the_tolerance_is_said_and_what_is_reached(
     bound: str, what: str, monkeypatch: pytest.MonkeyPatch
@@ -120,6 +121,7 @@ def test_a_row_of_contacts_ends_by_name(monkeypatch: pytest.MonkeyPatch) -> None
     assert found.contacts
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize(
     "name", ["polymer-sphere-waves", "ball-bouncing-waves", "polymer-layer-waves", "two-finite-spheres-waves"]
 )

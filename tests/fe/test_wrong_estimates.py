@@ -60,6 +60,7 @@ def outside(found: Result, truth: Result) -> dict[str, float]:
     return {name: ratio for name, ratio in over.items() if not ratio <= 1.0}
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("tolerance", [0.1, 1e-2, 1e-3, 1e-4])
 def test_values_lie_within_their_bars_whatever_was_expected(
     tolerance: float, misjudged: Callable[[float, float], None], campaign_size: Callable[[int], int]
@@ -75,6 +76,7 @@ def test_values_lie_within_their_bars_whatever_was_expected(
         assert not outside(found, exact(name)), (name, times, radii)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("times", [0.4, 0.7, 2.0])
 def test_contacts_in_a_row_lie_within_both_bars_whatever_was_expected(
     times: float, misjudged: Callable[[float, float], None], uncovered: Callable[..., dict[str, float]]

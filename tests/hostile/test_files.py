@@ -69,6 +69,7 @@ NAMES = ("\x1b[31mred.toml", "a\nb.toml", "\u202egnp.toml", os.fsdecode(b"\xff\x
 LINE = r".+?: .+"
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", [*TEXTS, *BYTES])
 def test_a_hostile_scene_is_refused_by_name(
     tmp_path: Path, name: str, run: Callable[[Sequence[str]], Any], faults_of: Callable[..., list[str]]

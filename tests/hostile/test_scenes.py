@@ -174,6 +174,7 @@ def curve(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.tenth
 def test_a_changed_scene_runs_or_every_line_names_its_file_and_key(
     tmp_path: Path,
     curve: Path,

@@ -49,6 +49,7 @@ def force_over_bars(found: Result, exact: Result) -> float:
     return float(np.max(np.abs(rows.force - exact.history.force_at(rows.time)) / (rows.force_error + bar)))
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
 def test_every_bar_covers(
     tolerance: float, campaign_size: Callable[[int], int], uncovered: Callable[..., dict[str, float]]
@@ -66,6 +67,7 @@ def test_every_bar_covers(
     assert np.mean(converged) >= 0.95
 
 
+@pytest.mark.tenth
 def test_a_looser_tolerance_never_takes_more_steps() -> None:
     rng = np.random.default_rng(5)
     for _ in range(8):

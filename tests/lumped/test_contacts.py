@@ -67,6 +67,7 @@ def followed(scene: Scene, rule: str, contacts: int) -> list[tuple[float, float,
     return found
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("rule", RULES.names)
 def test_every_memory_against_direct_integration(rule: str, impact: Build) -> None:
     scene = bouncing(impact, 3)

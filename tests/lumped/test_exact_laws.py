@@ -119,6 +119,7 @@ def test_spring_row_errs_by_even_powers_of_its_steps(case: str, impact: Callable
         levels = [limit(one, finer, order) for one, finer in pairwise(levels)]
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("law", ["ting", "mdr", "correspondence"])
 @pytest.mark.parametrize("case", ["three terms", "kelvin-voigt", "constant bulk"])
 def test_bars_cover_the_error_at_every_tolerance(
@@ -142,6 +143,7 @@ def test_work_grows_gently_with_the_tolerance(impact: Callable[..., Scene]) -> N
     assert calls[1] < 2500
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
 @pytest.mark.parametrize("case", [*CASES, "with gravity", "second approach", "at end_time"])
 def test_energy_of_the_spring_row_closes_term_by_term(
@@ -210,6 +212,7 @@ def test_springs_that_leave_at_one_time_but_for_rounding(tolerance: float, impac
     closes(scene, tolerance)
 
 
+@pytest.mark.tenth
 def test_a_solid_damped_a_million_times_too_much_is_no_crash() -> None:
     """Rows of the row's rebound lie so near to each other that the root of the time left does not tell them apart."""
     material = {"law": "kelvin_voigt", "E": 2539808694.4017277, "eta": 551145149801.6862, "nu": -0.22848906917747086}

@@ -46,6 +46,7 @@ def polymer() -> Scene:
     return Scene.load("polymer-sphere")
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("law", TRUTHS)
 def test_a_law_gets_its_own_parameters_back(law: str) -> None:
     found = fit(history(law, **TRUTHS[law]), law, BODY)
@@ -71,6 +72,7 @@ def test_the_material_of_the_half_space_comes_back(
     assert {name: found.values[name] for name in truth} == pytest.approx(truth, rel=1e-6)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("law", ["correspondence", "ting"])
 @pytest.mark.parametrize(
     ("ratio", "slowness"), [(0.2, 1.5), (0.125, 10.0), (4.0, 3.0), (6.0, 4.0), (1.0, 0.09), (5.5, 0.02)]
@@ -149,6 +151,7 @@ def test_a_curve_cut_off_in_the_contact_tells_the_same() -> None:
     assert found.normalized_error < 1e-4
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("law", ["kelvin", "hunt_crossley"])
 def test_the_truth_lies_within_the_interval_as_often_as_said(law: str, campaign_size: Callable[..., int]) -> None:
     """With 1 % noise, 95 % of the intervals should hold it."""
@@ -228,6 +231,7 @@ def test_a_damping_that_is_not_there_is_not_told_from_none() -> None:
     assert any(text.startswith(("xi is at its bound", "the interval of xi reaches")) for text in found.warnings)
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize(("law", "peak"), [("linear_spring", True), ("hertz", False)])
 def test_a_loop_is_fitted_to_what_has_none(law: str, peak: bool) -> None:
     """The slope after the yield can only come as near as the first: a step beyond it is no law."""
@@ -253,6 +257,7 @@ def test_parameters_that_do_the_same_have_no_interval() -> None:
     assert np.isnan(inverse).all()
 
 
+@pytest.mark.tenth
 def test_a_force_beyond_every_material_is_searched_within_its_range() -> None:
     """The first guess lies as far beyond the range as a search reaches."""
     curve = Curve(np.array([0.0, 10.0, 20.0]), np.array([0.0, 1e14, 0.0]))

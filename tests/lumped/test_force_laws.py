@@ -221,6 +221,7 @@ def test_the_viscous_sphere_has_the_restitution_of_the_literature(x: float) -> N
     assert quantities(scene("kuwabara_kono", A=A), 1e-7)["restitution"] == pytest.approx(expected, abs=6e-6)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-5])
 @pytest.mark.parametrize("name", NAMES)
 def test_bars_cover_the_error_at_every_tolerance(name: str, tolerance: float) -> None:
@@ -272,6 +273,7 @@ def test_two_free_bodies_move_like_their_reduced_mass(name: str) -> None:
     assert quantities(free, 1e-6) == pytest.approx(quantities(held, 1e-6), rel=1e-12)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", NAMES)
 def test_many_bounces_follow_their_restitution(name: str) -> None:
     """With gravity far weaker than the contact the n-th touch has the speed v e^n, flights last 2 v/g."""
@@ -311,6 +313,7 @@ def test_an_elastic_bounce_never_tires(name: str) -> None:
     assert result.history.depth.min() == pytest.approx(-(VELOCITY**2) / (2.0 * 9.81), rel=1e-6)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", NAMES)
 def test_a_weight_too_heavy_to_rebound_rests_where_its_force_carries_it(name: str) -> None:
     case = Scene(

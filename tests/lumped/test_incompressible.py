@@ -57,6 +57,7 @@ def test_hertz_on_an_incompressible_half_space() -> None:
             assert abs(one.value - exact) <= (one.error or 0.0) + 1e-12 * exact, (name, quantity)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(
     ("name", "law"),
     [
@@ -139,6 +140,7 @@ def test_what_cannot_yield_is_refused_by_name() -> None:
     assert [name for name, is_finite in finite.items() if not is_finite] == ["plate"]
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", scene_names())
 def test_every_scene_has_an_answer_or_a_named_refusal(name: str) -> None:
     """By every law, and its ledger is finite."""

@@ -82,6 +82,7 @@ def back(kind: Any, value: Any, *arguments: Any) -> Any:
     return decoded(kind, json.loads(json.dumps(encoded(value, arguments))), arguments)
 
 
+@pytest.mark.tenth
 @given(TREES)
 def test_what_is_kept_comes_back_to_the_bit(tree: Tree) -> None:
     assert same(back(Tree, tree), tree)

@@ -230,6 +230,7 @@ def test_printed_values_are_the_inputs(examples: Examples) -> None:
     assert (steel.diameter, steel.drop) == pytest.approx((5 / 32 * inch, 2 * inch), rel=1e-12)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", recompute.available())
 def test_nothing_but_inputs_is_held(name: str, examples: Examples, moved: Examples) -> None:
     before, after = (np.array([v.value for v in recompute.get(name)(one)]) for one in (examples, moved))

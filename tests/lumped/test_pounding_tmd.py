@@ -96,6 +96,7 @@ AUDIT: dict[str, tuple[PoundingDamper, Start, tuple[float, ...]]] = {
 DIGITS = (0.01, 1e-3, 0.01, 0.01, 0.01, 0, 0.01, 0.1, 0.1, 0.1, 0.01, 0.01, 0.025)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("case", AUDIT)
 def test_the_audited_table(case: str) -> None:
     system, start, expected = AUDIT[case]
@@ -355,6 +356,7 @@ def grazes(start: Start, gaps: range, route: str, exponent: float) -> list[float
     return found
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("route", "exponent"), [("exact", 1.0), ("integrated", 1.0), ("integrated", 1.5)])
 @pytest.mark.parametrize("start", [BOTH, STRUCTURE])
 def test_rounding_decides_no_graze(
@@ -407,6 +409,7 @@ def test_a_level_that_rises_from_rounding_falls_where_it_should(back: float, ste
     assert first_fall([falling], [True]) == (0.0, 0)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_matrix_exponentials_and_dop853_agree(name: str) -> None:
     system, start = SYSTEMS[name]
@@ -426,6 +429,7 @@ def test_matrix_exponentials_and_dop853_agree(name: str) -> None:
         assert integrated.energy.to_dict()[term] == pytest.approx(value, abs=1e-8 * exact.energy.initial)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_every_energy_closes(name: str) -> None:
     system, start = SYSTEMS[name]
@@ -458,6 +462,7 @@ EXPONENTS = (1.05, 1.35, 1.5, 2.0, 2.5)
 PER_ROW = 16  # evaluations of a step of order 8 and its interpolant
 
 
+@pytest.mark.tenth
 def test_any_exponent_costs_about_what_hertz_does(monkeypatch: pytest.MonkeyPatch) -> None:
     """The equations are formed once for each kind of phase, and flight takes steps of the bodies, not of the ring."""
     formed, asked = Counter[float](), Counter[tuple[float, bool]]()

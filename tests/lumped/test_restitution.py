@@ -124,6 +124,7 @@ def test_every_family_has_a_witness() -> None:
     assert set(IMPACTS) == set(restitution.available())
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("name", "exit"), BOTH)
 def test_direct_integration_gives_the_same_restitution(
     name: str, exit: str, campaign_size: Callable[[int], int]
@@ -137,6 +138,7 @@ def test_direct_integration_gives_the_same_restitution(
         assert restitution.get(name).restitution(damping, exit) == pytest.approx(e, abs=1e-8)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("name", "exit"), BOTH)
 @given(e=st.floats(0.001, 0.999999))
 def test_restitution_asked_for_is_obtained(name: str, exit: str, e: float) -> None:

@@ -182,6 +182,7 @@ print(call)
 """
 
 
+@pytest.mark.tenth
 def test_killed_at_any_call_it_leaves_one_result_whole_and_the_next_run_tidies_up(tmp_path: Path) -> None:
     own = Path(__file__).resolve()
     arguments = [str(tmp_path), str(own.parent), str(own.parents[2])]

@@ -80,6 +80,7 @@ def test_kernel_is_the_series_it_sums() -> None:
     assert (ring_compliance(nu, ratio, rule, angle) @ q)[::20] == pytest.approx(series, abs=1e-7)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("ring", RINGS, ids=repr)
 def test_slopes_energy_and_inverse(ring: RodInRing) -> None:
     depths = ring.depth_limit * SHARES

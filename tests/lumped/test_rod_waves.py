@@ -72,6 +72,7 @@ def test_a_free_rod_throws_no_mass_back_before_its_echo() -> None:
         assert impact.columns(np.array([end - 1e-12]))[1, 0] == pytest.approx(math.exp(-2.0 / mass), rel=1e-9)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("echo", ECHOES)
 def test_a_stiff_linear_dent_comes_to_the_flat_end(echo: float) -> None:
     """Series and integrator share nothing; away from fronts they differ by the dent, as its inverse stiffness."""

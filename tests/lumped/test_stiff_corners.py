@@ -45,6 +45,7 @@ def corner(rng: np.random.Generator, name: str) -> Scene:
     return replace(scene, model=Model(gravity=gravity), motion=Motion(end_time=end_time))
 
 
+@pytest.mark.tenth
 @pytest.mark.parametrize("name", NAMES)
 def test_every_corner_ends_or_says_why_not(name: str, campaign_size: Callable[[int], int]) -> None:
     rng = np.random.default_rng(len(name))
