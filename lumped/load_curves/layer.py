@@ -1,17 +1,32 @@
-"""The elastic layer on a rigid foundation: how much less it yields than the half-space, wave by wave."""
+"""The elastic layer on a rigid foundation, which wave by wave yields less than the half-space; round and line contact.
+
+Under an axisymmetric profile its dual integral equation is reduced to Fredholm's of the second kind and solved by
+Nystrom's method. With x, s, t in thicknesses, phi the pressure's Abel transform and g the one-dimensional profile of
+the indenter,
+    phi(t) - int_0^ratio k(s, t) phi(s) ds = depth - g(t),  k(s, t) = (2/pi) int_0^inf (1-L(u)) cos(us) cos(ut) du,
+    F/E* = 2 thickness int_0^ratio phi dt,  phi(ratio) = 0 where the profile leaves the surface smoothly.
+L = 1 leaves phi = depth - g: the half-space. Lebedev and Ufliand 1958, J. Appl. Math.
+Mech. 22, 442-450.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from math import inf
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault, nearest
+from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.fixed_area import FixedArea, under_flat_end
+from lumped.load_curves.half_space import HalfSpaceCurve
+from lumped.load_curves.plane_contact import Grown, LineCurve, LineProfile, collocation, folded, grown
+from lumped.load_curves.tabulated import REACH, Array, TabulatedCurve, TabulatedState, growing_edges
 from lumped.numbers.quadrature import gauss
 
-Array = NDArray[np.float64]
 BASES = ("bonded", "sliding")
 # Beyond this wavenumber (times thickness) the deficit is below rounding.
 LAST_WAVENUMBER = 22.0
@@ -70,3 +85,217 @@ def waves(ratio: float, refinement: float) -> tuple[Array, Array]:
     nodes, weights = gauss(WAVE_POINTS)
     width = LAST_WAVENUMBER / panels
     return (width * (np.arange(panels)[:, None] + nodes)).ravel(), np.tile(width * weights, panels)
+
+
+@dataclass(frozen=True)
+class LayerCurve(TabulatedCurve):
+    """What a layer answers to the profile which the half-space answers by the curve `half_space`.
+
+    Contact radii up to 20 thicknesses and up to 0.85 of a sphere's radius; a depth of a thickness or more raises
+    BadInput. Relative accuracy 1e-8, or NotReached.
+    """
+
+    half_space: LoadCurve
+    layer: PointLayer
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.half_space, HalfSpaceCurve):
+            message = "must be a curve of the half-space under a profile that touches at a point"
+            raise BadInput(Fault("layer", "half_space", message))
+
+    @cached_property
+    def edges(self) -> tuple[float, ...]:
+        """Panels grow with the distance from the axis."""
+        return growing_edges(self.layer.thickness, self.half_space.extent)
+
+    def sample(self, contact_radius: float, refinement: float) -> Array:
+        """Depth, force and stiffness over those of the half-space at this contact radius."""
+        equation, h = self._equation(contact_radius, refinement), self.layer.thickness
+        profile = self.half_space.depth(h * equation.nodes)
+        punch, edge, weights = equation.punch, equation.edge, equation.weights
+        own = float(self.half_space.depth(contact_radius))
+        depth = (own + (weights * edge) @ profile) / (1.0 + weights @ edge)
+        force = 2.0 * h * ((weights * punch) @ (depth - profile))
+        stiffness = 2.0 * h * (weights @ punch)
+        return np.array([depth / own, force / self._own_force(contact_radius), stiffness / (2.0 * contact_radius)])
+
+    def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> TabulatedState:
+        """The half-space's values times the tabulated ratios."""
+        a, own = contact_radius, self.half_space.depth(contact_radius)
+        slope = self.half_space.depth_slope(a) * smooth[0] + own * slopes[0]
+        return TabulatedState(own * smooth[0], slope, self._own_force(a) * smooth[1], 2.0 * a * smooth[2])
+
+    def contact_radius(self, depth: ArrayLike) -> NDArray[np.float64]:
+        """Contact radius a at a depth below the thickness, m; raises BadInput for deeper ones."""
+        self.layer.check_depth(depth)
+        return np.asarray(super().contact_radius(depth))
+
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+        """p(r)/E* = -(1/pi) int_r^a phi'(t)/sqrt(t^2-r^2) dt, zero outside: the half-space's and a smooth part."""
+        equation = self._equation(contact_radius, 1.0)
+        depth = float(self.depth(contact_radius))
+        phi = equation.answer(depth - self.half_space.depth(self.layer.thickness * equation.nodes))
+        inner = abel(equation, phi, np.asarray(radius, dtype=float) / self.layer.thickness)
+        return self.half_space.pressure(radius, contact_radius) + inner / self.layer.thickness
+
+    def _own_force(self, contact_radius: ArrayLike) -> NDArray[np.float64]:
+        """F/E* of the half-space at this contact radius, m^2."""
+        return np.asarray(self.half_space.force_at(contact_radius))
+
+    def _equation(self, contact_radius: float, refinement: float) -> DualEquation:
+        ratio = contact_radius / self.layer.thickness
+        return dual_equation(self.layer.nu, self.layer.base, ratio, refinement)
+
+
+@dataclass(frozen=True)
+class LayerPunch(FixedArea):
+    """A flat-ended cylinder of this radius, up to 20 thicknesses, on a layer: F = 2 kappa E* a depth.
+
+    Raises BadInput beyond. Hayes et al. 1972, J. Biomech. 5, 541-551, tabulate kappa.
+    """
+
+    radius: float
+    layer: PointLayer
+    accuracy: ClassVar[float] = 1e-10
+
+    def __post_init__(self) -> None:
+        reach = REACH * self.layer.thickness
+        if not 0.0 < self.radius <= reach:
+            raise BadInput(Fault("punch", "radius", f"must lie above 0 and up to {reach:g} m, is {self.radius}"))
+
+    @cached_property
+    def stiffness(self) -> float:
+        """2 kappa a, m."""
+        return float(2.0 * self.layer.thickness * (self._equation.weights @ self._equation.punch))
+
+    def pressure_at(self, radius: ArrayLike, depth: float) -> NDArray[np.float64]:
+        """(1/pi) [phi(a)/sqrt(a^2-r^2) - int_r^a phi'/sqrt(t^2-r^2) dt] with the punch's phi."""
+        equation, pressed = self._equation, max(depth, 0.0)
+        edge = pressed * (1.0 + float(equation.weights @ equation.edge))
+        inner = abel(equation, pressed * equation.punch, np.asarray(radius, dtype=float) / self.layer.thickness)
+        return under_flat_end(radius, self.radius, edge) + inner / self.layer.thickness
+
+    @property
+    def _equation(self) -> DualEquation:
+        return dual_equation(self.layer.nu, self.layer.base, self.radius / self.layer.thickness)
+
+
+def abel(equation: DualEquation, phi: Array, r: Array) -> Array:
+    """-(1/pi) int_r^ratio psi'(t)/sqrt(t^2-r^2) dt of phi's smooth part psi, r in thicknesses, zero outside."""
+    reach = np.sqrt(np.maximum(equation.ratio**2 - r**2, 0.0))
+    nodes, weights = gauss(equation.nodes.size)
+    t = np.hypot(reach[..., None] * nodes, np.abs(r)[..., None])
+    slope = np.divide(equation.correction_slope(phi, t), t, out=np.zeros_like(t), where=t > 0.0)
+    return np.asarray(-reach * (slope @ weights) / np.pi)
+
+
+@dataclass(frozen=True)
+class DualEquation:
+    """The equation of one layer at one contact radius, `ratio` thicknesses. Lengths count in thicknesses."""
+
+    nu: float
+    base: str
+    ratio: float
+    refinement: float = 1.0
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Places t, shape (n,), crowded at both ends: powers of t and the logarithm of a sphere's rim are met there."""
+        return self.ratio * np.sin(0.5 * np.pi * self._rule[0]) ** 2
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weights of the integral over t, shape (n,)."""
+        return self.ratio * 0.5 * np.pi * np.sin(np.pi * self._rule[0]) * self._rule[1]
+
+    @cached_property
+    def punch(self) -> Array:
+        """phi of a flat punch at unit depth, shape (n,)."""
+        return self.answer(np.ones_like(self.nodes))
+
+    @cached_property
+    def edge(self) -> Array:
+        """What a unit of source at each node adds to phi at the edge, shape (n,), weights apart."""
+        return self.answer(self._kernel_at(np.array([self.ratio]))[0])
+
+    def answer(self, source: Array) -> Array:
+        """phi at the nodes for the right-hand side at the nodes, both of shape (n,)."""
+        matrix = np.eye(self.nodes.size) - self._kernel_at(self.nodes) * self.weights
+        return np.asarray(np.linalg.solve(matrix, source))
+
+    def correction_slope(self, phi: Array, t: Array) -> Array:
+        """phi'(t) less the slope of its source, at any t; shapes (n,), (...) and (...)."""
+        u, density = self._spectrum
+        spectrum = -u * density * ((self.weights * phi) @ np.cos(np.multiply.outer(self.nodes, u)))
+        return np.asarray(np.sin(np.multiply.outer(t, u)) @ spectrum)
+
+    @property
+    def _rule(self) -> tuple[Array, Array]:
+        return gauss(int(self.refinement * (32.0 + 6.0 * self.ratio)))
+
+    @cached_property
+    def _spectrum(self) -> tuple[Array, Array]:
+        """Wavenumbers and (2/pi) (1-L) du."""
+        u, weights = waves(self.ratio, self.refinement)
+        return u, 2.0 / np.pi * weights * deficit(self.nu, self.base, u)
+
+    def _kernel_at(self, t: Array) -> Array:
+        """k(s, t) for s at the nodes, shape (m, n)."""
+        u, density = self._spectrum
+        return np.asarray((np.cos(np.outer(t, u)) * density) @ np.cos(np.outer(u, self.nodes)))
+
+
+@lru_cache(maxsize=1024)
+def dual_equation(nu: float, base: str, ratio: float, refinement: float = 1.0) -> DualEquation:
+    """The equation, with what it has already answered."""
+    return DualEquation(nu, base, ratio, refinement)
+
+
+@dataclass(frozen=True)
+class LineLayer(LineCurve):
+    """u(x) = (2/(pi E*)) int p(x') int_0^inf L(u) cos(u(x-x')/h)/u du dx': half-widths up to 20 thicknesses and to
+    0.85 of a true cylinder's radius; a depth of a thickness or more raises BadInput. Relative accuracy 1e-8, or
+    NotReached. Johnson 1985, ISBN 978-0-521-34796-9, chapter 5.
+    """
+
+    profile: LineProfile
+    layer: PointLayer
+
+    @property
+    def curvature_radius(self) -> float:
+        """That of the cylinder, m."""
+        return self.profile.radius
+
+    @property
+    def length(self) -> float:
+        """The thickness, m."""
+        return self.layer.thickness
+
+    @cached_property
+    def edges(self) -> tuple[float, ...]:
+        """Panels grow with the distance from the middle."""
+        return growing_edges(self.layer.thickness, self.profile.extent)
+
+    def grown(self, half_width: float, refinement: float) -> Grown:
+        """The contact at one half-width."""
+        ratio = half_width / self.layer.thickness
+        rule = collocation(int(refinement * (20.0 + 4.0 * ratio)))
+        smooth = self._smooth(ratio * rule.nodes, ratio, refinement) - np.log(ratio)
+        matrix = 2.0 * half_width / np.pi * (folded(rule.logarithm) + 2.0 * rule.weight * smooth)
+        return grown(rule, half_width, matrix, self.profile.height(half_width * rule.nodes))
+
+    def contact_radius(self, depth: ArrayLike) -> NDArray[np.float64]:
+        """Half-width at a depth below the thickness, m; raises BadInput for deeper ones."""
+        self.layer.check_depth(depth)
+        return np.asarray(super().contact_radius(depth))
+
+    def _smooth(self, x: Array, ratio: float, refinement: float) -> Array:
+        """The kernel less -ln|x-x'|, even part, at places in thicknesses: shape (n, n).
+
+        -ln|x| = int_0^inf (cos(ux) - exp(-2u))/u du - ln 2.
+        """
+        u, weights = waves(ratio, refinement)
+        cosines = np.cos(np.outer(x, u))
+        density = weights / u
+        held = cosines * (density * deficit(self.layer.nu, self.layer.base, u)) @ cosines.T
+        return np.asarray(density @ np.exp(-2.0 * u) - held + np.log(2.0))

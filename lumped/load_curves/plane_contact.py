@@ -1,19 +1,71 @@
-"""Symmetric frictionless contact in plane strain, by collocation at Chebyshev's nodes.
+"""Symmetric frictionless contact in plane strain, per unit length: profiles, collocation, and the tabulated curve.
 
 With y = x/b on the contact |x| <= b the pressure is E* Q(y)/sqrt(1-y^2) with an even Q, and Q(1) = 0 where the
-profile leaves the surface smoothly. Kernels -ln|y-y'| and |y-y'|, times smooth functions, are integrated exactly for
-polynomials Q; on kernels that are smooth besides, convergence is spectral.
+profile leaves the surface smoothly. Collocation is at Chebyshev's nodes: kernels -ln|y-y'| and |y-y'|, times smooth
+functions, are integrated exactly for polynomials Q; on kernels that are smooth besides, convergence is spectral.
 """
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cache
+from math import inf
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
+from lumped.errors import BadInput, Fault
+from lumped.load_curves.tabulated import Array, TabulatedCurve, TabulatedState
+
+
+@dataclass(frozen=True)
+class LineProfile(ABC):
+    """A symmetric convex profile with this radius of curvature at its lowest line, m. Raises BadInput."""
+
+    radius: float
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.radius < inf:
+            raise BadInput(Fault("cylinder", "radius", f"must be above 0 m, is {self.radius}"))
+
+    @property
+    @abstractmethod
+    def extent(self) -> float:
+        """Half-width at which the profile ends, m."""
+
+    @abstractmethod
+    def height(self, x: ArrayLike) -> NDArray[np.float64]:
+        """Height above the lowest line, m."""
+
+
+@dataclass(frozen=True)
+class CylinderProfile(LineProfile):
+    """The true cylinder."""
+
+    @property
+    def extent(self) -> float:
+        """R, m."""
+        return self.radius
+
+    def height(self, x: ArrayLike) -> NDArray[np.float64]:
+        """R - sqrt(R^2-x^2) = x^2/(R + sqrt(R^2-x^2)), m."""
+        square = np.square(np.asarray(x, dtype=float))
+        return np.asarray(square / (self.radius + np.sqrt(self.radius**2 - square)))
+
+
+@dataclass(frozen=True)
+class ParabolaProfile(LineProfile):
+    """The parabola of the same curvature."""
+
+    @property
+    def extent(self) -> float:
+        """It does not end."""
+        return inf
+
+    def height(self, x: ArrayLike) -> NDArray[np.float64]:
+        """x^2/(2R), m."""
+        return np.asarray(np.square(np.asarray(x, dtype=float)) / (2.0 * self.radius))
 
 
 @dataclass(frozen=True)
@@ -109,3 +161,49 @@ def _distances(orders: Array, angle: Array) -> Array:
     zeroth = (np.pi - 2.0 * angle) * np.cos(angle) + 2.0 * np.sin(angle)
     first = angle - 0.5 * np.sin(2.0 * angle) - 0.5 * np.pi
     return np.where(orders == 0, zeroth, np.where(orders == 1, first, wave))
+
+
+class LineCurve(TabulatedCurve):
+    """Plane strain, per unit length. With half-width b, a radius of curvature R and a length h,
+    F/E* = pi b^2/(4 R f), depth = (F/E*) [(2/pi) ln(h/b) + d], d depth/dF = (2/pi) ln(h/b) + c,
+    and f, d and c are smooth down to b = 0, where f = 1.
+    """
+
+    @property
+    @abstractmethod
+    def curvature_radius(self) -> float:
+        """R of the undeformed gap, m."""
+
+    @property
+    @abstractmethod
+    def length(self) -> float:
+        """h, m."""
+
+    @abstractmethod
+    def grown(self, half_width: float, refinement: float) -> Grown:
+        """The contact at one half-width."""
+
+    def sample(self, contact_radius: float, refinement: float) -> Array:
+        """f, d and c."""
+        here = self.grown(contact_radius, refinement)
+        logarithm = 2.0 / np.pi * np.log(self.length / contact_radius)
+        hertz = np.pi * contact_radius**2 / (4.0 * self.curvature_radius)
+        return np.array([hertz / here.force, here.depth / here.force - logarithm, here.compliance - logarithm])
+
+    def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> TabulatedState:
+        """The curve from f, d and c; at b = 0 all is 0."""
+        b, touched = np.where(contact_radius > 0.0, contact_radius, self.length), contact_radius > 0.0
+        logarithm = 2.0 / np.pi * np.log(self.length / b)
+        force = np.pi * b**2 / (4.0 * self.curvature_radius * smooth[0])
+        force_slope = force * (2.0 / b - slopes[0] / smooth[0])
+        compliance = logarithm + smooth[1]
+        slope = force_slope * compliance + force * (slopes[1] - 2.0 / (np.pi * b))
+        values = (force * compliance, slope, force, 1.0 / (logarithm + smooth[2]))
+        return TabulatedState(*(np.where(touched, value, 0.0) for value in values))
+
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+        """p/E* at distances from the middle of the contact, from the equation itself; zero at first touch."""
+        if contact_radius == 0.0:
+            return np.zeros(np.shape(radius))
+        here = self.grown(contact_radius, 1.0)
+        return here.collocation.at(here.q, np.asarray(radius, dtype=float) / contact_radius)

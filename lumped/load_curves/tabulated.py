@@ -158,12 +158,12 @@ class TabulatedCurve(LoadCurve):
         return self.state(radius, *evaluate(_tables(self, panels), edges, radius))
 
 
-def growing_edges(length: float, extent: float) -> tuple[float, ...]:
-    """Edges of panels from 0 for a body with one length, m, under a profile that ends at `extent`, m."""
+def growing_edges(length: float, extent: float, reach: float = REACH) -> tuple[float, ...]:
+    """Edges of panels from 0 to `reach` lengths of the body, m, or a share of what the profile has, `extent`, m."""
     first = min(FIRST_PANEL * length, FIRST_OF_EXTENT * extent)
-    reach = min(REACH * length, SHARE_OF_EXTENT * extent)
-    growths = int(np.ceil(np.log(reach / first) / np.log(GROWTH)))
-    return (0.0, *(float(edge) for edge in np.geomspace(first, reach, growths + 1)))
+    last = min(reach * length, SHARE_OF_EXTENT * extent)
+    growths = int(np.ceil(np.log(last / first) / np.log(GROWTH)))
+    return (0.0, *(float(edge) for edge in np.geomspace(first, last, growths + 1)))
 
 
 def _extended(x: Array, known_x: Array, known_y: Array) -> Array:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
-from lumped.load_curves.line_profile import LineProfile
+from lumped.load_curves.plane_contact import LineProfile
 from lumped.materials import Material, Relaxation
 from lumped.schema import Table
 from lumped.schema.record import Record, written

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.load_curves import line_profile
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
+from lumped.load_curves.plane_contact import CylinderProfile, LineProfile, ParabolaProfile
 from lumped.schema.keys import Key, Number
 from lumped.schema.record import Part
 from lumped.shapes.base import Shape, circle, circle_slope, parabola, parabola_slope
@@ -51,9 +51,9 @@ class Cylinder(Shape):
         return self.radius
 
     @property
-    def line_profile(self) -> line_profile.LineProfile:
+    def line_profile(self) -> LineProfile:
         """The true cylinder."""
-        return line_profile.CylinderProfile(self.radius)
+        return CylinderProfile(self.radius)
 
     @property
     def total(self) -> float:
@@ -93,9 +93,9 @@ class ParabolicCylinder(Cylinder):
         return parabola_slope(r, self.radius)
 
     @property
-    def line_profile(self) -> line_profile.LineProfile:
+    def line_profile(self) -> LineProfile:
         """The parabola."""
-        return line_profile.ParabolaProfile(self.radius)
+        return ParabolaProfile(self.radius)
 
     def resolved(self, profile: str) -> Cylinder:
         """Itself."""

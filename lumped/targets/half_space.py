@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.half_plane import HalfPlane
 from lumped.schema.keys import Key, Number
 from lumped.schema.record import Part
 from lumped.shapes.base import Shape
@@ -39,11 +40,9 @@ class HalfSpace(Target):
 
     def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
         """The shape's own; of a cylinder, relative to the datum."""
-        if not shape.plane:
-            return shape.load_curve
-        from lumped.load_curves.half_plane import HalfPlane
-
-        return HalfPlane(shape.line_profile, self.datum_depth or 0.0, nu)
+        if shape.plane:
+            return HalfPlane(shape.line_profile, self.datum_depth or 0.0, nu)
+        return shape.load_curve
 
     def waves_under(self, shape: Shape) -> bool:
         """Not in plane strain."""

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import ive
 
 from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.layer import LayerCurve, LayerPunch, LineLayer, PointLayer
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.schema.keys import Choice, Key, Number
@@ -51,11 +52,7 @@ class Layer(Target):
 
     def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
         """By the layer's integral equation."""
-        from lumped.load_curves.layer import PointLayer as Elastic
-        from lumped.load_curves.layer_curve import LayerCurve, LayerPunch
-        from lumped.load_curves.line_layer import LineLayer
-
-        elastic = Elastic(self.thickness, nu, self.base)
+        elastic = PointLayer(self.thickness, nu, self.base)
         if shape.plane:
             return LineLayer(shape.line_profile, elastic)
         if shape.fixed_radius is not None:

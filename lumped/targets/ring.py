@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.ring import RodInRing
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.schema.keys import Key, Number
@@ -59,9 +60,7 @@ class Ring(Target):
 
     def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
         """By the Fourier series of the annulus."""
-        from lumped.load_curves.ring import RodInRing as Elastic
-
-        return Elastic(shape.tip_radius or 0.0, self.inner_radius, self.thickness, nu)
+        return RodInRing(shape.tip_radius or 0.0, self.inner_radius, self.thickness, nu)
 
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """A layer's, held by the outer surface."""

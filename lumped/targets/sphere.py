@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 
 from lumped.errors import Fault
 from lumped.load_curves.base import LoadCurve
-from lumped.load_curves.two_profiles import TwoProfiles
+from lumped.load_curves.half_space import TwoProfiles
 from lumped.materials import Material
 from lumped.schema.record import Part
 from lumped.shapes import Sphere as Profile

@@ -9,8 +9,7 @@ import pytest
 
 from fe_contact.indentation import indent, press, settings
 from lumped import BadInput, Material, Relaxation
-from lumped.load_curves.layer import PointLayer
-from lumped.load_curves.layer_curve import LayerPunch
+from lumped.load_curves.layer import LayerPunch, PointLayer
 from lumped.scene.indenter import Indenter
 from lumped.shapes.plate import Plate
 from lumped.shapes.prism import Prism

@@ -16,7 +16,7 @@ from lumped import Material, Relaxation, Scene, laws, simulate
 from lumped.errors import BadInput, FeContactError
 from lumped.indentation.indentation import indent
 from lumped.load_curves.layer import deficit
-from lumped.load_curves.ring_contact import compliances
+from lumped.load_curves.ring import compliances
 from lumped.paper import table1
 from lumped.paper.table1 import Elastic
 from lumped.result.model_ledger import Peak, model_ledger

@@ -21,8 +21,7 @@ from lumped.load_curves import (
     PunchCurve,
     SneddonSphere,
 )
-from lumped.load_curves.layer import deficit
-from lumped.load_curves.layer_curve import DualEquation
+from lumped.load_curves.layer import DualEquation, deficit
 from lumped.load_curves.thin_layer import compressible, incompressible
 from lumped.numbers.quadrature import gauss
 

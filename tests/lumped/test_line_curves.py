@@ -17,8 +17,8 @@ from lumped.load_curves import (
     PointLayer,
     Popov,
 )
+from lumped.load_curves.half_plane import hertz_pressure
 from lumped.load_curves.layer import deficit
-from lumped.load_curves.line_profile import hertz_pressure
 from lumped.load_curves.plane_contact import collocation
 from lumped.load_curves.thin_layer import compressible, incompressible
 from lumped.numbers.quadrature import gauss

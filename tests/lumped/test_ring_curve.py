@@ -10,7 +10,7 @@ from scipy.special import j1
 from lumped.errors import BadInput, NotReached
 from lumped.load_curves import CylinderProfile, LineLayer, PointLayer, RodInRing
 from lumped.load_curves.plane_contact import collocation
-from lumped.load_curves.ring_contact import compliances, hole, ring_compliance
+from lumped.load_curves.ring import compliances, hole, ring_compliance
 from lumped.numbers.quadrature import gauss
 
 RINGS = [

@@ -18,8 +18,7 @@ from fe_contact.progress import Progress, silent
 from fe_contact.studies import journal
 from fe_contact.studies.exponents.finite_spheres import Pair
 from fe_contact.studies.exponents.study import KEPT, PROFILES, SMALL, ExponentCurve, Profile, named
-from lumped.load_curves.layer import PointLayer
-from lumped.load_curves.layer_curve import LayerPunch
+from lumped.load_curves.layer import LayerPunch, PointLayer
 from lumped.materials import Material, Relaxation
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter

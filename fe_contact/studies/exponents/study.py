@@ -18,10 +18,8 @@ from fe_contact.assembly.forms import Array
 from fe_contact.progress import Progress, silent
 from fe_contact.studies import journal
 from lumped.load_curves.half_space import HalfSpaceCurve
-from lumped.load_curves.layer import PointLayer
-from lumped.load_curves.layer_curve import LayerCurve, LayerPunch
-from lumped.load_curves.line_layer import LineLayer
-from lumped.load_curves.line_profile import ParabolaProfile
+from lumped.load_curves.layer import LayerCurve, LayerPunch, LineLayer, PointLayer
+from lumped.load_curves.plane_contact import ParabolaProfile
 from lumped.load_curves.tabulated import TabulatedCurve
 from lumped.shapes import Shape
 from lumped.shapes.cone import Cone

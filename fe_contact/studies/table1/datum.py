@@ -9,10 +9,9 @@ import numpy as np
 from fe_contact.indentation import indent
 from lumped.indentation.indentation import power_law
 from lumped.load_curves.half_plane import HalfPlane
-from lumped.load_curves.layer import PointLayer
-from lumped.load_curves.line_curve import LineCurve
-from lumped.load_curves.line_layer import LineLayer
-from lumped.load_curves.line_profile import CylinderProfile as Profile
+from lumped.load_curves.layer import LineLayer, PointLayer
+from lumped.load_curves.plane_contact import CylinderProfile as Profile
+from lumped.load_curves.plane_contact import LineCurve
 from lumped.paper.table1 import Elastic, TableRow, pressed
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
