@@ -25,7 +25,7 @@ from fe_contact.settings import Given, Numerics, check_kind
 from fe_contact.targets.base import TARGETS
 from fe_contact.threads import one_thread
 from lumped.errors import BadInput, Fault
-from lumped.indentation.indentation import Indentation
+from lumped.indentation import Indentation
 from lumped.numbers.clock import Clock
 from lumped.scene.indenter import Indenter
 from lumped.shapes import Shape

@@ -30,13 +30,13 @@ from lumped.result.result import (
     RULED_ABSOLUTE,
     RULED_RELATIVE,
     UNITS,
+    LedgerEntry,
     Quantity,
     Result,
     meets,
     provenance,
     unmet,
 )
-from lumped.result.sufficiency import LedgerEntry
 from lumped.scene.scene import Scene
 
 if TYPE_CHECKING:

@@ -13,11 +13,11 @@ from lumped.materials import Creep as Creep
 from lumped.materials import Material as Material
 from lumped.materials import Relaxation as Relaxation
 from lumped.result.history import History as History
+from lumped.result.result import LedgerEntry as LedgerEntry
 from lumped.result.result import Quantity as Quantity
 from lumped.result.result import Result as Result
 from lumped.result.score import Score as Score
 from lumped.result.score import score as score
-from lumped.result.sufficiency import LedgerEntry as LedgerEntry
 from lumped.scene.scene import Scene as Scene
 from lumped.scene.tables import Model as Model
 from lumped.scene.tables import Motion as Motion

@@ -13,7 +13,7 @@ from fe_contact.budget.scales import scales
 from fe_contact.errors import says_which_key
 from fe_contact.settings import RANGES, Given, Numerics, check_kind
 from lumped.result.model_ledger import Peak, model_ledger
-from lumped.result.sufficiency import LedgerEntry
+from lumped.result.result import LedgerEntry
 from lumped.scene.scene import Scene
 
 DEFAULT_TOLERANCE = 1e-3

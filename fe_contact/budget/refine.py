@@ -18,7 +18,7 @@ from fe_contact.budget.budget import SETTING
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.settings import RANGES, Numerics
 from lumped.errors import NotReached
-from lumped.result.sufficiency import LedgerEntry
+from lumped.result.result import LedgerEntry
 
 WIDER = 1.5  # the mesh again where the contact outgrew it
 DOMINANT = 0.5  # causes above this share of the largest one, or of the tolerance, are refined together

@@ -26,9 +26,8 @@ from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.sampled import SampledCurve
 from lumped.materials import Material, Relaxation
-from lumped.scene.geometry import Geometry
+from lumped.scene.geometry import Geometry, stiffest_impact
 from lumped.scene.indenter import Indenter
-from lumped.scene.scales import stiffest_impact
 from lumped.scene.scene import Answered, Scene
 from lumped.targets import HalfSpace
 

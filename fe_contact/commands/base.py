@@ -19,8 +19,7 @@ from typing import Protocol, TypeVar
 from fe_contact.progress import Progress, clear, log_to, terminal, to_all
 from fe_contact.settings import Given, faults
 from lumped.errors import BadInput, Fault, shown
-from lumped.result.result import Result
-from lumped.result.sufficiency import NO_KEY, LedgerEntry, good_to, worst
+from lumped.result.result import NO_KEY, LedgerEntry, Result, good_to, worst
 from lumped.scene.file import load, load_indenter, resolved
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene

@@ -8,9 +8,9 @@ import json
 from fe_contact.commands import base
 from fe_contact.progress import clear
 from lumped.errors import BadInput, Fault, NotReached, nearest, shown
-from lumped.indentation.indentation import Indentation
+from lumped.indentation import Indentation
 from lumped.result.folder import publish
-from lumped.result.sufficiency import good_to
+from lumped.result.result import good_to
 from lumped.scene.indenter import Indenter
 from lumped.schema import Table
 
@@ -57,7 +57,7 @@ def _indented(args: argparse.Namespace, indenter: Indenter, depths: tuple[float,
     if args.method not in names:
         reason = f"{shown(args.method)}: accepted {', '.join(names)}{nearest(args.method, names)}"
         raise BadInput(Fault("--method", "", reason))
-    from lumped.indentation.indentation import indent as closed_form
+    from lumped.indentation import indent as closed_form
 
     tolerance = given.get("tolerance", DEFAULT_TOLERANCE)
     if args.method != "cheapest":

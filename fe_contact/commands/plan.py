@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from fe_contact.commands import base
 from fe_contact.progress import clear
 from lumped.errors import FeContactError, NotReached
-from lumped.result.sufficiency import good_to
+from lumped.result.result import good_to
 from lumped.scene.scene import Scene
 
 if TYPE_CHECKING:  # finite elements are loaded when they are needed

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from fe_contact.commands import base
 from lumped.errors import NotReached
 from lumped.result.folder import publish
-from lumped.result.sufficiency import worst
+from lumped.result.result import worst
 
 if TYPE_CHECKING:
     from lumped.ptmd.study import PtmdStudy

@@ -15,8 +15,7 @@ from fe_contact.progress import Progress
 from fe_contact.settings import Numerics, WaveNumerics
 from fe_contact.waves.rod_record import Line, Run
 from lumped.result.model_ledger import Peak, model_ledger
-from lumped.result.result import meets
-from lumped.result.sufficiency import LedgerEntry
+from lumped.result.result import LedgerEntry, meets
 from lumped.scene.scene import Scene
 
 ROUNDS = 3  # refinements before giving up

@@ -18,8 +18,7 @@ from fe_contact.steppers.march import Strike
 from fe_contact.waves.certify import ORDER, WaveRuns, certify, other_mesh
 from fe_contact.waves.cost import Cost
 from fe_contact.waves.moving import Moving
-from lumped.result.result import meets
-from lumped.result.sufficiency import LedgerEntry
+from lumped.result.result import LedgerEntry, meets
 from lumped.scene.scene import Scene
 
 ROUNDS = 3  # refinements before giving up

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.numbers.clock import Clock
-from lumped.result.ending import AT_REST, End
-from lumped.result.history import History, densified
+from lumped.result.history import AT_REST, End, History, densified
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import RULED_RELATIVE, UNITS, Quantity, Result, provenance, unmet
 from lumped.scene.scene import Scene

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from lumped.laws._assembly import Answer, assemble, bars, impulse_of
 from lumped.numbers.clock import Clock
-from lumped.result.ending import End
+from lumped.result.history import End
 from lumped.result.result import Result, meets
-from lumped.scene.scales import stiffest_impact
+from lumped.scene.geometry import stiffest_impact
 from lumped.scene.scene import Scene
 from lumped.solvers.hereditary.approach import Approach
 from lumped.solvers.hereditary.closing import Closing

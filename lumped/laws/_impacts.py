@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from lumped.laws._assembly import Answer, assemble, bars, impulse_of
 from lumped.load_curves.base import LoadCurve
 from lumped.numbers.clock import Clock
-from lumped.result.ending import End
+from lumped.result.history import End
 from lumped.result.result import UNITS, Quantity, Result, meets
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model

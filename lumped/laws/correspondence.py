@@ -23,7 +23,7 @@ from lumped.laws._parameters import EXIT
 from lumped.laws.base import LawKind, check_geometry
 from lumped.laws.mdr import ImpactScales
 from lumped.numbers import Real
-from lumped.result.ending import End
+from lumped.result.history import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model

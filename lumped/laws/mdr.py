@@ -14,7 +14,7 @@ from lumped.laws._assembly import Answer, assemble, bars, impulse_of
 from lumped.laws.base import LawKind, check
 from lumped.numbers.clock import Clock
 from lumped.numbers.interpolation import local, peak
-from lumped.result.ending import End
+from lumped.result.history import End
 from lumped.result.result import Result, meets
 from lumped.scene.scene import Scene
 from lumped.solvers.mdr.march import coarse, coarse_beyond, pace_of, problem_of

@@ -14,7 +14,7 @@ from lumped.laws._assembly import Answer, assemble, bars, impulse_of
 from lumped.laws.base import LawKind, check_geometry
 from lumped.numbers.clock import Clock
 from lumped.numbers.interpolation import highest
-from lumped.result.ending import End
+from lumped.result.history import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.schema import Table

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from lumped.laws._hereditary import Course, HereditaryLaw, Solve, simulate
 from lumped.laws.base import LawKind, check_geometry
-from lumped.result.ending import End
+from lumped.result.history import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.solvers.hereditary import rebound as back

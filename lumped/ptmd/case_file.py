@@ -19,7 +19,7 @@ from lumped.ptmd.system import (
     PtmdRing,
     Start,
 )
-from lumped.scene.table_reader import TableReader
+from lumped.scene.file import TableReader
 from lumped.schema import Table, data
 from lumped.schema.bounded_file import exists
 from lumped.schema.keys import Choice, Key

@@ -11,7 +11,7 @@ from lumped.ptmd.free_vibration import simulate
 from lumped.ptmd.phase import ROWS_PER_PERIOD
 from lumped.ptmd.result import PtmdResult
 from lumped.ptmd.system import PoundingDamper
-from lumped.result.sufficiency import LedgerEntry, sufficient
+from lumped.result.result import LedgerEntry, sufficient
 
 FINER = 3 * ROWS_PER_PERIOD // 2
 MOST_CHANGE, MOST_RESIDUAL = 1e-6, 1e-8

@@ -1,9 +1,10 @@
-"""The history of one impact: what every model, lumped or finite element, returns."""
+"""The history of one impact, what every model, lumped or finite element, returns; and how an impact can end."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +29,18 @@ MOST_ROWS = 100_001
 SHORTEST, FIRST = 2.0**-50, 1e-150
 # In so many parts at most an interval is divided at once; a peak force that divides without harm.
 MOST_PARTS, TINY = 16.0, 1e-300
+# In a fluid without gravity the approach may die away without a turn: below this share of the velocity at
+# touch the striker counts as at rest.
+AT_REST = 1e-7
+
+
+class End(Enum):
+    """Why the history of an impact stops; the value says so to the user."""
+
+    SEPARATED = "separated"
+    TIME = "not separated at end_time"
+    REST = "not separated: the striker came to rest"
+    SECOND_APPROACH = "the striker approaches again before it has left, which this law does not follow"
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,8 +11,7 @@ from numpy.polynomial import Polynomial
 from lumped.errors import FeContactError
 from lumped.materials.radiation import Pulse
 from lumped.result.history import History
-from lumped.result.result import Quantity
-from lumped.result.sufficiency import LedgerEntry
+from lumped.result.result import LedgerEntry, Quantity
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model

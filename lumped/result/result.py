@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.numbers.interpolation import peak
-from lumped.result.dimensionless import groups
 from lumped.result.folder import RECORD, publish
 from lumped.result.history import History
-from lumped.result.sufficiency import LedgerEntry, sufficient
+from lumped.scene.geometry import contact_modulus
+from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.schema import Table
@@ -38,6 +38,8 @@ UNITS = {
 RULED_RELATIVE = ("peak_force", "peak_depth", "duration", "impulse")
 RULED_ABSOLUTE = ("restitution", "history_l2")
 ENERGY_TERMS = ("in", "out", "stored", "viscous", "radiated", "contact", "numerical", "residual")
+WITHIN, ABOVE, OPEN, UNKNOWN = "within tolerance", "above it", "open", "unknown"
+NO_KEY = "no larger model here"
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +79,48 @@ class Quantity:
     value: float | None
     error: float | None
     unit: str
+
+
+@dataclass(frozen=True)
+class LedgerEntry:
+    """One thing the model leaves out, and its estimated effect relative to the peak force, None where unknown.
+
+    `key` selects the larger model, empty where there is none. `spread`: lowest and highest change of the force where
+    the scene does not decide; the estimate is then what is left out at least, None where that may be nothing.
+    """
+
+    effect: str
+    treated: str
+    estimate: float | None
+    note: str = ""
+    key: str = ""
+    spread: tuple[float, float] | None = None
+
+    @property
+    def size(self) -> float:
+        """The most that is left out, as far as it is known."""
+        return max(map(abs, self.spread)) if self.spread else self.estimate or 0.0
+
+    @property
+    def known(self) -> bool:
+        """Whether anything is said of its size."""
+        return self.estimate is not None or self.spread is not None
+
+    def exceeds(self, tolerance: float) -> bool:
+        """Whether it is certainly above what may be left out."""
+        return self.estimate is not None and self.estimate > tolerance
+
+    def verdict(self, tolerance: float) -> str:
+        """Whether the effect may be left out: within tolerance, above it, open by the scene, or unknown."""
+        if not self.known:
+            return f"{UNKNOWN}: {self.note}"
+        if self.size <= tolerance:
+            return WITHIN
+        return f"{ABOVE}: {self.key or NO_KEY}" if self.exceeds(tolerance) else f"{OPEN}: {self.note}"
+
+    def to_json(self, tolerance: float) -> Table:
+        """Its fields, and its verdict at a tolerance."""
+        return asdict(self) | {"verdict": self.verdict(tolerance)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,6 +258,73 @@ def unmet(quantities: Mapping[str, Quantity], tolerance: float) -> str:
             reached = f"{quantity.error / scale:.2g}" if scale else f"{quantity.error:.2g} {quantity.unit}"
             found.append(f"{name} to {reached}")
     return f"tolerance {tolerance:g} not reached: {', '.join(found)}" if found else ""
+
+
+def sufficient(ledger: Sequence[LedgerEntry], tolerance: float) -> bool:
+    """Whether no effect certainly exceeds what may be left out."""
+    return not any(entry.exceeds(tolerance) for entry in ledger)
+
+
+def worst(ledger: Sequence[LedgerEntry]) -> LedgerEntry:
+    """The entry of the largest estimate, of a ledger in which one is known."""
+    return max((entry for entry in ledger if entry.estimate is not None), key=lambda entry: entry.estimate or 0.0)
+
+
+def good_to(ledger: Sequence[LedgerEntry]) -> str:
+    """A line: how much of the force the model may miss, by what, and what is not known; empty where nothing is."""
+    if not any(entry.known for entry in ledger):
+        return ""
+    most = max(ledger, key=lambda entry: entry.size)
+    unknown = [entry.effect for entry in ledger if not entry.known]
+    said = f"this model is good to about {most.size:.1g} of the peak force"
+    said += f", for {most.effect}" if most.size else ""
+    return f"{said}; unknown: {', '.join(unknown)}" if unknown else said
+
+
+def groups(scene: Scene, values: Mapping[str, float | None], history: History) -> Table:
+    """What an impact depends on without units, and its peak and times in units of an elastic impact of the profile.
+
+    Two impacts with the same profile, base and groups have the same history in these units. They come by name, of the
+    ``values`` of the quantities; empty without a geometry, None where one is undefined.
+
+    E_i/E_inf of the contact moduli; tau/T, every relaxation time over the duration; nu; a/R with the largest contact
+    radius; h/a, thickness over that; and, F0 and T0 the peak force and duration of the shape's elastic impact on the
+    half-space with the relaxed modulus (a fluid's with the instantaneous one), F/F0, t/T0 at the peak, T/T0.
+    """
+    if not scene.has_geometry:
+        return {}
+    geometry, modulus = scene.geometry, scene.contact_modulus
+    largest = float(history.contact_radius.max())
+    duration = values["duration"]
+    unit = geometry.shape.hertz_impact(modulus.relaxed or modulus.glassy, scene.reduced_mass, scene.velocity)
+    return {
+        "E_i/E_inf": _over(modulus.instantaneous, modulus.relaxed),
+        "tau/T": [_over(tau, duration) for tau in modulus.times],
+        "nu": geometry.material.nu,
+        "a/R": _over(largest, geometry.shape.tip_radius),
+        "h/a": _over(geometry.target.body_depth, largest),
+        "F/F0": _over(values["peak_force"], unit.force),
+        "t/T0": _over(values["peak_time"], unit.duration),
+        "T/T0": _over(duration, unit.duration),
+        "F0": unit.force,
+        "T0": unit.duration,
+    }
+
+
+def groups_at_rest(indenter: Indenter, contact_radius: NDArray[np.float64]) -> Table:
+    """Those of a slow indentation, which knows no time: E_i/E_inf, nu, a/R and h/a with the largest of its radii, m."""
+    modulus = contact_modulus(indenter.shape, indenter.material, indenter.striker_material)
+    largest = float(contact_radius.max())
+    return {
+        "E_i/E_inf": _over(modulus.instantaneous, modulus.relaxed),
+        "nu": indenter.material.nu,
+        "a/R": _over(largest, indenter.shape.tip_radius),
+        "h/a": _over(indenter.target.body_depth, largest),
+    }
+
+
+def _over(value: float | None, unit: float | None) -> float | None:
+    return value / unit if value is not None and unit else None
 
 
 @cache

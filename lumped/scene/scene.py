@@ -13,8 +13,16 @@ from lumped.errors import BadInput, Fault, addressed
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material, Relaxation
 from lumped.scene.file import load, read
-from lumped.scene.geometry import Geometry, check_striker_material, contact_modulus, flying_faults, places, tables
-from lumped.scene.scales import absurd_depth, relaxed_impact
+from lumped.scene.geometry import (
+    Geometry,
+    absurd_depth,
+    check_striker_material,
+    contact_modulus,
+    flying_faults,
+    places,
+    relaxed_impact,
+    tables,
+)
 from lumped.scene.tables import (
     LAWS,
     MASS,

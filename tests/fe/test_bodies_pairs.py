@@ -9,7 +9,7 @@ import pytest
 
 from fe_contact.indentation import indent, press, settings
 from lumped import BadInput, Material, Relaxation, Sphere
-from lumped.indentation.indentation import indent as closed_form
+from lumped.indentation import indent as closed_form
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import Model
 from lumped.shapes.cylinder import Cylinder as Roller

@@ -9,7 +9,7 @@ import pytest
 
 from fe_contact.indentation import indent, press, settings
 from lumped import Material, Relaxation, Sphere
-from lumped.indentation.finite_size import FiniteSize
+from lumped.indentation import FiniteSize
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Model

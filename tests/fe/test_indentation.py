@@ -12,7 +12,7 @@ import pytest
 from fe_contact.errors import BodyTooThin, ContactTooWide
 from fe_contact.indentation import indent, press, settings
 from lumped import BadInput, Material, Relaxation
-from lumped.indentation.indentation import Indentation
+from lumped.indentation import Indentation
 from lumped.scene.indenter import Indenter
 from lumped.shapes import SHAPES, Shape, Sphere
 from lumped.targets import HalfSpace, Target

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lumped import Material, Relaxation, Scene, Sphere, laws, simulate
-from lumped.indentation.indentation import indent as closed_form
+from lumped.indentation import indent as closed_form
 from lumped.scene.indenter import Indenter
 from lumped.shapes.cone import Cone
 from lumped.targets.layer import Layer

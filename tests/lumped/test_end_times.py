@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from lumped import Motion, Scene, laws, simulate
-from lumped.result.ending import End
+from lumped.result.history import End
 
 QUANTITIES = ("peak_force", "peak_depth", "impulse")
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from lumped import Result, Scene, laws, simulate
 from lumped.laws import _hereditary
 from lumped.laws._assembly import Answer
-from lumped.result.ending import End
+from lumped.result.history import End
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
 from lumped.solvers.mdr.march import coarse, problem_of

@@ -21,7 +21,7 @@ from lumped.laws import correspondence, ting
 from lumped.laws._hereditary import problem_of
 from lumped.laws.correspondence import Correspondence
 from lumped.numbers.interpolation import local, peak
-from lumped.result.ending import End
+from lumped.result.history import End
 from lumped.schema import data
 from lumped.shapes import Shape
 from lumped.shapes.cone import Cone

@@ -14,7 +14,7 @@ from scipy.linalg import expm
 
 from lumped import Material, Relaxation, Scene, laws, simulate
 from lumped.errors import BadInput, FeContactError
-from lumped.indentation.indentation import indent
+from lumped.indentation import indent
 from lumped.load_curves.layer import deficit
 from lumped.load_curves.ring import compliances
 from lumped.paper import table1

@@ -15,7 +15,7 @@ from lumped import LedgerEntry, Material, Model, Relaxation, Scene, Sphere, laws
 from lumped.errors import BadInput
 from lumped.materials.radiation import SINE_PULSE, line_coefficient, pulse_energy, radiation_coefficient
 from lumped.result.model_ledger import Peak, ledger_at_rest, model_ledger
-from lumped.result.sufficiency import ABOVE, NO_KEY, OPEN, UNKNOWN, WITHIN, good_to, sufficient
+from lumped.result.result import ABOVE, NO_KEY, OPEN, UNKNOWN, WITHIN, good_to, sufficient
 from lumped.scene.indenter import Indenter
 from lumped.shapes.plate import Plate
 from lumped.shapes.punch import Punch

@@ -12,7 +12,7 @@ from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.studies import journal
 from fe_contact.studies.exponents.study import KEPT
-from lumped.indentation.finite_size import FiniteSize
+from lumped.indentation import FiniteSize
 from lumped.materials import Material, Relaxation
 from lumped.scene.indenter import Indenter
 from lumped.schema import Table

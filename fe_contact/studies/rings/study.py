@@ -18,11 +18,11 @@ from fe_contact.assembly.forms import Array
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.studies import journal
-from lumped.indentation.indentation import Indentation
+from lumped.indentation import Indentation
 from lumped.materials import Material
 from lumped.materials.networks import sls
 from lumped.paper.examples.given import Examples
-from lumped.result.sufficiency import LedgerEntry
+from lumped.result.result import LedgerEntry
 from lumped.scene.indenter import Indenter
 from lumped.shapes.cylinder import Cylinder
 from lumped.targets.o_ring import ORing

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.indentation import indent
-from lumped.indentation.indentation import power_law
+from lumped.indentation import power_law
 from lumped.load_curves.half_plane import HalfPlane
 from lumped.load_curves.layer import LineLayer, PointLayer
 from lumped.load_curves.plane_contact import CylinderProfile as Profile

@@ -15,7 +15,7 @@ import numpy as np
 from fe_contact.assembly.forms import Array
 from fe_contact.reference import solve
 from fe_contact.studies.table1.datum import CHORD, DEPTH, Place
-from lumped.indentation.indentation import power_law
+from lumped.indentation import power_law
 from lumped.paper.table1 import Elastic, TableRow
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter

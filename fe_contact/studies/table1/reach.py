@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from lumped.indentation.indentation import Indentation
+from lumped.indentation import Indentation
 from lumped.paper.table1 import Elastic, TableRow
 from lumped.result.result import Quantity
 

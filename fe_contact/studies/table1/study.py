@@ -22,7 +22,7 @@ from fe_contact.studies.table1.datum import Place, places
 from fe_contact.studies.table1.impact import FromImpact, line_impacts, power_law_impacts
 from fe_contact.studies.table1.reach import Reach, reach
 from lumped.errors import NotReached
-from lumped.indentation.indentation import Indentation, power_law
+from lumped.indentation import Indentation, power_law
 from lumped.paper.table1 import ROWS, Elastic, TableRow
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter

@@ -26,7 +26,7 @@ from fe_contact.waves.rod_record import Run
 from fe_contact.waves.targets.base import WaveTarget
 from lumped.errors import BadInput, Fault
 from lumped.result.model_ledger import gravity
-from lumped.result.sufficiency import LedgerEntry
+from lumped.result.result import LedgerEntry
 from lumped.scene.scene import Scene
 from lumped.schema import Table
 from lumped.shapes._block import Block

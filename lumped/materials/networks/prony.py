@@ -7,9 +7,8 @@ A series fitted to another modulus may say how well: `fit_window`, s, and the re
 import math
 from typing import Annotated
 
-from lumped.materials.fidelity import Fidelity
 from lumped.materials.networks.base import MODULUS_OR_ZERO, TIME, Network, Viscosity
-from lumped.materials.relaxation import Relaxation
+from lumped.materials.relaxation import Fidelity, Relaxation
 from lumped.schema.keys import Key, Number, Numbers
 
 DEVIATION = Number(0.0, 1e6)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import BadInput, NotReached
-from lumped.result.ending import AT_REST
+from lumped.result.history import AT_REST
 from lumped.solvers.hereditary.march import HereditaryMarch, HereditaryPiece, Settings, Stretch
 from lumped.solvers.hereditary.motion import PieceMotion
 from lumped.solvers.hereditary.path import Path

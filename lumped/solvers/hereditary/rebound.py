@@ -29,7 +29,7 @@ from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
 from lumped.errors import NotReached
-from lumped.result.ending import End
+from lumped.result.history import End
 from lumped.solvers.hereditary import approach as forth
 from lumped.solvers.hereditary.approach import Approach
 from lumped.solvers.hereditary.march import HereditaryPiece, Settings, Stretch

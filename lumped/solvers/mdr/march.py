@@ -11,8 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from lumped.errors import NotReached, TooManySteps
-from lumped.result.ending import AT_REST, End
-from lumped.scene.scales import stiffest_impact
+from lumped.result.history import AT_REST, End
+from lumped.scene.geometry import stiffest_impact
 from lumped.scene.scene import Scene
 from lumped.solvers.mdr.memory import Fading, fadings
 from lumped.solvers.mdr.pace import Adaptive, Pace

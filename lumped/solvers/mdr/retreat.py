@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from lumped.errors import NotReached
-from lumped.result.ending import End
+from lumped.result.history import End
 from lumped.solvers.mdr.memory import Fading, fadings
 from lumped.solvers.mdr.row import Instant, RowStep, SpringsInRow, followed, left
 from lumped.solvers.mdr.springs import Values, stretched, yielding

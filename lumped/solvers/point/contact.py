@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import TooManySteps
-from lumped.result.ending import AT_REST, End
+from lumped.result.history import AT_REST, End
 from lumped.solvers.point.bodies import Bodies, PointLaw, Stage, State, Step
 from lumped.solvers.point.nodes import STAGES
 from lumped.solvers.point.phase import Event, PointMarch, PointPhase

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from lumped.result.ending import AT_REST, End
+from lumped.result.history import AT_REST, End
 from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, Stage
 from lumped.solvers.point.contact import Contact, following, leaving
 from lumped.solvers.point.nodes import STAGES, paced, radau

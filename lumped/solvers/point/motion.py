@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lumped.result.ending import End
+from lumped.result.history import End
 from lumped.solvers.point.bodies import Bodies, PointLaw
 from lumped.solvers.point.contact import Contact, contact
 

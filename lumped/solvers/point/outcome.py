@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.result.ending import End
+from lumped.result.history import End
 from lumped.solvers.point.contact import Contact
 from lumped.solvers.point.phase import PointPhase
 from lumped.solvers.point.track import PointTrack

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import TooManySteps
-from lumped.result.ending import AT_REST
+from lumped.result.history import AT_REST
 from lumped.solvers.point.bodies import Bodies, PointLaw, Stage, State, Step
 from lumped.solvers.point.nodes import STAGES, Nodes
 from lumped.solvers.point.step import NODES, roughness, solved

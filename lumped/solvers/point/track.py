@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.result.ending import End
+from lumped.result.history import End
 from lumped.solvers.point.bodies import PointLaw, Step
 from lumped.solvers.point.contact import Contact
 from lumped.solvers.point.motion import PointMotion

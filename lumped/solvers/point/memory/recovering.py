@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.materials.recovery import Recovery
+from lumped.materials.relaxation import Recovery
 from lumped.solvers.point.bodies import Bodies, State
 from lumped.solvers.point.flight import bisected, flown
 from lumped.solvers.point.hereditary import HereditaryLoad

@@ -1,1 +1,0 @@
-"""Slow indentation: its record, the exact load curves, whole spheres."""
