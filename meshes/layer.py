@@ -8,9 +8,7 @@ from __future__ import annotations
 
 from skfem import MeshTri
 
-from meshes._sizes import checked, elements_checked
-from meshes.session import session
-from meshes.triangles import Outline, triangulated
+from meshes.triangles import beyond, checked, distance, elements_checked, larger, polygon, smaller
 
 GROWTH = 4.0  # growth of the element size per unit distance from the contact, for one element along the radius
 LARGEST_GROWTH = 1.0  # steeper gradings leave gmsh too little room for well-shaped triangles
@@ -43,9 +41,9 @@ def layer(elements_per_radius: float, smallest: float, thickness: float, width: 
     ------
     MeshError for numbers outside these ranges.
     """
-    _check(elements_per_radius, smallest, thickness, width)
-    growth, largest = min(GROWTH / elements_per_radius, LARGEST_GROWTH), min(LARGEST / elements_per_radius, COARSEST)
-    return _rectangle(_sizes(elements_per_radius, smallest, thickness, growth, largest), ZONE, thickness, width)
+    n, low, thick, wide = _checked(elements_per_radius, smallest, thickness, width)
+    growth, largest = min(GROWTH / n, LARGEST_GROWTH), min(LARGEST / n, COARSEST)
+    return _rectangle(_sizes(n, low, thick, growth, largest), ZONE, thick, wide)
 
 
 def layer_for_waves(
@@ -56,11 +54,10 @@ def layer_for_waves(
     ``finer``: times as many elements at the surface as their growth into the body is for, 1 to 16; ``smallest``,
     ``thickness`` and ``width`` are over the largest contact radius, they and errors as of :func:`layer`.
     """
-    _check(elements_per_radius, smallest, thickness, width)
-    at_surface = elements_per_radius * checked("refinement of the surface", finer, 1.0, 16.0)
-    growth = min(WAVE_GROWTH / elements_per_radius, LARGEST_WAVE_GROWTH)
-    largest = min(LARGEST_WAVE / elements_per_radius, COARSEST)
-    return _rectangle(_sizes(at_surface, smallest, thickness, growth, largest), ZONE, thickness, width)
+    n, low, thick, wide = _checked(elements_per_radius, smallest, thickness, width)
+    at_surface = n * checked("refinement of the surface", finer, 1.0, 16.0)
+    growth, largest = min(WAVE_GROWTH / n, LARGEST_WAVE_GROWTH), min(LARGEST_WAVE / n, COARSEST)
+    return _rectangle(_sizes(at_surface, low, thick, growth, largest), ZONE, thick, wide)
 
 
 def layer_under_rim(elements_per_radius: float, thickness: float, width: float) -> MeshTri:
@@ -68,30 +65,24 @@ def layer_under_rim(elements_per_radius: float, thickness: float, width: float) 
 
     Elements shrink towards that rim in proportion to their distance; ``thickness`` and ``width`` are over its radius.
     """
-    _check(elements_per_radius, 1.0, thickness, width)
-    growth, largest = min(GROWTH / elements_per_radius, LARGEST_GROWTH), min(LARGEST / elements_per_radius, COARSEST)
-    size = f"{float(RIM / elements_per_radius)!r}+{growth!r}*Sqrt((x-1)^2+y^2)"
-    return _rectangle(_least(size, largest * thickness), 1.0, thickness, width)
+    n, _, thick, wide = _checked(elements_per_radius, 1.0, thickness, width)
+    growth, largest = min(GROWTH / n, LARGEST_GROWTH), min(LARGEST / n, COARSEST)
+    size = f"{RIM / n!r}+{growth!r}*{distance(1.0, 0.0)}"
+    return _rectangle(smaller(size, repr(largest * thick)), 1.0, thick, wide)
 
 
 def _sizes(elements: float, smallest: float, thickness: float, growth: float, largest: float) -> str:
     """In proportion to the radius at the surface, growing beyond the contact to ``largest`` thicknesses."""
-    within = _least(_most("x", smallest), min(ZONE, WITHIN * thickness))
-    away = f"(Fabs(y)+{_most(f'x-{ZONE!r}', 0.0)})"
-    return _least(f"{within}/{float(elements)!r}+{growth!r}*{away}", largest * thickness)
+    within = smaller(larger("x", repr(smallest)), repr(min(ZONE, WITHIN * thickness)))
+    away = f"(Fabs(y)+{beyond('x', ZONE)})"
+    return smaller(f"{within}/{elements!r}+{growth!r}*{away}", repr(largest * thickness))
 
 
 def _rectangle(size: str, node: float, thickness: float, width: float) -> MeshTri:
     """Triangles of a size, a formula of gmsh; a node of the surface at ``node``."""
     side = ZONE + width
-    with session("layer") as gmsh:
-        geometry = gmsh.model.geo
-        corners = [(0, 0), (node, 0), (side, 0), (side, -thickness), (0, -thickness)]
-        points = [geometry.addPoint(r, z, 0) for r, z in corners]
-        lines = [geometry.addLine(points[i], points[(i + 1) % len(points)]) for i in range(len(points))]
-        geometry.addPlaneSurface([geometry.addCurveLoop(lines)])
-        geometry.synchronize()
-        nodes, triangles = triangulated(gmsh, size, Outline((0, -thickness), (side, 0)))
+    corners = [(0.0, 0.0), (node, 0.0), (side, 0.0), (side, -thickness), (0.0, -thickness)]
+    nodes, triangles = polygon(corners, size)
     nodes[abs(nodes) < 1e-12 * side] = 0.0  # onto the axis and the surface exactly
     return MeshTri(nodes, triangles).with_boundaries(
         {
@@ -103,21 +94,11 @@ def _rectangle(size: str, node: float, thickness: float, width: float) -> MeshTr
     )
 
 
-def _check(elements: float, smallest: float, thickness: float, width: float) -> None:
-    elements_checked("the contact radius", elements, 1.0, 200.0)
-    for name, value, low, high in (
-        ("smallest contact over the largest", smallest, 1e-6, 1.0),
-        ("thickness over the largest contact", thickness, 1e-3, 1e6),
-        ("width beyond the contact over it", width, 1e-3, 1e8),
-    ):
-        checked(name, value, low, high)
-
-
-def _least(formula: str, bound: float) -> str:
-    """The smaller of a formula of gmsh and a number."""
-    return f"(({formula})+{float(bound)!r}-Fabs(({formula})-{float(bound)!r}))/2"
-
-
-def _most(formula: str, bound: float) -> str:
-    """The larger of a formula of gmsh and a number."""
-    return f"(({formula})+{float(bound)!r}+Fabs(({formula})-{float(bound)!r}))/2"
+def _checked(elements: float, smallest: float, thickness: float, width: float) -> tuple[float, float, float, float]:
+    """The four numbers within their ranges. Raises MeshError."""
+    return (
+        elements_checked("the contact radius", elements, 1.0, 200.0),
+        checked("smallest contact over the largest", smallest, 1e-6, 1.0),
+        checked("thickness over the largest contact", thickness, 1e-3, 1e6),
+        checked("width beyond the contact over it", width, 1e-3, 1e8),
+    )

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from skfem import MeshTri, MeshTri2
 
-from meshes._round import rounded, sizes
-from meshes._sizes import checked, elements_checked
 from meshes.session import session
-from meshes.triangles import Outline, triangulated
+from meshes.sphere import rounded, sizes
+from meshes.triangles import Outline, checked, elements_checked, triangulated
 
 
 def o_ring(elements: float, smallest: float, contact: float, mean_radius: float, order: int) -> MeshTri2:

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from skfem import MeshTri
 
-from meshes._rectangle import rectangle
-from meshes._sizes import checked, elements_checked
+from meshes.triangles import checked, elements_checked
+from meshes.washer import rectangle
 
 NEAR = 2.0  # shorter sides from face and side within which triangles are well shaped: what ends there decays as fast
 

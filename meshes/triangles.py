@@ -1,14 +1,19 @@
-"""From gmsh's open model to plain arrays of triangles, their number estimated before gmsh is asked."""
+"""From gmsh's open model to plain arrays of triangles, their number estimated before gmsh is asked.
+
+Element sizes are expressions over (x, y), in the words of gmsh.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from meshes.errors import MeshTooLarge
+from meshes.errors import MeshError, MeshTooFine, MeshTooLarge
+from meshes.session import session
 
 Array = npt.NDArray[np.float64]
 
@@ -66,6 +71,18 @@ def triangulated(gmsh: Any, size: str, outline: Outline) -> tuple[np.ndarray, np
     return np.ascontiguousarray(points), np.ascontiguousarray(triangles.reshape(-1, 3).T)
 
 
+def polygon(corners: Sequence[tuple[float, float]], size: str) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes (2, n) and triangles (3, m) of a rectangle by its corners (x, y), other nodes of its rim among them."""
+    with session("polygon") as gmsh:
+        geometry = gmsh.model.geo
+        points = [geometry.addPoint(x, y, 0) for x, y in corners]
+        lines = [geometry.addLine(points[i], points[(i + 1) % len(points)]) for i in range(len(points))]
+        geometry.addPlaneSurface([geometry.addCurveLoop(lines)])
+        geometry.synchronize()
+        low, high = ((extreme(x for x, _ in corners), extreme(y for _, y in corners)) for extreme in (min, max))
+        return triangulated(gmsh, size, Outline(low, high))
+
+
 def expected_nodes(size: str, outline: Outline, most: float) -> float:
     """About how many nodes a mesh of this size over (x, y), in the words of gmsh, has; infinite if clearly over most.
 
@@ -103,3 +120,37 @@ def _sizes(formula: Any, places: Array) -> Array:
     """The very formula that gmsh reads, made of our own numbers alone, at places (2, n)."""
     names = {"__builtins__": {}, "Sqrt": np.sqrt, "Fabs": np.abs, "x": places[0], "y": places[1]}
     return np.broadcast_to(eval(formula, names), places.shape[1:])
+
+
+def smaller(first: str, second: str) -> str:
+    """The smaller of two."""
+    return f"({first}+({second})-Fabs({first}-({second})))/2"
+
+
+def larger(first: str, second: str) -> str:
+    """The larger of two."""
+    return f"({first}+({second})+Fabs({first}-({second})))/2"
+
+
+def beyond(value: str, start: float) -> str:
+    """How far a value lies beyond a start, 0 before it."""
+    return f"({value}-{start!r}+Fabs({value}-{start!r}))/2"
+
+
+def distance(x: float, y: float) -> str:
+    """From a point."""
+    return f"Sqrt((x-({x!r}))^2+(y-({y!r}))^2)"
+
+
+def elements_checked(along: str, value: float, low: float, high: float) -> float:
+    """Elements along a length within their range. Raises MeshTooFine, or MeshError where there are too few."""
+    if value > high:
+        raise MeshTooFine(f"{value:g} elements along {along}: accepted {low:g} to {high:g}")
+    return checked(f"elements along {along}", value, low, high)
+
+
+def checked(name: str, value: float, low: float, high: float) -> float:
+    """A number within its range, as a plain float: gmsh reads its digits. Raises MeshError, `name` in plain words."""
+    if not low <= value <= high:
+        raise MeshError(f"{name} = {value:g}: accepted {low:g} to {high:g}")
+    return float(value)

@@ -1,11 +1,15 @@
-"""A washer's section, with a node under the rim of what presses it."""
+"""A washer's section, with a node under the rim of what presses it: a rectangle, fine where the stress is singular."""
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 from skfem import MeshTri
 
-from meshes._rectangle import rectangle
-from meshes._sizes import checked, elements_checked
+from meshes.triangles import checked, distance, elements_checked, polygon, smaller
+
+GRADING = 1.6  # growth of the element size per distance from a singular point, times elements
+FINEST = 1.6e-4  # element size at a singular point over the narrowest part, times elements squared
 
 
 def washer(elements: float, inner: float, outer: float, rim: float, bonded: bool) -> MeshTri:
@@ -33,3 +37,30 @@ def washer(elements: float, inner: float, outer: float, rim: float, bonded: bool
     sharp = ((inner, -1.0), (outer, -1.0)) if bonded else ()
     inside = rim < outer
     return rectangle(inner, outer, 1.0, (rim,) if inside else (), ((rim, 0.0),) * inside + sharp, n)
+
+
+def rectangle(
+    left: float, right: float, height: float, marks: tuple[float, ...], sharp: tuple[tuple[float, float], ...], n: float
+) -> MeshTri:
+    """Triangles of ``left <= r <= right``, ``-height <= z <= 0``.
+
+    ``marks``: radii on the upper side that have to be nodes; ``sharp``: points (r, z) where the stress is singular;
+    ``n``: elements along the shortest length. Boundaries ``surface`` (z = 0), ``base``, ``inside``, ``outside``.
+    """
+    stops = [left, *marks, right]
+    narrowest = min(height, *(far - near for near, far in pairwise(stops)))
+    size = repr(min(height, right - left) / n)  # the grading takes care of what is narrower
+    for r, z in sharp:
+        size = smaller(f"({FINEST * narrowest / n**2!r}+{GRADING / n!r}*{distance(r, z)})", size)
+    corners = [*((r, 0.0) for r in stops), (right, -height), (left, -height)]
+    nodes, triangles = polygon(corners, size)
+    nodes[abs(nodes) < 1e-12 * max(right, height)] = 0.0  # onto the axis and the surface exactly
+    width = right - left
+    return MeshTri(nodes, triangles).with_boundaries(
+        {
+            "surface": lambda x: x[1] == 0.0,
+            "base": lambda x: x[1] < -height * (1 - 1e-9),
+            "inside": lambda x: x[0] < left + 1e-9 * width,
+            "outside": lambda x: x[0] > right - 1e-9 * width,
+        }
+    )
