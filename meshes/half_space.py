@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from skfem import MeshTri
 
+from meshes.errors import MeshError
 from meshes.session import session
 from meshes.triangles import Outline, beyond, checked, distance, elements_checked, larger, smaller, triangulated
 
@@ -42,11 +43,12 @@ def half_space(elements_per_contact: float, far_radius: float) -> MeshTri:
     MeshError for numbers outside these ranges.
     """
     size = 1.0 / checked("elements_per_contact", elements_per_contact, 0.25, 64.0)
-    far = checked("far_radius", far_radius, 2.0, 1e6)
+    if not 2.0 <= far_radius <= 1e6:
+        raise MeshError(f"far_radius = {far_radius:g}: accepted 2 to 1e6 contact radii")
     growth = min(GROWTH * size, LARGEST_GROWTH)
     near_edge = f"({size / EDGE_REFINEMENT!r}+{growth!r}*{distance(1.0, 0.0)})"
     elsewhere = f"({size!r}+{growth!r}*{beyond(distance(0.0, 0.0), 1.0)})"
-    return _quarter(smaller(near_edge, elsewhere), 1.0, far)
+    return _quarter(smaller(near_edge, elsewhere), 1.0, far_radius)
 
 
 def half_space_for_waves(elements_per_radius: float, smallest: float, far_radius: float, finer: float = 1.0) -> MeshTri:
