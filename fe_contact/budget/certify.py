@@ -29,7 +29,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from fe_contact.budget.budget import SETTING, Budget, Causes
-from fe_contact.budget.change import SAFETY, UNORDERED, Change, factor
+from fe_contact.budget.change import SAFETY, TOP, UNORDERED, Change, factor
 from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.runs import Runs
 from fe_contact.budget.several import Several
@@ -49,7 +49,8 @@ LEAST_ORDER = {"penalty": 1, "far_field": 2}
 MESH_ORDER = {3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
 WITNESS = 2  # times the order have the elements that tell of those which lock
 WITNESS_ELEMENTS = 4.0  # of them along the contact radius, at least
-MESH_ORDER_ANYWHERE = 1  # where the edge falls anywhere in an element: 1.6 is what is seen
+# where the edge falls anywhere in an element: 1.6 is what is seen, and the sign of a change turns ever again
+MESH_ORDER_ANYWHERE, TOP_ANYWHERE = 1, 0.95
 # of the steps' change in the share that branches about as fast as a step carry, by quantity, and of the force
 KEPT = {"peak_depth": 0.4, "duration": 0.4, "impulse": 1.5, "restitution": 1.5}
 KEPT_OF_FORCE = 0.1
@@ -108,11 +109,12 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[C
     cheap = numerics.varied(steps=steps.cheap)
     meshed, pressed = (_judging(numerics, cheap, cause) for cause in ("mesh", "penalty"))
     mesh, by_mesh = other_mesh(meshed) if surface.breathes else other_mesh(meshed, MESH_ORDER_ANYWHERE)
+    top = TOP if surface.breathes else TOP_ANYWHERE
     penalty, stiffer = other_setting(pressed, "penalty")
     swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long
     by_steps = swings or steps.jitter_falls
     changes: dict[str, Causes] = {
-        "mesh": (_change(curve(meshed), curve(mesh), by_mesh), *(() if by_steps else steps.jitter)),
+        "mesh": (_change(curve(meshed), curve(mesh), by_mesh, top), *(() if by_steps else steps.jitter)),
         "penalty": (_change(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
         "time_step": (*steps.changes, *(steps.jitter if by_steps else ())),
         "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
@@ -243,9 +245,9 @@ def _end_alike(*curves: Curve) -> bool:
     return len({curve.separated for curve in curves}) == 1 and max(durations) <= MOST_APART * min(durations)
 
 
-def _change(first: Curve | None, second: Curve | None, trusted: float) -> Change | None:
+def _change(first: Curve | None, second: Curve | None, trusted: float, top: float = TOP) -> Change | None:
     """Change between settings, ``trusted`` so many times as the error of the first."""
-    return None if first is None or second is None else Change(first, second, trusted)
+    return None if first is None or second is None else Change(first, second, trusted, top=top)
 
 
 def other_setting(numerics: AnyNumerics, key: str) -> tuple[AnyNumerics, bool]:

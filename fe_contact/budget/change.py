@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.curve import Curve, Reading
+from fe_contact.budget.local_polynomial import PLACES, steepest
 
 TOP = 0.998  # of the largest depth or force, above which it is near: further away what comes later counts as an error
 STEEPER = 2.0  # times the chord there, that the slope of a change may have
@@ -33,7 +34,8 @@ class Change:
     """Two curves that differ in one setting, and the factor that turns their difference into an error.
 
     ``weights``: what that factor is to be multiplied with for quantities that deserve less trust. ``unresolved``: time
-    up to which no order shows, s; where it is not told, the first step of the second curve.
+    up to which no order shows, s; where it is not told, the first step of the second curve. ``top``: share of the
+    largest depth above which what changes the depth counts.
     """
 
     first: Curve
@@ -41,6 +43,7 @@ class Change:
     factor: float
     weights: Mapping[str, float] = field(default_factory=dict)
     unresolved: float | None = None
+    top: float = TOP
 
     @cached_property
     def errors(self) -> dict[str, float]:
@@ -54,7 +57,7 @@ class Change:
         around = {
             "peak_force": float(self._force_change[first.near_peak].max()),
             "peak_time": self._peak_time,
-            "peak_depth": float(depth[first.dense.depth > TOP * first.dense.depth.max()].max()),
+            "peak_depth": float(depth[first.dense.depth > self.top * first.dense.depth.max()].max()),
             "duration": float(depth[first.late :].max()) / speed if speed > 0.0 else np.inf,
             "impulse": self.impulse,
             "restitution": self.velocity / first.strike.velocity,
@@ -182,11 +185,13 @@ class Change:
         falling = (force[top] - force[right]) / (time[right] - time[top])
         rising = (force[top] - force[left]) / (time[top] - time[left])
         curvature = 2 * (falling + rising) / (time[right] - time[left])
-        change = self._second.force - force
-        if self.first.strike.relaxation.viscosity:
-            slope = np.abs(np.gradient(change, time)[left : right + 1]).max()
-        else:
-            high = np.flatnonzero(force > TOP * force.max())
-            begin, end = min(high[0], top - 1), max(high[-1], top + 1)
+        high = np.flatnonzero(force > TOP * force.max())
+        begin, end = min(high[0], top - 1), max(high[-1], top + 1)
+        if self.first.fitless or self.second.fitless:
+            change = self._second.force - force
             slope = STEEPER * np.ptp(change[begin : end + 1]) / (time[end] - time[begin])
+        else:
+            places = np.linspace(time[left], time[right], PLACES)
+            change = self.second.force(places) - self.first.force(places)
+            slope = steepest(places, change, time[begin], time[end])
         return float(min(slope / abs(curvature), self.first.duration)) if curvature else self.first.duration

@@ -178,7 +178,7 @@ class Curve:
 
     @property
     def _force_peak(self) -> tuple[float, float]:
-        if self._fitless:
+        if self.fitless:
             return peak(self.dense_time, self.dense_force)
         return self._peak_of(self.near_peak)
 
@@ -193,7 +193,7 @@ class Curve:
         No step and no mesh tells of that: a quartic fits them all alike.
         """
         near = np.flatnonzero(self.dense_force > 0.5 * (1.0 + PEAK_SHARE) * self.dense_force.max())
-        if near[0] == near[-1] or self._fitless:
+        if near[0] == near[-1] or self.fitless:
             return self
         narrow, wide = self._peak_of(slice(int(near[0]), int(near[-1]) + 1)), self._force_peak
         apart = {name: abs(a - b) for name, a, b in zip(("peak_time", "peak_force"), narrow, wide, strict=True)}
@@ -201,7 +201,7 @@ class Curve:
         return replace(self, peak_spread=spread)
 
     @property
-    def _fitless(self) -> bool:
+    def fitless(self) -> bool:
         """Whether no place comes or goes, under a flat end, so that nothing jitters; or the striker comes to rest."""
         return bool(np.ptp(self.radius_squared) == 0.0) or self.near_peak.stop == len(self.shares)
 

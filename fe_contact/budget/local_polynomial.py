@@ -68,6 +68,14 @@ def fitted_peak(first: float, last: float, values: Array) -> tuple[float, float]
     return first + 0.5 * (best + 1.0) * (last - first), height
 
 
+def steepest(places: Array, values: Array, begin: float, end: float) -> float:
+    """Largest slope between ``begin`` and ``end`` of the quartic nearest to values at ``PLACES`` equidistant places."""
+    half = 0.5 * (places[-1] - places[0])
+    between = np.linspace(begin, end, PLACES) - 0.5 * (places[-1] + places[0])
+    slopes = np.polyval(np.polyder(NEAREST_QUARTIC @ values), between / half)
+    return float(np.abs(slopes).max() / half)
+
+
 def _top(quartic: Array, low: float, high: float) -> tuple[float, float]:
     """Place and height of a quartic's maximum in an interval."""
     a, b, c, d, e = quartic.tolist()
