@@ -33,7 +33,7 @@ class Constant(NamedTuple):
     weaker: Any = None
 
 
-CERTIFY, ORDERS = "fe_contact.budget.certify", "fe_contact.budget.trusted_order"
+CERTIFY = "fe_contact.budget.certify"
 CHANGE, CURVE, IMPACT = "fe_contact.budget.change", "fe_contact.budget.curve", "fe_contact.march.impact"
 TABLE = (
     Constant(CHANGE, "SAFETY", DERIVED, "Roache's for three grids, doi:10.1115/1.2910291"),
@@ -47,6 +47,9 @@ TABLE = (
     Constant(CERTIFY, "WITNESS", DERIVED, "of elements that lock those of twice the order tell, see UNORDERED"),
     Constant(CERTIFY, "WITNESS_ELEMENTS", MEASURED, "of them along the contact radius, at least"),
     Constant(CERTIFY, "MESH_ORDER_ANYWHERE", DERIVED, "pressure's root at an edge within an element: 3/2, one trusted"),
+    Constant(
+        CERTIFY, "TOP_ANYWHERE", MEASURED, "the same as TOP where the edge falls anywhere: its changes turn", 0.998
+    ),
     Constant(CERTIFY, "LEAST_HALVED", MEASURED, "fewer steps are doubled instead of halved", 10),
     Constant(CERTIFY, "LEAST_HALVED_SETTING", MEASURED, "coarser settings are doubled instead of halved"),
     Constant(CERTIFY, "UNSEEN", MEASURED, "first steps of the coarsest run in which no order shows", 0),
@@ -60,14 +63,15 @@ TABLE = (
     Constant(CHANGE, "FIRST_ORDER", DERIVED, "SAFETY over 2^1 - 1"),
     Constant(CHANGE, "UNORDERED", DERIVED, "SAFETY times two: an order of 0.6 is supposed", 1.25),
     Constant(CHANGE, "TOP", MEASURED, "depth and time of a peak are judged by all above this share", 1.0),
-    Constant(CHANGE, "STEEPER", MEASURED, "slope of a rippling change over its chord, at a peak", 0.5),
+    Constant(CHANGE, "STEEPER", MEASURED, "slope of a change over its chord, at a peak under a flat end", 0.5),
+    Constant(CHANGE, "RIPPLED", MEASURED, "slope of a rippling change over its quartic's, at a peak", 0.5),
     Constant(CHANGE, "SMOOTHING", MEASURED, "a change that crosses zero is that of its neighbours", 0.0),
-    Constant(ORDERS, "AS_EXPECTED", MEASURED, "ratio of changes over the expected one that shows the order", (0, 1e9)),
-    Constant(ORDERS, "ABOUT", MEASURED, "the same that shows it about", (0.0, 1e9)),
-    Constant(ORDERS, "ASYMPTOTIC", MEASURED, "error of the duration with the fewest steps where orders count", 1e9),
-    Constant(ORDERS, "NEARLY", MEASURED, "share of the expected ratio that durations must show", 0.0),
+    Constant(CERTIFY, "AS_EXPECTED", MEASURED, "ratio of changes over the expected one that shows the order", (0, 1e9)),
+    Constant(CERTIFY, "ABOUT", MEASURED, "the same that shows it about", (0.0, 1e9)),
+    Constant(CERTIFY, "ASYMPTOTIC", MEASURED, "error of the duration with the fewest steps where orders count", 1e9),
+    Constant(CERTIFY, "NEARLY", MEASURED, "share of the expected ratio that durations must show", 0.0),
     Constant(
-        ORDERS,
+        CERTIFY,
         "ABOUT_A_STEP",
         DERIVED,
         "step over relaxation time; outside, the branch's weight is within 1/8 of a power of the step",

@@ -226,7 +226,7 @@ def test_every_folder_of_source_is_a_package() -> None:
     assert not bare
 
 
-ERROR_PATH = ("certify", "change", "trusted_order")
+ERROR_PATH = ("certify", "change")
 
 
 def test_the_manual_tells_every_constant_on_the_way_to_a_bar_as_the_code_has_it() -> None:

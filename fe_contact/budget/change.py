@@ -14,7 +14,8 @@ from fe_contact.budget.curve import Curve, Reading
 from fe_contact.budget.local_polynomial import PLACES, steepest
 
 TOP = 0.998  # of the largest depth or force, above which it is near: further away what comes later counts as an error
-STEEPER = 2.0  # times the chord there, that the slope of a change may have
+STEEPER = 2.0  # times the chord there, that the slope of a change under a flat end may have
+RIPPLED = 1.5  # times the slope of its nearest quartic there, that a change which ripples on a mesh may have
 SMOOTHING = 0.07  # share of the contact over which a pointwise change counts as the error of its neighbours
 FIRST_ORDER = 1.25  # factor where order one is all that shows
 SAFETY = 1.25  # of a grid convergence index by three runs, doi:10.1115/1.2910291
@@ -176,8 +177,8 @@ class Change:
     def _peak_time(self) -> float:
         """How far a change of the force's slope moves its peak: slope over curvature, s.
 
-        The curvature is that of all forces near the peak, the slope that of the change: of all these forces where a
-        dashpot makes it jitter, else twice the chord over the top.
+        The curvature is that of all forces near the peak, the slope that of the change over the top: of the quartic
+        nearest to it, which the peak is read from too; under a flat end, which is not read so, of its chord.
         """
         time, force, near = self.first.dense_time, self.first.dense_force, self.first.near_peak
         top = min(max(int(force.argmax()), 1), len(force) - 2)
@@ -193,5 +194,5 @@ class Change:
         else:
             places = np.linspace(time[left], time[right], PLACES)
             change = self.second.force(places) - self.first.force(places)
-            slope = steepest(places, change, time[begin], time[end])
+            slope = RIPPLED * steepest(places, change, time[begin], time[end])
         return float(min(slope / abs(curvature), self.first.duration)) if curvature else self.first.duration

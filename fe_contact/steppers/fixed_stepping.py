@@ -29,9 +29,8 @@ from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
 from fe_contact.schemes.base import SCHEMES
 from fe_contact.settings import Numerics
-from fe_contact.steppers.coming_radius import coming_square
 from fe_contact.steppers.march import Snapshot, Strike, Work
-from fe_contact.steppers.steps import State, Step
+from fe_contact.steppers.steps import State, Step, coming_square
 from fe_contact.steppers.striker import Inertia
 
 FIRST = 0.5  # share of the first overlap from which on places are guessed to touch

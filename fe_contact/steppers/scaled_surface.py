@@ -6,6 +6,9 @@ contact edge always lies in the finest elements instead of anywhere in a coarse 
 and the pressure in units of the unit mesh,
 
     displacement x modulus = C_unit forces / a ,   pressure = unit pressure / a ,   force = a sum(W p_unit).
+
+A time step solves the contact problem on the mesh scaled to the contact radius expected in it. Where the edge turns out
+to lie outside the mesh's finest elements, the mesh is scaled again and the step redone.
 """
 
 from __future__ import annotations
@@ -21,15 +24,179 @@ from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import SurfaceOperator
 from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.assembly.trace import monomials
+from fe_contact.bodies.memory import StepLaw, SurfaceMemory, area_weights, graded, interpolate, step_law
+from fe_contact.bodies.offer import Breathing
+from fe_contact.bodies.pressing import BEYOND, EDGE_WINDOW, RESCALINGS
 from fe_contact.bodies.surface_body import SurfaceBody
-from fe_contact.contact.problem import ContactProblem
-from fe_contact.schemes.base import MemoryScheme
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
+from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching, count, moved
+from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
+from fe_contact.schemes.base import SCHEMES, MemoryScheme
 from fe_contact.settings import Numerics
-from fe_contact.steppers.march import Snapshot, Strike
-from fe_contact.steppers.stepping import Stepper
-from fe_contact.steppers.steps import Stepping
+from fe_contact.steppers import instants
+from fe_contact.steppers.march import Snapshot, Strike, Work
+from fe_contact.steppers.steps import OfSurface, State, Step, Stepping, coming_square
+from fe_contact.steppers.striker import Inertia
 from fe_contact.steppers.struck import Deformable
 from lumped.materials import Relaxation
+
+LEAST_KEPT = 0.05  # share of its area that a contact is expected to keep over a step
+PATIENCE = 8  # rescalings after which the window widens by half each time: the edge may jitter in the last tail
+MEMORY_POINTS = 1000
+MEMORY_REACH = 1.25  # memory extends to this multiple of the expected contact radius
+COARSE = np.geomspace(1e-6, 1.0, 200)  # where, in units of the memory's reach, the first contact is looked for
+VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
+
+
+class Stepper(OfSurface):
+    """Takes steps: what stays the same through an impact is held here, what changes is passed and returned.
+
+    The memory also keeps the pressure that each of its branches carries, for the energies.
+    ``expected``: contact radii, m, of the first steps where a like march has told them, for as many as it did.
+    """
+
+    shortest = 3e-4
+    first_force = 0.0
+
+    def __init__(
+        self,
+        strike: Strike,
+        surface: Breathing,
+        numerics: Numerics,
+        expected: Sequence[float] | Array = (),
+    ) -> None:
+        self.strike, self.surface, self.numerics = strike, surface, numerics
+        self.scheme = SCHEMES.get(numerics.scheme)
+        self.enforcement = ENFORCEMENTS.get(numerics.enforcement)
+        self.radii = graded(MEMORY_REACH * numerics.contact_radius, MEMORY_POINTS)
+        self.heights = strike.height(self.radii)
+        self.areas = area_weights(self.radii)
+        self.expected = expected
+        self.unit = count(surface.operator.points < 1.0)
+
+    def at_rest(self) -> SurfaceMemory:
+        """Of the displacement and of the pressure, at the memory's radii."""
+        return SurfaceMemory.at_rest(self.areas, self.strike.relaxation, fields=2)
+
+    def standing(self) -> int:
+        """The axis."""
+        return 0
+
+    def clearance(self, surface: SurfaceMemory, depth: float) -> Array:
+        """Gap of the surfaces at the memory's radii, m."""
+        return np.asarray(surface.strain[0] + self.heights - depth)
+
+    def step(self, state: State, steps: Sequence[Step], length: float) -> Step:
+        """The step of a length, s, from a state reached by ``steps``.
+
+        Raises ContactLost, ContactNotSettled or MemoryTooSmall.
+        """
+        law = step_law(self.strike.relaxation, self.scheme, length)
+        inertia = Inertia.of(self.strike, self.scheme, state, length)
+        carried = state.memory.carried(law)
+        scale, edge, solution, work = self._settle(inertia, steps, law, carried[0])
+        pressure, radius = solution.pressure, scale * edge
+        force = scale * float(self.surface.operator.weights @ pressure)
+        strain = self._strain(law, carried, inertia.depth(force), radius, scale, pressure)
+        moved = inertia.moved(force, state.memory.advanced(law, strain))
+        axis = float(law.now * strain[0, 0] + carried[0, 0])
+        found_at = self._radius_time(moved.velocity, state.time, length)
+        return Step(length, moved, force, radius, found_at, axis, solution, scale, work)
+
+    def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
+        """Pressures at instants: at the end of a step while the contact grows, else where it is sampled."""
+        return instants.read(self, steps)
+
+    def between(self, before: State, step: Step) -> float:
+        """Work of the striker in a step that does not reach the body, J: where surfaces meet or part within it."""
+        after = step.state
+        sunk = after.memory.strain[0] - before.memory.strain[0]
+        reached = self.areas @ (self._spread(step.solution.pressure, step.scale) * sunk)
+        return float(step.force * (after.depth - before.depth) - reached)
+
+    def _settle(
+        self, inertia: Inertia, steps: Sequence[Step], law: StepLaw, carried: Array
+    ) -> tuple[float, float, ContactSolution, Work]:
+        """Scale the mesh until the contact edge lies in its finest elements: scale, edge on the unit mesh, solution."""
+        points, limit, state = self.surface.operator.points, self.radii[-1], inertia.state
+        free_depth, give = inertia.free_depth, inertia.give
+        scale = self._expected_radius(state, steps, inertia.length) or self._overlap_radius(law, carried, free_depth)
+        guesses = self._guesses(steps)
+        iterations = 0
+        for attempt in range(RESCALINGS):
+            radii = scale * points
+            if radii[-1] > limit:
+                raise MemoryTooSmall(radii[-1])
+            height = np.minimum(self.strike.height(radii), BEYOND * radii[-1])  # a profile may end
+            overlap = law.now * (free_depth - height) + interpolate(carried, limit, radii)
+            problem = self.surface.problem(overlap, self.numerics.penalty, law.now * give * scale)
+            solution = self.enforcement.enforce(problem, *guesses)
+            iterations += solution.iterations
+            if not solution.converged:
+                raise ContactNotSettled(state.time)
+            edge = solution.edge(points)
+            if abs(edge - 1) <= EDGE_WINDOW * 1.5 ** max(attempt - PATIENCE, 0):
+                return scale, edge, solution, Work(1, (attempt + 1) * self.enforcement.solves, iterations)
+            scale *= min(max(edge, 0.3), points[-1])
+            if scale < VANISHING * (steps[-1].radius if steps else self.numerics.contact_radius * VANISHING):
+                raise ContactLost(state.time)
+            guesses = self._centred(solution)
+        raise ContactNotSettled(state.time)
+
+    def _guesses(self, steps: Sequence[Step]) -> tuple[Touching, ...]:
+        """Points that may touch in the coming step."""
+        if not steps:
+            return (self.surface.operator.points < 1.0,)
+        return self._centred(steps[-1].solution) if len(steps) < len(self.expected) else steps[-1].solution.sets
+
+    def _centred(self, solution: ContactSolution) -> tuple[Touching, ...]:
+        """Sets of another step or scale, moved so that the last of them, whose edge is the contact's, ends at one."""
+        by = self.unit - count(solution.sets[-1])
+        return tuple(moved(touching, by) for touching in solution.sets)
+
+    def _expected_radius(self, state: State, steps: Sequence[Step], length: float) -> float:
+        """Contact radius in the coming step, if it is not told: its square is smooth in time, and zero at touch.
+
+        Zero in the first step, of which nothing is known.
+        """
+        if len(steps) < len(self.expected):
+            return float(self.expected[len(steps)])
+        if not steps:
+            return 0.0
+        square = coming_square(steps, self._radius_time(state.velocity, state.time, length))
+        return float(np.sqrt(max(square, LEAST_KEPT * steps[-1].radius ** 2)))
+
+    def _overlap_radius(self, law: StepLaw, carried: Array, free_depth: float) -> float:
+        """About the radius up to which the striker would overlap a surface that nothing presses."""
+        radii = self.radii[-1] * COARSE
+        past = interpolate(carried, self.radii[-1], radii)
+        open_ = law.now * (free_depth - self.strike.height(radii)) + past <= 0.0
+        return float(radii[int(open_.argmax()) if open_.any() else -1])
+
+    def _radius_time(self, velocity: float, time: float, length: float) -> float:
+        """When the contact has the radius of a step: growing, at its end; receding, where the force is sampled."""
+        return time + length * (1.0 if velocity > 0 else self.scheme.sample)
+
+    def _strain(
+        self, law: StepLaw, carried: Array, depth: float, radius: float, scale: float, pressure: Array
+    ) -> Array:
+        """Surface displacement at the memory's radii after the step and its pressure; (2, r)."""
+        strain = np.empty_like(carried)
+        touching = int(self.radii.searchsorted(radius))
+        outside = self.radii[touching:] / scale
+        # in contact the surface is the striker's: what penalty is left in the trace must not be remembered
+        strain[0, :touching] = depth - self.heights[:touching]
+        stress = self.surface.sample(self.surface.response(pressure), outside)
+        strain[0, touching:] = (stress - carried[0, touching:]) / law.now
+        strain[1] = (self._spread(pressure, scale) - carried[1]) / law.now
+        return strain
+
+    def _spread(self, pressure: Array, scale: float) -> Array:
+        """A pressure on the unit mesh, (q,), at the memory's radii, (r,), Pa, with the same force if they see one."""
+        operator = self.surface.operator
+        spread = np.interp(self.radii / scale, operator.points, pressure / scale, right=0.0)
+        total = float(self.areas @ spread)
+        return spread * (scale * float(operator.weights @ pressure) / total) if total > 0.0 else spread
 
 
 @dataclass(frozen=True)

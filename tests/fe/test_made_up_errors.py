@@ -12,10 +12,9 @@ from scipy.special import beta, betainc
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, Causes
-from fe_contact.budget.certify import _rows, _time_steps
+from fe_contact.budget.certify import _rows, _time_steps, trust
 from fe_contact.budget.change import SAFETY, Change
 from fe_contact.budget.curve import Curve, extrapolated
-from fe_contact.budget.trusted_order import trust
 from fe_contact.settings import Numerics
 from fe_contact.steppers.march import Strike
 from fe_contact.waves.certify import Moved
