@@ -47,9 +47,7 @@ TABLE = (
     Constant(CERTIFY, "WITNESS", DERIVED, "of elements that lock those of twice the order tell, see UNORDERED"),
     Constant(CERTIFY, "WITNESS_ELEMENTS", MEASURED, "of them along the contact radius, at least"),
     Constant(CERTIFY, "MESH_ORDER_ANYWHERE", DERIVED, "pressure's root at an edge within an element: 3/2, one trusted"),
-    Constant(
-        CERTIFY, "TOP_ANYWHERE", MEASURED, "the same as TOP where the edge falls anywhere: its changes turn", 0.998
-    ),
+    Constant(CERTIFY, "TOP_ANYWHERE", MEASURED, "TOP of what a mesh that stays changes, which turns", 0.998),
     Constant(CERTIFY, "LEAST_HALVED", MEASURED, "fewer steps are doubled instead of halved", 10),
     Constant(CERTIFY, "LEAST_HALVED_SETTING", MEASURED, "coarser settings are doubled instead of halved"),
     Constant(CERTIFY, "UNSEEN", MEASURED, "first steps of the coarsest run in which no order shows", 0),

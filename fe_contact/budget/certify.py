@@ -61,8 +61,8 @@ LEAST_ORDER = {"penalty": 1, "far_field": 2}
 MESH_ORDER = {3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
 WITNESS = 2  # times the order have the elements that tell of those which lock
 WITNESS_ELEMENTS = 4.0  # of them along the contact radius, at least
-# where the edge falls anywhere in an element: 1.6 is what is seen, and the sign of a change turns ever again
-MESH_ORDER_ANYWHERE, TOP_ANYWHERE = 1, 0.95
+MESH_ORDER_ANYWHERE = 1  # where the edge falls anywhere in an element: 1.6 is what is seen
+TOP_ANYWHERE = 0.95  # share of the largest depth above which such changes count: their sign turns ever again
 # of the steps' change in the share that branches about as fast as a step carry, by quantity, and of the force
 KEPT = {"peak_depth": 0.4, "duration": 0.4, "impulse": 1.5, "restitution": 1.5}
 KEPT_OF_FORCE = 0.1
