@@ -13,7 +13,7 @@ import pytest
 from fe_contact.cli import main
 from lumped.errors import BadInput
 from lumped.scene.indenter import Indenter
-from lumped.schema.data import scene_names
+from lumped.schema.files import SCENES
 
 HEADER = ["depth_m", "force_N", "contact_radius_m", "force_error_N"]
 SCENE = """
@@ -179,7 +179,7 @@ def geometric(name: str) -> bool:
 
 
 @pytest.mark.family
-@pytest.mark.parametrize("name", [name for name in scene_names() if geometric(name)])
+@pytest.mark.parametrize("name", [name for name in SCENES.names if geometric(name)])
 def test_packaged_scenes_are_pressed_within_their_bars(name: str, empty: Path) -> None:
     assert exit_code(name, "--depths", "2e-5", "--out", "fe") == 0
     code = exit_code(name, "--depths", "2e-5", "--out", "exact", "--method", "cheapest")

@@ -81,7 +81,7 @@ def test_another_suite_measures_anew(
 
 def test_a_changed_source_is_another_suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As are changed data, which lie beside the sources or in their own folder."""
-    monkeypatch.setattr("lumped.schema.data.directory", lambda: tmp_path)
+    monkeypatch.setattr("fe_contact.studies.journal.data_folder", lambda: tmp_path)
     digests = set()
     for text in ("radius = 1.0", "radius = 2.0"):
         (tmp_path / "scene.toml").write_text(text)

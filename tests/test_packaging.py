@@ -137,7 +137,7 @@ def test_the_wheel_holds_all_source_and_data_and_nothing_else(wheel: Path) -> No
 def test_the_installed_wheel_finds_its_data(wheel: Path, tmp_path: Path) -> None:
     """Unpacked anywhere, away from the checkout."""
     zipfile.ZipFile(wheel).extractall(tmp_path)
-    probe = "import lumped.schema.data; print(lumped.schema.data.directory())"
+    probe = "import lumped.schema.files; print(lumped.schema.files.data_folder())"
     found = python("-P", "-c", probe, cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(tmp_path)})
     assert Path(found) == (tmp_path / "fe_contact" / "_data").resolve()
 

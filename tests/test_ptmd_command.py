@@ -15,7 +15,7 @@ from fe_contact.studies.ptmd.chart import plot_study
 from lumped.errors import BadInput
 from lumped.ptmd import Memory, free_vibration
 from lumped.ptmd import study as studies
-from lumped.ptmd.case_file import load, names, read
+from lumped.ptmd.case_file import CASES, load, read
 from lumped.ptmd.result import COLUMNS
 from lumped.ptmd.study import BARE, FULL, PLAIN, study
 from lumped.schema.csv_file import read_columns
@@ -127,7 +127,7 @@ def test_a_plain_damper_and_a_bare_structure_are_cases_too(missing: list[str], t
 
 
 def test_the_packaged_case_is_the_paper() -> None:
-    assert names() == ("paper",)
+    assert CASES.names == ("paper",)
     case = load()
     assert case.system.ring is not None
     assert case.system.ring.stiffness.relaxed == pytest.approx(1772.7, abs=0.05)

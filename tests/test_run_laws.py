@@ -15,9 +15,9 @@ from fe_contact.cli import main
 from lumped import BadInput, Scene
 from lumped.errors import NotReached
 from lumped.result.history import History
-from lumped.schema.data import scene_names
+from lumped.schema.files import SCENES
 
-POUNDING = [name for name in scene_names() if name.startswith("pounding-")]
+POUNDING = [name for name in SCENES.names if name.startswith("pounding-")]
 
 
 def ran(where: Path, *arguments: str) -> dict[str, Any]:

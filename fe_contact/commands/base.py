@@ -20,10 +20,11 @@ from fe_contact.progress import Progress, clear, log_to, terminal, to_all
 from fe_contact.settings import Given, faults
 from lumped.errors import BadInput, Fault, shown
 from lumped.result.result import NO_KEY, LedgerEntry, Result, good_to, worst
-from lumped.scene.file import load, load_indenter, resolved
+from lumped.scene.file import load, load_indenter
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.schema import Table
+from lumped.schema.files import SCENES
 from lumped.schema.toml_file import overridden, parse_assignment, parsed
 
 DONE, NOT_REACHED = 0, 3
@@ -110,7 +111,7 @@ def _read(args: argparse.Namespace, reader: Callable[..., tuple[Read, Table]]) -
 def _settings_faults(scene: str, overrides: dict[str, object]) -> list[Fault]:
     """Faults of the settings in a scene file whose physics is faulty too."""
     try:
-        path = resolved(scene)
+        path = SCENES.resolved(scene)
         table = overridden(parsed(path), overrides, path.name).get("numerics", {})
     except BadInput:  # no TOML at all, which has been said
         return []

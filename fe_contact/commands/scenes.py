@@ -16,9 +16,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(args: argparse.Namespace) -> int:
     """Print; 0."""
-    from lumped.schema.data import scene_names
+    from lumped.schema.files import SCENES
 
-    scenes = {name: Scene.load(name) for name in scene_names()}
+    scenes = {name: Scene.load(name) for name in SCENES.names}
     if args.json:
         print(json.dumps({name: scene.to_dict() for name, scene in scenes.items()}, allow_nan=False))
         return base.DONE

@@ -27,7 +27,8 @@ from fe_contact.errors import WorkerLost
 from fe_contact.progress import Progress
 from fe_contact.threads import one_thread
 from lumped.result.result import provenance
-from lumped.schema import Table, data
+from lumped.schema import Table
+from lumped.schema.files import data_folder
 from lumped.schema.json_file import decoded, encoded
 
 PACKAGES = ("lumped", "meshes", "fe_contact")
@@ -71,7 +72,7 @@ def _suite() -> str:
     """A digest of the suite, of its data and of the versions beneath it."""
     specs = [find_spec(package) for package in PACKAGES]
     folders = [Path(place) for spec in specs if spec for place in spec.submodule_search_locations or ()]
-    found = {path for folder in (*folders, data.directory()) for path in folder.rglob("*") if path.suffix in SOURCES}
+    found = {path for folder in (*folders, data_folder()) for path in folder.rglob("*") if path.suffix in SOURCES}
     digest = sha256(repr(provenance()).encode())
     for path in sorted(found):
         digest.update(path.read_bytes())

@@ -8,7 +8,7 @@ from decimal import Decimal
 
 from lumped.errors import BadInput, Fault, nearest
 from lumped.paper.examples.value import Value
-from lumped.schema.data import directory
+from lumped.schema.files import data_folder
 from lumped.schema.keys import Choice, Key, Number, Text
 from lumped.schema.record import read_table
 from lumped.schema.toml_file import parsed
@@ -63,7 +63,7 @@ def half_unit(printed: str) -> float:
 
 def load() -> dict[str, Rule]:
     """The packaged rules by name. Raises BadInput."""
-    path = directory() / "paper" / "rules.toml"
+    path = data_folder() / "paper" / "rules.toml"
     keys: Mapping[str, Key] = {
         "kind": Key(Choice((*MARGINS, *UNJUDGED)), "how a value is judged"),
         "says": Key(Text(), "the rule in words"),

@@ -5,12 +5,12 @@ from __future__ import annotations
 import csv
 
 from lumped.errors import BadInput, Fault
-from lumped.schema.data import directory
+from lumped.schema.files import data_folder
 
 
 def rows(name: str, columns: tuple[str, ...]) -> list[dict[str, str]]:
     """The rows of `data/paper/<name>` by column. Raises BadInput for another header, or a row of another length."""
-    path = directory() / "paper" / name
+    path = data_folder() / "paper" / name
     with path.open(newline="", encoding="utf-8") as file:
         header, *body = list(csv.reader(file))
     if tuple(header) != columns:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from lumped.errors import BadInput, Fault, nearest
+from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.ptmd.case import Case
 from lumped.ptmd.free_vibration import TIME_KEYS
@@ -20,13 +20,13 @@ from lumped.ptmd.system import (
     Start,
 )
 from lumped.scene.file import TableReader
-from lumped.schema import Table, data
-from lumped.schema.bounded_file import exists
+from lumped.schema import Table
+from lumped.schema.files import Packaged
 from lumped.schema.keys import Choice, Key
 from lumped.schema.record import keys_of
 from lumped.schema.toml_file import overridden, parsed
 
-FOLDER, DEFAULT = "ptmd", "paper"
+CASES, DEFAULT = Packaged("ptmd", "case"), "paper"
 RING_KEYS, START_KEYS = keys_of(PtmdRing), keys_of(Start)
 SIZE_KEYS: Mapping[str, Key] = {
     "gap": RING_KEYS["gap"],
@@ -45,22 +45,12 @@ RELEASE_KEYS: Mapping[str, Key] = {
 }
 
 
-def names() -> tuple[str, ...]:
-    """Names of the packaged cases, sorted."""
-    return tuple(sorted(path.stem for path in (data.directory() / FOLDER).glob("*.toml")))
-
-
 def load(source: str | Path = DEFAULT, overrides: Mapping[str, object] | None = None) -> Case:
     """The case of a file or of a packaged name; `overrides` maps dotted keys to values that replace the file's.
 
     Raises BadInput with every fault found, at most 20.
     """
-    path = Path(source)
-    if not exists(path) and path.suffix != ".toml" and path.name == str(source):
-        if path.name not in names():
-            known = f"neither a file nor a packaged case; packaged: {', '.join(names())}{nearest(path.name, names())}"
-            raise BadInput(Fault(path.name, "", known))
-        path = data.directory() / FOLDER / f"{path.name}.toml"
+    path = CASES.resolved(source)
     return _Reader(path.name, overridden(parsed(path), overrides or {}, path.name), path.parent).case()
 
 

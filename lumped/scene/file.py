@@ -24,8 +24,8 @@ from lumped.scene.tables import (
     Motion,
     inertia_faults,
 )
-from lumped.schema import Table, data
-from lumped.schema.bounded_file import exists
+from lumped.schema import Table
+from lumped.schema.files import SCENES
 from lumped.schema.keys import Key
 from lumped.schema.members import Folder, Member, alternatives
 from lumped.schema.record import Part, keys_of, optional, placed, read_table, unknown_key
@@ -55,14 +55,6 @@ def load_indenter(
     return _reader(source, overrides).indenter(kind)
 
 
-def resolved(source: str | Path) -> Path:
-    """The file that a path or the name of a packaged scene stands for. Raises BadInput for an unknown name."""
-    path = Path(source)
-    if not exists(path) and path.suffix != ".toml" and path.name == str(source):
-        return data.scene_path(str(source))
-    return path
-
-
 def read(
     kind: Callable[..., Impact],
     table: Mapping[str, object],
@@ -75,7 +67,7 @@ def read(
 
 def _reader(source: str | Path, overrides: Mapping[str, object] | None) -> SceneReader:
     """What reads the file of a path or a packaged name. Raises BadInput."""
-    path = resolved(source)
+    path = SCENES.resolved(source)
     return SceneReader(path.name, overridden(parsed(path), overrides or {}, path.name), path.parent)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault, shown
-from lumped.schema.bounded_file import content
+from lumped.schema.files import content
 
 Array = NDArray[np.float64]
 # What a measurement has, and what is read within seconds.

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from lumped.errors import BadInput, Fault, shown
 from lumped.schema import Table
-from lumped.schema.bounded_file import content
+from lumped.schema.files import content
 
 # No scene needs as much; what tomllib takes for a key of n parts or n brackets grows by n^2 or ends its recursion.
 MOST_BYTES, MOST_DEPTH = 100_000, 16

@@ -17,7 +17,7 @@ from fe_contact.commands import COMMANDS
 from fe_contact.steppers import stepping
 from fe_contact.targets import half_space
 from lumped import Scene, laws
-from lumped.schema.data import scene_names
+from lumped.schema.files import SCENES
 from meshes import session
 from meshes.errors import APT_LINE, GmshMissing
 
@@ -371,7 +371,7 @@ def test_every_command_that_takes_a_scene_refuses_a_bad_one(
 
 def test_scenes_and_laws_list_one_a_line(capsys: pytest.CaptureFixture[str]) -> None:
     assert exit_code("scenes") == 0
-    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(scene_names())
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(SCENES.names)
     assert exit_code("laws") == 0
     assert {"mdr", "ting"} <= {line.split()[0] for line in capsys.readouterr().out.splitlines()}
 
@@ -380,7 +380,7 @@ def test_scenes_and_laws_are_machine_readable(capsys: pytest.CaptureFixture[str]
     assert exit_code("scenes", "--json") == 0
     tables = json.loads(capsys.readouterr().out)
     assert {name: Scene.from_dict(table, name).to_dict() for name, table in tables.items()} == tables
-    assert list(tables) == list(scene_names())
+    assert list(tables) == list(SCENES.names)
     assert exit_code("laws", "--json") == 0
     assert list(json.loads(capsys.readouterr().out)) == list(laws.available())
 

@@ -12,7 +12,7 @@ from fe_contact import run
 from fe_contact.reference import plan
 from lumped import FeContactError, Scene
 from lumped.result.model_ledger import Peak, model_ledger
-from lumped.schema.data import scene_names
+from lumped.schema.files import SCENES
 
 HEAVY = 1000.0  # kg/m3
 PEAK = Peak(1.0, 1e-5, 1e-3, 1e-3)
@@ -28,7 +28,7 @@ def without_inertia(name: str) -> dict[str, object] | None:
     return {f"{part}.material.density": HEAVY for part, solid in parts.items() if solid}
 
 
-@pytest.mark.parametrize("name", [name for name in scene_names() if without_inertia(name) is not None])
+@pytest.mark.parametrize("name", [name for name in SCENES.names if without_inertia(name) is not None])
 def test_a_key_for_inertia_stands_where_it_works(name: str) -> None:
     heavy = without_inertia(name) or {}
     (entry,) = [one for one in model_ledger(Scene.load(name, heavy), PEAK) if one.effect == "target inertia"]

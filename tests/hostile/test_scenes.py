@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 from lumped import laws
-from lumped.schema.data import scene_names, scene_path
+from lumped.schema.files import SCENES as PACKAGED
 
 Table = dict[str, Any]
 SCENES = 20_000
@@ -78,7 +78,7 @@ class Mutations:
 
     def __init__(self, seed: int) -> None:
         self.rng = random.Random(seed)
-        self.known = {name: tomllib.loads(scene_path(name).read_text(encoding="utf-8")) for name in scene_names()}
+        self.known = {name: tomllib.loads(PACKAGED.path(name).read_text(encoding="utf-8")) for name in PACKAGED.names}
         self.ways = (
             self.drop, self.misspell, self.replace, self.replace, self.scale, self.scale, self.scale, self.scale,
             self.exchange_part, self.exchange_material, self.switch, self.switch,

@@ -22,7 +22,7 @@ from lumped.laws._hereditary import problem_of
 from lumped.laws.correspondence import Correspondence
 from lumped.numbers.interpolation import local, peak
 from lumped.result.history import End
-from lumped.schema import data
+from lumped.schema.files import data_folder
 from lumped.shapes import Shape
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
@@ -210,7 +210,7 @@ def test_ting_s_layer_at_the_turn_is_the_row_s(
 # 5/32 in of steel dropped from 2 in, E0 = 1.05e11 Pa as contact modulus.
 BALL, DENSITY, HEIGHT, WEIGHT, RELAXED = 1.984375e-3, 7850.0, 0.0508, 9.81, 1.05e11
 MASS, SPEED = DENSITY * 4.0 / 3.0 * math.pi * BALL**3, math.sqrt(2.0 * WEIGHT * HEIGHT)
-with (data.directory() / "paper" / "steel_grid.csv").open(newline="", encoding="utf-8") as grid_file:
+with (data_folder() / "paper" / "steel_grid.csv").open(newline="", encoding="utf-8") as grid_file:
     GRID = list(csv.DictReader(grid_file))
 
 

@@ -21,7 +21,7 @@ from lumped.paper import table1
 from lumped.paper.table1 import Elastic
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.scene.indenter import Indenter
-from lumped.schema.data import scene_names
+from lumped.schema.files import SCENES
 
 Array = NDArray[np.float64]
 PARTS = ("striker", "target")
@@ -141,7 +141,7 @@ def test_what_cannot_yield_is_refused_by_name() -> None:
 
 
 @pytest.mark.family
-@pytest.mark.parametrize("name", scene_names())
+@pytest.mark.parametrize("name", SCENES.names)
 def test_every_scene_has_an_answer_or_a_named_refusal(name: str) -> None:
     """By every law, and its ledger is finite."""
     if name.endswith("-bulk"):
@@ -161,7 +161,7 @@ def test_every_scene_has_an_answer_or_a_named_refusal(name: str) -> None:
     assert answers > 0 or scene.target.name not in ("half_space", "layer", "ring", "rod")
 
 
-@pytest.mark.parametrize("name", [name for name in scene_names() if heavy(name)])
+@pytest.mark.parametrize("name", [name for name in SCENES.names if heavy(name)])
 def test_the_ledger_does_not_jump_at_the_limit(name: str) -> None:
     """Estimates at 0.5 and next to it agree."""
     first, second = ([one.size for one in model_ledger(at(nu, name, heavy(name)), PEAK)] for nu in (0.5 - 1e-8, 0.5))

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from lumped import BadInput, Scene
 from lumped.scene.file import load, read
-from lumped.schema.data import scene_names
+from lumped.schema.files import SCENES
 from lumped.schema.toml_file import parse_assignment
 
 SOLID: dict[str, Any] = {
@@ -71,7 +71,7 @@ def test_good_table_makes_the_scene() -> None:
 
 
 def test_packaged_scenes_hold_the_published_numbers() -> None:
-    assert {"steel-ball", "steel-ball-sls", "polymer-sphere"} <= set(scene_names())
+    assert {"steel-ball", "steel-ball-sls", "polymer-sphere"} <= set(SCENES.names)
     ball, solid, polymer = (Scene.load(name) for name in ("steel-ball", "steel-ball-sls", "polymer-sphere"))
     assert ball.contact_modulus.relaxed == pytest.approx(1.05e11, rel=1e-6)
     assert (ball.mass, ball.velocity) == (2.569387e-4, 0.998347)
@@ -81,7 +81,7 @@ def test_packaged_scenes_hold_the_published_numbers() -> None:
     assert {scene.profile.name for scene in (ball, solid, polymer)} == {"sphere"}
 
 
-@pytest.mark.parametrize("name", scene_names())
+@pytest.mark.parametrize("name", SCENES.names)
 def test_packaged_scene_round_trips_through_its_tables(name: str) -> None:
     scene = Scene.load(name)
     again = Scene.from_dict(scene.to_dict())

@@ -9,7 +9,7 @@ from typing import Annotated, get_type_hints
 
 from lumped.errors import BadInput, Fault
 from lumped.schema import Table
-from lumped.schema.data import directory
+from lumped.schema.files import data_folder
 from lumped.schema.keys import Key, Number, Numbers
 from lumped.schema.record import keys_of, read_table, unknown_key
 from lumped.schema.toml_file import overridden, parsed
@@ -154,7 +154,7 @@ class Examples:
     @classmethod
     def load(cls, overrides: Mapping[str, object] | None = None) -> Examples:
         """The packaged examples with dotted keys changed, as {"steel.density": 8000.0}. Raises BadInput."""
-        path = directory() / "paper" / "examples.toml"
+        path = data_folder() / "paper" / "examples.toml"
         table = overridden(parsed(path), overrides or {}, path.name)
         kinds = get_type_hints(cls)
         faults = [Fault(path.name, name, unknown_key(name, kinds)) for name in table if name not in kinds]
