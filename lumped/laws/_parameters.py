@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
-from lumped import restitution
 from lumped.errors import BadInput, Fault
+from lumped.laws._damping import EXACT, EXIT, Family, damping
 from lumped.laws._impacts import bodies_of
 from lumped.laws._power_law import spring_of_peak
 from lumped.laws.base import check_half_space
@@ -23,11 +23,13 @@ STIFFNESS: Keys = {"k": Key(Number(1e-30, 1e30, "N/m^alpha"), "stiffness", requi
 EXPONENT: Keys = {"alpha": Key(Number(0.5, 5.0), "exponent of the depth", required=False)}
 # A damper with the power (alpha - 1)/2 of the depth is infinite at touch for alpha below 1.
 EXPONENT_FROM_ONE: Keys = {"alpha": replace(EXPONENT["alpha"], kind=Number(1.0, 5.0))}
-EXIT = Key(Choice(("force", "depth")), "what ends the contact by its return to zero", required=False)
-COMMON: Keys = {"gap": Key(Number(0.0, 1e6, "m"), "distance before touch", required=False), "exit": EXIT}
+EXIT_KEY = Key(EXIT, "what ends the contact by its return to zero", required=False)
+COMMON: Keys = {"gap": Key(Number(0.0, 1e6, "m"), "distance before touch", required=False), "exit": EXIT_KEY}
 RESTITUTION: Keys = {"e": Key(Number(1e-4, 1.0), "restitution which the damping is to meet", required=False)}
 # The exact laws that tell the restitution of a scene's own material, the second where contact has a fixed area.
-EXACT, EXACT_FIXED, EXACT_TOLERANCE = "mdr", "ting", 1e-4
+OF_MATERIAL, OF_FIXED_AREA, OF_TOLERANCE = "mdr", "ting", 1e-4
+# The exponent for which the dampings of an oscillator are told.
+TOLD_FOR = 1.5
 
 
 def damping_key(name: str, unit: str = "") -> Keys:
@@ -35,9 +37,9 @@ def damping_key(name: str, unit: str = "") -> Keys:
     return {name: Key(Number(0.0, 1e30, unit), "damping", required=False)}
 
 
-def formula_key(family: str) -> Keys:
+def formula_key(family: Family) -> Keys:
     """The key `damping`: by which formula e becomes the damping, exact by default or a published one."""
-    kind = Choice((restitution.EXACT, *restitution.get(family).published))
+    kind = Choice((EXACT, *family.published))
     return {"damping": Key(kind, "formula by which e becomes the damping", required=False)}
 
 
@@ -119,21 +121,32 @@ class Parameters:
             return "e", 1.0
         return "e", self._own_restitution()
 
-    def meeting(self, family: str, e: float) -> float:
+    def meeting(self, family: Family, e: float) -> float:
         """The dimensionless damping of a family for e at the law's exit, by the formula that `law.damping` names."""
-        exit, formula = self.get("exit", "force"), self.get("damping", restitution.EXACT)
+        exit, formula = self.get("exit", "force"), self.get("damping", EXACT)
         try:
-            return restitution.damping(restitution.get(family), e, exit, formula)
+            return damping(family, e, exit, formula)
         except BadInput as bad:
             self.faults += [Fault(self.scene.source, "law.e", fault.message) for fault in bad.faults]
             return 0.0
 
-    def dashpot(self, k: float) -> float:
+    def dashpot(self, k: float, family: Family) -> float:
         """c, N s/m, of the dashpot beside a spring k, N/m: given, or of xi "(7)", or of e at the law's exit."""
         kind, value = self.damping(("xi", "c"))
         if kind == "e":
-            value = self.meeting(self.name, value)
+            value = self.meeting(family, value)
         return value if kind == "c" else 2.0 * value * math.sqrt(k * self.scene.reduced_mass)
+
+    def oscillator(self, family: Family, key: str, unit: float = 1.0) -> Table:
+        """alpha, k and c = unit times the damping called `key` times sqrt(m k), N s/m^((alpha + 1)/2).
+
+        Of e it is the damping with the ratio, and so the restitution, that the family's has at alpha = 3/2.
+        """
+        alpha = self.exponent()
+        k, (kind, value) = self.stiffness(alpha), self.damping((key,))
+        if kind == "e":
+            value = self.meeting(family, value) * math.sqrt((alpha + 1.0) / (TOLD_FOR + 1.0))
+        return {"k": k, "c": unit * value * math.sqrt(self.scene.reduced_mass * k), "alpha": alpha}
 
     def missing(self, key: str, accepted: str) -> None:
         """Note a key that has to be given."""
@@ -145,9 +158,9 @@ class Parameters:
 
         if self.scene.contact_modulus.is_elastic:
             return 1.0
-        exact = EXACT if self.scene.profile.fixed_radius is None else EXACT_FIXED
+        exact = OF_MATERIAL if self.scene.profile.fixed_radius is None else OF_FIXED_AREA
         once = replace(self.scene, motion=replace(self.scene.motion, impacts=1))
-        e = laws.get(exact).of(once).simulate(once, EXACT_TOLERANCE).quantities["restitution"].value
+        e = laws.get(exact).of(once).simulate(once, OF_TOLERANCE).quantities["restitution"].value
         if e is None:
             reason = f"missing, and the scene, which does not separate, has none; accepted: law.e for {self.name}"
             self.faults.append(Fault(self.scene.source, "law.e", reason))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from dataclasses import dataclass
+from typing import ClassVar
 
 from lumped.laws._force_law import ForceLaw
 from lumped.numbers import Real
@@ -107,3 +108,37 @@ class SpringDamped(PowerLaw):
         """Its slopes."""
         strength = self.k * self.factor(stage)
         return strength * self.alpha * depth ** (self.alpha - 1.0) * rate, strength * depth**self.alpha
+
+
+@dataclass(frozen=True, kw_only=True)
+class OscillatorDamped(PowerLaw):
+    """F = k depth^alpha + c depth^((alpha - 1)/2) rate; k in N/m^alpha, c in N s/m^((alpha + 1)/2).
+
+    In x = depth^((alpha + 1)/2) 2/(alpha + 1) spring and damper are linear, whatever the exponent: the impact is that
+    of an oscillator with the damping ratio c/sqrt(2 (alpha + 1) m k).
+    `rebounds`: whether the damper acts in the rebound too.
+    """
+
+    c: float
+    alpha: float = 1.5
+    rebounds: ClassVar[bool]
+
+    def exponents(self, stage: Stage) -> tuple[float, ...]:
+        """The spring's and the damper's."""
+        return (self.alpha, 0.5 * (self.alpha - 1.0)) if self._damped(stage) else (self.alpha,)
+
+    def damper(self, depth: Real, rate: Real, stage: Stage) -> Real:
+        """c depth^((alpha - 1)/2) rate, where it acts."""
+        if not self._damped(stage):
+            return 0.0 * depth
+        return self.c * depth ** (0.5 * (self.alpha - 1.0)) * rate
+
+    def damper_tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
+        """Its slopes."""
+        if not self._damped(stage):
+            return 0.0, 0.0 * depth
+        power = 0.5 * (self.alpha - 1.0)
+        return self.c * power * depth ** (power - 1.0) * rate, self.c * depth**power
+
+    def _damped(self, stage: Stage) -> bool:
+        return self.rebounds or stage.approaching

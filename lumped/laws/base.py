@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import ClassVar, Protocol
 
 from lumped.errors import BadInput, Fault
+from lumped.laws._damping import Family
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.schema.keys import Key
@@ -26,11 +27,15 @@ class Law(Protocol):
 
 @dataclass(frozen=True)
 class LawKind:
-    """A member of this folder: how its Law is made `of` a scene, what it `says`, the `groups` of its `[law]` keys."""
+    """A member of this folder: how its Law is made `of` a scene, what it `says`, the `groups` of its `[law]` keys.
+
+    `family`: its own damping against the coefficient of restitution; None: without damping, or with another law's.
+    """
 
     of: Callable[[Scene], Law]
     says: str | None
     groups: Sets = ()
+    family: Family | None = None
 
     @cached_property
     def keys(self) -> Mapping[str, Key]:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from lumped.errors import FeContactError
 from lumped.laws._force_law import ForceLaw
 from lumped.laws._hereditary import Course, HereditaryLaw, Solve, once, simulate
-from lumped.laws._parameters import EXIT
+from lumped.laws._parameters import EXIT_KEY
 from lumped.laws.base import LawKind, check_geometry
 from lumped.laws.mdr import ImpactScales
 from lumped.numbers import Real
@@ -140,7 +140,7 @@ class Correspondence(HereditaryLaw):
     :mod:`lumped.solvers.point.memory`.
     """
 
-    exit: Annotated[str, EXIT] = "force"
+    exit: Annotated[str, EXIT_KEY] = "force"
     memory: Annotated[str, Key(Choice(RULES.names), "what is left of it at the next contact")] = "recovering"
     name: ClassVar[str] = "correspondence"
 

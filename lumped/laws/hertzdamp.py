@@ -13,6 +13,7 @@ from typing import ClassVar
 from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_key, formula_key
 from lumped.laws._power_law import SpringDamped
 from lumped.laws.base import LawKind
+from lumped.laws.hunt_crossley import FAMILY
 from lumped.scene.scene import Scene
 from lumped.solvers.point.bodies import Stage
 
@@ -36,10 +37,8 @@ def of(scene: Scene) -> Hertzdamp:
     k = given.stiffness(alpha)
     kind, xi = given.damping(("xi",))
     if kind == "e":
-        xi = given.meeting("hunt_crossley", xi)
+        xi = given.meeting(FAMILY, xi)
     return Hertzdamp(k=k, xi=xi, alpha=alpha, **given.common())
 
 
-MEMBER = LawKind(
-    of, __doc__, (STIFFNESS, EXPONENT, RESTITUTION, damping_key("xi"), formula_key("hunt_crossley"), COMMON)
-)
+MEMBER = LawKind(of, __doc__, (STIFFNESS, EXPONENT, RESTITUTION, damping_key("xi"), formula_key(FAMILY), COMMON))

@@ -22,8 +22,8 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from lumped import restitution
 from lumped.errors import Fault
+from lumped.laws._damping import EXACT
 from lumped.laws._force_law import ForceLaw
 from lumped.laws._impacts import bodies_of
 from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters
@@ -33,7 +33,7 @@ from lumped.scene.scene import Scene
 from lumped.schema.keys import Choice, Key, Number
 from lumped.solvers.point.bodies import Bodies, Stage
 
-FORMULAS = (restitution.EXACT, "muthukumar")
+FORMULAS = (EXACT, "muthukumar")
 # A step that ends at a corner, to rounding, is still before it.
 AT_CORNER = 1e-9
 LOOP: Mapping[str, Key] = {
@@ -138,7 +138,7 @@ def _derived(given: Parameters) -> LoopNumbers:
     """From the stiffness of an elastic law and e."""
     alpha = given.exponent()
     k, (_, e) = given.stiffness(alpha), given.damping(())
-    recipe_of = exact if given.get("damping", restitution.EXACT) == restitution.EXACT else published
+    recipe_of = exact if given.get("damping", EXACT) == EXACT else published
     return recipe_of(k, alpha, bodies_of(given.scene), e)
 
 

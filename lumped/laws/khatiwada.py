@@ -3,6 +3,7 @@
 Eng. Struct. 62-63, 33-41 (2014), in the form of section 2.5 of the source paper: damping proportional to a power of
 the depth, for any exponent, and exact for the restitution asked for. It is the law of Hunt and Crossley, its damper
 with a constant c = chi k of its own.
+The exact relation does not depend on alpha: it is that of Hunt and Crossley with d = c v_0/k. Both exits are one.
 """
 
 from __future__ import annotations
@@ -10,9 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from lumped.laws._damping import Family, formulas
 from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_key
 from lumped.laws._power_law import SpringDamped
 from lumped.laws.base import LawKind
+from lumped.laws.hunt_crossley import damping, restitution
 from lumped.scene.scene import Scene
 from lumped.solvers.point.bodies import Stage
 
@@ -36,8 +39,9 @@ def of(scene: Scene) -> Khatiwada:
     k = given.stiffness(alpha)
     kind, c = given.damping(("c",))
     if kind == "e":
-        c = given.meeting("khatiwada", c) * k / scene.velocity
+        c = given.meeting(FAMILY, c) * k / scene.velocity
     return Khatiwada(k=k, c=c, alpha=alpha, **given.common())
 
 
-MEMBER = LawKind(of, __doc__, (STIFFNESS, EXPONENT, RESTITUTION, damping_key("c", "N s/m^(alpha + 1)"), COMMON))
+FAMILY = Family(restitution, damping, formulas())
+MEMBER = LawKind(of, __doc__, (STIFFNESS, EXPONENT, RESTITUTION, damping_key("c", "N s/m^(alpha + 1)"), COMMON), FAMILY)

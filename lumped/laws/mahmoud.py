@@ -6,43 +6,42 @@ Jankowski 2011, Iran. J. Sci. Technol. C 35, 51-62.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar
 
+from lumped.laws._damping import oscillator
 from lumped.laws._parameters import COMMON, RESTITUTION, STIFFNESS, Parameters, damping_key, formula_key
-from lumped.laws._power_law import PowerLaw
+from lumped.laws._power_law import OscillatorDamped
 from lumped.laws.base import LawKind
-from lumped.numbers import Real
 from lumped.scene.scene import Scene
-from lumped.solvers.point.bodies import Stage
 
 
 @dataclass(frozen=True, kw_only=True)
-class Mahmoud(PowerLaw):
+class Mahmoud(OscillatorDamped):
     """The law with stiffness k, N/m, and dashpot c, N s/m."""
 
-    c: float
     alpha: float = 1.0
     name: ClassVar[str] = "mahmoud"
-
-    def damper(self, depth: Real, rate: Real, stage: Stage) -> Real:
-        """c rate in the approach."""
-        return self.c * rate if stage.approaching else 0.0 * rate
-
-    def damper_tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
-        """0, c in the approach."""
-        return 0.0, (self.c if stage.approaching else 0.0) + 0.0 * rate
+    rebounds: ClassVar[bool] = False
 
 
 def of(scene: Scene) -> Mahmoud:
     """The law for a scene. Raises BadInput."""
     given = Parameters(scene, Mahmoud.name)
     k = given.stiffness(1.0)
-    return Mahmoud(k=k, c=given.dashpot(k), **given.common())
+    return Mahmoud(k=k, c=given.dashpot(k, FAMILY), **given.common())
 
 
+def mahmoud_jankowski(e: float) -> float:
+    """(1-e^2)/(e (e (pi-2) + 2)): Mahmoud and Jankowski 2011, Iran. J. Sci. Technol. C 35, 51-62."""
+    return (1.0 - e) * (1.0 + e) / (e * (e * (math.pi - 2.0) + 2.0))
+
+
+FAMILY = oscillator(1.0, rebounds=False, mahmoud_jankowski=mahmoud_jankowski)
 MEMBER = LawKind(
     of,
     __doc__,
-    (STIFFNESS, RESTITUTION, damping_key("xi"), damping_key("c", "N s/m"), formula_key("mahmoud"), COMMON),
+    (STIFFNESS, RESTITUTION, damping_key("xi"), damping_key("c", "N s/m"), formula_key(FAMILY), COMMON),
+    FAMILY,
 )

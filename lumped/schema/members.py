@@ -42,7 +42,7 @@ class Folder(Generic[M]):
     def get(self, name: str, source: str = "", key: str = "") -> M:
         """The member called `name`; raises BadInput, with the nearest name, when there is none."""
         if name not in self.names:
-            raise BadInput(Fault(source or self.source, key or self.key, unavailable(self.package, name)))
+            raise BadInput(Fault(source or self.source, key or self.key, unavailable(self.names, name)))
         member: M = import_module(f"{self.package}.{name}").MEMBER
         return member
 
@@ -54,9 +54,8 @@ def available(package: str) -> tuple[str, ...]:
     return tuple(sorted(m.name for m in found if m.name not in NOT_MEMBERS and not m.name.startswith("_")))
 
 
-def unavailable(package: str, name: str) -> str:
-    """What to say of a name which is no member of `package`."""
-    names = available(package)
+def unavailable(names: tuple[str, ...], name: str) -> str:
+    """What to say of a name which is none of `names`."""
     return f"{shown(name)} is not available in this version; accepted: {', '.join(names)}{nearest(name, names)}"
 
 
@@ -74,7 +73,7 @@ class Member:
         if not isinstance(value, str):
             raise ValueError
         if value not in available(self.package):
-            raise ValueError(unavailable(self.package, value))
+            raise ValueError(unavailable(available(self.package), value))
         return value
 
 

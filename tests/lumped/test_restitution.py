@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 
 from lumped import restitution
 from lumped.errors import BadInput
-from lumped.restitution import kuwabara_kono as taylor
+from lumped.laws import kuwabara_kono as taylor
 
 EXITS = ("force", "depth")
 BOTH = [(name, exit) for name in restitution.available() for exit in EXITS]
