@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from math import inf
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumped.errors import Fault
 from lumped.numbers import Real
 from lumped.numbers.quadrature import gauss
 
 GAUSS_POINTS = 48
+
+
+def elastic_faults(body: str, nu: float, **lengths: float) -> list[Fault]:
+    """What is wrong with a body's lengths, m, by their names, and with its Poisson's ratio."""
+    wrong = {key: length for key, length in lengths.items() if not 0.0 < length < inf}
+    faults = [Fault(body, key, f"must be above 0 m, is {length}") for key, length in wrong.items()]
+    if not -1.0 < nu <= 0.5:
+        faults.append(Fault(body, "nu", f"must lie above -1 and not above 0.5, is {nu}"))
+    return faults
 
 
 class LoadCurve(ABC):

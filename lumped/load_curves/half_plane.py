@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.base import LoadCurve, elastic_faults
 from lumped.load_curves.plane_contact import Grown, LineCurve, LineProfile, collocation, folded, grown
 from lumped.load_curves.tabulated import growing_edges
 from lumped.numbers import Real
@@ -177,8 +177,7 @@ def check_datum(datum_depth: float, nu: float) -> None:
             f"must be above 0 m, is {datum_depth}: in plane strain the half-plane has no finite compliance without it"
         )
         faults.append(Fault("half_space", "datum_depth", message))
-    if not -1.0 < nu <= 0.5:
-        faults.append(Fault("half_space", "nu", f"must lie above -1 and not above 0.5, is {nu}"))
+    faults += elastic_faults("half_space", nu)
     if faults:
         raise BadInput(faults)
 

@@ -13,14 +13,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from math import inf
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault, nearest
-from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.base import LoadCurve, elastic_faults
 from lumped.load_curves.fixed_area import FixedArea, under_flat_end
 from lumped.load_curves.half_space import HalfSpaceCurve
 from lumped.load_curves.plane_contact import Grown, LineCurve, LineProfile, collocation, folded, grown
@@ -46,11 +45,7 @@ class PointLayer:
     base: str = "bonded"
 
     def __post_init__(self) -> None:
-        faults = []
-        if not 0.0 < self.thickness < inf:
-            faults.append(Fault("layer", "thickness", f"must be above 0 m, is {self.thickness}"))
-        if not -1.0 < self.nu <= 0.5:
-            faults.append(Fault("layer", "nu", f"must lie above -1 and not above 0.5, is {self.nu}"))
+        faults = elastic_faults("layer", self.nu, thickness=self.thickness)
         if self.base not in BASES:
             message = f"is one of {', '.join(BASES)}, not {self.base!r}{nearest(self.base, BASES)}"
             faults.append(Fault("layer", "base", message))

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.load_curves.base import GAUSS_POINTS, LoadCurve
+from lumped.load_curves.base import GAUSS_POINTS, LoadCurve, elastic_faults
 from lumped.load_curves.plane_contact import Collocation, Grown, collocation, folded
 from lumped.load_curves.tabulated import ACCURACY, REFINEMENT, Array, evaluate, panel, tested_place
 from lumped.numbers import Real
@@ -51,10 +51,7 @@ class RingContact:
     nu: float
 
     def __post_init__(self) -> None:
-        sizes = (("radius", self.radius), ("thickness", self.thickness))
-        faults = [Fault("ring", key, f"must be above 0 m, is {size}") for key, size in sizes if not 0.0 < size < inf]
-        if not -1.0 < self.nu <= 0.5:
-            faults.append(Fault("ring", "nu", f"must lie above -1 and not above 0.5, is {self.nu}"))
+        faults = elastic_faults("ring", self.nu, radius=self.radius, thickness=self.thickness)
         least = self.radius + LEAST_CLEARANCE * self.thickness
         if not least <= self.inner_radius < inf:
             message = f"must be at least {least:g} m around this cylinder, is {self.inner_radius}"

@@ -98,7 +98,7 @@ def mass_faults(source: str, mass: float, swinging: float) -> list[Fault]:
     """Too little mass, kg: none at all is for a block whose own inertia swings."""
     if mass >= LEAST_MASS or (mass == 0.0 and swinging > 0.0):
         return []
-    reason = f"{mass:g}: accepted a number from {LEAST_MASS:g} to 1e+12 kg; 0 of a block with model.inertia"
+    reason = f"{mass:g}: accepted {SECOND_MASS.kind.accepted}; 0 of a block with model.inertia"
     return [Fault(source, "striker.mass", reason)]
 
 

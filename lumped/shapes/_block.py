@@ -14,14 +14,14 @@ from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.hertz import HertzImpact, power_impact
 from lumped.materials import Material, Relaxation
 from lumped.schema.keys import Choice, Key, Number
-from lumped.shapes.base import Shape
+from lumped.shapes.base import SIZE, FlatEnded
 
-THICKNESS = Key(Number(1e-9, 1e4, "m"), "between the faces, along the motion")
+THICKNESS = Key(SIZE, "between the faces, along the motion")
 SIDES = Key(Choice(("free", "confined")), "what holds the sides")
 
 
 @dataclass(frozen=True)
-class Block(Shape):
+class Block(FlatEnded):
     """A block of this area, m2, and thickness along the motion, m; a cylinder where its outline matters.
 
     `sides`: "free" or "confined" by a rigid smooth wall; `faces`: "sliding" or "bonded" to what presses them.
@@ -33,23 +33,10 @@ class Block(Shape):
     sides: Annotated[str, SIDES]
     faces: Annotated[str, Key(Choice(("sliding", "bonded")), "what holds the faces")] = "sliding"
 
-    def height(self, r: ArrayLike) -> NDArray[np.float64]:
-        """Zero on its face, infinite beyond."""
-        return np.where(np.abs(np.asarray(r, dtype=float)) <= self.fixed_radius, 0.0, np.inf)
-
-    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
-        """Zero on its face, infinite beyond."""
-        return self.height(r)
-
     def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
         """None: no half-space is pressed. Raises BadInput."""
         reason = f"{self.name}: no dimensionality reduction for a block on a plane; accepted: a profile"
         raise BadInput(Fault(self.name, "striker.shape", reason))
-
-    @property
-    def exponent_of_force(self) -> float:
-        """1."""
-        return 1.0
 
     @property
     def fixed_radius(self) -> float:
@@ -76,10 +63,6 @@ class Block(Shape):
     def modulus(self, material: Material) -> Relaxation:
         """Young's modulus with free sides (uniaxial stress), the confined one else (uniaxial strain), Pa."""
         return material.uniaxial_modulus() if self.sides == "free" else material.confined_modulus()
-
-    def resolved(self, profile: str) -> Shape:
-        """Itself: it has no other profile."""
-        return self
 
     def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
         """Scales of the elastic impact, those of a uniform strain."""

@@ -10,11 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
-from lumped.load_curves.hertz import HertzImpact
+from lumped.load_curves.hertz import HertzImpact, power_impact
 from lumped.load_curves.plane_contact import LineProfile
 from lumped.materials import Material, Relaxation
 from lumped.schema import Table
+from lumped.schema.keys import Number
 from lumped.schema.record import Record, written
+
+SIZE = Number(1e-9, 1e4, "m")  # of a body, but for one that may be long beside its contact
 
 
 class Shape(Record, ABC):
@@ -34,9 +37,12 @@ class Shape(Record, ABC):
     def slope(self, r: ArrayLike) -> NDArray[np.float64]:
         """h'(r)."""
 
-    @abstractmethod
     def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
-        """The equivalent one-dimensional profile g(x) = x int_0^x h'(r)/sqrt(x^2-r^2) dr, x >= 0."""
+        """The equivalent one-dimensional profile g(x) = x int_0^x h'(r)/sqrt(x^2-r^2) dr, x >= 0.
+
+        On the half-space it is the depth at a contact radius x. Raises BadInput where there is none.
+        """
+        return np.asarray(self.load_curve.depth(x))
 
     @property
     @abstractmethod
@@ -80,38 +86,76 @@ class Shape(Record, ABC):
         """The modulus which forces by this shape are in proportion to, Pa: E* of the half-space by default."""
         return material.contact_modulus()
 
-    @abstractmethod
     def resolved(self, profile: str) -> Shape:
-        """The shape that `model.profile` ("exact" or "parabola") asks for."""
+        """The shape that `model.profile` ("exact" or "parabola") asks for: itself where it has no other profile."""
+        return self
 
-    @abstractmethod
     def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
-        """Scales of the elastic impact by the profile's tip: contact modulus, Pa, mass, kg, velocity, m/s."""
+        """Scales of the elastic impact by the profile's tip: contact modulus, Pa, mass, kg, velocity, m/s.
+
+        Here those of a force which is a power of the depth throughout, exact.
+        """
+        return power_impact(self.load_curve, self.exponent_of_force, modulus, mass, velocity)
 
     def to_dict(self) -> Table:
         """The shape's part of the striker's table."""
         return {"shape": self.name} | written(self)
 
 
-def circle(r: ArrayLike, radius: float) -> NDArray[np.float64]:
-    """R - sqrt(R^2-r^2) = r^2/(R + sqrt(R^2-r^2)), m, which cancels no digit; infinite beyond R."""
-    square = (np.asarray(r, dtype=float) / radius) ** 2
-    rise = radius * square / (1.0 + np.sqrt(np.maximum(1.0 - square, 0.0)))
-    return np.where(square <= 1.0, rise, np.inf)
+class FlatEnded(Shape):
+    """Flat up to its own radius, nothing beyond: a force in proportion to the depth."""
+
+    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+        """Zero up to the rim, infinite beyond."""
+        return np.where(np.abs(np.asarray(r, dtype=float)) <= self.fixed_radius, 0.0, np.inf)
+
+    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+        """Zero up to the rim, infinite beyond."""
+        return self.height(r)
+
+    @property
+    def exponent_of_force(self) -> float:
+        """1."""
+        return 1.0
+
+    @property
+    @abstractmethod
+    def fixed_radius(self) -> float:
+        """That of the rim, m."""
 
 
-def circle_slope(r: ArrayLike, radius: float) -> NDArray[np.float64]:
-    """r/sqrt(R^2-r^2), infinite from R on."""
-    ratio = np.abs(np.asarray(r, dtype=float)) / radius
-    with np.errstate(divide="ignore"):
-        return np.where(ratio < 1.0, ratio / np.sqrt(np.maximum(1.0 - ratio**2, 0.0)), np.inf)
+class Round(Shape):
+    """A profile with a radius R at its tip, m."""
+
+    @property
+    @abstractmethod
+    def tip_radius(self) -> float:
+        """R, m."""
 
 
-def parabola(r: ArrayLike, radius: float) -> NDArray[np.float64]:
-    """r^2/(2R), m."""
-    return np.asarray(np.asarray(r, dtype=float) ** 2 / (2.0 * radius))
+class Circular(Round):
+    """An outline that is a circle."""
+
+    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+        """R - sqrt(R^2-r^2) = r^2/(R + sqrt(R^2-r^2)), m, which cancels no digit; infinite beyond R."""
+        square = (np.asarray(r, dtype=float) / self.tip_radius) ** 2
+        rise = self.tip_radius * square / (1.0 + np.sqrt(np.maximum(1.0 - square, 0.0)))
+        return np.where(square <= 1.0, rise, np.inf)
+
+    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+        """r/sqrt(R^2-r^2), infinite from R on."""
+        ratio = np.abs(np.asarray(r, dtype=float)) / self.tip_radius
+        with np.errstate(divide="ignore"):
+            return np.where(ratio < 1.0, ratio / np.sqrt(np.maximum(1.0 - ratio**2, 0.0)), np.inf)
 
 
-def parabola_slope(r: ArrayLike, radius: float) -> NDArray[np.float64]:
-    """r/R."""
-    return np.asarray(np.abs(np.asarray(r, dtype=float)) / radius)
+class Parabolic(Round):
+    """An outline that is a parabola."""
+
+    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+        """r^2/(2R), m."""
+        return np.asarray(np.asarray(r, dtype=float) ** 2 / (2.0 * self.tip_radius))
+
+    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+        """r/R."""
+        return np.asarray(np.abs(np.asarray(r, dtype=float)) / self.tip_radius)

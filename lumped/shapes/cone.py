@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.load_curves import cone
-from lumped.load_curves.hertz import HertzImpact, power_impact
 from lumped.schema.keys import Key, Number
 from lumped.schema.record import Part
 from lumped.shapes.base import Shape
@@ -33,10 +32,6 @@ class Cone(Shape):
         """tan(angle)."""
         return np.full(np.shape(r), self._tangent)
 
-    def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
-        """(pi/2) x tan(angle)."""
-        return np.asarray(self.load_curve.depth(x))
-
     @property
     def exponent_of_force(self) -> float:
         """2."""
@@ -46,14 +41,6 @@ class Cone(Shape):
     def load_curve(self) -> cone.ConeCurve:
         """Sneddon's closed form, F = (2/pi) E* depth^2/tan(angle)."""
         return cone.ConeCurve(self.angle)
-
-    def resolved(self, profile: str) -> Shape:
-        """Itself: it has no other profile."""
-        return self
-
-    def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
-        """Scales of the elastic impact, exact."""
-        return power_impact(self.load_curve, self.exponent_of_force, modulus, mass, velocity)
 
     @property
     def _tangent(self) -> float:

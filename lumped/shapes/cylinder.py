@@ -15,25 +15,17 @@ from lumped.load_curves.hertz import HertzImpact
 from lumped.load_curves.plane_contact import CylinderProfile, LineProfile, ParabolaProfile
 from lumped.schema.keys import Key, Number
 from lumped.schema.record import Part
-from lumped.shapes.base import Shape, circle, circle_slope, parabola, parabola_slope
+from lumped.shapes.base import SIZE, Circular, Parabolic, Shape
 
 
 @dataclass(frozen=True)
-class Cylinder(Shape):
+class Cylinder(Circular):
     """A cylinder of this radius and length, m; r is the distance from the plane through its axis. Raises BadInput."""
 
-    radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the cylinder")]
+    radius: Annotated[float, Key(SIZE, "radius of the cylinder")]
     length: Annotated[float, Key(Number(1e-9, 1e6, "m"), "length along the surface")]
     name: ClassVar[str] = "cylinder"
     plane: ClassVar[bool] = True
-
-    def height(self, r: ArrayLike) -> NDArray[np.float64]:
-        """R - sqrt(R^2-r^2), infinite beyond R."""
-        return circle(r, self.radius)
-
-    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
-        """r/sqrt(R^2-r^2), infinite from R on."""
-        return circle_slope(r, self.radius)
 
     def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
         """None: dimensionality reduction is for axisymmetric contact. Raises BadInput."""
@@ -79,18 +71,10 @@ class Cylinder(Shape):
 
 
 @dataclass(frozen=True)
-class ParabolicCylinder(Cylinder):
+class ParabolicCylinder(Parabolic, Cylinder):
     """h(r) = r^2/(2R), R in m: no shape of a scene file, but what its cylinder is if `model.profile = "parabola"`."""
 
     name: ClassVar[str] = "parabolic_cylinder"
-
-    def height(self, r: ArrayLike) -> NDArray[np.float64]:
-        """r^2/(2R)."""
-        return parabola(r, self.radius)
-
-    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
-        """r/R."""
-        return parabola_slope(r, self.radius)
 
     @property
     def line_profile(self) -> LineProfile:

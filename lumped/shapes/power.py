@@ -8,7 +8,6 @@ from typing import Annotated, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.load_curves.hertz import HertzImpact, power_impact
 from lumped.load_curves.power import Power
 from lumped.schema.keys import Key, Number
 from lumped.schema.record import Part
@@ -32,10 +31,6 @@ class PowerProfile(Shape):
         ratio = np.abs(np.asarray(r, dtype=float))
         return np.asarray(self.exponent * self.coefficient * ratio ** (self.exponent - 1.0))
 
-    def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
-        """c kappa x^n."""
-        return np.asarray(self.load_curve.depth(x))
-
     @property
     def exponent_of_force(self) -> float:
         """1 + 1/n."""
@@ -45,14 +40,6 @@ class PowerProfile(Shape):
     def load_curve(self) -> Power:
         """Galin's and Sneddon's closed form."""
         return Power(self.coefficient, self.exponent)
-
-    def resolved(self, profile: str) -> Shape:
-        """Itself: it has no other profile."""
-        return self
-
-    def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
-        """Scales of the elastic impact, exact."""
-        return power_impact(self.load_curve, self.exponent_of_force, modulus, mass, velocity)
 
 
 MEMBER = Part(PowerProfile)

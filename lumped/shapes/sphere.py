@@ -11,16 +11,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.load_curves.hertz import Hertz, HertzImpact, hertz_impact
 from lumped.load_curves.sneddon_sphere import SneddonSphere
-from lumped.schema.keys import Key, Number
+from lumped.schema.keys import Key
 from lumped.schema.record import Part
-from lumped.shapes.base import Shape, circle, circle_slope, parabola, parabola_slope
+from lumped.shapes.base import SIZE, Circular, Parabolic, Round, Shape
 
 
 @dataclass(frozen=True)
-class RoundShape(Shape):
+class RoundShape(Round):
     """A profile with this radius at its tip, m. Raises BadInput for a radius out of range."""
 
-    radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the sphere")]
+    radius: Annotated[float, Key(SIZE, "radius of the sphere")]
 
     @property
     def exponent_of_force(self) -> float:
@@ -38,18 +38,10 @@ class RoundShape(Shape):
 
 
 @dataclass(frozen=True)
-class Sphere(RoundShape):
+class Sphere(Circular, RoundShape):
     """A sphere of this radius, m. Raises BadInput for a radius out of range."""
 
     name: ClassVar[str] = "sphere"
-
-    def height(self, r: ArrayLike) -> NDArray[np.float64]:
-        """R - sqrt(R^2-r^2), infinite beyond R."""
-        return circle(r, self.radius)
-
-    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
-        """r/sqrt(R^2-r^2), infinite from R on."""
-        return circle_slope(r, self.radius)
 
     def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
         """x artanh(x/R)."""
@@ -72,31 +64,15 @@ class Sphere(RoundShape):
 
 
 @dataclass(frozen=True)
-class Parabola(RoundShape):
+class Parabola(Parabolic, RoundShape):
     """h(r) = r^2/(2R), R in m: no shape of a scene file, but what its sphere may resolve to."""
 
     name: ClassVar[str] = "parabola"
-
-    def height(self, r: ArrayLike) -> NDArray[np.float64]:
-        """r^2/(2R)."""
-        return parabola(r, self.radius)
-
-    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
-        """r/R."""
-        return parabola_slope(r, self.radius)
-
-    def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
-        """x^2/R."""
-        return np.asarray(np.asarray(x, dtype=float) ** 2 / self.radius)
 
     @property
     def load_curve(self) -> Hertz:
         """Hertz's closed form."""
         return Hertz(self.radius)
-
-    def resolved(self, profile: str) -> Shape:
-        """Itself."""
-        return self
 
 
 MEMBER = Part(Sphere)

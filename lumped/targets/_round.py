@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
-from lumped.schema.keys import Choice, Key, Number
-from lumped.shapes.base import Shape
+from lumped.schema.keys import Choice, Key
+from lumped.shapes.base import SIZE, Shape
 from lumped.targets.base import MOVES, Target, vibrations
 
 SUPPORTS = ("free", "held")
@@ -30,7 +30,7 @@ class RoundTarget(Target):
     None, it is taken as a half-space. Depth is the approach of the centres of mass. Raises BadInput.
     """
 
-    radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the struck body")]
+    radius: Annotated[float, Key(SIZE, "radius of the struck body")]
     support: Annotated[str | None, SUPPORT]
     strikers: ClassVar[tuple[str, str]]
     has_inertia: ClassVar[bool] = False

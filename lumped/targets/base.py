@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
+from abc import ABC
 from typing import ClassVar
 
 import numpy as np
@@ -55,12 +55,13 @@ class Target(Record, ABC):
         """Length along the surface per unit of its places, m."""
         return 1.0
 
-    @abstractmethod
     def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
         """Interpenetration of the undeformed surfaces, m, positive inside; broadcasts over r and depth, m.
 
-        `r` is the place on the surface, zero at first touch: a radius, m, or what else the target counts in.
+        `r` is the place on the surface, zero at first touch: a radius, m, or what else the target counts in. Here that
+        of a flat surface, depth - height(r).
         """
+        return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
 
     @property
     def lead(self) -> float:

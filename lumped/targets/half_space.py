@@ -5,9 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.half_plane import HalfPlane
@@ -33,10 +30,6 @@ class HalfSpace(Target):
     def has_length(self) -> bool:
         """Only the datum's depth."""
         return self.datum_depth is not None
-
-    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
-        """depth - height(r)."""
-        return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
 
     def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
         """The shape's own; of a cylinder, relative to the datum."""

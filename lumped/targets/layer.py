@@ -12,12 +12,10 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from scipy.special import ive
 
 from lumped.load_curves.base import LoadCurve
-from lumped.load_curves.layer import LayerCurve, LayerPunch, LineLayer, PointLayer
+from lumped.load_curves.layer import BASES, LayerCurve, LayerPunch, LineLayer, PointLayer
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.schema.keys import Choice, Key, Number
@@ -28,6 +26,7 @@ from lumped.targets.base import MOVES, Target
 # m_a/(density area thickness) of a thick layer: what nu = 0 has, and what a bonded and a sliding base add times s^2;
 # static fields by finite elements, within a tenth down to contacts a tenth as wide as the layer is thick.
 THICK, BONDED, SLIDING = 0.43, 0.2, 0.9
+BASE = Key(Choice(BASES), "what holds it on its foundation")
 FAR = 300.0  # beyond it nothing of 1/cosh is left
 NARROW = 1e-3  # below it x^2 is lost beside one, and digits with it
 
@@ -37,7 +36,7 @@ class Layer(Target):
     """A layer of this thickness, m, bonded to a rigid foundation or sliding on it without leaving it."""
 
     thickness: Annotated[float, Key(Number(1e-9, 1e6, "m"), "thickness of the layer")]
-    base: Annotated[str, Key(Choice(("bonded", "sliding")), "what holds it on its foundation")]
+    base: Annotated[str, BASE]
     name: ClassVar[str] = "layer"
     has_inertia: ClassVar[bool] = True
 
@@ -45,10 +44,6 @@ class Layer(Target):
     def body_depth(self) -> float:
         """Its thickness, m."""
         return self.thickness
-
-    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
-        """depth - height(r)."""
-        return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
 
     def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
         """By the layer's integral equation."""

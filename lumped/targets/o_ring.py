@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
-from lumped.schema.keys import Key, Number
+from lumped.schema.keys import Key
 from lumped.schema.record import Part
-from lumped.shapes.base import Shape
+from lumped.shapes.base import SIZE, Shape
 from lumped.shapes.sphere import Sphere
 from lumped.targets.base import MOVES, NEEDS_DENSITY, Target
 
@@ -26,8 +26,8 @@ class ORing(Target):
     Two contacts alike: the depth is the approach of the two planes, half of it at each.
     """
 
-    mean_radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "from the axis to the middle of the section")]
-    section_radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the section")]
+    mean_radius: Annotated[float, Key(SIZE, "from the axis to the middle of the section")]
+    section_radius: Annotated[float, Key(SIZE, "radius of the section")]
     name: ClassVar[str] = "o_ring"
     has_inertia: ClassVar[bool] = False
 

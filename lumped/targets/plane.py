@@ -6,9 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material
@@ -28,10 +25,6 @@ class Plane(Target):
     has_inertia: ClassVar[bool] = True
     deformable: ClassVar[bool] = False
     yielding_strikers: ClassVar[bool] = True
-
-    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
-        """depth - height(r)."""
-        return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
 
     def pressed_height(self, shape: Shape) -> float | None:
         """A block's, m."""

@@ -13,9 +13,9 @@ from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.ring import RodInRing
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
-from lumped.schema.keys import Key, Number
+from lumped.schema.keys import Key
 from lumped.schema.record import Part
-from lumped.shapes.base import Shape
+from lumped.shapes.base import SIZE, Shape
 from lumped.targets.base import Target
 from lumped.targets.layer import Layer
 
@@ -27,8 +27,8 @@ THINNEST = 1000.0
 class Ring(Target):
     """A ring of these dimensions, m; its places are angles from the line of motion, rad. Raises BadInput."""
 
-    inner_radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the hole")]
-    thickness: Annotated[float, Key(Number(1e-9, 1e4, "m"), "between the hole and what holds the ring")]
+    inner_radius: Annotated[float, Key(SIZE, "radius of the hole")]
+    thickness: Annotated[float, Key(SIZE, "between the hole and what holds the ring")]
     name: ClassVar[str] = "ring"
     has_inertia: ClassVar[bool] = False
 

@@ -7,9 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
@@ -47,10 +44,6 @@ class Rod(Target):
     def impedance(self, modulus: float, density: float) -> float:
         """Z = A sqrt(E density), N s/m, of an elastic rod; Pa, kg/m3."""
         return self.area * math.sqrt(modulus * density)
-
-    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
-        """depth - height(r)."""
-        return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
 
     def contact_time(self, local: float, material: Material, mass: float) -> float:
         """That of the dent, and of the mass on the rod as a spring or, endless, as a dashpot, s."""

@@ -6,27 +6,24 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
-from lumped.schema.keys import Choice, Key, Number
+from lumped.schema.keys import Key
 from lumped.schema.record import Part
-from lumped.shapes.base import Shape
+from lumped.shapes.base import SIZE, Shape
 from lumped.targets.base import MOVES, NEEDS_DENSITY, Target
-from lumped.targets.layer import moving_share
+from lumped.targets.layer import BASE, moving_share
 
 
 @dataclass(frozen=True)
 class Washer(Target):
     """A washer of these dimensions, m, bonded to its foundation or sliding on it, always in touch. Raises BadInput."""
 
-    inner_radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the hole")]
-    outer_radius: Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius of the rim")]
-    height: Annotated[float, Key(Number(1e-9, 1e4, "m"), "thickness of the washer")]
-    base: Annotated[str, Key(Choice(("bonded", "sliding")), "what holds it on its foundation")]
+    inner_radius: Annotated[float, Key(SIZE, "radius of the hole")]
+    outer_radius: Annotated[float, Key(SIZE, "radius of the rim")]
+    height: Annotated[float, Key(SIZE, "thickness of the washer")]
+    base: Annotated[str, BASE]
     name: ClassVar[str] = "washer"
     has_inertia: ClassVar[bool] = False
 
@@ -40,10 +37,6 @@ class Washer(Target):
     def body_depth(self) -> float:
         """Its height, m."""
         return self.height
-
-    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
-        """depth - height(r); `r` from the axis."""
-        return np.asarray(np.asarray(depth, dtype=float) - shape.height(r))
 
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """What of the washer moves with the striker, as under a line around it: a strip as wide as what is pressed."""

@@ -6,13 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated
 
+from lumped.materials.material import MODULUS
 from lumped.materials.relaxation import Relaxation
 from lumped.schema.keys import Key, Number
 from lumped.schema.record import Sets, keys_of, made
 
 MODULUS_OR_ZERO = Number(0.0, 1e16, "Pa")
 TIME = Number(1e-15, 1e15, "s")
-Modulus = Annotated[float, Key(Number(1e-3, 1e16, "Pa"), "modulus of a spring")]
+Modulus = Annotated[float, Key(MODULUS, "modulus of a spring")]
 Viscosity = Annotated[float, Key(Number(1e-15, 1e25, "Pa s"), "viscosity of a dashpot")]
 Time = Annotated[float, Key(TIME, "time of relaxation or retardation")]
 
