@@ -15,8 +15,7 @@ from fe_contact.studies.exponents.chart import plot_exponents
 from fe_contact.studies.exponents.check import COLUMNS, TOLERANCE, Check, check, write_exponents
 from fe_contact.studies.exponents.finite_spheres import SHARES, Pair, pairs
 from fe_contact.studies.exponents.study import PROFILES, ExponentCurve, Profile, curve, curves
-from lumped.load_curves.layer import PointLayer
-from lumped.load_curves.thin_layer import compressible, incompressible
+from lumped.load_curves.layer import PointLayer, compressible, incompressible
 
 CONE, SPHERE, PUNCH, CYLINDER = (
     next(profile for profile in PROFILES if profile.name == name) for name in ("cone", "sphere", "punch", "cylinder")

@@ -14,10 +14,10 @@ from lumped.load_curves.layer import LayerCurve as LayerCurve
 from lumped.load_curves.layer import LayerPunch as LayerPunch
 from lumped.load_curves.layer import LineLayer as LineLayer
 from lumped.load_curves.layer import PointLayer as PointLayer
+from lumped.load_curves.layer import ThinLayer as ThinLayer
 from lumped.load_curves.plane_contact import CylinderProfile as CylinderProfile
 from lumped.load_curves.plane_contact import LineProfile as LineProfile
 from lumped.load_curves.plane_contact import ParabolaProfile as ParabolaProfile
 from lumped.load_curves.power import Power as Power
 from lumped.load_curves.ring import RodInRing as RodInRing
 from lumped.load_curves.sneddon_sphere import SneddonSphere as SneddonSphere
-from lumped.load_curves.thin_layer import ThinLayer as ThinLayer

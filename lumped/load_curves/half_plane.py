@@ -6,16 +6,16 @@ The exact curve, and two closed forms: Johnson's logarithm, for a point far belo
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import e, exp, inf, log, pi
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.load_curves.base import LoadCurve, elastic_faults
-from lumped.load_curves.plane_contact import Grown, LineCurve, LineProfile, collocation, folded, grown
-from lumped.load_curves.tabulated import growing_edges
+from lumped.load_curves.plane_contact import LineCurve
+from lumped.load_curves.tabulated import Array
 from lumped.numbers import Real
 
 POINTS = 24
@@ -30,36 +30,26 @@ class HalfPlane(LineCurve):
     `nu` in (-1, 0.5]. Raises BadInput.
     """
 
-    profile: LineProfile
     datum_depth: float
     nu: float
+    reach: ClassVar[float] = 1.0
 
     def __post_init__(self) -> None:
         check_datum(self.datum_depth, self.nu)
-
-    @property
-    def curvature_radius(self) -> float:
-        """That of the cylinder, m."""
-        return self.profile.radius
 
     @property
     def length(self) -> float:
         """The datum's depth, m."""
         return self.datum_depth
 
-    @cached_property
-    def edges(self) -> tuple[float, ...]:
-        """Panels up to the datum's depth, as long as the profile lasts."""
-        return growing_edges(self.datum_depth, self.profile.extent, reach=1.0)
+    def points(self, half_width: float) -> float:
+        """As many for all."""
+        return POINTS
 
-    def grown(self, half_width: float, refinement: float) -> Grown:
-        """The contact at one half-width."""
-        rule = collocation(int(refinement * POINTS))
-        x = half_width / self.datum_depth * rule.nodes
-        far = 1.0 + x**2
-        datum = 0.5 * np.log(far) - 0.5 / ((1.0 - self.nu) * far) - log(half_width / self.datum_depth)
-        matrix = 2.0 * half_width / pi * (folded(rule.logarithm) + 2.0 * rule.weight * datum)
-        return grown(rule, half_width, matrix, self.profile.height(half_width * rule.nodes))
+    def smooth(self, y: Array, half_width: float, refinement: float) -> Array:
+        """What the datum moves by, (n,)."""
+        far = 1.0 + (half_width / self.datum_depth * y) ** 2
+        return 0.5 * np.log(far) - 0.5 / ((1.0 - self.nu) * far) - log(half_width / self.datum_depth)
 
 
 @dataclass(frozen=True)

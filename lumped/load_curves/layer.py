@@ -1,8 +1,8 @@
-"""The elastic layer on a rigid foundation, which wave by wave yields less than the half-space; round and line contact.
+"""The elastic layer on a rigid foundation, which wave by wave yields less than the half-space.
 
-Under an axisymmetric profile its dual integral equation is reduced to Fredholm's of the second kind and solved by
-Nystrom's method. With x, s, t in thicknesses, phi the pressure's Abel transform and g the one-dimensional profile of
-the indenter,
+Round contact, line contact, and the closed forms of a thin layer. Under an axisymmetric profile the dual integral
+equation is reduced to Fredholm's of the second kind and solved by Nystrom's method. With x, s, t in thicknesses, phi
+the pressure's Abel transform and g the one-dimensional profile of the indenter,
     phi(t) - int_0^ratio k(s, t) phi(s) ds = depth - g(t),  k(s, t) = (2/pi) int_0^inf (1-L(u)) cos(us) cos(ut) du,
     F/E* = 2 thickness int_0^ratio phi dt,  phi(ratio) = 0 where the profile leaves the surface smoothly.
 L = 1 leaves phi = depth - g: the half-space. Lebedev and Ufliand 1958, J. Appl. Math.
@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from math import pi
 from typing import ClassVar
 
 import numpy as np
@@ -22,8 +23,9 @@ from lumped.errors import BadInput, Fault, nearest
 from lumped.load_curves.base import LoadCurve, elastic_faults
 from lumped.load_curves.fixed_area import FixedArea, under_flat_end
 from lumped.load_curves.half_space import HalfSpaceCurve
-from lumped.load_curves.plane_contact import Grown, LineCurve, LineProfile, collocation, folded, grown
+from lumped.load_curves.plane_contact import LineCurve
 from lumped.load_curves.tabulated import REACH, Array, TabulatedCurve, TabulatedState, growing_edges
+from lumped.numbers import Real
 from lumped.numbers.quadrature import gauss
 
 BASES = ("bonded", "sliding")
@@ -253,44 +255,111 @@ class LineLayer(LineCurve):
     NotReached. Johnson 1985, ISBN 978-0-521-34796-9, chapter 5.
     """
 
-    profile: LineProfile
     layer: PointLayer
-
-    @property
-    def curvature_radius(self) -> float:
-        """That of the cylinder, m."""
-        return self.profile.radius
 
     @property
     def length(self) -> float:
         """The thickness, m."""
         return self.layer.thickness
 
-    @cached_property
-    def edges(self) -> tuple[float, ...]:
-        """Panels grow with the distance from the middle."""
-        return growing_edges(self.layer.thickness, self.profile.extent)
-
-    def grown(self, half_width: float, refinement: float) -> Grown:
-        """The contact at one half-width."""
-        ratio = half_width / self.layer.thickness
-        rule = collocation(int(refinement * (20.0 + 4.0 * ratio)))
-        smooth = self._smooth(ratio * rule.nodes, ratio, refinement) - np.log(ratio)
-        matrix = 2.0 * half_width / np.pi * (folded(rule.logarithm) + 2.0 * rule.weight * smooth)
-        return grown(rule, half_width, matrix, self.profile.height(half_width * rule.nodes))
+    def points(self, half_width: float) -> float:
+        """The more, the wider the contact is over the thickness."""
+        return 20.0 + 4.0 * half_width / self.layer.thickness
 
     def contact_radius(self, depth: ArrayLike) -> NDArray[np.float64]:
         """Half-width at a depth below the thickness, m; raises BadInput for deeper ones."""
         self.layer.check_depth(depth)
         return np.asarray(super().contact_radius(depth))
 
-    def _smooth(self, x: Array, ratio: float, refinement: float) -> Array:
-        """The kernel less -ln|x-x'|, even part, at places in thicknesses: shape (n, n).
-
-        -ln|x| = int_0^inf (cos(ux) - exp(-2u))/u du - ln 2.
-        """
+    def smooth(self, y: Array, half_width: float, refinement: float) -> Array:
+        """Of -ln|x| = int_0^inf (cos(ux) - exp(-2u))/u du - ln 2, x in thicknesses, what the deficit takes away."""
+        ratio = half_width / self.layer.thickness
         u, weights = waves(ratio, refinement)
-        cosines = np.cos(np.outer(x, u))
+        cosines = np.cos(np.outer(ratio * y, u))
         density = weights / u
         held = cosines * (density * deficit(self.layer.nu, self.layer.base, u)) @ cosines.T
-        return np.asarray(density @ np.exp(-2.0 * u) - held + np.log(2.0))
+        return np.asarray(density @ np.exp(-2.0 * u) - held + np.log(2.0) - np.log(ratio))
+
+
+@dataclass(frozen=True)
+class ThinLayer(LoadCurve):
+    """A parabola of radius R on a layer much thinner than the contact is wide: each strip on its own, or squeezed out.
+
+    The closed forms that the integral equations approach, with a^2 = spread R depth and p = p0 (1 - r^2/a^2)^power:
+    exponents 2 and 3/2 while the layer can be compressed, 3 and 5/2 once it cannot (Johnson 1985, ISBN
+    978-0-521-34796-9, chapter 5).
+    p0/E* = hardness depth/h where power = 1, hardness R depth^2/h^3 where it is 2. `plane`: per unit length.
+    """
+
+    radius: float
+    thickness: float
+    plane: bool
+    spread: float
+    power: int
+    hardness: float
+
+    @property
+    def exponent(self) -> float:
+        """alpha of F = const depth^alpha."""
+        return self.power + (0.5 if self.plane else 1.0)
+
+    @property
+    def _fullness(self) -> float:
+        """Force over p0 a^2, in plane strain over p0 a."""
+        return (4.0 / 3.0, 16.0 / 15.0)[self.power - 1] if self.plane else pi / (self.power + 1.0)
+
+    def force(self, depth: ArrayLike) -> Real:
+        """F/E*, m^2; per unit length m."""
+        a = self.contact_radius(depth)
+        return self._fullness * self._peak(np.maximum(depth, 0.0)) * (a if self.plane else a**2)
+
+    def contact_radius(self, depth: ArrayLike) -> Real:
+        """sqrt(spread R depth), m."""
+        return np.sqrt(self.spread * self.radius * np.maximum(depth, 0.0))
+
+    def depth(self, contact_radius: ArrayLike) -> Real:
+        """a^2/(spread R), m."""
+        return np.asarray(contact_radius) ** 2 / (self.spread * self.radius)
+
+    def depth_slope(self, contact_radius: ArrayLike) -> Real:
+        """2 a/(spread R)."""
+        return 2.0 * np.asarray(contact_radius) / (self.spread * self.radius)
+
+    def dforce_ddepth(self, depth: ArrayLike) -> Real:
+        """alpha F/depth."""
+        d = np.maximum(np.asarray(depth, dtype=float), 0.0)
+        return self.exponent * np.divide(self.force(d), d, out=np.zeros_like(d), where=d > 0.0)
+
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+        """p0 (1 - r^2/a^2)^power."""
+        r = np.abs(np.asarray(radius, dtype=float))
+        ratio = np.divide(r, contact_radius, out=np.ones_like(r), where=r < contact_radius)
+        return np.asarray(self._peak(self.depth(contact_radius)) * (1.0 - ratio**2) ** self.power)
+
+    def _peak(self, depth: Real) -> Real:
+        """p0/E*."""
+        geometry = 1.0 if self.power == 1 else self.radius / self.thickness
+        return self.hardness * geometry * (depth / self.thickness) ** self.power
+
+
+def compressible(radius: float, layer: PointLayer, *, plane: bool) -> ThinLayer:
+    """Winkler's foundation: confined modulus on a bonded base, E* itself on a sliding one; a^2 = 2 R depth.
+
+    Raises BadInput for a bonded layer with nu = 0.5.
+    """
+    if layer.base == "bonded" and layer.nu == 0.5:
+        message = "of a bonded compressible layer must stay below 0.5: its confined modulus is infinite"
+        raise BadInput(Fault("layer", "nu", message))
+    hardness = (1.0 - layer.nu) ** 2 / (1.0 - 2.0 * layer.nu) if layer.base == "bonded" else 1.0
+    return ThinLayer(radius, layer.thickness, plane, 2.0, 1, hardness)
+
+
+def incompressible(radius: float, layer: PointLayer, *, plane: bool) -> ThinLayer:
+    """nu = 0.5 on a bonded base, free to slip under the indenter: a^2 = 4 R depth, in plane strain 6 R depth.
+
+    The layer is pushed outwards between its faces like a fluid: p'' + p'/r = -3 G (depth - r^2/(2R))/h^3, p = p' = 0 at
+    the edge. Raises BadInput for any other layer.
+    """
+    if layer.base != "bonded" or layer.nu != 0.5:
+        raise BadInput(Fault("layer", "nu", "must be 0.5, on a bonded base, for an incompressible thin layer"))
+    return ThinLayer(radius, layer.thickness, plane, 6.0 if plane else 4.0, 2, 9.0 / 8.0 if plane else 3.0 / 8.0)

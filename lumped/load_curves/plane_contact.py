@@ -9,14 +9,15 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from math import inf
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.load_curves.tabulated import Array, TabulatedCurve, TabulatedState
+from lumped.load_curves.tabulated import REACH, Array, TabulatedCurve, TabulatedState, growing_edges
 
 
 @dataclass(frozen=True)
@@ -163,16 +164,15 @@ def _distances(orders: Array, angle: Array) -> Array:
     return np.where(orders == 0, zeroth, np.where(orders == 1, first, wave))
 
 
+@dataclass(frozen=True)
 class LineCurve(TabulatedCurve):
-    """Plane strain, per unit length. With half-width b, a radius of curvature R and a length h,
+    """A rigid cylinder in plane strain, per unit length. With half-width b, a radius of curvature R and a length h,
     F/E* = pi b^2/(4 R f), depth = (F/E*) [(2/pi) ln(h/b) + d], d depth/dF = (2/pi) ln(h/b) + c,
-    and f, d and c are smooth down to b = 0, where f = 1.
+    and f, d and c are smooth down to b = 0, where f = 1. `reach`: the largest half-width served, in lengths h.
     """
 
-    @property
-    @abstractmethod
-    def curvature_radius(self) -> float:
-        """R of the undeformed gap, m."""
+    profile: LineProfile
+    reach: ClassVar[float] = REACH
 
     @property
     @abstractmethod
@@ -180,21 +180,40 @@ class LineCurve(TabulatedCurve):
         """h, m."""
 
     @abstractmethod
+    def points(self, half_width: float) -> float:
+        """Nodes that resolve the pressure on a half-width, m."""
+
+    @abstractmethod
+    def smooth(self, y: Array, half_width: float, refinement: float) -> Array:
+        """pi E*/2 of the surface's displacement by a unit line load at y', less -ln|y-y'|, its even part.
+
+        At nodes y, shape (n,), of the half-width, m; shape (n, n), or (n,) over y' where y plays no part.
+        """
+
+    @cached_property
+    def edges(self) -> tuple[float, ...]:
+        """Panels grow with the distance from the middle, as long as the profile lasts."""
+        return growing_edges(self.length, self.profile.extent, self.reach)
+
     def grown(self, half_width: float, refinement: float) -> Grown:
         """The contact at one half-width."""
+        rule = collocation(int(refinement * self.points(half_width)))
+        smooth = self.smooth(rule.nodes, half_width, refinement)
+        matrix = 2.0 * half_width / np.pi * (folded(rule.logarithm) + 2.0 * rule.weight * smooth)
+        return grown(rule, half_width, matrix, self.profile.height(half_width * rule.nodes))
 
     def sample(self, contact_radius: float, refinement: float) -> Array:
         """f, d and c."""
         here = self.grown(contact_radius, refinement)
         logarithm = 2.0 / np.pi * np.log(self.length / contact_radius)
-        hertz = np.pi * contact_radius**2 / (4.0 * self.curvature_radius)
+        hertz = np.pi * contact_radius**2 / (4.0 * self.profile.radius)
         return np.array([hertz / here.force, here.depth / here.force - logarithm, here.compliance - logarithm])
 
     def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> TabulatedState:
         """The curve from f, d and c; at b = 0 all is 0."""
         b, touched = np.where(contact_radius > 0.0, contact_radius, self.length), contact_radius > 0.0
         logarithm = 2.0 / np.pi * np.log(self.length / b)
-        force = np.pi * b**2 / (4.0 * self.curvature_radius * smooth[0])
+        force = np.pi * b**2 / (4.0 * self.profile.radius * smooth[0])
         force_slope = force * (2.0 / b - slopes[0] / smooth[0])
         compliance = logarithm + smooth[1]
         slope = force_slope * compliance + force * (slopes[1] - 2.0 / (np.pi * b))

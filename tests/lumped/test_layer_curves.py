@@ -21,8 +21,7 @@ from lumped.load_curves import (
     PunchCurve,
     SneddonSphere,
 )
-from lumped.load_curves.layer import DualEquation, deficit
-from lumped.load_curves.thin_layer import compressible, incompressible
+from lumped.load_curves.layer import DualEquation, compressible, deficit, incompressible
 from lumped.numbers.quadrature import gauss
 
 H = 0.002

@@ -18,9 +18,8 @@ from lumped.load_curves import (
     Popov,
 )
 from lumped.load_curves.half_plane import hertz_pressure
-from lumped.load_curves.layer import deficit
+from lumped.load_curves.layer import compressible, deficit, incompressible
 from lumped.load_curves.plane_contact import collocation
-from lumped.load_curves.thin_layer import compressible, incompressible
 from lumped.numbers.quadrature import gauss
 
 R, DATUM = 0.006, 0.1
