@@ -33,7 +33,7 @@ def material(own: Material, values: Mapping[str, float]) -> Material:
 
 def own_values(young: Relaxation) -> dict[str, float]:
     """What a relaxation modulus says of the parameters of the networks, as far as it is one of them."""
-    relaxed, values = young.relaxed, {"E": young.relaxed or young.glassy}
+    relaxed, values = young.relaxed, {"E": young.spring}
     if relaxed:
         values["E0"] = relaxed
     if young.viscosity and not young.moduli:

@@ -59,7 +59,7 @@ def pulse_energy(nu: float, density: float, shear_speed: float, peak_force: floa
 
 def shear_speed(material: Material) -> float | None:
     """c_s, m/s, of the relaxed material or of a fluid's glassy one; None without density or without a spring."""
-    shear = material.shear.relaxed or material.shear.glassy
+    shear = material.shear.spring
     return math.sqrt(shear / material.density) if shear and material.density else None
 
 

@@ -92,6 +92,14 @@ class Relaxation:
         return self.equilibrium
 
     @property
+    def spring(self) -> float:
+        """Modulus of the spring that stands for the material, Pa: what is left of it, of a fluid what it has at once.
+
+        Zero of a dashpot alone.
+        """
+        return self.relaxed or self.glassy
+
+    @property
     def is_elastic(self) -> bool:
         """No memory at all: neither a Prony term nor a viscosity."""
         return not self.moduli and self.viscosity == 0.0

@@ -154,7 +154,7 @@ def finite_strain(nu: float, height: float | None, peak: Peak, share: float = 1.
 
 def of_dent(scene: Scene, peak: Peak) -> Peak:
     """With the depth of the dent in a rod's end, which goes as a^(1/(n - 1)), in place of the striker's way."""
-    shape, stiffness = scene.profile, _stiffness(scene)
+    shape, stiffness = scene.profile, scene.contact_modulus.spring
     known = shape.hertz_impact(stiffness, scene.reduced_mass, scene.velocity)
     share = peak.contact_radius / known.contact_radius
     return replace(peak, depth=known.depth * share ** (1.0 / (shape.exponent_of_force - 1.0)))
@@ -168,16 +168,11 @@ def rod_end(scene: Scene, peak: Peak) -> LedgerEntry:
     """
     assert isinstance(scene.target, Rod)
     radius, n = math.sqrt(scene.target.area / math.pi), scene.profile.exponent_of_force
-    stored = 0.5 * ROD_END * peak.force**2 / (_stiffness(scene) * radius)
+    stored = 0.5 * ROD_END * peak.force**2 / (scene.contact_modulus.spring * radius)
     dented, brought = peak.force * peak.depth / (n + 1.0), 0.5 * scene.reduced_mass * scene.velocity**2
     estimate = n / (n + 1.0) * stored / math.sqrt(dented * brought)
     note = f"the contact over the rod's radius is {peak.contact_radius / radius:.2g}"
     return LedgerEntry("dent of the rod's end", "a half-space's closed form", estimate, note)
-
-
-def _stiffness(scene: Scene) -> float:
-    """E*, Pa: relaxed, or that of a fluid at once."""
-    return scene.contact_modulus.relaxed or scene.contact_modulus.glassy
 
 
 def ends(shape: Shape, target: Target, nu: float) -> LedgerEntry:

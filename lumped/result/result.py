@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.numbers.interpolation import peak
 from lumped.result.folder import RECORD, publish
 from lumped.result.history import History
 from lumped.scene.geometry import contact_modulus
@@ -225,24 +224,6 @@ def write_failure(directory: Path, scene: Scene, method: str, message: str) -> N
     publish(directory, lambda folder: write_json(folder / RECORD, plain(content)))
 
 
-def quantities_of(history: History, separated: bool) -> dict[str, float | None]:
-    """The values of UNITS read off the rows of a history; duration and restitution None without separation.
-
-    The peaks are sought between the rows, by local polynomials; the impulse is the trapezoid's.
-    """
-    peak_time, peak_force = peak(history.time, history.force)
-    _, peak_depth = peak(history.time, history.depth)
-    return {
-        "peak_force": peak_force,
-        "peak_time": peak_time,
-        "peak_depth": peak_depth,
-        "duration": float(history.time[-1] - history.time[0]) if separated else None,
-        "restitution": float(-history.velocity[-1] / history.velocity[0]) if separated else None,
-        "impulse": float(np.trapezoid(history.force, history.time)),
-        "history_l2": 0.0,
-    }
-
-
 def meets(quantities: Mapping[str, Quantity], tolerance: float) -> bool:
     """Whether every error bar that the tolerance rules lies within it."""
     return not unmet(quantities, tolerance)
@@ -296,7 +277,7 @@ def groups(scene: Scene, values: Mapping[str, float | None], history: History) -
     geometry, modulus = scene.geometry, scene.contact_modulus
     largest = float(history.contact_radius.max())
     duration = values["duration"]
-    unit = geometry.shape.hertz_impact(modulus.relaxed or modulus.glassy, scene.reduced_mass, scene.velocity)
+    unit = geometry.shape.hertz_impact(modulus.spring, scene.reduced_mass, scene.velocity)
     return {
         "E_i/E_inf": _over(modulus.instantaneous, modulus.relaxed),
         "tau/T": [_over(tau, duration) for tau in modulus.times],

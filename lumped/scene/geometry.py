@@ -85,8 +85,9 @@ def stiffest_impact(shape: Shape, modulus: Relaxation, mass: float, velocity: fl
 
 def relaxed_impact(shape: Shape, modulus: Relaxation, mass: float, velocity: float) -> HertzImpact:
     """The Hertz impact with the relaxed modulus; of a fluid with the glassy one, or that of its dashpot."""
-    spring = modulus.relaxed or modulus.glassy
-    return shape.hertz_impact(spring, mass, velocity) if spring else stiffest_impact(shape, modulus, mass, velocity)
+    if not modulus.spring:
+        return stiffest_impact(shape, modulus, mass, velocity)
+    return shape.hertz_impact(modulus.spring, mass, velocity)
 
 
 def absurd_depth(shape: Shape, modulus: Relaxation, mass: float, velocity: float) -> str:

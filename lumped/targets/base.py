@@ -141,7 +141,7 @@ def vibrations(material: Material, pulse: Pulse, whole: float) -> tuple[float | 
 
     They answer the kinks with which a force t^(3/2) begins and ends: (time of a wave / contact time)^5 ~ v/c.
     """
-    stiffness = material.young.relaxed or material.young.glassy
+    stiffness = material.young.spring
     if material.density is None or not stiffness:
         return None, NEEDS_DENSITY if material.density is None else NO_SPEED
     share = math.sqrt(2.0 * pulse.energy / whole) / math.sqrt(stiffness / material.density)

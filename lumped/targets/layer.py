@@ -62,8 +62,7 @@ class Layer(Target):
         radiated, note = super().inertia_left_out(shape, material, pulse)
         if material.density is None:
             return radiated, note
-        modulus, a = material.contact_modulus(), pulse.radius
-        plate = math.sqrt((modulus.relaxed or modulus.glassy) / material.density)
+        plate, a = math.sqrt(material.contact_modulus().spring / material.density), pulse.radius
         way = 0.25 * plate * pulse.duration / self.thickness  # half as far as its waves go until the peak
         share = moving_share(material.nu, self.base, a / self.thickness, way, shape.plane)
         area = 2.0 * a * shape.total if shape.plane else math.pi * a**2

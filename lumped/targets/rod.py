@@ -47,8 +47,7 @@ class Rod(Target):
 
     def contact_time(self, local: float, material: Material, mass: float) -> float:
         """That of the dent, and of the mass on the rod as a spring or, endless, as a dashpot, s."""
-        modulus, density = material.uniaxial_modulus(), material.density
-        stiffness = modulus.relaxed or modulus.glassy
+        stiffness, density = material.uniaxial_modulus().spring, material.density
         if not stiffness or density is None:
             return local
         if self.end == "absorbing":
@@ -58,8 +57,7 @@ class Rod(Target):
 
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """What goes down the rod before an echo, int F^2 dt/Z, as a share of the energy; half of it before the peak."""
-        modulus = material.uniaxial_modulus()
-        stiffness, density = modulus.relaxed or modulus.glassy, material.density
+        stiffness, density = material.uniaxial_modulus().spring, material.density
         if not stiffness or density is None:
             return super().inertia_left_out(shape, material, pulse)
         sent = HERTZ_SQUARE * pulse.force**2 * pulse.duration / self.impedance(stiffness, density)

@@ -74,7 +74,7 @@ class Hereditary:
         shortest: float,
     ) -> Hereditary:
         """From values in SI; `time` is the unit of time, s."""
-        unit = modulus.relaxed or modulus.glassy or modulus.viscosity / time
+        unit = modulus.spring or modulus.viscosity / time
         taus = tuple(tau / time for tau in modulus.times)
         moduli = tuple(value / unit for value in modulus.moduli)
         plain = Relaxation(modulus.equilibrium / unit, moduli, taus, modulus.viscosity / (unit * time))
