@@ -16,15 +16,13 @@ from lumped import laws
 from lumped.errors import BadInput, NotReached
 from lumped.fit.measured import Measured
 from lumped.fit.space import Space
-from lumped.laws._force_law import ForceLaw
+from lumped.laws._force_law import ForceLaw, bodies_of
 from lumped.laws._hereditary import HereditaryLaw, Solve, once
-from lumped.laws._impacts import bodies_of
 from lumped.numbers.interpolation import local
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
-from lumped.solvers.point.motion import motion
-from lumped.solvers.point.outcome import peak_of
-from lumped.solvers.point.track import PointTrack
+from lumped.solvers.point.contact import motion
+from lumped.solvers.point.track import PointTrack, peak_of
 
 Array = NDArray[np.float64]
 Values = Mapping[str, float]

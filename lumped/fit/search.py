@@ -23,8 +23,7 @@ from lumped.fit.problem import FitProblem
 from lumped.fit.record import Fit
 from lumped.fit.space import REACH, TOUCH, Bounds, Space, damping_names, own_keys, space_of
 from lumped.laws import impact_bilinear
-from lumped.laws._force_law import between_masses
-from lumped.laws._impacts import bodies_of
+from lumped.laws._force_law import between_masses, bodies_of
 from lumped.laws._power_law import spring_contact_time, spring_of_peak
 from lumped.laws.base import check_mass, simulate
 from lumped.result.history import History

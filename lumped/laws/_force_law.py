@@ -1,28 +1,43 @@
-"""What every law that is a force between two masses is."""
+"""What every law that is a force between two masses is, and the impacts of a scene under it: march, bars, Result."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import ClassVar
+from functools import cache, partial
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped import laws
 from lumped.errors import BadInput, Fault
-from lumped.laws import _impacts
+from lumped.laws._assembly import Answer, assemble, bars, impulse_of
 from lumped.load_curves.base import LoadCurve
 from lumped.numbers import Real
-from lumped.result.result import Result
+from lumped.numbers.clock import Clock
+from lumped.result.history import End
+from lumped.result.result import UNITS, Quantity, Result, meets
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
-from lumped.solvers.point.bodies import TINY, Bodies, Stage, State, Step
-from lumped.solvers.point.flight import returned
-from lumped.solvers.point.outcome import Outcome
+from lumped.solvers.point.bodies import TINY, Bodies, Stage, State, Step, returned
+from lumped.solvers.point.contact import PointMotion, motion
+from lumped.solvers.point.half_widths import half_widths
+from lumped.solvers.point.phase import PointPhase
+from lumped.solvers.point.track import Outcome, PointTrack, outcome_of
 
 Array = NDArray[np.float64]
+# Errors of the rate allowed in one step, relative to the velocity at touch: the history errs far less, its end less
+# again. The first one is that asked of the result, if it is not beyond these; every next one is finer by FINER.
+COARSEST, FINEST, FINER = 1e-5, 1e-12, 1e-2
+# Whatever is asked, a contact's duration, relative, and restitution are known to this; to that where marches are
+# compared, which takes two of them.
+END, END_COMPARED = 1e-11, 1e-8
+# Two marches may agree by chance.
+SAFETY = 2.0
+# Peaks of several contacts that differ by less, relatively, are one height: rounding makes more of a long march.
+EQUAL = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -111,18 +126,32 @@ class ForceLaw(ABC):
 
     def elastic_contact_time(self, scene: Scene) -> float:
         """Contact time without damping, s."""
-        return self.time_scale(_impacts.bodies_of(scene))
+        return self.time_scale(bodies_of(scene))
 
     def simulate(self, scene: Scene, tolerance: float) -> Result:
         """The impacts of a scene to this tolerance. Raises TooManySteps."""
-        return _impacts.simulate(self, scene, tolerance)
+        clock, compared = Clock(), scene.motion.impacts > 1 or self.remembers
+        end = END_COMPARED if compared else END
+        marched = cache(partial(_marched, self, scene))  # what is coarse in a round was fine in the one before
+        step_tolerance, steps = _first(tolerance), 0
+        while True:
+            judged = _compared(marched, step_tolerance) if compared else _estimated(self, scene, step_tolerance)
+            steps += judged.steps
+            if step_tolerance <= FINEST or (meets(judged.quantities, tolerance) and _ends_well(judged.quantities, end)):
+                break
+            step_tolerance *= FINER
+        answer, quantities, force_error, _ = judged
+        numerics = {"integrator": "Radau collocation", "step_tolerance": step_tolerance, "law": self.parameters}
+        work, model = {"steps": steps}, self.resolved(scene)
+        return assemble(self.name, scene, tolerance, answer, quantities, force_error, clock, numerics, work, model)
 
     def outcome(self, scene: Scene, tolerance: float = 1e-6) -> Outcome:
         """What a study of many impacts needs of the first contact, by one march and without bars. Raises TooManySteps.
 
         `tolerance`: relative; the march is as fine as that of a Result which meets it at once.
         """
-        return _impacts.outcome(self, scene, tolerance)
+        track = _track(self, scene, 1, _first(tolerance))
+        return outcome_of(track, track.motion.contacts[0])
 
     def resolved(self, scene: Scene) -> Model:
         """The scene's model as this law has it: its stiffness stands for a parabola, and no body for waves."""
@@ -135,3 +164,139 @@ def between_masses(name: str, scene: Scene) -> ForceLaw:
     if not isinstance(law, ForceLaw):
         raise BadInput(Fault(scene.source, "law.name", f"{name} is no force between two masses; accepted: one that is"))
     return law
+
+
+class JudgedImpact(NamedTuple):
+    """A march: what it says, its quantities with bars, the bar of the force, N, and how many steps it took."""
+
+    answer: Answer
+    quantities: Mapping[str, Quantity]
+    force_error: float
+    steps: int
+
+
+def bodies_of(scene: Scene) -> Bodies:
+    """The relative motion of a scene."""
+    return Bodies(scene.reduced_mass, scene.velocity, scene.gravity)
+
+
+def _first(tolerance: float) -> float:
+    return min(max(tolerance, FINEST), COARSEST)
+
+
+def _estimated(law: ForceLaw, scene: Scene, step_tolerance: float) -> JudgedImpact:
+    """One contact, whose bars are what its march still lacks, estimated from its defect."""
+    track = _track(law, scene, 1, step_tolerance)
+    said = outcome_of(track, track.motion.contacts[0])
+    answer = _answer(law, scene, track, [said])
+    widths = half_widths(track, bodies_of(scene), law.exit, said, answer.values["impulse"] or 0.0)
+    values = {**answer.values, "history_l2": 0.0}
+    quantities = {
+        name: Quantity(values[name], None if values[name] is None else getattr(widths, name), unit)
+        for name, unit in UNITS.items()
+    }
+    return JudgedImpact(answer, quantities, widths.force, track.motion.steps)
+
+
+def _compared(marched: Callable[[float], tuple[Answer, int]], step_tolerance: float) -> JudgedImpact:
+    """Contacts whose bars are their distance from those of a march a hundred times less fine."""
+    fine, steps = marched(max(step_tolerance * FINER, FINEST))
+    coarse, _ = marched(max(step_tolerance, FINEST / FINER))
+    return JudgedImpact(fine, *bars(fine, coarse, SAFETY), steps)
+
+
+def _marched(law: ForceLaw, scene: Scene, step_tolerance: float) -> tuple[Answer, int]:
+    """What all contacts of one march say, and how many steps it took."""
+    track = _track(law, scene, scene.motion.impacts, step_tolerance)
+    outcomes = [outcome_of(track, one) for one in track.motion.contacts]
+    return _answer(law, scene, track, outcomes), track.motion.steps
+
+
+def _ends_well(quantities: Mapping[str, Quantity], known: float) -> bool:
+    """Whether the end of a contact that ends is `known`."""
+    duration, restitution = quantities["duration"], quantities["restitution"]
+    return (duration.error or 0.0) <= known * (duration.value or 0.0) and (restitution.error or 0.0) <= known
+
+
+def _until(law: ForceLaw, scene: Scene) -> float:
+    return scene.end_time_of(law.elastic_contact_time(scene))
+
+
+def _track(law: ForceLaw, scene: Scene, impacts: int, step_tolerance: float) -> PointTrack:
+    return PointTrack(law, motion(law, bodies_of(scene), law.exit, impacts, _until(law, scene), step_tolerance))
+
+
+def _answer(law: ForceLaw, scene: Scene, track: PointTrack, outcomes: Sequence[Outcome]) -> Answer:
+    """What a march says."""
+    moved, until = track.motion, _until(law, scene)
+    said = _fewer(scene, len(outcomes)) if moved.end is End.SEPARATED else moved.end.value
+    return Answer(
+        track.rows,
+        _ImpactColumns(law, track),
+        _values(scene, moved, outcomes, until),
+        moved.end,
+        _energy(law, scene, moved),
+        "; ".join(part for part in (law.source, said) if part),
+        until,
+        tuple(outcome._asdict() for outcome in outcomes) if scene.motion.impacts > 1 else (),
+    )
+
+
+def _fewer(scene: Scene, contacts: int) -> str:
+    """What to say when the bodies parted after fewer contacts than asked for."""
+    asked = scene.motion.impacts
+    return "" if contacts == asked else f"{contacts} of {asked} impacts: the bodies did not meet again before the end"
+
+
+class _ImpactColumns(NamedTuple):
+    """Depth, velocity, force and contact radius at times (n,), shape (4, n); no tension where contact ends by force."""
+
+    law: ForceLaw
+    track: PointTrack
+
+    def __call__(self, times: Array) -> Array:
+        depth, rate, force = self.track(times)
+        force, curve = self._pushing(force), self.law.load_curve
+        pressed = np.where(force > 0.0, np.maximum(depth, 0.0), 0.0)
+        radius = np.zeros_like(depth) if curve is None else curve.contact_radius(pressed)
+        return np.array([depth, rate, force, radius])
+
+    def force(self, times: Array) -> Array:
+        """The force alone, shape (n,), N."""
+        return self._pushing(self.track(times)[2])
+
+    def _pushing(self, force: Array) -> Array:
+        return np.maximum(force, 0.0) if self.law.exit == "force" else force
+
+
+def _values(scene: Scene, moved: PointMotion, outcomes: Sequence[Outcome], until: float) -> Mapping[str, float | None]:
+    # of peaks as high as one another, but for rounding, the first
+    most = max(outcome.peak_force for outcome in outcomes)
+    highest = next(outcome for outcome in outcomes if outcome.peak_force >= (1.0 - EQUAL) * most)
+    last = moved.contacts[-1]
+    return {
+        "peak_force": highest.peak_force,
+        "peak_time": highest.peak_time,
+        "peak_depth": max(outcome.peak_depth for outcome in outcomes),
+        "duration": outcomes[0].duration,
+        "restitution": outcomes[0].restitution,
+        "impulse": impulse_of(scene, moved.end, last.last.rate, last.end_time, until),
+    }
+
+
+def _energy(law: ForceLaw, scene: Scene, moved: PointMotion) -> dict[str, float | None]:
+    """Energies at the end of the last contact, J, each on its own."""
+    last, mass = moved.contacts[-1].last, scene.reduced_mass
+    given = 0.5 * mass * scene.velocity**2 + mass * scene.gravity * last.depth
+    out = 0.5 * mass * last.rate**2
+    stored = [_stored(law, one.last, one.phases[-1]) for one in moved.contacts]
+    found = [_stored(law, one.first, one.phases[0]) for one in moved.contacts[1:]]
+    # What a contact leaves behind and the next one does not find is lost: the surface recovers in between.
+    lost = last.lost + sum(stored[:-1]) - sum(found)
+    residual = given - out - stored[-1] - lost
+    return {"in": given, "out": out, "stored": stored[-1], law.loss: lost, "residual": residual}
+
+
+def _stored(law: ForceLaw, state: State, phase: PointPhase) -> float:
+    """What is stored where a phase begins or ends, J."""
+    return float(law.stored(max(state.depth, 0.0), phase.stage))

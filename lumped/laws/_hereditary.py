@@ -20,7 +20,7 @@ from lumped.scene.scene import Scene
 from lumped.solvers.hereditary.approach import Approach
 from lumped.solvers.hereditary.closing import Closing
 from lumped.solvers.hereditary.march import Settings
-from lumped.solvers.hereditary.phase import HereditaryPhase
+from lumped.solvers.hereditary.path import HereditaryPhase
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.hereditary.rebound import Rebound
 

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from lumped.errors import BadInput, Fault
 from lumped.laws._damping import EXACT, EXIT, Family, damping
-from lumped.laws._impacts import bodies_of
+from lumped.laws._force_law import bodies_of
 from lumped.laws._power_law import spring_of_peak
 from lumped.laws.base import check_half_space
 from lumped.load_curves.base import LoadCurve

@@ -32,14 +32,13 @@ from lumped.schema.record import keys_of
 from lumped.solvers.hereditary.approach import DEPTH, approach
 from lumped.solvers.hereditary.closing import Closing, close
 from lumped.solvers.hereditary.march import Settings
-from lumped.solvers.hereditary.path import Path
-from lumped.solvers.hereditary.phase import HereditaryPhase, SinceTouch, UntilEnd
+from lumped.solvers.hereditary.path import HereditaryPhase, Path, SinceTouch, UntilEnd
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.point.bodies import TINY, Bodies, Stage, State, Step
-from lumped.solvers.point.hereditary import HereditaryLoad, StepLoad
 from lumped.solvers.point.memory import RULES
+from lumped.solvers.point.memory.base import HereditaryLoad, StepLoad
 from lumped.solvers.point.nodes import through_zero
-from lumped.solvers.point.step import NODES
+from lumped.solvers.point.phase import NODES
 
 Array = NDArray[np.float64]
 ROUGH, FINE = 1e-3, 1e-6  # tolerances of scales

@@ -24,8 +24,7 @@ import numpy as np
 
 from lumped.errors import Fault
 from lumped.laws._damping import EXACT
-from lumped.laws._force_law import ForceLaw
-from lumped.laws._impacts import bodies_of
+from lumped.laws._force_law import ForceLaw, bodies_of
 from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters
 from lumped.laws.base import LawKind
 from lumped.numbers import Real

@@ -18,9 +18,7 @@ from lumped.result.history import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.schema import Table
-from lumped.solvers.rod.flat import FlatImpact
-from lumped.solvers.rod.tipped import LONGEST, RodScales, TippedImpact
-from lumped.solvers.rod.waves import Waves
+from lumped.solvers.rod import LONGEST, FlatImpact, RodScales, TippedImpact, Waves
 from lumped.targets.rod import Rod
 
 Array = NDArray[np.float64]

@@ -16,7 +16,7 @@ from lumped.scene.scene import Scene
 from lumped.solvers.hereditary import rebound as back
 from lumped.solvers.hereditary.approach import DEPTH, approach
 from lumped.solvers.hereditary.march import Settings
-from lumped.solvers.hereditary.phase import ByField, HereditaryPhase, SinceTouch
+from lumped.solvers.hereditary.path import ByField, HereditaryPhase, SinceTouch
 from lumped.solvers.hereditary.problem import Hereditary
 
 

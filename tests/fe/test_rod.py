@@ -17,7 +17,7 @@ from fe_contact.waves.targets import rod
 from lumped import BadInput, Result, Scene, laws
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE
 from lumped.scene.indenter import Indenter
-from lumped.solvers.rod.waves import Waves
+from lumped.solvers.rod import Waves
 
 CASES = 40
 WIDE_CASES = 30

@@ -18,8 +18,7 @@ from fe_contact.bodies.zone import held
 from fe_contact.methods import simulate
 from lumped import Scene, laws
 from lumped.result.model_ledger import ROD_END
-from lumped.solvers.rod.tipped import RodScales, TippedImpact
-from lumped.solvers.rod.waves import Waves
+from lumped.solvers.rod import RodScales, TippedImpact, Waves
 
 LONG = 3.0  # radii of the rod, behind which its section moves as one
 FINE = 16.0  # elements along the contact radius

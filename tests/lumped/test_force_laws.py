@@ -364,7 +364,7 @@ def test_one_contact_is_cheap(name: str, spent: Callable[..., int]) -> None:
 @pytest.fixture
 def spent(monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
     from lumped.solvers.point import phase
-    from lumped.solvers.point.motion import motion
+    from lumped.solvers.point.contact import motion
 
     count, solve = [0], phase.solved
 

@@ -9,7 +9,7 @@ from scipy.linalg import expm
 
 from lumped import Relaxation, Sphere
 from lumped.solvers.point.bodies import State
-from lumped.solvers.point.hereditary import HereditaryLoad
+from lumped.solvers.point.memory.base import HereditaryLoad
 from lumped.solvers.point.memory.recovering import FreeSurface
 
 Array = NDArray[np.float64]

@@ -11,9 +11,7 @@ import numpy as np
 import pytest
 
 from lumped import BadInput, Result, Scene, laws, simulate
-from lumped.solvers.rod.flat import FlatImpact
-from lumped.solvers.rod.tipped import RodScales, TippedImpact
-from lumped.solvers.rod.waves import Waves
+from lumped.solvers.rod import FlatImpact, RodScales, TippedImpact, Waves
 
 # Mass over that of the rod, contact time over the transit of a wave: Timoshenko and Goodier, Theory of Elasticity,
 # art. 169, after St Venant.

@@ -17,11 +17,9 @@ from lumped.materials.networks import sls
 from lumped.paper.examples.given import Steel
 from lumped.paper.examples.steel_impacts import TOLERANCE, scene
 from lumped.solvers.point.bodies import Bodies, State
-from lumped.solvers.point.contact import Contact, contact
+from lumped.solvers.point.contact import Contact, PointMotion, contact
 from lumped.solvers.point.memory.recovering import FreeSurface
-from lumped.solvers.point.motion import PointMotion
-from lumped.solvers.point.outcome import Outcome, outcome_of
-from lumped.solvers.point.track import PointTrack
+from lumped.solvers.point.track import Outcome, PointTrack, outcome_of
 
 Array = NDArray[np.float64]
 EXPONENT = 1.5

@@ -14,9 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import NotReached, TooManySteps
-from lumped.solvers.hereditary.approach import DEPTH, FORCE, VELOCITY, Approach, follow
+from lumped.solvers.hereditary.approach import DEPTH, FORCE, VELOCITY, Approach, PieceMotion, follow
 from lumped.solvers.hereditary.march import SHORTEST, Settings, tail
-from lumped.solvers.hereditary.motion import PieceMotion
 from lumped.solvers.hereditary.path import Path
 from lumped.solvers.hereditary.problem import Hereditary
 

@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from lumped.errors import NotReached
 from lumped.numbers.interpolation import local
 from lumped.result.history import End
-from lumped.solvers.mdr.march import Inward, RowTrack, approach, rebound
-from lumped.solvers.mdr.pace import Adaptive, Prescribed
+from lumped.solvers.mdr.march import Adaptive, Inward, Prescribed, RowTrack, approach, rebound
 from lumped.solvers.mdr.row import Instant, RowProblem
 
 Array = NDArray[np.float64]

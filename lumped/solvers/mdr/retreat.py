@@ -11,8 +11,7 @@ from typing import NamedTuple
 from lumped.errors import NotReached
 from lumped.result.history import End
 from lumped.solvers.mdr.memory import Fading, fadings
-from lumped.solvers.mdr.row import Instant, RowStep, SpringsInRow, followed, left
-from lumped.solvers.mdr.springs import Values, stretched, yielding
+from lumped.solvers.mdr.row import Instant, RowStep, SpringsInRow, Values, followed, left, stretched, yielding
 
 TRIES, CLOSE, WIDER = 100, 1e-7, 4.0
 WHOLE_STEPS = 4  # the finer of two marches needs two more than the coarser to get as far

@@ -26,9 +26,8 @@ from lumped.result.history import AT_REST, End
 from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, Stage
 from lumped.solvers.point.contact import Contact, following, leaving
 from lumped.solvers.point.nodes import STAGES, paced, radau
-from lumped.solvers.point.outcome import Outcome
 from lumped.solvers.point.phase import PointPhase
-from lumped.solvers.point.track import PointRow, PointTrack, legendre_terms
+from lumped.solvers.point.track import Outcome, PointRow, PointTrack, legendre_terms
 
 Array = NDArray[np.float64]
 # Estimates are to first order, and tell the largest of a smooth error from its values at some points.

@@ -8,11 +8,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.solvers.point.bodies import Bodies, State
-from lumped.solvers.point.flight import bisected, flown, time_to_return
-from lumped.solvers.point.hereditary import HereditaryLoad, StepLoad
-from lumped.solvers.point.memory.base import MemoryRule
-from lumped.solvers.point.step import NODES
+from lumped.solvers.point.bodies import Bodies, State, bisected, flown, time_to_return
+from lumped.solvers.point.memory.base import HereditaryLoad, MemoryRule, StepLoad
+from lumped.solvers.point.phase import NODES
 
 Array = NDArray[np.float64]
 STEPS = 16

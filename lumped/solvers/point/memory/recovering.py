@@ -8,10 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.materials.relaxation import Recovery
-from lumped.solvers.point.bodies import Bodies, State
-from lumped.solvers.point.flight import bisected, flown
-from lumped.solvers.point.hereditary import HereditaryLoad
-from lumped.solvers.point.memory.base import MemoryRule
+from lumped.solvers.point.bodies import Bodies, State, bisected, flown
+from lumped.solvers.point.memory.base import HereditaryLoad, MemoryRule
 
 Array = NDArray[np.float64]
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from lumped.solvers.point.bodies import Bodies, State
-from lumped.solvers.point.flight import flown, time_to_return
-from lumped.solvers.point.hereditary import HereditaryLoad
-from lumped.solvers.point.memory.base import MemoryRule
+from lumped.solvers.point.bodies import Bodies, State, flown, time_to_return
+from lumped.solvers.point.memory.base import HereditaryLoad, MemoryRule
 
 
 def returned(load: HereditaryLoad, bodies: Bodies, last: State) -> tuple[float, State] | None:
