@@ -60,7 +60,7 @@ CORE = (
     "lumped/laws/correspondence.py", "lumped/result/history.py",
 )  # fmt: skip
 TESTS = ("tests/fe/test_*.py", "tests/lumped/test_*.py", "tests/test_table1.py", "tests/test_stability*.py")
-LONGEST = 6.0  # s of processor time: a slower test is not asked
+LONGEST = 20.0  # s of processor time, traced: a slower test is not asked
 FEW = 8  # integers up to here are orders and numbers of things, larger ones are bounds
 SILENT = ("progress", "count", "counted", "warn", "lru_cache", "reshape")  # calls whose arguments change no answer
 

@@ -14,7 +14,7 @@ import pytest
 
 from fe_contact.cli import main
 from fe_contact.commands import COMMANDS
-from fe_contact.steppers import stepping
+from fe_contact.steppers import scaled_surface
 from fe_contact.targets import half_space
 from lumped import Scene, laws
 from lumped.schema.files import SCENES
@@ -229,7 +229,7 @@ def test_a_tolerance_that_cannot_be_reached_is_exit_three_with_what_was_reached(
 def test_a_solve_that_does_not_converge_is_exit_three_without_a_traceback(
     empty: Path, scene: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(stepping, "RESCALINGS", 0)
+    monkeypatch.setattr(scaled_surface, "RESCALINGS", 0)
     assert exit_code("run", str(scene)) == 3
     err = capsys.readouterr().err
     assert len(err.strip().splitlines()) == 1

@@ -178,3 +178,12 @@ def test_the_force_at_a_touch_is_that_of_a_first_step_without_length(
     for stepper in (first, FlatStepper(again, stiffness, 1.0, numerics)):
         assert stepper.step(stepper.touch(), [], 1e-9).force == pytest.approx(stepper.first_force, abs=1e-7)
     assert FlatStepper(again, stiffness, 1.0, numerics).first_force > 0.0
+
+
+def test_the_share_of_the_penalty_is_safety_times_what_half_of_it_changes() -> None:
+    """Of a stiffness k a force goes with its root: the share counts all of dk/k, twice dF/F."""
+    scene = Scene.load("polymer-punch")
+    given = {"tolerance": 1e-2, "penalty": 400.0, "enforcement": "penalty"}
+    whole, half = (solve(scene, given | {"penalty": penalty}).certified for penalty in (400.0, 200.0))
+    forces = [one.curve.quantities["peak_force"] or 0.0 for one in (whole, half)]
+    assert whole.error("peak_force", "penalty") == pytest.approx(2.5 * (forces[0] - forces[1]), rel=0.1)

@@ -23,13 +23,15 @@ from fe_contact.errors import ContactNotSettled, MemoryTooSmall, TooManySteps
 from fe_contact.march import impact
 from fe_contact.march.impact import march
 from fe_contact.methods import simulate
+from fe_contact.reference import solve
 from fe_contact.schemes.base import SCHEMES
 from fe_contact.settings import Numerics
-from fe_contact.steppers import stepping
+from fe_contact.steppers import scaled_surface
 from fe_contact.steppers.march import March, Strike
 from fe_contact.steppers.scaled_surface import ScaledSurface
 from fe_contact.steppers.steps import State, Step
 from fe_contact.targets import half_space
+from lumped import BadInput
 from lumped.laws import mdr
 from lumped.materials import Relaxation
 from lumped.scene.scene import Scene
@@ -506,7 +508,7 @@ def test_an_end_read_early_lies_within_its_spread_of_the_end_read_late(
     numerics = settings_of(strike, steps=60)
 
     def end(shortest: float) -> tuple[float, float]:
-        monkeypatch.setattr(stepping.Stepper, "shortest", shortest)
+        monkeypatch.setattr(scaled_surface.Stepper, "shortest", shortest)
         found = marched(strike, numerics)
         return float(found.time[-1]), found.end_spread
 
@@ -515,3 +517,8 @@ def test_an_end_read_early_lies_within_its_spread_of_the_end_read_late(
         early, spread = end(shortest)
         assert abs(early - late) <= spread
         assert spread < 1e-3 * late
+
+
+def test_without_waves_a_scene_that_asks_for_them_is_refused() -> None:
+    with pytest.raises(BadInput, match=r"model\.inertia: true: this command is without waves"):
+        solve(Scene.load("steel-ball-waves"), {})

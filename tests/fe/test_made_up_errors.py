@@ -15,6 +15,7 @@ from fe_contact.budget.budget import CAUSES, Budget, Causes
 from fe_contact.budget.certify import _rows, _time_steps, trust
 from fe_contact.budget.change import SAFETY, Change
 from fe_contact.budget.curve import Curve, extrapolated
+from fe_contact.budget.softening import Softening
 from fe_contact.settings import Numerics
 from fe_contact.steppers.march import Strike
 from fe_contact.waves.certify import Moved
@@ -284,3 +285,32 @@ def test_the_bar_of_a_history_is_the_norm_of_what_changes_over_the_norm_of_the_f
     force = fine.force(times)
     norms = [np.sqrt(np.trapezoid(values**2, times)) for values in (fine.force(times) - coarse.force(times), force)]
     assert Change(fine, coarse, 0.5).errors["history_l2"] == pytest.approx(0.5 * norms[0] / norms[1], rel=1e-2)
+
+
+def test_a_run_that_does_not_part_tells_nothing_of_when_another_does() -> None:
+    held = replace(TRUTH, separated=False)
+    for change in (Change(TRUTH, held, 1.0), Change(held, TRUTH, 1.0)):
+        assert change.errors["duration"] == change.errors["restitution"] == np.inf
+    assert Change(held, held, 1.0).errors["duration"] == 0.0
+
+
+def test_a_body_softer_by_a_share_errs_by_that_share_of_all_work_that_its_force_does() -> None:
+    """In and out, whatever is left of it at the end."""
+    worked = replace(TRUTH, energy=TRUTH.energy | {"in": 3.0, "out": 2.0})
+    assert Softening(worked, 0.1).energies["stored"] == pytest.approx(0.5)
+
+
+def test_the_steps_that_count_are_seconds_however_long_the_contact(settings: Numerics) -> None:
+    """A branch as fast as a step is as fast as a step when both last a thousand times as long."""
+    errors = []
+    for unit in (1.0, 1e3):
+        steps = [settings.steps // part for part in (1, 2, 4)]
+        relaxation = Relaxation(1.0, (1.0,), (unit / steps[0],))
+        strike = replace(STRIKE, relaxation=relaxation, velocity=STRIKE.velocity / unit)
+        runs = {
+            count: replace(made_up(count, lambda share, c=count: 30.0 / c**2 * share), duration=unit, strike=strike)
+            for count in steps
+        }
+        found = _time_steps(lambda one, runs=runs: runs[one.steps], settings.varied(contact_time=unit), False)
+        errors.append([change.errors["peak_force"] if change else np.inf for change in found.changes])
+    assert errors[1] == pytest.approx(errors[0], rel=1e-6)

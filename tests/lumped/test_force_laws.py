@@ -293,6 +293,12 @@ def test_many_bounces_follow_their_restitution(name: str) -> None:
     )
 
 
+def test_bounces_end_where_the_speed_is_a_millionth_of_the_first() -> None:
+    law, e = LawChoice("kelvin", {"k": 1e12, "e": 0.5}), 0.5
+    case = Scene(None, MASS, VELOCITY, law=law, model=Model(gravity=1e-4), motion=Motion(100, end_time=1e12))
+    assert len(laws.kelvin.of(case).simulate(case, 1e-6).contacts) == math.ceil(math.log(1e-6, e))
+
+
 @pytest.mark.parametrize("share", [0.1, 0.9, 1.1])
 def test_a_flight_that_outlasts_the_end_time_is_not_followed_to_its_touch(share: float) -> None:
     """Contact and flight of 2 v/g: the second contact counts only if it begins before the end."""
