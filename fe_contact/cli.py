@@ -19,8 +19,9 @@ import sys
 import tempfile
 import threading
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from types import FrameType
 from typing import NoReturn
@@ -29,7 +30,7 @@ from fe_contact import __version__
 from fe_contact.progress import clear
 from fe_contact.threads import one_thread
 
-DONE, DEFECT, BAD_INPUT, NOT_REACHED = 0, 1, 2, 3
+DONE, DEFECT, BAD_INPUT, NOT_REACHED = 0, 1, 2, 3  # exit codes of the program
 LEAST_MEMORY = 640 * 2**20  # bytes of address space: below, the libraries of gmsh and scipy crash while they load
 SIGNALLED = 128  # plus the signal's number, as shells count: 130 after Ctrl-C, 143 after SIGTERM
 GRACE = 1.0  # s for a library to come back and let Python raise the interruption
@@ -62,7 +63,9 @@ def parser() -> OneLine:
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name, command in COMMANDS.members.items():
         says = command.summary
-        command.arguments(commands.add_parser(name, help=says.replace("%", "%%"), description=says))
+        own = commands.add_parser(name, help=says.replace("%", "%%"), description=says)
+        for option in command.options:
+            option(own)
     return top
 
 
@@ -110,12 +113,15 @@ def _interruptible() -> Iterator[None]:
     writer.setblocking(False)
     former = {number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGTERM)}
     wakeup, ended = signal.set_wakeup_fd(writer.fileno(), warn_on_full_buffer=False), threading.Event()
+    unraisable = sys.unraisablehook
+    sys.unraisablehook = partial(_left_to_the_watch, unraisable)
     threading.Thread(target=_watch, args=(reader, ended), daemon=True).start()
     try:
         yield
     finally:
         ended.set()
         signal.set_wakeup_fd(wakeup)
+        sys.unraisablehook = unraisable
         for number, handler in former.items():
             signal.signal(number, handler)
         writer.close()
@@ -123,6 +129,12 @@ def _interruptible() -> Iterator[None]:
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
     raise Interrupted(number)
+
+
+def _left_to_the_watch(former: Callable[[sys.UnraisableHookArgs], object], failure: sys.UnraisableHookArgs) -> None:
+    """What is raised while Python cleans up goes no further: an interruption there is the watching thread's."""
+    if not isinstance(failure.exc_value, Interrupted):
+        former(failure)
 
 
 def _watch(reader: socket.socket, ended: threading.Event) -> None:

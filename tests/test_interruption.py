@@ -32,6 +32,22 @@ def execute(args):
 laws.MEMBER = replace(laws.MEMBER, execute=execute)
 sys.exit(cli.main(["laws"]))
 """
+# A signal reaches Python while it cleans up, where nothing can be raised.
+CLEANING = """
+import signal, sys, time
+from dataclasses import replace
+from fe_contact import cli
+from fe_contact.commands import laws
+class Cleaned:
+    def __del__(self):
+        signal.raise_signal(signal.SIGINT)
+def execute(args):
+    print("begun", flush=True)
+    Cleaned()
+    time.sleep(60)
+laws.MEMBER = replace(laws.MEMBER, execute=execute)
+sys.exit(cli.main(["laws"]))
+"""
 
 
 def begun(folder: Path, *arguments: str) -> subprocess.Popen[str]:
@@ -71,6 +87,14 @@ def test_a_signal_is_answered_by_one_line_even_in_a_library_that_does_not_come_b
         _, err = run.communicate(timeout=60)
         assert run.returncode == SIGNALS[number]
         assert len(err.splitlines()) == 1, err
+
+
+def test_a_signal_while_python_cleans_up_is_answered_by_one_line() -> None:
+    run = subprocess.run(
+        [sys.executable, "-c", CLEANING], cwd=ROOT, capture_output=True, text=True, check=False, timeout=60
+    )
+    assert run.returncode == SIGNALS[signal.SIGINT]
+    assert run.stderr == "fe-contact: interrupted\n"
 
 
 @pytest.mark.tenth
