@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import ClassVar
 
-SHOWN_FAULTS = 20
+SHOWN_FAULTS = 20  # work: faults that one refusal lists at most
 SHOWN_CHARACTERS = 60  # of a value or a key that is told back
 SHOWN_OF_A_LINE = 300  # of a file's name, or of another line that holds what the user wrote
 

@@ -9,10 +9,9 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.numbers.clock import Clock
+from lumped.numbers import Array, Clock
 from lumped.result.folder import RECORD, publish
 from lumped.result.model_ledger import Peak, ledger_at_rest
 from lumped.result.result import LedgerEntry, Quantity, groups_at_rest, provenance, sufficient
@@ -22,7 +21,6 @@ from lumped.schema.csv_file import write_columns
 from lumped.schema.json_file import plain, write_json
 from lumped.targets.sphere import SphereTarget
 
-Array = NDArray[np.float64]
 SCHEMA = "fe-contact/indentation/1"
 COLUMNS = ("depth_m", "force_N", "contact_radius_m", "force_error_N")
 FEWEST = 3  # depths which a power law with an error bar needs

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.numbers.interpolation import peak
+from lumped.numbers import peak
 from lumped.result.history import History
 from lumped.result.score import POINTS, Curve
 

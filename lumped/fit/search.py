@@ -16,12 +16,20 @@ from numpy.typing import NDArray
 
 from lumped import laws
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.fit import network
-from lumped.fit.certainty import certainty_of
 from lumped.fit.measured import Measured
-from lumped.fit.problem import FitProblem
+from lumped.fit.problem import FitProblem, certainty_of
 from lumped.fit.record import Fit
-from lumped.fit.space import REACH, TOUCH, Bounds, Space, damping_names, own_keys, space_of
+from lumped.fit.space import (
+    REACH,
+    TOUCH,
+    Bounds,
+    Space,
+    damping_names,
+    own_keys,
+    own_values,
+    space_of,
+    three_parameters,
+)
 from lumped.laws import impact_bilinear
 from lumped.laws._force_law import between_masses, bodies_of
 from lumped.laws._power_law import spring_contact_time, spring_of_peak
@@ -34,22 +42,22 @@ from lumped.solvers.point.bodies import Stage
 
 # How many of the starts, the nearest to the curve first, are followed; one is enough where noise is all that is left.
 FOLLOWED = 2
-HAIR = 1e-4
-RESULT_TOLERANCE = 1e-6
+HAIR = 1e-4  # safety: of the range or of the guess, by which a start stays inside its bounds
+RESULT_TOLERANCE = 1e-6  # of the fitted law's own impact, at the end
 # Which parameter holds the peak: the first of these that is free.
 STIFFNESSES = ("k", "k1", "E", "E0", "E1", "R1", "E2")
 # The damper's force over the spring's, at half depth and full speed, per 1 - e: Hunt-Crossley has 3/2, Kelvin 4/pi.
 DAMPER = 1.4
 # The loss 1 - e that the impulse tells, and less and more, for it may tell it badly.
 LOSSES = (1.0, 0.15, 3.5)
-LEAST_RESTITUTION, MOST_RESTITUTION = 0.05, 0.98
+LEAST_RESTITUTION, MOST_RESTITUTION = 0.05, 0.98  # safety: of the e that the impulse tells
 # Guesses of the ratio E2/E1 and of the relaxation time over the contact time.
 RATIOS, TIMES = (0.3, 2.0), (0.1, 1.0, 10.0)
 Values = dict[str, float]
 Array = NDArray[np.float64]
 # Of the differences: far above what an impact's integration errs by, and the search needs no better slopes.
 DIFFERENCE = 1e-4
-TOLERANCE, MOST_STEPS = 1e-10, 80
+TOLERANCE, MOST_STEPS = 1e-10, 80  # of the search: relative changes that end it; work: its evaluations
 SOLID = ("E0", "R1", "R2")
 # An impact that does not exist is this many times as far from the curve as none at all.
 FAR = 10.0
@@ -206,12 +214,12 @@ class CurvePulse:
         solid, bodies = scene.geometry.material, bodies_of(scene)
         of_one = scene.profile.hertz_impact(1.0 / (1.0 - solid.nu**2), bodies.mass, bodies.velocity).force
         sudden = (self.measured.peak / of_one) ** 2.5
-        lasting = {**network.own_values(solid.young), **held}.get("E0", sudden)
+        lasting = {**own_values(solid.young), **held}.get("E0", sudden)
         for ratio, time in product(RATIOS, TIMES):
             shared = "E0" in self.space.free
             R1 = ratio if shared else max(sudden / lasting - 1.0, 0.1 * ratio)
             E0 = sudden / (1.0 + ratio) if shared else lasting
-            guess = network.three_parameters(E0, R1, time * duration * (1.0 + R1))
+            guess = three_parameters(E0, R1, time * duration * (1.0 + R1))
             yield {**guess, "E": sudden, "eta": sudden * time * duration, **held}
 
 

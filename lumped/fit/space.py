@@ -1,8 +1,8 @@
-"""The parameters of a fit: which are free, within which bounds, and the scene that they make."""
+"""The parameters of a fit, of a law and of a simple network: which are free, within which bounds, and their scene."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from lumped import laws
 from lumped.errors import BadInput, Fault, nearest
-from lumped.fit import network
 from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS
+from lumped.materials import Material, Relaxation
+from lumped.materials.networks import NETWORKS
 from lumped.scene.scene import Scene
 from lumped.scene.tables import LawChoice
 from lumped.schema import Table
@@ -24,6 +25,8 @@ TOUCH = "touch"
 TOUCH_KEY = Number(-1e12, 1e12, "s")
 # What nobody has bounded is sought within this factor of its first guess.
 REACH = 1e8
+# Networks whose parameters a fit can change.
+FAMILIES = ("elastic", "kelvin_voigt", "maxwell", "sls")
 # Parts of a fit that know no option: see :func:`lumped.errors.addressed`.
 FREE, FIXED, BOUNDS = "free", "fixed", "bounds"
 UNSEEN = {"gap": "no force tells it, for time starts at touch; accepted: fixed"}
@@ -47,7 +50,7 @@ class Space:
         scene = replace(self.scene, law=LawChoice(self.law, {**_said(self.scene, self.law, of_law), **of_law}))
         if not of_network:
             return scene
-        return replace(scene, material=network.material(self.scene.geometry.material, of_network))
+        return replace(scene, material=_material(self.scene.geometry.material, of_network))
 
     def touch(self, values: Mapping[str, float]) -> float:
         """When the bodies touch on the curve's clock, s."""
@@ -67,7 +70,7 @@ class Space:
 def space_of(law: str, scene: Scene, free: Sequence[str] | None, fixed: Mapping[str, float], bounds: Bounds) -> Space:
     """The parameters asked for, checked; by default those that a law is known by. Raises BadInput, every fault."""
     scene.check_single("a fit")
-    known = {**network.keys(), **own_keys(law), TOUCH: TOUCH_KEY}
+    known = {**network_keys(), **own_keys(law), TOUCH: TOUCH_KEY}
     names = tuple(default_free(law, scene, fixed) if free is None else free)
     asked = [(FREE, name) for name in names] + [(FIXED, name) for name in fixed] + [(BOUNDS, name) for name in bounds]
     faults = [_unknown(place, name, known) for place, name in asked if name not in known]
@@ -129,3 +132,65 @@ def _range_faults(place: str, name: str, value: float, key: Number) -> list[Faul
     except ValueError:
         return [Fault(place, name, f"{value!r} is not accepted; accepted: {key.accepted}")]
     return []
+
+
+def network_keys() -> dict[str, Number]:
+    """Every parameter of a network that a fit can change."""
+    every = [item for family in FAMILIES for keys in NETWORKS.get(family).sets for item in keys.items()]
+    return {name: key.kind for name, key in every if isinstance(key.kind, Number)}
+
+
+def _material(own: Material, values: Mapping[str, float]) -> Material:
+    """The material with `values`, the rest of its network's parameters its own. Raises BadInput."""
+    family, names = _network(own.young, values)
+    known = {**own_values(own.young), **values}
+    missing = [name for name in names if name not in known]
+    if missing:
+        reason = "missing; the scene's material does not tell it; accepted: free, or a fixed value"
+        raise BadInput(Fault(FREE, name, reason) for name in missing)
+    return replace(own, young=NETWORKS.get(family).of(**{name: known[name] for name in names}))
+
+
+def own_values(young: Relaxation) -> dict[str, float]:
+    """What a relaxation modulus says of the parameters of the networks, as far as it is one of them."""
+    relaxed, values = young.relaxed, {"E": young.spring}
+    if relaxed:
+        values["E0"] = relaxed
+    if young.viscosity and not young.moduli:
+        values["eta"] = young.viscosity
+    if len(young.moduli) != 1 or young.viscosity:
+        return values
+    (modulus,), (time,) = young.moduli, young.times
+    if not relaxed:
+        return values | {"eta": modulus * time}
+    ratio = modulus / relaxed
+    return values | three_parameters(relaxed, ratio, time * (1.0 + ratio))
+
+
+def three_parameters(E0: float, R1: float, R2: float) -> dict[str, float]:
+    """The 3-parameter solid by both sets of its names, "(25)"."""
+    E1 = E0 * (1.0 + R1) / R1
+    return {"E0": E0, "R1": R1, "R2": R2, "E1": E1, "E2": E0 * (1.0 + R1), "C1": R2 * E1}
+
+
+def _network(young: Relaxation, names: Iterable[str]) -> tuple[str, tuple[str, ...]]:
+    """The smallest network with these parameters that forgets nothing of what the scene's own remembers."""
+    found = [
+        (family, tuple(keys))
+        for family in _open_to(young)
+        for keys in NETWORKS.get(family).sets
+        if set(names) <= set(keys)
+    ]
+    if not found:
+        sets = [", ".join(kind) for family in _open_to(young) for kind in NETWORKS.get(family).sets]
+        reason = f"no network of the material has {', '.join(names)}; accepted, of one set: {'; '.join(sets)}"
+        raise BadInput(Fault(FREE, "", reason))
+    return min(found, key=lambda kind: len(kind[1]))
+
+
+def _open_to(young: Relaxation) -> tuple[str, ...]:
+    if young.relaxed == 0.0:
+        return ("maxwell",)
+    if young.moduli:
+        return ("sls",)
+    return ("kelvin_voigt", "sls") if young.viscosity else ("elastic", "kelvin_voigt", "sls")

@@ -8,9 +8,8 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lumped.numbers.clock import Clock
+from lumped.numbers import Array, Clock
 from lumped.result.history import AT_REST, End, History, densified
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import RULED_RELATIVE, UNITS, Quantity, Result, provenance, unmet
@@ -18,7 +17,6 @@ from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.schema import Table
 
-Array = NDArray[np.float64]
 # Rounding of the sums behind a quantity, relative to it.
 ROUNDING = 1e-12
 # A peak is flat: its time is known to the root of what its height is known to.
@@ -26,7 +24,7 @@ ROUNDING_OF = {"peak_time": 1e-8}
 # Where two integrations are compared for the time of a peak: first up to so many rows on either side, at so many
 # places; and again as far as that leaves it, while this is a smaller share.
 ROWS_AROUND, PLACES, SHRUNK = 2, 17, 0.9
-FINEST_ROWS = 1e-9
+FINEST_ROWS = 1e-9  # work: a history is made no denser than this share of the peak force asks for
 # Two integrations may agree in one quantity by chance: its bar is at least this share of the history's (L2).
 LEAST_SHARE = 0.1
 
@@ -81,6 +79,21 @@ def impulse_of(scene: Scene, end: End, velocity: float, time: float, until: floa
         return None
     lost, lasted = (scene.velocity, until) if end is End.REST else (scene.velocity - velocity, time)
     return float(scene.reduced_mass * (lost + scene.gravity * lasted))
+
+
+def values_of(
+    scene: Scene, end: End, peak: tuple[float, float], deepest: float, velocity: float, time: float
+) -> dict[str, float | None]:
+    """Those of one contact followed to `time`, s, with the `velocity`, m/s, of then; `peak`: its time, s, and force."""
+    separated = end is End.SEPARATED
+    return {
+        "peak_force": peak[1],
+        "peak_time": peak[0],
+        "peak_depth": deepest,
+        "duration": time if separated else None,
+        "restitution": -velocity / scene.velocity if separated else None,
+        "impulse": impulse_of(scene, end, velocity, time, scene.end_time),
+    }
 
 
 def force_difference(fine: Answer, coarse: Answer) -> tuple[float, float]:

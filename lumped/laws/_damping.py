@@ -22,7 +22,7 @@ EXIT = Choice(("force", "depth"))
 RESTITUTION = Number(1e-6, 1.0)
 PLASTIC = "; for a plastic impact, e = 0, see lumped.solvers.stereomechanics"
 Published = Mapping[str, Callable[[float], float]]
-ITERATIONS = 60
+ITERATIONS = 60  # work: of the root search, more is no convergence
 # The error after a step is of the order of its square.
 LAST_STEP = 1e-9
 
@@ -74,7 +74,7 @@ NO_LIMIT: Mapping[str, Limit] = dict.fromkeys(EXIT.options, Limit())
 # The speed at zero x is below 1e-96 at this damping ratio.
 UNDERDAMPED = 0.9999
 NEVER_BACK = '; from critical damping on the depth never returns to zero: ask for exit = "force"'
-NEAR_CRITICAL = 1e-8
+NEAR_CRITICAL = 1e-8  # rounding: of the damping ratio about 1, where the quotient would be 0/0 and its limit stands
 
 
 def check_damping(value: float, exit: str, limits: Mapping[str, Limit] = NO_LIMIT) -> float:

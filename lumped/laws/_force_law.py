@@ -2,32 +2,28 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache, partial
 from typing import ClassVar, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped import laws
 from lumped.errors import BadInput, Fault
 from lumped.laws._assembly import Answer, assemble, bars, impulse_of
 from lumped.load_curves.base import LoadCurve
-from lumped.numbers import Real
-from lumped.numbers.clock import Clock
+from lumped.numbers import Array, Clock
 from lumped.result.history import End
 from lumped.result.result import UNITS, Quantity, Result, meets
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
-from lumped.solvers.point.bodies import TINY, Bodies, Stage, State, Step, returned
+from lumped.solvers.point.bodies import Bodies, PointLaw, State
 from lumped.solvers.point.contact import PointMotion, motion
 from lumped.solvers.point.half_widths import half_widths
 from lumped.solvers.point.phase import PointPhase
 from lumped.solvers.point.track import Outcome, PointTrack, outcome_of
 
-Array = NDArray[np.float64]
 # Errors of the rate allowed in one step, relative to the velocity at touch: the history errs far less, its end less
 # again. The first one is that asked of the result, if it is not beyond these; every next one is finer by FINER.
 COARSEST, FINEST, FINER = 1e-5, 1e-12, 1e-2
@@ -41,8 +37,8 @@ EQUAL = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
-class ForceLaw(ABC):
-    """F(depth, rate) of two masses, contract :class:`lumped.solvers.point.bodies.PointLaw`.
+class ForceLaw(PointLaw):
+    """F(depth, rate) of two masses.
 
     `exit`: contact ends when the force returns to zero ("force", no tension) or at depth zero ("depth").
     `gap`: distance before touch, m; time starts at touch. `load_curve`: that of the scene the law was
@@ -55,69 +51,10 @@ class ForceLaw(ABC):
     load_curve: LoadCurve | None = None
     source: str = ""
     name: ClassVar[str]
-    tensile: ClassVar[bool] = False
     # Where the loss belongs among the energies of a Result.
     loss: ClassVar[str] = "viscous"
     # Whether the force depends on the path, not only on where it turned.
     remembers: ClassVar[bool] = False
-
-    def grading(self, stage: Stage) -> int:
-        """One: smooth in time from touch on."""
-        return 1
-
-    @abstractmethod
-    def force(self, depth: Real, rate: Real, stage: Stage) -> Real:
-        """F, N, compression positive; depth >= 0, m, rate, m/s."""
-
-    @abstractmethod
-    def tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
-        """dF/d depth, N/m, and dF/d rate, N s/m."""
-
-    def touch(self, bodies: Bodies) -> State:
-        """At the surface, nothing lost yet."""
-        return State(0.0, bodies.velocity, 0.0)
-
-    def within(self, start: State, length: float) -> ForceLaw:
-        """Itself: nothing is remembered."""
-        return self
-
-    def remembered(self, depth: Array) -> tuple[float, ...]:
-        """Nothing."""
-        return ()
-
-    def corners(self, stage: Stage) -> tuple[float, ...]:
-        """None."""
-        return ()
-
-    def kept(self, depth: float, stage: Stage) -> tuple[float, ...]:
-        """Nothing."""
-        return ()
-
-    def between(
-        self, steps: Sequence[Step], place: NDArray[np.intp], share: Array, depth: Array, rate: Array, stage: Stage
-    ) -> Array:
-        """F at depths and rates, N: where in the steps does not matter without memory."""
-        return np.asarray(self.force(np.maximum(depth, TINY), rate, stage))
-
-    def returned(self, bodies: Bodies, last: State) -> tuple[float, State] | None:
-        """Free flight to the surface as it was."""
-        return returned(self, bodies, last)
-
-    def carried(self, depth: float, stage: Stage) -> float:
-        """F without a rate, N."""
-        return float(self.force(depth, 0.0, stage))
-
-    @abstractmethod
-    def lost(self, depth: Real, rate: Real, stage: Stage) -> Real:
-        """The part of the force whose work is not stored, N."""
-
-    @abstractmethod
-    def stored(self, depth: float, stage: Stage) -> float:
-        """Energy that the law could still give back at a depth, J."""
-
-    @abstractmethod
-    def time_scale(self, bodies: Bodies) -> float:
-        """The elastic contact time, s."""
 
     @property
     def parameters(self) -> dict[str, object]:

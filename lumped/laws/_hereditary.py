@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -11,8 +11,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.laws._assembly import Answer, assemble, bars, impulse_of
-from lumped.numbers.clock import Clock
+from lumped.laws._assembly import Answer, assemble, bars, values_of
+from lumped.numbers import Array, Clock
 from lumped.result.history import End
 from lumped.result.result import Result, meets
 from lumped.scene.geometry import stiffest_impact
@@ -24,14 +24,13 @@ from lumped.solvers.hereditary.path import HereditaryPhase
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.hereditary.rebound import Rebound
 
-Array = NDArray[np.float64]
 # The force may err by this share of the tolerance in each piece.
 LOCAL_SHARE = 1e-1
-LOOSEST, TIGHTEST = 1e-5, 1e-13
-NEXT = 1e-2
+LOOSEST, TIGHTEST = 1e-5, 1e-13  # of the integration's relative tolerance: safety, and rounding beyond it
+NEXT = 1e-2  # work: times the tolerance, where a bar was missed
 # The pieces chosen with few nodes are solved again with more, which err less by orders: the difference is the bar.
 FEW, MORE = 12, 18
-SAFETY = 1.5
+SAFETY = 1.5  # safety: of the bars, over the change from few points to more
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,19 +138,12 @@ def once(scene: Scene, rtol: float, solve: Solve) -> Answer:
 
 def answer_of(scene: Scene, problem: Hereditary, course: Course) -> Answer:
     """What an integration says, in SI."""
-    scales, separated = problem.scales, course.end is End.SEPARATED
+    scales, last = problem.scales, course.phases[-1]
     (peak_time, force), (_, depth) = course.highest(3), course.highest(0)
-    last = course.phases[-1]
-    velocity, duration = float(last.last[1]) * scales.velocity, float(last.times[-1]) * scales.time
-    values: Mapping[str, float | None] = {
-        "peak_force": force * scales.force,
-        "peak_time": peak_time * scales.time,
-        "peak_depth": depth * scales.depth,
-        "duration": duration if separated else None,
-        "restitution": -velocity / scene.velocity if separated else None,
-        "impulse": impulse_of(scene, course.end, velocity, duration, scene.end_time),
-    }
-    said = "" if separated else course.end.value
+    velocity, time = float(last.last[1]) * scales.velocity, float(last.times[-1]) * scales.time
+    peak = (peak_time * scales.time, force * scales.force)
+    values = values_of(scene, course.end, peak, depth * scales.depth, velocity, time)
+    said = "" if course.end is End.SEPARATED else course.end.value
     columns = _HereditaryColumns(problem, course)
     return Answer(course.times * scales.time, columns, values, course.end, _energy(scene, problem, last.last), said)
 

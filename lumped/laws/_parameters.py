@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
@@ -23,6 +23,7 @@ STIFFNESS: Keys = {"k": Key(Number(1e-30, 1e30, "N/m^alpha"), "stiffness", requi
 EXPONENT: Keys = {"alpha": Key(Number(0.5, 5.0), "exponent of the depth", required=False)}
 # A damper with the power (alpha - 1)/2 of the depth is infinite at touch for alpha below 1.
 EXPONENT_FROM_ONE: Keys = {"alpha": replace(EXPONENT["alpha"], kind=Number(1.0, 5.0))}
+NO_KEYS: Keys = {}  # of a law whose exponent is one
 EXIT_KEY = Key(EXIT, "what ends the contact by its return to zero", required=False)
 COMMON: Keys = {"gap": Key(Number(0.0, 1e6, "m"), "distance before touch", required=False), "exit": EXIT_KEY}
 RESTITUTION: Keys = {"e": Key(Number(1e-4, 1.0), "restitution which the damping is to meet", required=False)}
@@ -41,6 +42,12 @@ def formula_key(family: Family) -> Keys:
     """The key `damping`: by which formula e becomes the damping, exact by default or a published one."""
     kind = Choice((EXACT, *family.published))
     return {"damping": Key(kind, "formula by which e becomes the damping", required=False)}
+
+
+def damped(family: Family, *dampings: Keys, exponent: Keys = EXPONENT) -> tuple[Keys, ...]:
+    """The keys of a spring with a damper, given by one of its own `dampings` or by e and a formula of the family."""
+    formula = [formula_key(family)] if family.published else []
+    return (STIFFNESS, exponent, RESTITUTION, *dampings, *formula, COMMON)
 
 
 @dataclass
@@ -147,6 +154,14 @@ class Parameters:
         if kind == "e":
             value = self.meeting(family, value) * math.sqrt((alpha + 1.0) / (TOLD_FOR + 1.0))
         return {"k": k, "c": unit * value * math.sqrt(self.scene.reduced_mass * k), "alpha": alpha}
+
+    def spring_damper(self, family: Family, key: str, unit: Callable[[float, float], float]) -> Table:
+        """alpha, k and the damping called `key`; of e the family's d, made by `unit` of d and k what the key is."""
+        alpha = self.exponent()
+        k, (kind, value) = self.stiffness(alpha), self.damping((key,))
+        if kind == "e":
+            value = unit(self.meeting(family, value), k)
+        return {"k": k, key: value, "alpha": alpha}
 
     def missing(self, key: str, accepted: str) -> None:
         """Note a key that has to be given."""

@@ -11,7 +11,7 @@ from lumped.laws._force_law import ForceLaw
 from lumped.numbers import Real
 from lumped.solvers.point.bodies import Bodies, Stage
 
-GRADINGS = (1, 2, 4)
+GRADINGS = (1, 2, 4)  # powers of the steps' grading that are tried, the first which makes exponents whole is taken
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -22,7 +22,7 @@ from lumped.laws._hereditary import Course, HereditaryLaw, Solve, once, simulate
 from lumped.laws._parameters import EXIT_KEY
 from lumped.laws.base import LawKind, check_geometry
 from lumped.laws.mdr import ImpactScales
-from lumped.numbers import Real
+from lumped.numbers import Array, Real
 from lumped.result.history import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
@@ -35,12 +35,10 @@ from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.path import HereditaryPhase, Path, SinceTouch, UntilEnd
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.point.bodies import TINY, Bodies, Stage, State, Step
-from lumped.solvers.point.memory import RULES
-from lumped.solvers.point.memory.base import HereditaryLoad, StepLoad
-from lumped.solvers.point.nodes import through_zero
+from lumped.solvers.point.memory import RULES, HereditaryLoad, StepLoad, rule_of
 from lumped.solvers.point.phase import NODES
+from lumped.solvers.radau import through_zero
 
-Array = NDArray[np.float64]
 ROUGH, FINE = 1e-3, 1e-6  # tolerances of scales
 
 
@@ -111,7 +109,7 @@ class HereditaryForce(ForceLaw):
 
     def returned(self, bodies: Bodies, last: State) -> tuple[float, State] | None:
         """As the rule has it."""
-        return RULES.get(self.rule).returned(self.load, bodies, last)
+        return rule_of(self.rule)(self.load, bodies, last)
 
     def resolved(self, scene: Scene) -> Model:
         """The scene's own profile."""
@@ -135,12 +133,12 @@ class Correspondence(HereditaryLaw):
     """The law; the rest is in the scene.
 
     `exit`: contact ends when the force returns to zero ("force", as the paper clips it) or at depth zero ("depth",
-    the surface pulls). `memory`: what is left of it when the bodies meet again, a member of
-    :mod:`lumped.solvers.point.memory`.
+    the surface pulls). `memory`: what is left of it when the bodies meet again, by its name in
+    `RULES` of :mod:`lumped.solvers.point.memory`.
     """
 
     exit: Annotated[str, EXIT_KEY] = "force"
-    memory: Annotated[str, Key(Choice(RULES.names), "what is left of it at the next contact")] = "recovering"
+    memory: Annotated[str, Key(Choice(tuple(RULES)), "what is left of it at the next contact")] = "recovering"
     name: ClassVar[str] = "correspondence"
 
     @property

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_key, formula_key
+from lumped.laws._parameters import Parameters, damped, damping_key
 from lumped.laws._power_law import SpringDamped
 from lumped.laws.base import LawKind
 from lumped.laws.hunt_crossley import FAMILY
@@ -33,12 +33,8 @@ class Hertzdamp(SpringDamped):
 def of(scene: Scene) -> Hertzdamp:
     """The law for a scene. Raises BadInput."""
     given = Parameters(scene, Hertzdamp.name)
-    alpha = given.exponent()
-    k = given.stiffness(alpha)
-    kind, xi = given.damping(("xi",))
-    if kind == "e":
-        xi = given.meeting(FAMILY, xi)
-    return Hertzdamp(k=k, xi=xi, alpha=alpha, **given.common())
+    numbers = given.spring_damper(FAMILY, "xi", lambda d, k: d)
+    return Hertzdamp(**numbers, **given.common())
 
 
-MEMBER = LawKind(of, __doc__, (STIFFNESS, EXPONENT, RESTITUTION, damping_key("xi"), formula_key(FAMILY), COMMON))
+MEMBER = LawKind(of, __doc__, damped(FAMILY, damping_key("xi")))

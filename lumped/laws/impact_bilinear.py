@@ -40,7 +40,7 @@ LOOP: Mapping[str, Key] = {
     "k2": Key(Number(1e-30, 1e30, "N/m"), "stiffness beyond it", required=False),
     "yield_depth": Key(Number(1e-30, 1e6, "m"), "depth at which it yields", required=False),
 }
-YIELD_SHARE = 0.1
+YIELD_SHARE = 0.1  # physics: the loop's share a, but for low e, where e bounds it
 
 
 @dataclass(frozen=True, kw_only=True)

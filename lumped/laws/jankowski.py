@@ -14,20 +14,12 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.laws._damping import oscillator
-from lumped.laws._parameters import (
-    COMMON,
-    EXPONENT_FROM_ONE,
-    RESTITUTION,
-    STIFFNESS,
-    Parameters,
-    damping_key,
-    formula_key,
-)
+from lumped.laws._parameters import EXPONENT_FROM_ONE, Parameters, damped, damping_key
 from lumped.laws._power_law import OscillatorDamped
 from lumped.laws.base import LawKind
 from lumped.scene.scene import Scene
 
-SQRT5 = math.sqrt(5.0)
+SQRT5 = math.sqrt(5.0)  # physics: the formulas' own root, for Hertz's exponent 3/2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,9 +47,4 @@ def jankowski_2006(e: float) -> float:
 
 
 FAMILY = oscillator(0.5 * SQRT5, rebounds=False, equation_10=equation_10, jankowski_2006=jankowski_2006)
-MEMBER = LawKind(
-    of,
-    __doc__,
-    (STIFFNESS, EXPONENT_FROM_ONE, RESTITUTION, damping_key("xi"), formula_key(FAMILY), COMMON),
-    FAMILY,
-)
+MEMBER = LawKind(of, __doc__, damped(FAMILY, damping_key("xi"), exponent=EXPONENT_FROM_ONE), FAMILY)

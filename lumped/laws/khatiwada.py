@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.laws._damping import Family, formulas
-from lumped.laws._parameters import COMMON, EXPONENT, RESTITUTION, STIFFNESS, Parameters, damping_key
+from lumped.laws._parameters import Parameters, damped, damping_key
 from lumped.laws._power_law import SpringDamped
 from lumped.laws.base import LawKind
 from lumped.laws.hunt_crossley import damping, restitution
@@ -35,13 +35,9 @@ class Khatiwada(SpringDamped):
 def of(scene: Scene) -> Khatiwada:
     """The law for a scene. Raises BadInput."""
     given = Parameters(scene, Khatiwada.name)
-    alpha = given.exponent()
-    k = given.stiffness(alpha)
-    kind, c = given.damping(("c",))
-    if kind == "e":
-        c = given.meeting(FAMILY, c) * k / scene.velocity
-    return Khatiwada(k=k, c=c, alpha=alpha, **given.common())
+    numbers = given.spring_damper(FAMILY, "c", lambda d, k: d * k / scene.velocity)
+    return Khatiwada(**numbers, **given.common())
 
 
 FAMILY = Family(restitution, damping, formulas())
-MEMBER = LawKind(of, __doc__, (STIFFNESS, EXPONENT, RESTITUTION, damping_key("c", "N s/m^(alpha + 1)"), COMMON), FAMILY)
+MEMBER = LawKind(of, __doc__, damped(FAMILY, damping_key("c", "N s/m^(alpha + 1)")), FAMILY)

@@ -24,10 +24,10 @@ import numpy as np
 
 from lumped.errors import NotReached, TooManySteps
 from lumped.laws._damping import Family, Limit, check, check_damping, decay_of, formulas
-from lumped.laws._parameters import COMMON, RESTITUTION, STIFFNESS, Parameters, damping_key, formula_key
+from lumped.laws._parameters import NO_KEYS, Parameters, damped, damping_key
 from lumped.laws._power_law import PowerLaw
 from lumped.laws.base import LawKind
-from lumped.numbers import Real
+from lumped.numbers import Real, bisected
 from lumped.scene.scene import Scene
 from lumped.schema.keys import Number
 from lumped.solvers.point.bodies import Stage
@@ -40,15 +40,14 @@ SERIES = Number(7.0 / 12.0, 1.0)
 SHORT = ", above the minimum of the series of second order"
 # e falls as x^-DECAY when x is large.
 DECAY = {"force": 5.0 / 3.0, "depth": 5.0}
-ITERATIONS = 30
-LAST_STEP = 1e-10
-ORDER = 28
+ITERATIONS = 30  # work: impacts tried until the damping meets e
+LAST_STEP = 1e-10  # rounding: of the damping, relative: a smaller step ends the search
+ORDER = 28  # of the Taylor series in time
 # The step over the radius of convergence: SHARE^ORDER is below rounding.
 SHARE = 0.25
 # x = 0 leaves one term in five, so five of the last are read for the radius.
 LAST_TERMS = range(ORDER - 4, ORDER + 1)
-STEPS = 500
-HALVINGS = 54
+STEPS = 500  # work: Taylor steps of one contact
 Series = list[float]
 
 
@@ -183,14 +182,7 @@ def _end(here: Expansion, step: float, exit: str) -> float:
 
 def _zero(series: Series, after: float) -> float:
     """The change of sign, by halving, of what is positive at 0 and negative at `after`."""
-    before = 0.0
-    for _ in range(HALVINGS):
-        middle = 0.5 * (before + after)
-        if _at(series, middle) > 0.0:
-            before = middle
-        else:
-            after = middle
-    return after
+    return bisected(lambda tau: _at(series, tau) > 0.0, 0.0, after)[1]
 
 
 def _log_of_rebound(here: Expansion, end: float) -> float:
@@ -200,4 +192,4 @@ def _log_of_rebound(here: Expansion, end: float) -> float:
 
 
 FAMILY = Family(restitution, damping, formulas(series=series))
-MEMBER = LawKind(of, __doc__, (STIFFNESS, RESTITUTION, damping_key("A", "s"), formula_key(FAMILY), COMMON), FAMILY)
+MEMBER = LawKind(of, __doc__, damped(FAMILY, damping_key("A", "s"), exponent=NO_KEYS), FAMILY)

@@ -7,20 +7,16 @@ from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.laws._assembly import Answer, assemble, bars, impulse_of
+from lumped.laws._assembly import Answer, assemble, bars, values_of
 from lumped.laws.base import LawKind, check
-from lumped.numbers.clock import Clock
-from lumped.numbers.interpolation import local, peak
+from lumped.numbers import Array, Clock, local, peak
 from lumped.result.history import End
 from lumped.result.result import Result, meets
 from lumped.scene.scene import Scene
-from lumped.solvers.mdr.march import coarse, coarse_beyond, pace_of, problem_of
-from lumped.solvers.mdr.nest import Level, Nest, limit, predicted_turn
+from lumped.solvers.mdr.nest import Level, Nest, coarse, coarse_beyond, limit, pace_of, predicted_turn, problem_of
 
-Array = NDArray[np.float64]
 # Of the fields of Instant the force, and those which are seen: depth, velocity, force, edge.
 FORCE, SEEN = 4, [1, 2, 4, 5]
 # Steps of the first march's approach, whatever the tolerance: a tighter one begins with the marches of a looser one
@@ -119,17 +115,8 @@ def _answer(scene: Scene, level: Level) -> Answer:
     if end is End.TIME and time[-1] > level.last:
         time = np.append(time[time < level.last], level.last)
         depth, velocity, force, _ = dense(time)
-    peak_time, peak_force = peak(time, force)
-    values = {
-        "peak_force": peak_force,
-        "peak_time": peak_time,
-        "peak_depth": float(depth.max()),
-        "duration": float(time[-1]) if separated else None,
-        "restitution": float(-velocity[-1]) / scene.velocity if separated else None,
-        "impulse": impulse_of(scene, end, velocity[-1], time[-1], scene.end_time),
-    }
-    message = "" if separated else end.value
-    return Answer(time, dense, values, end, _energy(scene, level), message)
+    values = values_of(scene, end, peak(time, force), float(depth.max()), float(velocity[-1]), float(time[-1]))
+    return Answer(time, dense, values, end, _energy(scene, level), "" if separated else end.value)
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,11 @@ from itertools import pairwise
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.laws._assembly import Answer, assemble, bars, impulse_of
+from lumped.laws._assembly import Answer, assemble, bars, values_of
 from lumped.laws.base import LawKind, check_geometry
-from lumped.numbers.clock import Clock
-from lumped.numbers.interpolation import highest
+from lumped.numbers import Array, Clock, highest
 from lumped.result.history import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
@@ -21,13 +19,12 @@ from lumped.schema import Table
 from lumped.solvers.rod import LONGEST, FlatImpact, RodScales, TippedImpact, Waves
 from lumped.targets.rod import Rod
 
-Array = NDArray[np.float64]
 COARSEST, FINEST, FINER = 1e-6, 1e-12, 1e-3  # of the tolerance, asked of every step
 COARSER = 1e2  # where what is left of the error shows
 # The longest steps of the coarser answer over those of the finer: where no tolerance binds both would take the same
 # steps, and differ by nothing.
 LONGER = 2.0
-SAFETY = 2.0
+SAFETY = 2.0  # safety: of the bars, over the change from the coarser run
 PLACES = 400  # in the history, where peaks are looked for
 
 
@@ -69,16 +66,9 @@ def _answer(scene: Scene, rtol: float, longest: float = LONGEST) -> Answer:
     between = [np.union1d(np.linspace(*ends, PLACES + 1), impact.steps(*ends)) for ends in pairwise(breaks)]
     rows = np.unique(np.concatenate(between))
     depth, velocity, _, _ = impact.columns(rows)
-    peak_time, peak_force = _peak(impact, between)
     ending = End.SEPARATED if separated else End.TIME
-    values = {
-        "peak_force": peak_force,
-        "peak_time": peak_time,
-        "peak_depth": highest(lambda t: impact.columns(t)[0], rows)[1],
-        "duration": end if separated else None,
-        "restitution": -float(velocity[-1]) / scene.velocity if separated else None,
-        "impulse": impulse_of(scene, ending, float(velocity[-1]), end, scene.end_time),
-    }
+    deepest = highest(lambda t: impact.columns(t)[0], rows)[1]
+    values = values_of(scene, ending, _peak(impact, between), deepest, float(velocity[-1]), end)
     columns = _RodColumns(scene, impact, end if separated else np.inf)
     energy = _energy(scene, impact, rows, float(depth[-1]), float(velocity[-1]))
     return Answer(rows, columns, values, ending, energy, "" if separated else ending.value)

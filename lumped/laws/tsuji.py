@@ -14,20 +14,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.laws._damping import oscillator
-from lumped.laws._parameters import (
-    COMMON,
-    EXPONENT_FROM_ONE,
-    RESTITUTION,
-    STIFFNESS,
-    Parameters,
-    damping_key,
-    formula_key,
-)
+from lumped.laws._parameters import EXPONENT_FROM_ONE, Parameters, damped, damping_key
 from lumped.laws._power_law import OscillatorDamped
 from lumped.laws.base import LawKind
 from lumped.scene.scene import Scene
 
-SQRT5 = math.sqrt(5.0)
+SQRT5 = math.sqrt(5.0)  # physics: the formulas' own root, for Hertz's exponent 3/2
+# Physics: the published fit of the damping, by power of e.
 POLYNOMIAL = (1.2728, -4.2783, 11.087, -22.348, 27.467, -18.022, 4.8218)
 
 
@@ -60,9 +53,4 @@ def tsuji_polynomial(e: float) -> float:
 
 
 FAMILY = oscillator(SQRT5, rebounds=True, antypov_elliott=antypov_elliott, tsuji_polynomial=tsuji_polynomial)
-MEMBER = LawKind(
-    of,
-    __doc__,
-    (STIFFNESS, EXPONENT_FROM_ONE, RESTITUTION, damping_key("alpha_t"), formula_key(FAMILY), COMMON),
-    FAMILY,
-)
+MEMBER = LawKind(of, __doc__, damped(FAMILY, damping_key("alpha_t"), exponent=EXPONENT_FROM_ONE), FAMILY)

@@ -7,13 +7,12 @@ from math import inf
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from lumped.errors import Fault
-from lumped.numbers import Real
-from lumped.numbers.quadrature import gauss
+from lumped.errors import BadInput, Fault
+from lumped.numbers import Array, Real, gauss
 
-GAUSS_POINTS = 48
+GAUSS_POINTS = 48  # Gauss points over the contact radius, for the work of indentation
 
 
 def elastic_faults(body: str, nu: float, **lengths: float) -> list[Fault]:
@@ -23,6 +22,13 @@ def elastic_faults(body: str, nu: float, **lengths: float) -> list[Fault]:
     if not -1.0 < nu <= 0.5:
         faults.append(Fault(body, "nu", f"must lie above -1 and not above 0.5, is {nu}"))
     return faults
+
+
+def check_below(depth: ArrayLike, limit: float, said: str) -> None:
+    """Raises BadInput where a depth reaches the limit, m, which is `said` in words."""
+    deepest = np.max(np.asarray(depth), initial=0.0)
+    if deepest >= limit:
+        raise BadInput(Fault("depth", "", f"a depth of {deepest:.3g} m; accepted below {said} {limit:g} m"))
 
 
 class LoadCurve(ABC):
@@ -62,7 +68,7 @@ class LoadCurve(ABC):
         """d(F/E*)/d depth: at the edge the profile meets the surface with the stiffness of a flat punch."""
 
     @abstractmethod
-    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
         """Pressure p/E* at a distance from the axis while the contact has this radius, zero outside of it."""
 
     def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
@@ -73,13 +79,29 @@ class LoadCurve(ABC):
         """F/E* at a contact radius."""
         return self.force(self.depth(contact_radius))
 
-    def energy(self, depth: ArrayLike) -> NDArray[np.float64]:
+    def energy(self, depth: ArrayLike) -> Array:
         """Work of indentation int_0^depth F d depth = int_0^a F(x) depth'(x) dx."""
         a = np.asarray(self.contact_radius(np.maximum(np.asarray(depth, dtype=float), 0.0)))
         nodes, weights = gauss(GAUSS_POINTS)
         x = a[..., None] * nodes
         return np.asarray(a * ((self.force_at(x) * self.depth_slope(x)) @ weights))
 
-    def pressure_at(self, radius: ArrayLike, depth: float) -> NDArray[np.float64]:
+    def pressure_at(self, radius: ArrayLike, depth: float) -> Array:
         """Pressure p/E* at a distance from the axis, m, and a depth, m."""
         return self.pressure(radius, float(self.contact_radius(float(depth))))
+
+
+class KnownTogether(LoadCurve):
+    """A curve whose force and slope are found by one and the same work."""
+
+    @abstractmethod
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
+        """F/E* and dF/d depth at a depth."""
+
+    def force(self, depth: ArrayLike) -> Real:
+        """F/E* at a depth."""
+        return self.force_and_slope(depth)[0]
+
+    def dforce_ddepth(self, depth: ArrayLike) -> Real:
+        """d(F/E*)/d depth."""
+        return self.force_and_slope(depth)[1]

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from math import pi, radians, tan
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.half_space import HalfSpaceCurve
-from lumped.numbers import Real
+from lumped.numbers import Array, Real
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class ConeCurve(HalfSpaceCurve):
         """(pi/2) tan(theta)."""
         return np.full_like(np.asarray(contact_radius, dtype=float), 0.5 * pi * self.steepness)
 
-    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
         """p/E* = (tan(theta)/2) arcosh(a/r), infinite at the tip."""
         r = np.abs(np.asarray(radius, dtype=float))
         with np.errstate(divide="ignore"):

@@ -6,11 +6,11 @@ from abc import abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
-from lumped.numbers import Real
+from lumped.numbers import Array, Real
 
 
 class FixedArea(LoadCurve):
@@ -48,17 +48,17 @@ class FixedArea(LoadCurve):
         """S."""
         return np.where(np.asarray(depth) >= 0.0, self.stiffness, 0.0)
 
-    def energy(self, depth: ArrayLike) -> NDArray[np.float64]:
+    def energy(self, depth: ArrayLike) -> Array:
         """S depth^2/2."""
         return np.asarray(0.5 * self.stiffness * np.maximum(depth, 0.0) ** 2)
 
-    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
         """Raises BadInput: the radius of this contact does not tell its depth."""
         message = "does not determine the pressure under a flat end; ask pressure_at(radius, depth)"
         raise BadInput(Fault("punch", "contact_radius", message))
 
     @abstractmethod
-    def pressure_at(self, radius: ArrayLike, depth: float) -> NDArray[np.float64]:
+    def pressure_at(self, radius: ArrayLike, depth: float) -> Array:
         """Pressure p/E* at a distance from the axis, infinite at the edge and zero beyond."""
 
 
@@ -73,12 +73,12 @@ class PunchCurve(FixedArea):
         """2 a, m."""
         return 2.0 * self.radius
 
-    def pressure_at(self, radius: ArrayLike, depth: float) -> NDArray[np.float64]:
+    def pressure_at(self, radius: ArrayLike, depth: float) -> Array:
         """depth/(pi sqrt(a^2-r^2))."""
         return under_flat_end(radius, self.radius, max(depth, 0.0))
 
 
-def under_flat_end(radius: ArrayLike, end: float, intensity: float) -> NDArray[np.float64]:
+def under_flat_end(radius: ArrayLike, end: float, intensity: float) -> Array:
     """intensity/(pi sqrt(a^2-r^2)) below a flat end of radius a, infinite at its edge and zero beyond."""
     square = end**2 - np.asarray(radius, dtype=float) ** 2
     with np.errstate(divide="ignore"):
@@ -101,6 +101,6 @@ class Column(FixedArea):
         """A/thickness, m."""
         return float(np.pi) * self.radius**2 / self.thickness
 
-    def pressure_at(self, radius: ArrayLike, depth: float) -> NDArray[np.float64]:
+    def pressure_at(self, radius: ArrayLike, depth: float) -> Array:
         """depth/thickness on the whole face."""
         return np.where(np.abs(np.asarray(radius)) <= self.radius, max(depth, 0.0) / self.thickness, 0.0)

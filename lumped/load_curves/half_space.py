@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.load_curves.base import GAUSS_POINTS, LoadCurve
-from lumped.numbers import Real
-from lumped.numbers.quadrature import gauss
+from lumped.numbers import Array, Real, gauss
 
 STEPS, LAST_STEP = 60, 1e-12  # of Newton's method; the step after that is rounding
 
@@ -23,7 +22,7 @@ class HalfSpaceCurve(LoadCurve):
         """2 a."""
         return 2.0 * self.contact_radius(depth)
 
-    def energy(self, depth: ArrayLike) -> NDArray[np.float64]:
+    def energy(self, depth: ArrayLike) -> Array:
         """Work of indentation int_0^depth F d depth = depth (F - a depth) + int_0^a depth(x)^2 dx."""
         d = np.maximum(np.asarray(depth, dtype=float), 0.0)
         a = np.asarray(self.contact_radius(d))
@@ -31,7 +30,7 @@ class HalfSpaceCurve(LoadCurve):
         inner = a * (np.square(self.depth(a[..., None] * nodes)) @ weights)
         return np.asarray(d * (self.force(d) - a * d) + inner)
 
-    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
         """Pressure p(r)/E* = (1/pi) int_r^a depth'(x)/sqrt(x^2-r^2) dx, zero outside the contact.
 
         Popov and Hess 2015, ISBN 978-3-642-53876-6.

@@ -13,25 +13,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from math import pi
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault, nearest
-from lumped.load_curves.base import LoadCurve, elastic_faults
+from lumped.load_curves.base import LoadCurve, check_below, elastic_faults
 from lumped.load_curves.fixed_area import FixedArea, under_flat_end
 from lumped.load_curves.half_space import HalfSpaceCurve
 from lumped.load_curves.plane_contact import LineCurve
-from lumped.load_curves.tabulated import REACH, Array, TabulatedCurve, TabulatedState, growing_edges
-from lumped.numbers import Real
-from lumped.numbers.quadrature import gauss
+from lumped.load_curves.tabulated import REACH, TabulatedCurve, TabulatedState, growing_edges
+from lumped.numbers import Array, gauss
 
 BASES = ("bonded", "sliding")
 # Beyond this wavenumber (times thickness) the deficit is below rounding.
 LAST_WAVENUMBER = 22.0
-WAVE_POINTS = 24
+WAVE_POINTS = 24  # Gauss points of each panel of wavenumbers
 
 
 @dataclass(frozen=True)
@@ -56,10 +54,7 @@ class PointLayer:
 
     def check_depth(self, depth: ArrayLike) -> None:
         """Raises BadInput where a depth reaches the thickness."""
-        deepest = np.max(np.asarray(depth), initial=0.0)
-        if deepest >= self.thickness:
-            message = f"a depth of {deepest:.3g} m; accepted below the layer's thickness {self.thickness:g} m"
-            raise BadInput(Fault("depth", "", message))
+        check_below(depth, self.thickness, "the layer's thickness")
 
 
 def deficit(nu: float, base: str, u: Array) -> Array:
@@ -122,12 +117,12 @@ class LayerCurve(TabulatedCurve):
         slope = self.half_space.depth_slope(a) * smooth[0] + own * slopes[0]
         return TabulatedState(own * smooth[0], slope, self._own_force(a) * smooth[1], 2.0 * a * smooth[2])
 
-    def contact_radius(self, depth: ArrayLike) -> NDArray[np.float64]:
+    def contact_radius(self, depth: ArrayLike) -> Array:
         """Contact radius a at a depth below the thickness, m; raises BadInput for deeper ones."""
         self.layer.check_depth(depth)
         return np.asarray(super().contact_radius(depth))
 
-    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
         """p(r)/E* = -(1/pi) int_r^a phi'(t)/sqrt(t^2-r^2) dt, zero outside: the half-space's and a smooth part."""
         equation = self._equation(contact_radius, 1.0)
         depth = float(self.depth(contact_radius))
@@ -135,7 +130,7 @@ class LayerCurve(TabulatedCurve):
         inner = abel(equation, phi, np.asarray(radius, dtype=float) / self.layer.thickness)
         return self.half_space.pressure(radius, contact_radius) + inner / self.layer.thickness
 
-    def _own_force(self, contact_radius: ArrayLike) -> NDArray[np.float64]:
+    def _own_force(self, contact_radius: ArrayLike) -> Array:
         """F/E* of the half-space at this contact radius, m^2."""
         return np.asarray(self.half_space.force_at(contact_radius))
 
@@ -165,7 +160,7 @@ class LayerPunch(FixedArea):
         """2 kappa a, m."""
         return float(2.0 * self.layer.thickness * (self._equation.weights @ self._equation.punch))
 
-    def pressure_at(self, radius: ArrayLike, depth: float) -> NDArray[np.float64]:
+    def pressure_at(self, radius: ArrayLike, depth: float) -> Array:
         """(1/pi) [phi(a)/sqrt(a^2-r^2) - int_r^a phi'/sqrt(t^2-r^2) dt] with the punch's phi."""
         equation, pressed = self._equation, max(depth, 0.0)
         edge = pressed * (1.0 + float(equation.weights @ equation.edge))
@@ -266,7 +261,7 @@ class LineLayer(LineCurve):
         """The more, the wider the contact is over the thickness."""
         return 20.0 + 4.0 * half_width / self.layer.thickness
 
-    def contact_radius(self, depth: ArrayLike) -> NDArray[np.float64]:
+    def contact_radius(self, depth: ArrayLike) -> Array:
         """Half-width at a depth below the thickness, m; raises BadInput for deeper ones."""
         self.layer.check_depth(depth)
         return np.asarray(super().contact_radius(depth))
@@ -279,87 +274,3 @@ class LineLayer(LineCurve):
         density = weights / u
         held = cosines * (density * deficit(self.layer.nu, self.layer.base, u)) @ cosines.T
         return np.asarray(density @ np.exp(-2.0 * u) - held + np.log(2.0) - np.log(ratio))
-
-
-@dataclass(frozen=True)
-class ThinLayer(LoadCurve):
-    """A parabola of radius R on a layer much thinner than the contact is wide: each strip on its own, or squeezed out.
-
-    The closed forms that the integral equations approach, with a^2 = spread R depth and p = p0 (1 - r^2/a^2)^power:
-    exponents 2 and 3/2 while the layer can be compressed, 3 and 5/2 once it cannot (Johnson 1985, ISBN
-    978-0-521-34796-9, chapter 5).
-    p0/E* = hardness depth/h where power = 1, hardness R depth^2/h^3 where it is 2. `plane`: per unit length.
-    """
-
-    radius: float
-    thickness: float
-    plane: bool
-    spread: float
-    power: int
-    hardness: float
-
-    @property
-    def exponent(self) -> float:
-        """alpha of F = const depth^alpha."""
-        return self.power + (0.5 if self.plane else 1.0)
-
-    @property
-    def _fullness(self) -> float:
-        """Force over p0 a^2, in plane strain over p0 a."""
-        return (4.0 / 3.0, 16.0 / 15.0)[self.power - 1] if self.plane else pi / (self.power + 1.0)
-
-    def force(self, depth: ArrayLike) -> Real:
-        """F/E*, m^2; per unit length m."""
-        a = self.contact_radius(depth)
-        return self._fullness * self._peak(np.maximum(depth, 0.0)) * (a if self.plane else a**2)
-
-    def contact_radius(self, depth: ArrayLike) -> Real:
-        """sqrt(spread R depth), m."""
-        return np.sqrt(self.spread * self.radius * np.maximum(depth, 0.0))
-
-    def depth(self, contact_radius: ArrayLike) -> Real:
-        """a^2/(spread R), m."""
-        return np.asarray(contact_radius) ** 2 / (self.spread * self.radius)
-
-    def depth_slope(self, contact_radius: ArrayLike) -> Real:
-        """2 a/(spread R)."""
-        return 2.0 * np.asarray(contact_radius) / (self.spread * self.radius)
-
-    def dforce_ddepth(self, depth: ArrayLike) -> Real:
-        """alpha F/depth."""
-        d = np.maximum(np.asarray(depth, dtype=float), 0.0)
-        return self.exponent * np.divide(self.force(d), d, out=np.zeros_like(d), where=d > 0.0)
-
-    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
-        """p0 (1 - r^2/a^2)^power."""
-        r = np.abs(np.asarray(radius, dtype=float))
-        ratio = np.divide(r, contact_radius, out=np.ones_like(r), where=r < contact_radius)
-        return np.asarray(self._peak(self.depth(contact_radius)) * (1.0 - ratio**2) ** self.power)
-
-    def _peak(self, depth: Real) -> Real:
-        """p0/E*."""
-        geometry = 1.0 if self.power == 1 else self.radius / self.thickness
-        return self.hardness * geometry * (depth / self.thickness) ** self.power
-
-
-def compressible(radius: float, layer: PointLayer, *, plane: bool) -> ThinLayer:
-    """Winkler's foundation: confined modulus on a bonded base, E* itself on a sliding one; a^2 = 2 R depth.
-
-    Raises BadInput for a bonded layer with nu = 0.5.
-    """
-    if layer.base == "bonded" and layer.nu == 0.5:
-        message = "of a bonded compressible layer must stay below 0.5: its confined modulus is infinite"
-        raise BadInput(Fault("layer", "nu", message))
-    hardness = (1.0 - layer.nu) ** 2 / (1.0 - 2.0 * layer.nu) if layer.base == "bonded" else 1.0
-    return ThinLayer(radius, layer.thickness, plane, 2.0, 1, hardness)
-
-
-def incompressible(radius: float, layer: PointLayer, *, plane: bool) -> ThinLayer:
-    """nu = 0.5 on a bonded base, free to slip under the indenter: a^2 = 4 R depth, in plane strain 6 R depth.
-
-    The layer is pushed outwards between its faces like a fluid: p'' + p'/r = -3 G (depth - r^2/(2R))/h^3, p = p' = 0 at
-    the edge. Raises BadInput for any other layer.
-    """
-    if layer.base != "bonded" or layer.nu != 0.5:
-        raise BadInput(Fault("layer", "nu", "must be 0.5, on a bonded base, for an incompressible thin layer"))
-    return ThinLayer(radius, layer.thickness, plane, 6.0 if plane else 4.0, 2, 9.0 / 8.0 if plane else 3.0 / 8.0)

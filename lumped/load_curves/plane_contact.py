@@ -14,10 +14,11 @@ from math import inf
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
-from lumped.load_curves.tabulated import REACH, Array, TabulatedCurve, TabulatedState, growing_edges
+from lumped.load_curves.tabulated import REACH, TabulatedCurve, TabulatedState, growing_edges
+from lumped.numbers import Array
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class LineProfile(ABC):
         """Half-width at which the profile ends, m."""
 
     @abstractmethod
-    def height(self, x: ArrayLike) -> NDArray[np.float64]:
+    def height(self, x: ArrayLike) -> Array:
         """Height above the lowest line, m."""
 
 
@@ -49,7 +50,7 @@ class CylinderProfile(LineProfile):
         """R, m."""
         return self.radius
 
-    def height(self, x: ArrayLike) -> NDArray[np.float64]:
+    def height(self, x: ArrayLike) -> Array:
         """R - sqrt(R^2-x^2) = x^2/(R + sqrt(R^2-x^2)), m."""
         square = np.square(np.asarray(x, dtype=float))
         return np.asarray(square / (self.radius + np.sqrt(self.radius**2 - square)))
@@ -64,7 +65,7 @@ class ParabolaProfile(LineProfile):
         """It does not end."""
         return inf
 
-    def height(self, x: ArrayLike) -> NDArray[np.float64]:
+    def height(self, x: ArrayLike) -> Array:
         """x^2/(2R), m."""
         return np.asarray(np.square(np.asarray(x, dtype=float)) / (2.0 * self.radius))
 
@@ -220,7 +221,7 @@ class LineCurve(TabulatedCurve):
         values = (force * compliance, slope, force, 1.0 / (logarithm + smooth[2]))
         return TabulatedState(*(np.where(touched, value, 0.0) for value in values))
 
-    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
         """p/E* at distances from the middle of the contact, from the equation itself; zero at first touch."""
         if contact_radius == 0.0:
             return np.zeros(np.shape(radius))

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from math import gamma, inf, pi, sqrt
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.half_space import HalfSpaceCurve
-from lumped.numbers import Real
+from lumped.numbers import Array, Real
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Power(HalfSpaceCurve):
         """n beta c a^(n-1)."""
         return self.exponent * self._steepness * np.asarray(contact_radius) ** (self.exponent - 1.0)
 
-    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
         """p/E* = (n beta c/pi) a^(n-1) w 2F1(1, 1-n/2; 3/2; w^2) with w^2 = 1 - r^2/a^2; infinite at a cone's tip."""
         from scipy.special import hyp2f1
 

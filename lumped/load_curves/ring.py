@@ -14,21 +14,20 @@ from math import asin, exp, inf, log
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.load_curves.base import GAUSS_POINTS, LoadCurve, elastic_faults
+from lumped.load_curves.base import GAUSS_POINTS, KnownTogether, check_below, elastic_faults
 from lumped.load_curves.plane_contact import Collocation, Grown, collocation, folded
-from lumped.load_curves.tabulated import ACCURACY, REFINEMENT, Array, evaluate, panel, tested_place
-from lumped.numbers import Real
-from lumped.numbers.quadrature import gauss
+from lumped.load_curves.tabulated import ACCURACY, certified, evaluate
+from lumped.numbers import Array, Real, gauss
 
 # Panels by the logarithm of the depth over its limit: the deeper half, and a decade each below it.
 EDGES = -log(2.0) - log(10.0) * np.arange(-1.0, 18.0)
-EDGES[0] = 0.0
+EDGES[0] = 0.0  # the limit itself
 # The corner of the kernel at phi = 0 leaves convergence like the fourth power of the points.
 POINTS, POINTS_PER_RADIAN, POINTS_PER_THICKNESS, NEWTON_STEPS = 32.0, 100.0, 2.5, 60
-LEAST_CLEARANCE = 1e-4
+LEAST_CLEARANCE = 1e-4  # safety: inner radius less the cylinder's over the thickness: narrower rings are refused
 # The half-angle is searched with this share of the points, and found by a secant over this share of itself.
 SEARCH, SECANT = 0.4, 1e-5
 # The search starts at or below the first, and no contact is wider than the last, rad.
@@ -71,10 +70,7 @@ class RingContact:
 
     def check_depth(self, depth: ArrayLike) -> None:
         """Raises BadInput where a depth reaches the limit."""
-        deepest = np.max(np.asarray(depth), initial=0.0)
-        if deepest >= self.depth_limit:
-            message = f"a depth of {deepest:.3g} m; accepted below thickness and radius, {self.depth_limit:g} m"
-            raise BadInput(Fault("depth", "", message))
+        check_below(depth, self.depth_limit, "thickness and radius,")
 
     def pressed(self, depth: float, refinement: float) -> Grown:
         """The contact at one depth, m; its force is the component along the motion. Raises NotReached."""
@@ -157,7 +153,7 @@ class RingContact:
 
 
 @dataclass(frozen=True)
-class RodInRing(RingContact, LoadCurve):
+class RodInRing(RingContact, KnownTogether):
     """F is the component along the motion, the contact radius the half-length of the inner arc that is touched.
 
     While the cylinder's arc is the exact one, F is not the slope of a stored energy: the motion turns the overlap a
@@ -167,20 +163,12 @@ class RodInRing(RingContact, LoadCurve):
 
     accuracy: ClassVar[float] = ACCURACY
 
-    def force(self, depth: ArrayLike) -> Real:
-        """F/E* per unit length, m."""
-        return self._at(depth)[1]
-
     def contact_radius(self, depth: ArrayLike) -> Real:
         """Half-length of the inner arc touched, m."""
         return self._at(depth)[0]
 
-    def dforce_ddepth(self, depth: ArrayLike) -> Real:
-        """d(F/E*)/d depth per unit length."""
-        return self._at(depth)[2]
-
     def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
-        """F/E* and dF/d depth at a depth."""
+        """F/E* per unit length, m, and its slope at a depth."""
         _, force, slope, _ = self._at(depth)
         return force, slope
 
@@ -197,11 +185,11 @@ class RodInRing(RingContact, LoadCurve):
         product = half_length * exponent
         return np.divide(depth, product, out=np.zeros_like(depth), where=product > 0.0)
 
-    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
         """p/E* at distances along the inner arc, from the equation itself."""
         return self.pressure_at(radius, float(self.depth(contact_radius)))
 
-    def pressure_at(self, radius: ArrayLike, depth: float) -> NDArray[np.float64]:
+    def pressure_at(self, radius: ArrayLike, depth: float) -> Array:
         """p/E* at distances along the inner arc and a depth."""
         self.check_depth(depth)
         if depth <= 0.0:
@@ -209,7 +197,7 @@ class RodInRing(RingContact, LoadCurve):
         here = self.pressed(depth, 1.0)
         return here.collocation.at(here.q, np.asarray(radius, dtype=float) / here.half_width)
 
-    def energy(self, depth: ArrayLike) -> NDArray[np.float64]:
+    def energy(self, depth: ArrayLike) -> Array:
         """Work of indentation int_0^depth F d depth."""
         d = np.maximum(np.asarray(depth, dtype=float), 0.0)
         nodes, weights = gauss(GAUSS_POINTS)
@@ -233,18 +221,17 @@ class RodInRing(RingContact, LoadCurve):
 def _panel(ring: RodInRing, index: int) -> Array:
     """Logarithms of half-length, F/E* and dF/d depth over ln(depth/limit), shape (POINTS, 2, 3), certified."""
 
-    def sample(place: float, refinement: float = 1.0) -> Array:
+    def sample(place: float, refinement: float) -> Array:
         here = ring.pressed(ring.depth_limit * exp(place), refinement)
         return np.log([here.half_width, here.force, 1.0 / here.compliance])
 
-    low, high = (float(edge) for edge in EDGES[[index, index - 1]])
-    table, place = panel(low, high, sample), tested_place(low, high)
-    kept, _ = evaluate(table[None], np.array([low, high]), np.array([place]))
-    error = float(np.abs(kept[1:, 0] - sample(place, REFINEMENT)[1:]).max())
-    if not error <= ACCURACY:
-        depth = ring.depth_limit * exp(place)
-        raise NotReached(f"{ring} at a depth of {depth:g} m: two resolutions differ by {error:.1e}")
-    return table
+    def error(place: float, kept: Array, fresh: Array, slopes: Array) -> float:
+        return float(np.abs(kept[1:] - fresh[1:]).max())
+
+    def named(place: float) -> str:
+        return f"{ring} at a depth of {ring.depth_limit * exp(place):g} m"
+
+    return certified((float(EDGES[index]), float(EDGES[index - 1])), sample, error, named)
 
 
 def ring_compliance(nu: float, ratio: float, rule: Collocation, angle: float) -> Array:

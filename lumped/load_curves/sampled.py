@@ -5,19 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
-from lumped.load_curves.base import LoadCurve
-from lumped.numbers import Real
+from lumped.load_curves.base import KnownTogether
+from lumped.numbers import Array, Real
 
-Array = NDArray[np.float64]
-BISECTIONS = 120
-TINY = 1e-300
+BISECTIONS = 120  # work: halvings of the depth's logarithm, whose 1400 they take far below rounding
+TINY = 1e-300  # safety: m, in place of zero where a logarithm is taken
 
 
 @dataclass(frozen=True)
-class SampledCurve(LoadCurve):
+class SampledCurve(KnownTogether):
     """Depths, m, ascending, with forces F/E* and contact radii, m: at least two of each.
 
     Between them and beyond, the logarithms of force and radius are cubics and straight lines in that of the depth.
@@ -26,14 +25,6 @@ class SampledCurve(LoadCurve):
     depths: tuple[float, ...]
     forces: tuple[float, ...]
     radii: tuple[float, ...]
-
-    def force(self, depth: ArrayLike) -> Real:
-        """F/E*."""
-        return self.force_and_slope(depth)[0]
-
-    def dforce_ddepth(self, depth: ArrayLike) -> Real:
-        """d(F/E*)/d depth."""
-        return self.force_and_slope(depth)[1]
 
     def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
         """F/E* and its slope, zero without depth."""
@@ -57,7 +48,7 @@ class SampledCurve(LoadCurve):
         """1/(da/d depth)."""
         return 1.0 / self._power(self.depth(contact_radius), self.radii)[1]
 
-    def pressure(self, radius: ArrayLike, contact_radius: float) -> NDArray[np.float64]:
+    def pressure(self, radius: ArrayLike, contact_radius: float) -> Array:
         """Raises BadInput: forces alone are known."""
         raise BadInput(Fault("load curve", "pressure", "sampled: only its forces are known"))
 

@@ -7,14 +7,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.load_curves.half_space import HalfSpaceCurve
-from lumped.numbers import Real
+from lumped.numbers import Array, Real
 
 # u - tanh u = u^3/3 - 2u^5/15 + ...: where the difference itself would lose digits.
 SERIES = (1 / 3, -2 / 15, 17 / 315, -62 / 2835, 1382 / 155925, -21844 / 6081075, 929569 / 638512875)
-SERIES_BELOW = 0.15
+SERIES_BELOW = 0.15  # rounding: of u, below it the difference would lose digits and the series stands
 # Depth over radius.
 SHALLOW = 0.05
 
@@ -61,7 +61,7 @@ class SneddonSphere(HalfSpaceCurve):
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.arctanh(ratio) + ratio / ((1.0 - ratio) * (1.0 + ratio))
 
-    def _angles(self, depth: ArrayLike) -> NDArray[np.float64]:
+    def _angles(self, depth: ArrayLike) -> Array:
         """u at depths, an array of their shape."""
         ratio = np.asarray(np.maximum(depth, 0.0) / self.radius)
         return np.asarray(_angle(ratio, np.tanh, ratio.max(initial=0.0)))
@@ -80,7 +80,7 @@ def _angle(ratio: Real, tanh: Callable[[Real], Real], deepest: float) -> Real:
     return u
 
 
-def _minus_tanh(u: NDArray[np.float64], t: NDArray[np.float64]) -> NDArray[np.float64]:
+def _minus_tanh(u: Array, t: Array) -> Array:
     """u - tanh u to full relative precision."""
     square = u * u
     series = SERIES[-1] * square + SERIES[-2]

@@ -13,15 +13,14 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import NotReached
-from lumped.load_curves.base import LoadCurve
-from lumped.numbers import Real
+from lumped.load_curves.base import KnownTogether
+from lumped.numbers import Array, Real
 
-Array = NDArray[np.float64]
-POINTS = 14
-COSINES = np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS)
+POINTS = 14  # Chebyshev points of a panel
+COSINES = np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS)  # Chebyshev points on (-1, 1)
 # Of the way from a panel's middle to its end: no node lies there.
 TESTED_AT = 0.985
 # A panel is certified by an equation with finer quadrature.
@@ -31,6 +30,7 @@ NEWTON_STEPS, LAST_STEP, STARTS_PER_PANEL = 10, 1e-6, 50
 # The largest contact radius served, in lengths of the body and in radii of a profile that ends; panels grow outwards
 # by this factor from the first, whose end is the lesser of two shares of the same.
 REACH, SHARE_OF_EXTENT = 20.0, 0.85
+# The shares: of the body's length, of the profile's extent; and the factor.
 FIRST_PANEL, FIRST_OF_EXTENT, GROWTH = 0.3, 0.3, 1.6
 
 
@@ -45,11 +45,6 @@ def panel(low: float, high: float, sample: Callable[[float], Array]) -> Array:
     return np.stack([values, slopes * 2.0 / (high - low)], axis=1)
 
 
-def tested_place(low: float, high: float) -> float:
-    """Where a panel is to be certified."""
-    return 0.5 * (low + high) + 0.5 * (high - low) * TESTED_AT
-
-
 def evaluate(tables: Array, edges: Array, place: Array) -> tuple[Array, Array]:
     """Functions and slopes at places, each of shape (m, n), from panels between ascending edges.
 
@@ -61,6 +56,27 @@ def evaluate(tables: Array, edges: Array, place: Array) -> tuple[Array, Array]:
     return both[0], both[1]
 
 
+def certified(
+    ends: tuple[float, float],
+    sample: Callable[[float, float], Array],
+    error: Callable[[float, Array, Array, Array], float],
+    named: Callable[[float], str],
+) -> Array:
+    """One panel, shape (POINTS, 2, m), of functions sampled at a place with a refinement.
+
+    `error` tells, from a place, what is kept there, what a finer sample says, both (m, 1), and the slopes, by how much
+    they differ; `named` what is found at a place. Raises NotReached where that is too much.
+    """
+    low, high = ends
+    table = panel(low, high, lambda place: sample(place, 1.0))
+    place = 0.5 * (low + high) + 0.5 * (high - low) * TESTED_AT
+    kept, slopes = evaluate(table[None], np.array(ends), np.array([place]))
+    found = error(place, kept, sample(place, REFINEMENT)[:, None], slopes)
+    if not found <= ACCURACY:
+        raise NotReached(f"{named(place)}: two resolutions differ by {found:.1e}")
+    return table
+
+
 class TabulatedState(NamedTuple):
     """A curve at contact radii: depth, its slope over the radius, F/E* and dF/d depth, of one shape."""
 
@@ -70,7 +86,7 @@ class TabulatedState(NamedTuple):
     stiffness: Real
 
 
-class TabulatedCurve(LoadCurve):
+class TabulatedCurve(KnownTogether):
     """A curve that is solved at single contact radii and tabulated between, to a relative accuracy of 1e-8.
 
     Raises NotReached when two resolutions of the equation differ by more, and for depths beyond the last panel.
@@ -112,16 +128,8 @@ class TabulatedCurve(LoadCurve):
         """F/E* at a contact radius."""
         return self.at(contact_radius).force
 
-    def force(self, depth: ArrayLike) -> Real:
-        """F/E* at a depth."""
-        return self.force_at(self.contact_radius(depth))
-
-    def dforce_ddepth(self, depth: ArrayLike) -> Real:
-        """That of a flat punch with the contact radius at this depth."""
-        return self.at(self.contact_radius(depth)).stiffness
-
     def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
-        """F/E* and dF/d depth at a depth."""
+        """F/E* and dF/d depth at a depth: that of a flat punch with the contact radius there."""
         here = self.at(self.contact_radius(depth))
         return here.force, here.stiffness
 
@@ -190,15 +198,11 @@ def _tables(curve: TabulatedCurve, panels: int) -> Array:
 @lru_cache(maxsize=1024)
 def _panel(curve: TabulatedCurve, index: int) -> Array:
     """One panel, shape (POINTS, 2, 3), certified."""
+
+    def error(radius: float, kept: Array, fresh: Array, slopes: Array) -> float:
+        one, other = (curve.state(np.array([radius]), smooth, slopes) for smooth in (kept, fresh))
+        ratios = (one.depth / other.depth, one.force / other.force, one.stiffness / other.stiffness)
+        return max(abs(float(ratio[0]) - 1.0) for ratio in ratios)
+
     low, high = curve.edges[index : index + 2]
-    table = panel(low, high, lambda radius: curve.sample(radius, 1.0))
-    radius = np.array([tested_place(low, high)])
-    values, slopes = evaluate(table[None], np.array([low, high]), radius)
-    kept = curve.state(radius, values, slopes)
-    fresh = curve.state(radius, curve.sample(float(radius[0]), REFINEMENT)[:, None], slopes)
-    ratios = (kept.depth / fresh.depth, kept.force / fresh.force, kept.stiffness / fresh.stiffness)
-    error = max(abs(float(ratio[0]) - 1.0) for ratio in ratios)
-    if not error <= ACCURACY:
-        place = f"the load curve at a contact radius of {radius[0]:g} m"
-        raise NotReached(f"{place}: two resolutions differ by {error:.1e}")
-    return table
+    return certified((low, high), curve.sample, error, lambda a: f"the load curve at a contact radius of {a:g} m")

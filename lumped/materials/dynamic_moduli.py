@@ -10,9 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.materials.relaxation import Relaxation
+from lumped.numbers import Array, freeze_columns
 from lumped.schema.csv_file import read_columns, read_header
-
-Array = NDArray[np.float64]
 
 HERTZ, RADIANS = "frequency_Hz", "angular_frequency_rad_per_s"
 MODULI = ("storage_Pa", "loss_Pa")
@@ -33,10 +32,7 @@ class DynamicModuli:
     source: str = "dynamic moduli"
 
     def __post_init__(self) -> None:
-        columns = {name: np.array(getattr(self, name), dtype=float) for name in ("omega", "storage", "loss")}
-        for name, column in columns.items():
-            column.flags.writeable = False
-            object.__setattr__(self, name, column)
+        columns = freeze_columns(self, ("omega", "storage", "loss"))
         faults = [Fault(self.source, name, message) for name, message in _faults(**columns)]
         if faults:
             raise BadInput(faults)

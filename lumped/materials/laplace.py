@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
+from lumped.numbers import Array
 
-Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Transform = Callable[[Complex], Complex]
 

@@ -12,7 +12,8 @@ from lumped.schema import Table
 from lumped.schema.keys import Choice, Key, Number
 from lumped.schema.record import Record, written
 
-MODULUS = Number(1e-3, 1e16, "Pa")
+MODULUS, DENSITY = Number(1e-3, 1e16, "Pa"), Number(1e-3, 1e6, "kg/m3")
+POISSON = Number(-1.0, 0.5, above=True)
 
 
 @dataclass(frozen=True)
@@ -25,8 +26,8 @@ class Material(Record):
     """
 
     young: Relaxation
-    nu: Annotated[float, Key(Number(-1.0, 0.5, above=True), "Poisson's ratio")]
-    density: Annotated[float | None, Key(Number(1e-3, 1e6, "kg/m3"), "density")] = None
+    nu: Annotated[float, Key(POISSON, "Poisson's ratio")]
+    density: Annotated[float | None, Key(DENSITY, "density")] = None
     constant: Annotated[str, Key(Choice(("poisson", "bulk")), "what does not relax")] = "poisson"
     bulk_modulus: Annotated[float | None, Key(MODULUS, "constant bulk modulus of a fluid")] = None
     yield_strength: Annotated[float | None, Key(MODULUS, "stress at which it yields")] = None

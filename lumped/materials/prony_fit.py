@@ -19,16 +19,16 @@ from lumped.errors import BadInput, Fault, NotReached
 from lumped.materials.dynamic_moduli import DynamicModuli
 from lumped.materials.laplace import Transform, relaxation_modulus
 from lumped.materials.relaxation import Fidelity, Relaxation
+from lumped.numbers import Array
 
-Array = NDArray[np.float64]
 # Candidate times a decade for data: finer than data can tell apart.
 DENSE = 8.0
 # Candidates reach so many decades beyond the window of the data: what relaxes outside is seen as its flank.
 BEYOND_DATA = 0.5
-BEYOND_WINDOW = 1.5
+BEYOND_WINDOW = 1.5  # the same decades for a known law in its window
 # A series of log-spaced times errs as exp(-pi^2/h), h their distance in ln(time); Gauss-Newton needs fewer.
 FEWEST, GROWTH, ROUNDS = 0.4, 1.25, 10
-FITTED_A_DECADE, CHECKED_A_DECADE = 12, 100
+FITTED_A_DECADE, CHECKED_A_DECADE = 12, 100  # times a decade at which a series is fitted, and at which it is judged
 # The largest deviation between the checked times exceeds that at them by less.
 RIPPLE = 1.05
 # A root mean square of this share of the tolerance is as good as none.
@@ -41,8 +41,8 @@ LEAST_TOLERANCE = 1e-9
 FADED = 745.0
 # Neighbouring candidates that both count stand for one time between them; a longer run is a continuous spectrum.
 PAIR = 2
-MOST_EVALUATIONS = 60
-ROUNDING = 1e-15
+MOST_EVALUATIONS = 60  # work: of the misfit, in one search for relaxation times
+ROUNDING = 1e-15  # rounding: relative changes below which that search ends
 # A residual this much above the least is nearly as good; below EXACT all are.
 NEARLY, EXACT = 1.02, 1e-13
 # A term which nowhere changes the answer by this share of the largest residual, or of what is enough, is dropped.

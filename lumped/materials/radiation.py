@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.materials import Material
-from lumped.numbers.quadrature import gauss
+from lumped.numbers import bisected, gauss
 
 # T int (dF/dt)^2 dt / F_max^2 of the Hertz pulse: 4.5 (T v/depth) (2/5) B(4/5, 3/2), T v/depth = 2.943275.
 HERTZ_PULSE = 1.8 * 2.943275 * math.gamma(0.8) * math.gamma(1.5) / math.gamma(2.3)
 # The same of a line's pulse, nearly a sine: (1/2pi) int |w| |F(w)|^2 dw / F_max^2, a number without the duration.
 SINE_PULSE = 1.21532
-GAUSS_POINTS = 64
+GAUSS_POINTS = 64  # Gauss points over the angle of each part of the waves
 
 
 @dataclass(frozen=True)
@@ -103,10 +103,7 @@ def _shear_waves(g: float, power: int = 0) -> float:
 
 def _rayleigh_wave(g: float, power: int = 0) -> float:
     """Half the residue at the root x > 1 of Rayleigh's function, found by bisection on x^2; times x to this power."""
-    low, high = 1.0, 4.0
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if _rayleigh(middle, g) > 0.0 else (low, middle)
+    low, _ = bisected(lambda x2: _rayleigh(x2, g) > 0.0, 1.0, 4.0)
     p, s = math.sqrt(low - g * g), math.sqrt(low - 1.0)
     slope = 4.0 * (2.0 * low - 1.0) - 4.0 * p * s - 2.0 * low * (s / p + p / s)
     return 0.5 * math.pi * p / abs(slope) * math.pow(low, 0.5 * power)

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
+from lumped.numbers import Array
 
-Array = NDArray[np.float64]
 # The load d^(3/2) of a depth that is a half sine over time rises by at most so many peaks per duration.
 STEEPEST = 3.0
 HALVINGS = 2000  # of the longest time, enough for the shortest a number can be
@@ -104,13 +104,9 @@ class Relaxation:
         """No memory at all: neither a Prony term nor a viscosity."""
         return not self.moduli and self.viscosity == 0.0
 
-    def __call__(self, time: ArrayLike) -> NDArray[np.float64]:
+    def __call__(self, time: ArrayLike) -> Array:
         """E(t) for t > 0 (without the pulse of the viscosity at t = 0), same shape as `time`, Pa."""
-        t = np.asarray(time, dtype=float)
-        value = np.full(t.shape, self.equilibrium)
-        for modulus, tau in zip(self.moduli, self.times, strict=True):
-            value = value + modulus * np.exp(-t / tau)
-        return value
+        return decaying(self.equilibrium, self.moduli, self.times, time)
 
     def operational(self, s: ArrayLike) -> NDArray[np.inexact]:
         """s times the Laplace transform of E, scalars or arrays, in Pa: Q(s)/P(s) of "(13)" to "(16)".
@@ -146,7 +142,7 @@ class Creep:
     times: tuple[float, ...] = ()
     fluidity: float = 0.0
 
-    def __call__(self, time: ArrayLike) -> NDArray[np.float64]:
+    def __call__(self, time: ArrayLike) -> Array:
         """J(t) for t >= 0, same shape as `time`, 1/Pa."""
         t = np.asarray(time, dtype=float)
         value = self.instantaneous + self.fluidity * t
@@ -210,11 +206,7 @@ class Recovery:
 
     def __call__(self, time: ArrayLike) -> Array:
         """What is left at times >= 0, s, of any shape."""
-        t = np.asarray(time, dtype=float)
-        value = np.full(t.shape, self.permanent)
-        for amplitude, tau in zip(self.amplitudes, self.times, strict=True):
-            value = value + amplitude * np.exp(-t / tau)
-        return value
+        return decaying(self.permanent, self.amplitudes, self.times, time)
 
     def until(self, share: float) -> float:
         """Time, s, at which a share of what goes is left; zero where nothing goes. Raises BadInput."""
@@ -232,6 +224,15 @@ class Recovery:
             return (float(self(time)) - self.permanent) / goes - share
 
         return float(brentq(over, 0.0, last, xtol=float(np.finfo(float).tiny), rtol=1e-12, maxiter=HALVINGS))
+
+
+def decaying(constant: float, amplitudes: Sequence[float], times: Sequence[float], at: ArrayLike) -> Array:
+    """constant + sum_k amplitudes_k exp(-t/times_k) at times of any shape."""
+    t = np.asarray(at, dtype=float)
+    value = np.full(t.shape, constant)
+    for amplitude, tau in zip(amplitudes, times, strict=True):
+        value = value + amplitude * np.exp(-t / tau)
+    return value
 
 
 def reciprocal(

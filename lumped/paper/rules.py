@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 
 from lumped.errors import BadInput, Fault, nearest
-from lumped.paper.examples.value import Value
+from lumped.paper.value import Value
 from lumped.schema.files import data_folder
 from lumped.schema.keys import Choice, Key, Number, Text
 from lumped.schema.record import read_table
@@ -41,11 +41,12 @@ class Rule:
         """
         if self.kind in UNJUDGED:
             return UNJUDGED[self.kind]
-        margins = MARGINS[self.kind](printed, values, self.width)
-        pairs = [(margin, value.error) for margin, value in zip(margins, values, strict=True)]
-        if all(margin >= error for margin, error in pairs):
+        against = printed.split(SEPARATOR) if self.compares else [printed] * len(values)
+        margin = MARGINS[self.kind]
+        pairs = [(margin(text, one.value, self.width), one.error) for text, one in zip(against, values, strict=True)]
+        if all(inside >= error for inside, error in pairs):
             return AGREES
-        return DIFFERS if any(margin < -error for margin, error in pairs) else UNDECIDED
+        return DIFFERS if any(inside < -error for inside, error in pairs) else UNDECIDED
 
 
 def numbers(printed: str) -> tuple[float, ...]:
@@ -88,34 +89,13 @@ def get(rules: Mapping[str, Rule], name: str, source: str) -> Rule:
     return rules[name]
 
 
-def _digits(printed: str, values: Sequence[Value], width: float) -> list[float]:
-    parts = printed.split(SEPARATOR)
-    return [half_unit(part) - abs(value.value - float(part)) for part, value in zip(parts, values, strict=True)]
-
-
-def _relative(printed: str, values: Sequence[Value], width: float) -> list[float]:
-    pairs = zip(numbers(printed), values, strict=True)
-    return [width * abs(number) - abs(value.value - number) for number, value in pairs]
-
-
-def _within(printed: str, values: Sequence[Value], width: float) -> list[float]:
-    return [width - abs(value.value) for value in values]
-
-
-def _above(printed: str, values: Sequence[Value], width: float) -> list[float]:
-    return [value.value - width for value in values]
-
-
-def _below(printed: str, values: Sequence[Value], width: float) -> list[float]:
-    return [width - value.value for value in values]
-
-
-def _between(printed: str, values: Sequence[Value], width: float) -> list[float]:
-    low, high = numbers(printed)
-    return [min(value.value - low, high - value.value) for value in values]
-
-
-# How far inside its allowance each value lies, in the value's unit: (printed, values, width) -> margins.
-MARGINS: Mapping[str, Callable[[str, Sequence[Value], float], list[float]]] = {
-    "digits": _digits, "relative": _relative, "within": _within, "above": _above, "below": _below, "between": _between,
-}  # fmt: skip
+# How far inside its allowance a value lies, in its own unit: (printed, value, width) -> margin. Where values are
+# compared, each has a printed one of its own.
+MARGINS: Mapping[str, Callable[[str, float, float], float]] = {
+    "digits": lambda printed, value, _: half_unit(printed) - abs(value - float(printed)),
+    "relative": lambda printed, value, width: width * abs(float(printed)) - abs(value - float(printed)),
+    "within": lambda _, value, width: width - abs(value),
+    "above": lambda _, value, width: value - width,
+    "below": lambda _, value, width: width - value,
+    "between": lambda printed, value, _: min(value - numbers(printed)[0], numbers(printed)[1] - value),
+}

@@ -16,9 +16,10 @@ from lumped.materials import Material, Relaxation
 from lumped.numbers import Real
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import Model
-from lumped.schema.keys import Key, Number
-from lumped.schema.record import Record, written
+from lumped.schema.keys import Key
+from lumped.schema.record import Record, keys_of, written
 from lumped.shapes import Shape
+from lumped.shapes.base import SIZE
 from lumped.shapes.cone import Cone
 from lumped.shapes.cylinder import Cylinder
 from lumped.shapes.plate import Plate
@@ -32,10 +33,9 @@ from lumped.targets.layer import Layer
 from lumped.targets.plane import Plane
 from lumped.targets.sphere import SphereTarget
 
-Area = Annotated[float, Key(Number(1e-18, 1e8, "m2"), "area of a face")]
-Radius = Annotated[float, Key(Number(1e-9, 1e4, "m"), "radius")]
-Thickness = Annotated[float, Key(Number(1e-9, 1e4, "m"), "thickness along the motion")]
-Along = Annotated[float, Key(Number(1e-9, 1e6, "m"), "length along the axis")]
+Radius = Annotated[float, Key(SIZE, "radius")]
+Thickness = Annotated[float, Key(SIZE, "thickness along the motion")]
+Along = Annotated[float, Key(keys_of(Cylinder)["length"].kind, "length along the axis")]
 LAYER = 10.0  # thickness over radius
 
 
@@ -52,8 +52,8 @@ class TableRow(Record, ABC):
     `number` is the row's place, `case` what the paper calls it, `printed` its D and E* as printed and `corrected`
     as they should be, `validity` where the row holds; `correction` says what is wrong and why, empty where nothing
     is. `length_name` names the length which depths are compared with, empty where the geometry has none. `single`:
-    whether the half-space has one D at all. `bodies`: how many of them deform. `block`: whether
-    it presses a block between two faces.
+    whether the half-space has one D at all. `profile`: that of the slow indentation which puts the row on trial.
+    `bodies`: how many of them deform. `block`: whether it presses a block between two faces.
     """
 
     number: ClassVar[int]
@@ -65,6 +65,7 @@ class TableRow(Record, ABC):
     validity: ClassVar[str]
     correction: ClassVar[str] = ""
     single: ClassVar[bool] = True
+    profile: ClassVar[str] = "exact"
     bodies: ClassVar[int] = 1
     block: ClassVar[bool] = False
 
@@ -74,9 +75,9 @@ class TableRow(Record, ABC):
         """D as printed, m^(2-alpha)."""
 
     @property
-    @abstractmethod
     def length(self) -> float:
-        """The length which depths are compared with, m."""
+        """The length which depths are compared with, m: a metre where the geometry has none."""
+        return float(getattr(self, self.length_name, 1.0))
 
     def modulus(self, *bodies: Elastic) -> float:
         """E* as it should be, Pa: of half-spaces in series, so E/(1-nu^2) of one alone, unless a row says otherwise."""
@@ -86,9 +87,14 @@ class TableRow(Record, ABC):
         """E* as printed, Pa: the right one unless a row says otherwise."""
         return self.modulus(*bodies)
 
+    @property
     @abstractmethod
+    def contact(self) -> tuple[Shape, Target]:
+        """What is pressed into what, in the slow indentation that puts the row on trial."""
+
     def scene(self, *bodies: Elastic) -> Indenter:
-        """The slow indentation that puts the row on trial."""
+        """That indentation, of the one body that deforms, or of striker and target. Raises BadInput."""
+        return pressed(self.name, *self.contact, *bodies, profile=self.profile)
 
     def whole_scene(self, *bodies: Elastic) -> Indenter:
         """The same with bodies of their true size, where the row takes them for half-spaces."""
@@ -124,10 +130,23 @@ def contact_modulus(*bodies: Elastic) -> float:
 
 
 @dataclass(frozen=True)
-class PrismRow(TableRow):
+class BlockRow(TableRow):
+    """F = (A/l) E* depth: a block between two faces, uniformly strained."""
+
+    area: Annotated[float, Key(keys_of(Prism)["area"].kind, "area of a face")]
+    alpha = 1.0
+    block = True
+
+    @property
+    def factor(self) -> float:
+        """A/l, m."""
+        return self.area / self.length
+
+
+@dataclass(frozen=True)
+class PrismRow(BlockRow):
     """F = (A/l) E depth: uniaxial stress."""
 
-    area: Area
     height: Thickness
     number = 1
     name = "prism"
@@ -135,34 +154,22 @@ class PrismRow(TableRow):
     printed = ("A/l", "E")
     corrected = printed
     length_name = "height"
-    alpha = 1.0
     validity = "free sides, ends that slide: any nu, any slenderness"
-    block = True
-
-    @property
-    def factor(self) -> float:
-        """A/l, m."""
-        return self.area / self.height
-
-    @property
-    def length(self) -> float:
-        """The height, m."""
-        return self.height
 
     def modulus(self, *bodies: Elastic) -> float:
         """E, Pa."""
         return bodies[0].young
 
-    def scene(self, *bodies: Elastic) -> Indenter:
+    @property
+    def contact(self) -> tuple[Shape, Target]:
         """Free sides, faces that slide."""
-        return pressed(self.name, Prism(self.area, self.height, "free", "sliding"), Plane(), *bodies)
+        return Prism(self.area, self.height, "free", "sliding"), Plane()
 
 
 @dataclass(frozen=True)
-class PlateRow(TableRow):
+class PlateRow(BlockRow):
     """F = (A/l) M depth with the confined modulus M = K + 4 G/3: uniaxial strain."""
 
-    area: Area
     thickness: Thickness
     number = 2
     name = "plate"
@@ -170,41 +177,36 @@ class PlateRow(TableRow):
     printed = ("A/l", "E(1-nu)/((1+nu)(1-2nu))")
     corrected = printed
     length_name = "thickness"
-    alpha = 1.0
     validity = "confined sides, or bonded faces far wider than l; nu < 0.5"
-    block = True
-
-    @property
-    def factor(self) -> float:
-        """A/l, m."""
-        return self.area / self.thickness
-
-    @property
-    def length(self) -> float:
-        """The thickness, m."""
-        return self.thickness
 
     def modulus(self, *bodies: Elastic) -> float:
         """The confined modulus, Pa. Raises BadInput where it is infinite."""
         (young, nu), *_ = bodies
         return Material(Relaxation(young), nu).confined_modulus().relaxed
 
-    def scene(self, *bodies: Elastic) -> Indenter:
+    @property
+    def contact(self) -> tuple[Shape, Target]:
         """Confined sides."""
-        return pressed(self.name, Plate(self.area, self.thickness), Plane(), *bodies)
+        return Plate(self.area, self.thickness), Plane()
 
 
 @dataclass(frozen=True)
-class PunchRow(TableRow):
-    """F = 2 R E* depth (Boussinesq 1885)."""
+class RoundRow(TableRow):
+    """A round body, pressed into the half-space."""
 
     radius: Radius
+    length_name = "radius"
+
+
+@dataclass(frozen=True)
+class PunchRow(RoundRow):
+    """F = 2 R E* depth (Boussinesq 1885)."""
+
     number = 3
     name = "punch"
     case = "rigid cylinder to elastic plane"
     printed = ("2R", "E/(1-nu^2)")
     corrected = printed
-    length_name = "radius"
     alpha = 1.0
     validity = "a flat end on a half-space: any depth of small strains"
 
@@ -214,56 +216,44 @@ class PunchRow(TableRow):
         return 2.0 * self.radius
 
     @property
-    def length(self) -> float:
-        """The radius, m."""
-        return self.radius
-
-    def scene(self, *bodies: Elastic) -> Indenter:
+    def contact(self) -> tuple[Shape, Target]:
         """On the half-space."""
-        return pressed(self.name, Punch(self.radius), HalfSpace(), *bodies)
+        return Punch(self.radius), HalfSpace()
 
 
 @dataclass(frozen=True)
-class SphereRow(TableRow):
+class SphereRow(RoundRow):
     """F = (4/3) sqrt(R) E* depth^(3/2) (Hertz 1882): the paraboloid of the sphere's tip."""
 
-    radius: Radius
     number = 4
     name = "sphere"
     case = "rigid sphere to elastic plane"
     printed = ("(4/3) sqrt(R)", "E/(1-nu^2)")
     corrected = printed
-    length_name = "radius"
     alpha = 1.5
     validity = "depths far below R on a half-space: a sphere is steeper than its paraboloid"
 
     @property
     def factor(self) -> float:
         """(4/3) sqrt(R), m^(1/2)."""
-        return 4.0 / 3.0 * sqrt(self.radius)
+        return 4.0 / 3.0 * sqrt(self.length)
 
     @property
-    def length(self) -> float:
-        """The radius, m."""
-        return self.radius
-
-    def scene(self, *bodies: Elastic) -> Indenter:
+    def contact(self) -> tuple[Shape, Target]:
         """On the half-space."""
-        return pressed(self.name, Sphere(self.radius), HalfSpace(), *bodies)
+        return Sphere(self.radius), HalfSpace()
 
 
 @dataclass(frozen=True)
-class CylinderRow(TableRow):
+class CylinderRow(RoundRow):
     """F = (pi/4) l E* depth, a heuristic (Popov 2010, ISBN 978-3-642-10802-0, section 5.2); `height` is l."""
 
-    radius: Radius
     height: Along
     number = 5
     name = "cylinder"
     case = "rigid cylinder to elastic plane (curvature surface contact)"
     printed = ("pi l/4", "E/(1-nu^2)")
     corrected = ("none: F/(E* depth) depends on the datum", "E/(1-nu^2)")
-    length_name = "radius"
     alpha = 1.0
     validity = "one depth of each layer or datum: where 2 ln(2 datum/b) - nu/(1-nu) = 4"
     correction = (
@@ -271,6 +261,7 @@ class CylinderRow(TableRow):
         "depth = F/(pi E* l) [2 ln(2 datum/b) - nu/(1-nu)] (Johnson 1985, section 5.6)"
     )
     single = False
+    profile = "parabola"
 
     @property
     def factor(self) -> float:
@@ -278,21 +269,16 @@ class CylinderRow(TableRow):
         return 0.25 * pi * self.height
 
     @property
-    def length(self) -> float:
-        """The radius, m."""
-        return self.radius
-
-    def scene(self, *bodies: Elastic) -> Indenter:
-        """Its parabola on a thick layer, whose thickness stands for the datum."""
-        shape, target = Cylinder(self.radius, self.height), Layer(LAYER * self.radius, "bonded")
-        return pressed(self.name, shape, target, *bodies, profile="parabola")
+    def contact(self) -> tuple[Shape, Target]:
+        """On a thick layer, whose thickness stands for the datum."""
+        return Cylinder(self.radius, self.height), Layer(LAYER * self.radius, "bonded")
 
 
 @dataclass(frozen=True)
 class ConeRow(TableRow):
     """F = 2/(pi tan(theta)) E* depth^2 (Sneddon, doi 10.1016/0020-7225(65)90019-4); `angle` is theta, degrees."""
 
-    angle: Annotated[float, Key(Number(0.01, 80.0, "degrees, between face and undeformed surface"), "theta")]
+    angle: Annotated[float, Key(keys_of(Cone)["angle"].kind, "theta")]
     number = 6
     name = "cone"
     case = "rigid cone to elastic plane"
@@ -308,38 +294,42 @@ class ConeRow(TableRow):
         """2/(pi tan(theta))."""
         return 2.0 / (pi * tan(radians(self.angle)))
 
-    @property
-    def length(self) -> float:
-        """A metre: a cone has no length of its own."""
-        return 1.0
-
     def printed_modulus(self, *bodies: Elastic) -> float:
         """E, Pa."""
         return bodies[0].young
 
-    def scene(self, *bodies: Elastic) -> Indenter:
+    @property
+    def contact(self) -> tuple[Shape, Target]:
         """On the half-space."""
-        return pressed(self.name, Cone(self.angle), HalfSpace(), *bodies)
+        return Cone(self.angle), HalfSpace()
 
 
 @dataclass(frozen=True)
-class TwoSpheres(TableRow):
-    """F = (4/3) sqrt(R) E* depth^(3/2), 1/R = 1/R_a + 1/R_b (Hertz 1882): two half-spaces under paraboloids."""
+class PairRow(TableRow):
+    """Two round bodies, which both deform: half-spaces under the gap between them."""
 
     radius: Radius
     other_radius: Radius
+    length_name = "gap's radius"
+    bodies = 2
+
+    @property
+    def length(self) -> float:
+        """R of the gap, 1/R = 1/R_a + 1/R_b, m."""
+        return self.radius * self.other_radius / (self.radius + self.other_radius)
+
+
+@dataclass(frozen=True)
+class TwoSpheres(PairRow):
+    """F = (4/3) sqrt(R) E* depth^(3/2), 1/R = 1/R_a + 1/R_b (Hertz 1882): two half-spaces under paraboloids."""
+
     number = 7
     name = "two_spheres"
     case = "elastic curvature surface to elastic curvature surface"
-    printed = (
-        "(4/3) sqrt(Ra Rb/(Ra+Rb))",
-        "1/((1-nu_a^2)/E_a + (1-nu_b^2)/E_b)",
-    )
+    printed = ("(4/3) sqrt(Ra Rb/(Ra+Rb))", "1/((1-nu_a^2)/E_a + (1-nu_b^2)/E_b)")
     corrected = printed
-    length_name = "gap's radius"
     alpha = 1.5
     validity = "contacts far smaller than either sphere"
-    bodies = 2
 
     @property
     def factor(self) -> float:
@@ -347,13 +337,9 @@ class TwoSpheres(TableRow):
         return 4.0 / 3.0 * sqrt(self.length)
 
     @property
-    def length(self) -> float:
-        """R of the gap, m."""
-        return self.radius * self.other_radius / (self.radius + self.other_radius)
-
-    def scene(self, *bodies: Elastic) -> Indenter:
+    def contact(self) -> tuple[Shape, Target]:
         """Two half-spaces under the gap of both spheres."""
-        return pressed(self.name, Sphere(self.radius), SphereTarget(self.other_radius), *bodies)
+        return Sphere(self.radius), SphereTarget(self.other_radius)
 
     def whole_scene(self, *bodies: Elastic) -> Indenter:
         """Both spheres free; depth is the approach of their centres of mass."""
@@ -361,21 +347,15 @@ class TwoSpheres(TableRow):
 
 
 @dataclass(frozen=True)
-class TwoCylinders(TableRow):
+class TwoCylinders(PairRow):
     """F = (pi/4) l E* depth, a heuristic (Popov 2010, ISBN 978-3-642-10802-0, section 5.2); `height` is l."""
 
-    radius: Radius
-    other_radius: Radius
     height: Along
     number = 8
     name = "two_cylinders"
     case = "elastic cylinder to elastic cylinder (parallel contact)"
     printed = ("pi l/4", "1/((1-nu_a^2)/E_a + (1-nu_b^2)/E_b)")
-    corrected = (
-        "none: F/(E* depth) depends on where each cylinder is held",
-        "1/((1-nu_a^2)/E_a + (1-nu_b^2)/E_b)",
-    )
-    length_name = "gap's radius"
+    corrected = ("none: F/(E* depth) depends on where each cylinder is held", printed[1])
     alpha = 1.0
     validity = "one depth of each way to hold the cylinders"
     correction = (
@@ -383,7 +363,7 @@ class TwoCylinders(TableRow):
         "[2 ln(2 datum/b) - nu/(1-nu)], its datum where it is held (Johnson 1985, section 5.6)"
     )
     single = False
-    bodies = 2
+    profile = "parabola"
 
     @property
     def factor(self) -> float:
@@ -391,14 +371,9 @@ class TwoCylinders(TableRow):
         return 0.25 * pi * self.height
 
     @property
-    def length(self) -> float:
-        """R of the gap, 1/R = 1/R_a + 1/R_b, m."""
-        return self.radius * self.other_radius / (self.radius + self.other_radius)
-
-    def scene(self, *bodies: Elastic) -> Indenter:
-        """Their parabolas, the struck one held at its middle plane."""
-        striker, target = Cylinder(self.radius, self.height), CylinderTarget(self.other_radius, "held")
-        return pressed(self.name, striker, target, *bodies, profile="parabola")
+    def contact(self) -> tuple[Shape, Target]:
+        """The struck one held at its middle plane."""
+        return Cylinder(self.radius, self.height), CylinderTarget(self.other_radius, "held")
 
 
 # One example of every row, by its name, in the order of the table.

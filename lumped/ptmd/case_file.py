@@ -1,14 +1,13 @@
-"""The file of a pounding tuned mass damper: TOML -> Case, every fault reported at once."""
+"""A pounding tuned mass damper, how it starts and how long it is followed; its file, every fault reported at once."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
-from lumped.ptmd.case import Case
 from lumped.ptmd.free_vibration import TIME_KEYS
 from lumped.ptmd.system import (
     DISPLACEMENT,
@@ -43,6 +42,36 @@ RELEASE_KEYS: Mapping[str, Key] = {
     "start": Key(Choice(("both", "structure")), "what is released", required=False),
     "displacement": DISPLACEMENT,
 }
+
+
+@dataclass(frozen=True)
+class Case:
+    """A system, how it starts, and how long it is followed, s; lengths of the ring, m, for the ledger alone."""
+
+    name: str
+    source: str
+    system: PoundingDamper
+    start: Start
+    end_time: float = 20.0
+    window: float = 5.0
+    thickness: float | None = None
+    rod_radius: float | None = None
+
+    def to_dict(self) -> Table:
+        """What was resolved from the file: oscillators, force relaxation of the ring, start and times, SI."""
+        system = asdict(self.system)
+        if self.system.ring is not None:
+            stiffness = self.system.ring.stiffness
+            force = {"relaxed": stiffness.relaxed, "moduli": stiffness.moduli, "times": stiffness.times}
+            system["ring"] = {
+                "gap": self.system.ring.gap,
+                "exponent": self.system.ring.exponent,
+                "memory": self.system.ring.memory.value,
+                "force_relaxation": force | {"viscosity": stiffness.viscosity},
+                "thickness": self.thickness,
+                "rod_radius": self.rod_radius,
+            }
+        return {**system, "start": asdict(self.start), "end_time": self.end_time, "window": self.window}
 
 
 def load(source: str | Path = DEFAULT, overrides: Mapping[str, object] | None = None) -> Case:

@@ -1,26 +1,91 @@
-"""The equations of motion "(33)" and "(34)", with the ring's surface on both sides as part of the state.
+"""The equations of motion "(33)" and "(34)", the ring's surface on both sides as part of the state, and its switches.
 
 State, shape (size, ...): x1, v1; with a damper x2, v2; with a ring the surface at +gap, then that at -gap. In
 "(33)" the force of the ring has the sign of x2 - x1 (printed with one sign for both sides, which drives the
-damper out). For exponent 1 all of this is linear, the depth affine.
+damper out). The place of a surface is measured as q = depth^exponent, so its equations, all linear, serve every
+exponent; for exponent 1 the whole motion between two switches is linear, the depth affine.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from enum import Enum
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.ptmd.surface import SideStage, Surface
-from lumped.ptmd.system import SIDES, PoundingDamper, Start
+from lumped.materials import Relaxation
+from lumped.ptmd.system import SIDES, Memory, PoundingDamper, Start
 
 Array = NDArray[np.float64]
-Stages = tuple[SideStage, ...]
 SURFACES = 4  # the first row of the surfaces
 # What is integrated over time: rows of `integrands`.
 DISPLACEMENT, ACCELERATION, LOST_STRUCTURE, LOST_DAMPER, LOST_RING, CUT_TENSION = range(6)
+
+
+class SideStage(Enum):
+    """What one side of the ring does."""
+
+    PRESSED = "the damper presses the surface and feels its force"
+    RECOVERING = "the surface creeps back under no force"
+    FOLLOWED = "the surface follows the damper, its tension cut off"
+    HELD = "the surface stays at its undeformed place"
+
+
+Stages = tuple[SideStage, ...]
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A side of the ring. State (1 + n, ...): the place q, then the strain z_k of each Maxwell element's spring."""
+
+    stiffness: Relaxation
+
+    @property
+    def size(self) -> int:
+        """Numbers in the state of a side."""
+        return 1 + len(self.stiffness.moduli)
+
+    @cached_property
+    def springs(self) -> Array:
+        """What the springs carry, N, per unit of the state, shape (1 + n,)."""
+        return np.array([self.stiffness.equilibrium, *self.stiffness.moduli])
+
+    @cached_property
+    def creep(self) -> Array:
+        """The speed dq/dt at which the force stays what it is, zero, per unit of the state, shape (1 + n,)."""
+        if self.stiffness.viscosity:
+            return -self.springs / self.stiffness.viscosity
+        slips = np.divide(self.stiffness.moduli, self.stiffness.times)
+        return np.append(0.0, slips) / self.stiffness.glassy
+
+    def rate(self, state: Array, speed: Array) -> Array:
+        """dq/dt = speed, dz_k/dt = dq/dt - z_k/tau_k."""
+        return np.concatenate([speed[None], speed - self._slip(state)])
+
+    def force(self, state: Array, speed: Array) -> Array:
+        """E_inf q + sum E_k z_k + eta dq/dt, N."""
+        return np.asarray(_sum(self.springs, state) + self.stiffness.viscosity * speed)
+
+    def recovery(self, state: Array) -> Array:
+        """The speed dq/dt of a surface that nothing touches."""
+        return _sum(self.creep, state)
+
+    def stored(self, state: Array) -> float:
+        """Energy of the springs, for exponent 1, J."""
+        return float(0.5 * self.springs @ state**2)
+
+    def lost(self, state: Array, speed: Array) -> Array:
+        """Power spent in the dashpots, sum E_k z_k^2/tau_k + eta (dq/dt)^2, for exponent 1, W."""
+        spent = _sum(self.springs[1:], state[1:] * self._slip(state))
+        return np.asarray(spent + self.stiffness.viscosity * speed**2)
+
+    def _slip(self, state: Array) -> Array:
+        """z_k/tau_k: the rate of each dashpot, shape (n, ...)."""
+        times = np.array(self.stiffness.times).reshape(-1, *[1] * (state.ndim - 1))
+        return np.asarray(state[1:] / times)
 
 
 @dataclass(frozen=True)
@@ -187,3 +252,81 @@ class Equations:
             for index in range(len(SIDES)):
                 y[self.side(index).start] = max(float(self.place(index, y)), 0.0)
         return y
+
+
+@dataclass(frozen=True)
+class Switch:
+    """A change of one side: it comes when `level` falls through zero, and leads to `to`.
+
+    `level` maps states (size, ...) to numbers (...); affine in the state for exponent 1.
+    """
+
+    side: int
+    to: SideStage
+    level: Callable[[Array], Array]
+
+
+def switches(equations: Equations, stages: Stages) -> tuple[Switch, ...]:
+    """Every change that can end a phase with these stages."""
+    return tuple(switch for index, stage in enumerate(stages) for switch in _of_side(equations, index, stage))
+
+
+def _of_side(equations: Equations, index: int, stage: SideStage) -> list[Switch]:
+    memory = equations.system.ring.memory if equations.system.ring else Memory.RECOVERING
+
+    def force(y: Array) -> Array:
+        return equations.side_force(index, SideStage.PRESSED, y)
+
+    def clear_of_surface(y: Array) -> Array:
+        return np.asarray(y[equations.side(index).start] - equations.place(index, y))
+
+    if stage is SideStage.PRESSED:
+        return [Switch(index, SideStage.FOLLOWED if memory is Memory.CONTINUOUS else SideStage.RECOVERING, force)]
+    if stage is SideStage.HELD:
+        return [Switch(index, SideStage.PRESSED, lambda y: -equations.depth(index, y))]
+    leave = Switch(index, SideStage.HELD, lambda y: equations.depth(index, y))
+    if stage is SideStage.FOLLOWED:
+        return [Switch(index, SideStage.PRESSED, lambda y: -force(y)), leave]
+    touch = Switch(index, SideStage.PRESSED, clear_of_surface)
+    return [touch, leave] if memory is Memory.RESET else [touch]
+
+
+def after(equations: Equations, stages: Stages, switch: Switch, y: Array) -> tuple[Stages, Array]:
+    """Stages and state, shape (size,), just after a switch at the state `y`."""
+    side, state, to = equations.side(switch.side), y.copy(), switch.to
+    if to is SideStage.HELD:
+        state[side.start] = 0.0
+        if stages[switch.side] is SideStage.RECOVERING:
+            state[side] = 0.0
+    if to is SideStage.RECOVERING:
+        state[side.start] = equations.place(switch.side, y)
+    if to is SideStage.PRESSED and stages[switch.side] is SideStage.RECOVERING:
+        state[side.start] = equations.place(switch.side, y)
+    if (
+        to is SideStage.PRESSED
+        and stages[switch.side] is SideStage.HELD
+        and equations.force_at_touch(switch.side, y) < 0.0
+    ):
+        to = SideStage.FOLLOWED
+    return (*stages[: switch.side], to, *stages[switch.side + 1 :]), state
+
+
+def first_stages(equations: Equations, y: Array) -> Stages:
+    """What both sides do at t = 0: pressed where the damper stands inside the ring and is pushed."""
+    if equations.surface is None:
+        return ()
+    inside = [float(equations.depth(index, y)) > 0.0 for index in range(len(SIDES))]
+    return tuple(_at_start(equations, index, y) if deep else SideStage.HELD for index, deep in enumerate(inside))
+
+
+def _at_start(equations: Equations, index: int, y: Array) -> SideStage:
+    pushed = float(equations.side_force(index, SideStage.PRESSED, y)) > 0.0
+    if pushed:
+        return SideStage.PRESSED
+    continuous = equations.system.ring is not None and equations.system.ring.memory is Memory.CONTINUOUS
+    return SideStage.FOLLOWED if continuous else SideStage.RECOVERING
+
+
+def _sum(weights: Array, values: Array) -> Array:
+    """Of values (n, ...) with weights (n,)."""
+    return np.asarray(np.einsum("k,k...->...", weights, values))

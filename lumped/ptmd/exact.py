@@ -5,26 +5,24 @@ The exponential of small matrices, many at once, without the threads that a libr
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, log2
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lumped.ptmd.crossing import first_fall, suspect
-from lumped.ptmd.equations import SURFACES, Equations, Stages
-from lumped.ptmd.phase import Follow, PtmdPhase
-from lumped.ptmd.switches import Switch, switches
+from lumped.ptmd.equations import SURFACES, Equations, Stages, Switch, switches
+from lumped.ptmd.phase import Follow, LevelRow, PtmdPhase, first_row
+from lumped.ptmd.system import Start
 
 Array = NDArray[np.float64]
 MOST_ROWS = 300_000  # some twenty seconds
-BLOCK = 64
+BLOCK = 64  # work: rows propagated at once
 LEAST_SHARE = 0.01  # of the spacing: a row nearer to the start of a phase would show nothing but rounding
-SERIES_TERMS, SERIES_REACH = 18, 0.25
-ROUNDING = 1e-13
+SERIES_TERMS, SERIES_REACH = 18, 0.25  # rounding: terms of the integral's series, and the norm up to which they suffice
+ROUNDING = 1e-13  # rounding: of a level's parts, where a phase begins
 REACH, TERMS = 0.5, 15  # the series leaves out 0.5^16/16!
 
 
@@ -124,7 +122,7 @@ def _squares(forms: Array, states: Array) -> Array:
     return np.tensordot(forms, states @ states.T, 2)
 
 
-def route(equations: Equations, spacing: float, end_time: float) -> Follow:
+def route(equations: Equations, _: Start, spacing: float, end_time: float) -> Follow:
     """How a phase is followed: each motion's exponentials are found once."""
     flows: dict[Stages, Flow] = {}
 
@@ -135,55 +133,39 @@ def route(equations: Equations, spacing: float, end_time: float) -> Follow:
     return next_phase
 
 
-@dataclass(frozen=True)
-class ExactLevelRow:
-    """One level between two rows: `state` at the first, `length` seconds to the second."""
+def first_of(
+    flow: Flow, time: float, state: Array, times: Array, states: Array, fresh: bool
+) -> tuple[float, int, Array] | None:
+    """When, s, the first level falls, which one, and the state there, (size,); None where none does.
 
-    flow: Flow
-    level: int
-    state: Array
-    length: float
-    resolution: ClassVar[float] = 0.0
-
-    def value(self, offset: float) -> float:
-        """The level."""
-        rows, constants = self.flow.levels
-        return float(rows[self.level] @ (self.flow.propagator(offset) @ self.state) + constants[self.level])
-
-    def slope(self, offset: float) -> float:
-        """Its rate."""
-        row = self.flow.levels[0][self.level] @ self.flow.matrix
-        return float(row @ (self.flow.propagator(offset) @ self.state))
-
-
-@dataclass(frozen=True)
-class Fall:
-    """Which level falls through zero, when, s, and the state there, shape (size,)."""
-
-    level: int
-    time: float
-    state: Array
-
-
-def first_of(flow: Flow, time: float, state: Array, times: Array, states: Array, fresh: bool) -> Fall | None:
-    """The first fall between `time` and the rows `times`, (k,), with states (size, k); None without one.
-
-    `fresh`: a phase has just begun, so a level may start at zero.
+    Between `time` and the rows `times`, (k,), with states (size, k). `fresh`: a phase has just begun, so a level may
+    start at zero.
     """
     rows, constants = flow.levels
+    rates = rows @ flow.matrix
     times, states = np.append(time, times), np.concatenate([state[:, None], states], axis=1)
     levels, lengths = rows @ states + constants[:, None], np.diff(times)
     # Where a phase begins no level lies below zero, but for the rounding of the switch before.
     begun = fresh & (levels[:, 0] <= ROUNDING * (np.abs(rows) @ np.abs(state) + np.abs(constants)))
-    suspects = suspect(lengths, levels, rows @ flow.matrix @ states)
-    suspects[0] |= begun.any()
-    for i in np.flatnonzero(suspects):
-        here = [ExactLevelRow(flow, level, states[:, i], float(lengths[i])) for level in range(constants.size)]
-        found = first_fall(here, (begun & (i == 0)).tolist())
-        if found is not None:
-            offset, level = found
-            return Fall(level, float(times[i]) + offset, flow.propagator(offset) @ states[:, i])
-    return None
+
+    def between(i: int) -> list[LevelRow]:
+        def at(offset: float) -> Array:
+            return np.asarray(flow.propagator(offset) @ states[:, i])
+
+        return [
+            LevelRow(_affine(row, constant), _affine(rate, 0.0), at, float(lengths[i]))
+            for row, constant, rate in zip(rows, constants.tolist(), rates, strict=True)
+        ]
+
+    found = first_row(lengths, levels, rates @ states, begun, between)
+    if found is None:
+        return None
+    i, offset, level = found
+    return float(times[i]) + offset, level, flow.propagator(offset) @ states[:, i]
+
+
+def _affine(row: Array, constant: float) -> Callable[[Array], float]:
+    return lambda y: float(row @ y + constant)
 
 
 def follow(flow: Flow, state: Array, time: float, end_time: float) -> tuple[PtmdPhase, Switch | None]:
@@ -195,10 +177,11 @@ def follow(flow: Flow, state: Array, time: float, end_time: float) -> tuple[Ptmd
             times.append(block_times)
             columns.append(block)
             continue
-        inside = block_times < found.time
-        times += [block_times[inside], np.array([found.time])]
-        columns += [block[:, inside], found.state[:, None]]
-        switch = flow.switches[found.level]
+        end, level, last = found
+        inside = block_times < end
+        times += [block_times[inside], np.array([end])]
+        columns += [block[:, inside], last[:, None]]
+        switch = flow.switches[level]
         break
     return _phase(flow, np.concatenate(times), np.concatenate(columns, axis=1)), switch
 

@@ -12,19 +12,26 @@ from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault, NotReached, nearest
 from lumped.ptmd import exact, integrated
-from lumped.ptmd.equations import ACCELERATION, DISPLACEMENT, LOST_STRUCTURE, Equations
+from lumped.ptmd.equations import (
+    ACCELERATION,
+    DISPLACEMENT,
+    LOST_STRUCTURE,
+    Equations,
+    SideStage,
+    after,
+    first_stages,
+)
 from lumped.ptmd.phase import ROWS_PER_PERIOD, Follow, PtmdPhase, row_spacing
 from lumped.ptmd.result import Energy, Measures, PtmdContact, PtmdMotion, PtmdResult
-from lumped.ptmd.surface import SideStage
-from lumped.ptmd.switches import after, first_stages
 from lumped.ptmd.system import SIDES, PoundingDamper, Start
 from lumped.schema.keys import Key, Number
 from lumped.schema.record import read_table
 
-ROUTES = ("exact", "integrated")
+# How a phase is followed, and how many rows that may take.
+ROUTES = {"exact": (exact.route, exact.MOST_ROWS), "integrated": (integrated.route, integrated.MOST_ROWS)}
 TIME = Number(1e-9, 1e9, "s")
 TIME_KEYS = {"end_time": Key(TIME, "when to stop", False), "window": Key(TIME, "of the root mean squares", False)}
-MOST_SWITCHES = 20_000
+MOST_SWITCHES = 20_000  # work: of contact, in one vibration
 Array = NDArray[np.float64]
 # Rows miss the top of a vibration by no more than this share of it.
 ROW_LOSS = 0.01
@@ -48,16 +55,16 @@ def simulate(
     equations = Equations(system)
     route = route or ("exact" if equations.linear else "integrated")
     if route not in ROUTES:
-        faults.append(Fault("simulate", "route", f"accepted: {', '.join(ROUTES)}{nearest(route, ROUTES)}"))
+        faults.append(Fault("simulate", "route", f"accepted: {', '.join(ROUTES)}{nearest(route, tuple(ROUTES))}"))
     elif route == "exact" and not equations.linear:
         faults.append(Fault("simulate", "route", "exact only for exponent 1; accepted here: integrated"))
     if system.damper is None and not (start.x1 or start.v1):
         faults.append(Fault("start", "x1", "nothing moves without a damper; accepted: x1 or v1 that is not zero"))
     if faults:
         raise BadInput(faults)
-    spacing = row_spacing(equations, start, end_time, rows_per_period, most_rows(route))
-    follow = route_of(route, equations, start, spacing, end_time)
-    track = PtmdTrack(equations, march(equations, start, end_time, follow))
+    follow, most_rows = ROUTES[route]
+    spacing = row_spacing(equations, start, end_time, rows_per_period, most_rows)
+    track = PtmdTrack(equations, march(equations, start, end_time, follow(equations, start, spacing, end_time)))
     found = contacts(track)
     return PtmdResult(
         system=system,
@@ -67,18 +74,6 @@ def simulate(
         energy=energy(track),
         measures=measures(track, found, window),
     )
-
-
-def route_of(name: str, equations: Equations, start: Start, spacing: float, end_time: float) -> Follow:
-    """How a phase is followed: "exact" (exponent 1) or "integrated"."""
-    if name == "exact":
-        return exact.route(equations, spacing, end_time)
-    return integrated.route(equations, start, spacing, end_time)
-
-
-def most_rows(name: str) -> int:
-    """How many rows a route may take."""
-    return exact.MOST_ROWS if name == "exact" else integrated.MOST_ROWS
 
 
 def march(equations: Equations, start: Start, end_time: float, follow: Follow) -> tuple[PtmdPhase, ...]:

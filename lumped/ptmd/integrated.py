@@ -11,17 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import NotReached
-from lumped.ptmd.crossing import first_fall, suspect
-from lumped.ptmd.equations import Equations, Stages
-from lumped.ptmd.phase import Follow, PtmdPhase, fastest
-from lumped.ptmd.surface import SideStage
-from lumped.ptmd.switches import Switch, switches
+from lumped.ptmd.equations import Equations, SideStage, Stages, Switch, switches
+from lumped.ptmd.phase import Follow, LevelRow, PtmdPhase, fastest, first_row
 from lumped.ptmd.system import Start
 
 Array = NDArray[np.float64]
 RTOL, ATOL = 1e-12, 1e-14  # the second relative to the largest values that the energy of the start allows
 MOST_ROWS = 30_000  # some minutes: each is a step of twelve stages, and more where a switch is located
-INTEGRALS = 6
+INTEGRALS = 6  # energies and squares that are integrated beside the state
 NEAR = 1e-4  # of the longest step: a slope is a difference over it
 BEGUN = 1e-9  # of the change in a step: where time is long beside a step, a switch lies no nearer to zero
 
@@ -123,6 +120,14 @@ class PtmdLevel(NamedTuple):
     rates: Callable[[Array], Array]
     near: float
 
+    def value(self, y: Array) -> float:
+        """It at a state."""
+        return float(self.of(y))
+
+    def own_slope(self, y: Array) -> float:
+        """Its rate at a state."""
+        return self.slope(y, self.rates(y))
+
     def slope(self, y: Array, rates: Array) -> float:
         """Its rate at a state of these rates."""
         ahead = self.near * rates
@@ -138,34 +143,9 @@ class _Piece(Protocol):
     def __call__(self, time: float) -> Array: ...
 
 
-class LevelRow(NamedTuple):
-    """A level over one step, from its interpolant; `length` in s."""
-
-    level: PtmdLevel
-    piece: _Piece
-    length: float
-
-    @property
-    def resolution(self) -> float:
-        """The interpolant is asked for times, s, not for offsets."""
-        return float(np.spacing(self.piece.t))
-
-    def value(self, offset: float) -> float:
-        """The level."""
-        return float(self.level.of(self._at(offset)))
-
-    def slope(self, offset: float) -> float:
-        """Its rate."""
-        y = self._at(offset)
-        return self.level.slope(y, self.level.rates(y))
-
-    def _at(self, offset: float) -> Array:
-        return np.asarray(self.piece(self.piece.t_old + offset)[:-INTEGRALS])
-
-
 def _asked(levels: list[PtmdLevel], y: Array, rates: Array) -> Array:
     """Every level and its slope at a state, shape (2, m)."""
-    return np.array([[float(level.of(y)) for level in levels], [level.slope(y, rates) for level in levels]])
+    return np.array([[level.value(y) for level in levels], [level.slope(y, rates) for level in levels]])
 
 
 def _fall(levels: list[PtmdLevel], piece: _Piece, ends: Array, fresh: bool) -> tuple[float, int] | None:
@@ -174,9 +154,15 @@ def _fall(levels: list[PtmdLevel], piece: _Piece, ends: Array, fresh: bool) -> t
     values, slopes = ends[:, 0].T, ends[:, 1].T
     # Where a phase begins no level lies below zero, but for the rounding of the switch before.
     begun = fresh & (values[:, 0] <= BEGUN * length * np.abs(slopes).max(axis=1, initial=0.0))
-    if not begun.any() and not suspect(np.array([length]), values, slopes).any():
-        return None
-    return first_fall([LevelRow(level, piece, length) for level in levels], begun.tolist())
+
+    def at(offset: float) -> Array:
+        return np.asarray(piece(piece.t_old + offset)[:-INTEGRALS])
+
+    # the interpolant is asked for times, s, not for offsets
+    resolution = float(np.spacing(piece.t))
+    rows = [LevelRow(level.value, level.own_slope, at, length, resolution) for level in levels]
+    found = first_row(np.array([length]), values, slopes, begun, lambda _: rows)
+    return found and found[1:]
 
 
 def _phase(stages: Stages, times: Array, states: Array, pieces: list[_Piece], size: int) -> PtmdPhase:

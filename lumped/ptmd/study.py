@@ -6,15 +6,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from lumped.errors import addressed
-from lumped.ptmd.case import Case
+from lumped.ptmd.case_file import Case
 from lumped.ptmd.free_vibration import simulate
 from lumped.ptmd.phase import ROWS_PER_PERIOD
 from lumped.ptmd.result import PtmdResult
 from lumped.ptmd.system import PoundingDamper
 from lumped.result.result import LedgerEntry, sufficient
 
-FINER = 3 * ROWS_PER_PERIOD // 2
-MOST_CHANGE, MOST_RESIDUAL = 1e-6, 1e-8
+FINER = 3 * ROWS_PER_PERIOD // 2  # rows in a period, of the second run that tells errors
+MOST_CHANGE, MOST_RESIDUAL = 1e-6, 1e-8  # safety: of a measure on finer rows, relative; of the energy balance
 SMALL = 0.1  # a penetration beyond this share of a length of the ring is not small
 FULL, PLAIN, BARE = "pounding damper", "damper without ring", "structure alone"
 

@@ -12,10 +12,12 @@ from lumped.errors import BadInput, Fault
 from lumped.materials import Relaxation
 from lumped.schema.keys import Key, Number
 from lumped.schema.record import Record
+from lumped.shapes.base import SIZE
 
-LENGTH = Key(Number(1e-9, 1e4, "m"), "length")
+LENGTH = Key(SIZE, "length")
 DISPLACEMENT, VELOCITY = Key(Number(-1e4, 1e4, "m"), "displacement"), Key(Number(-1e4, 1e4, "m/s"), "velocity")
-SIDES = (1, -1)
+MASS, STIFFNESS, DAMPING = Number(1e-9, 1e12, "kg"), Number(1e-9, 1e18, "N/m"), Number(0.0, 1e15, "N s/m")
+SIDES = (1, -1)  # signs of the ring's two sides
 
 
 class Memory(Enum):
@@ -30,9 +32,9 @@ class Memory(Enum):
 class Oscillator(Record):
     """Mass, kg, on a spring, N/m, and a dashpot, N s/m. Raises BadInput."""
 
-    mass: Annotated[float, Key(Number(1e-9, 1e12, "kg"), "mass")]
-    stiffness: Annotated[float, Key(Number(1e-9, 1e18, "N/m"), "stiffness of its spring")]
-    damping: Annotated[float, Key(Number(0.0, 1e15, "N s/m"), "that of its dashpot")]
+    mass: Annotated[float, Key(MASS, "mass")]
+    stiffness: Annotated[float, Key(STIFFNESS, "stiffness of its spring")]
+    damping: Annotated[float, Key(DAMPING, "that of its dashpot")]
     name: ClassVar[str] = "oscillator"
 
 

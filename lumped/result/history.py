@@ -11,9 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
+from lumped.numbers import Array, freeze_columns
 from lumped.schema.csv_file import read_columns, write_columns
-
-Array = NDArray[np.float64]
 
 COLUMNS = {
     "time": "time_s",
@@ -23,8 +22,8 @@ COLUMNS = {
     "contact_radius": "contact_radius_m",
     "force_error": "force_error_N",
 }
-LEAST_ROWS = 201
-MOST_ROWS = 100_001
+LEAST_ROWS = 201  # look: equal parts and one more, so dense at least is a history
+MOST_ROWS = 100_001  # work: rows at which it is made no denser
 # Relative to the time at the end of an interval, and of the first one to the whole: what halving stops at.
 SHORTEST, FIRST = 2.0**-50, 1e-150
 # In so many parts at most an interval is divided at once; a peak force that divides without harm.
@@ -43,8 +42,19 @@ class End(Enum):
     SECOND_APPROACH = "the striker approaches again before it has left, which this law does not follow"
 
 
+class ForceOverTime:
+    """What has rows of a time, s, never decreasing, and a force, N, both of shape (n,)."""
+
+    time: Array
+    force: Array
+
+    def force_at(self, time: ArrayLike) -> Array:
+        """Force at other times, N: linear between the rows, zero outside them."""
+        return np.asarray(np.interp(np.asarray(time, dtype=float), self.time, self.force, left=0.0, right=0.0))
+
+
 @dataclass(frozen=True, eq=False)
-class History:
+class History(ForceOverTime):
     """Columns of one length >= 2: `time`, s, never decreasing; `depth`, m, positive into the target; `velocity`, m/s,
     positive while approaching; `force`, N; `contact_radius`, m; `force_error`, N, half-width of the force's bar.
 
@@ -59,10 +69,7 @@ class History:
     force_error: Array
 
     def __post_init__(self) -> None:
-        for name in COLUMNS:
-            column = np.array(getattr(self, name), dtype=float)
-            column.flags.writeable = False
-            object.__setattr__(self, name, column)
+        for name, column in freeze_columns(self, COLUMNS).items():
             if column.ndim != 1 or column.size < 2 or column.shape != self.time.shape:
                 raise BadInput(Fault("history", name, "columns are one-dimensional, of one length, at least 2"))
             if not np.all(np.isfinite(column)):
@@ -72,10 +79,6 @@ class History:
 
     def __len__(self) -> int:
         return int(self.time.size)
-
-    def force_at(self, time: ArrayLike) -> Array:
-        """Force at other times, N: linear between the rows, zero outside them."""
-        return np.asarray(np.interp(np.asarray(time, dtype=float), self.time, self.force, left=0.0, right=0.0))
 
     def resampled(self, time: ArrayLike) -> History:
         """The history at other times, s, linear between the rows and held at its ends."""

@@ -19,7 +19,7 @@ from lumped.shapes.base import Shape
 from lumped.targets.base import Target
 from lumped.targets.rod import Rod
 
-GRAVITY = 9.81
+GRAVITY = 9.81  # physics: m/s2
 INERTIA = "model.inertia"
 # c1 (1 - nu)^2, cubic in nu, of elastic energies with finite strains; tests/fe/test_finite_strain.py finds it again.
 FIRST_ORDER = {

@@ -8,9 +8,7 @@ from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
+from lumped.numbers import Array
 from lumped.result.folder import RECORD, publish
 from lumped.result.history import History
 from lumped.scene.geometry import contact_modulus
@@ -21,7 +19,6 @@ from lumped.schema import Table
 from lumped.schema.csv_file import write_columns
 from lumped.schema.json_file import plain, write_json
 
-Array = NDArray[np.float64]
 COLUMNS_LEFT = ("time_after_separation_s", "depth_m", "depth_error_m")
 SCHEMA = "fe-contact/result/1"
 UNITS = {
@@ -292,7 +289,7 @@ def groups(scene: Scene, values: Mapping[str, float | None], history: History) -
     }
 
 
-def groups_at_rest(indenter: Indenter, contact_radius: NDArray[np.float64]) -> Table:
+def groups_at_rest(indenter: Indenter, contact_radius: Array) -> Table:
     """Those of a slow indentation, which knows no time: E_i/E_inf, nu, a/R and h/a with the largest of its radii, m."""
     modulus = contact_modulus(indenter.shape, indenter.material, indenter.striker_material)
     largest = float(contact_radius.max())

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.numbers.interpolation import peak
-from lumped.result.history import History
+from lumped.numbers import Array, peak
+from lumped.result.history import ForceOverTime, History
 from lumped.schema.csv_file import read_columns
 
-Array = NDArray[np.float64]
-POINTS = 201
+POINTS = 201  # equally spaced times at which two curves are compared
+GAUSS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)  # shares of an interval: exact for the square of a line
 # A force counts as gone when it is this share of its peak; the last row of a finished contact may hold
 # rounding.
 GONE, NEARLY_GONE = 1e-9, 1e-6
@@ -24,15 +24,11 @@ NO_MOTION: dict[str, float | None] = dict.fromkeys(("peak_depth", "restitution",
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class Curve(ForceOverTime):
     """A measured force: time in s, never decreasing, and force in N, both of shape (n,)."""
 
     time: Array
     force: Array
-
-    def force_at(self, time: ArrayLike) -> Array:
-        """Force at other times, N: linear between the rows, zero outside them."""
-        return np.asarray(np.interp(np.asarray(time, dtype=float), self.time, self.force, left=0.0, right=0.0))
 
 
 @dataclass(frozen=True)
@@ -161,3 +157,14 @@ def _ratio(ours: float | None, theirs: float | None) -> float | None:
 
 def _difference(ours: float | None, theirs: float | None) -> float | None:
     return None if ours is None or theirs is None else ours - theirs
+
+
+def distance(force: Callable[[Array], Array], other: Callable[[Array], Array], knots: Array) -> float:
+    """Norm over time of the difference over that of `force`, both straight between `knots` (k,), s, ascending.
+
+    Two knots of one time stand where a force jumps.
+    """
+    lengths = np.diff(knots)[:, None]
+    places = knots[:-1, None] + lengths * GAUSS
+    known = force(places)
+    return float(np.sqrt(np.sum(lengths * (other(places) - known) ** 2) / np.sum(lengths * known**2)))

@@ -7,11 +7,9 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
 from lumped.errors import BadInput, Fault, addressed
 from lumped.materials import Material
+from lumped.numbers import Array
 from lumped.scene.file import load_indenter
 from lumped.scene.geometry import Geometry, check_striker_material, contact_modulus, places, tables
 from lumped.scene.tables import Model
@@ -21,7 +19,7 @@ from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
 
 DEPTH = Number(1e-15, 1e6, "m")
-MOST_DEPTHS = 10_000
+MOST_DEPTHS = 10_000  # work: depths of one indentation
 
 
 @dataclass(frozen=True)
@@ -92,7 +90,7 @@ class Indenter:
             raise BadInput(faults)
         return depths
 
-    def check_contacts(self, depths: NDArray[np.float64], contact_radii: NDArray[np.float64]) -> None:
+    def check_contacts(self, depths: Array, contact_radii: Array) -> None:
         """Raise BadInput for depths, m, whose contacts, m, are too wide for the target."""
         wrong = [(d, self.target.check_contact(float(a))) for d, a in zip(depths, contact_radii, strict=True)]
         faults = [Fault("--depths", "", f"{d:g}: {reason}; cure: a smaller depth") for d, reason in wrong if reason]

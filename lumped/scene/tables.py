@@ -14,11 +14,12 @@ from lumped.schema.record import Described, Record, read_table
 from lumped.targets import TARGETS, Target
 
 LAWS = Folder[Described]("lumped.laws", source="law")  # they know scenes: here only the names of their keys are known
-LEAST_MASS = 1e-21
-END_IN_CONTACT_TIMES = 50.0
+LEAST_MASS = 1e-21  # safety: kg, the lightest body that is accepted
+END_IN_CONTACT_TIMES = 50.0  # work: default end of the motion for each contact, in elastic contact times
 DIRECTIONS = ("unsaid", "down", "horizontal")
 MASS = Key(Number(0.0, 1e12, "kg"), "mass of the striker")
-VELOCITY = Key(Number(1e-9, 1e5, "m/s"), "velocity of the striker at first touch")
+SPEED = Number(1e-9, 1e5, "m/s")
+VELOCITY = Key(SPEED, "velocity of the striker at first touch")
 SECOND_MASS = Key(Number(LEAST_MASS, 1e12, "kg"), "mass of a free second body", required=False)
 NAME = Key(Text(), "name of the scene", required=False)
 STRIKER_KEYS: Mapping[str, Key] = {"mass": MASS, "velocity": VELOCITY}

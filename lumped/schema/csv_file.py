@@ -10,12 +10,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault, shown
+from lumped.numbers import Array
 from lumped.schema.files import content
 
-Array = NDArray[np.float64]
 # What a measurement has, and what is read within seconds.
 MOST_BYTES, MOST_ROWS = 50_000_000, 1_000_000
 FILE = f"a CSV file of at most {MOST_BYTES // 10**6} MB"

@@ -6,9 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import Annotated
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.hertz import HertzImpact, power_impact
@@ -32,11 +29,6 @@ class Block(FlatEnded):
     thickness: Annotated[float, THICKNESS]
     sides: Annotated[str, SIDES]
     faces: Annotated[str, Key(Choice(("sliding", "bonded")), "what holds the faces")] = "sliding"
-
-    def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
-        """None: no half-space is pressed. Raises BadInput."""
-        reason = f"{self.name}: no dimensionality reduction for a block on a plane; accepted: a profile"
-        raise BadInput(Fault(self.name, "striker.shape", reason))
 
     @property
     def fixed_radius(self) -> float:

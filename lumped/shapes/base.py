@@ -6,13 +6,14 @@ from abc import ABC, abstractmethod
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact, power_impact
 from lumped.load_curves.plane_contact import LineProfile
 from lumped.materials import Material, Relaxation
+from lumped.numbers import Array
 from lumped.schema import Table
 from lumped.schema.keys import Number
 from lumped.schema.record import Record, written
@@ -30,19 +31,12 @@ class Shape(Record, ABC):
     plane: ClassVar[bool] = False
 
     @abstractmethod
-    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+    def height(self, r: ArrayLike) -> Array:
         """Height h(r), m, infinite where the profile has ended."""
 
     @abstractmethod
-    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+    def slope(self, r: ArrayLike) -> Array:
         """h'(r)."""
-
-    def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
-        """The equivalent one-dimensional profile g(x) = x int_0^x h'(r)/sqrt(x^2-r^2) dr, x >= 0.
-
-        On the half-space it is the depth at a contact radius x. Raises BadInput where there is none.
-        """
-        return np.asarray(self.load_curve.depth(x))
 
     @property
     @abstractmethod
@@ -105,11 +99,11 @@ class Shape(Record, ABC):
 class FlatEnded(Shape):
     """Flat up to its own radius, nothing beyond: a force in proportion to the depth."""
 
-    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+    def height(self, r: ArrayLike) -> Array:
         """Zero up to the rim, infinite beyond."""
         return np.where(np.abs(np.asarray(r, dtype=float)) <= self.fixed_radius, 0.0, np.inf)
 
-    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+    def slope(self, r: ArrayLike) -> Array:
         """Zero up to the rim, infinite beyond."""
         return self.height(r)
 
@@ -136,13 +130,13 @@ class Round(Shape):
 class Circular(Round):
     """An outline that is a circle."""
 
-    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+    def height(self, r: ArrayLike) -> Array:
         """R - sqrt(R^2-r^2) = r^2/(R + sqrt(R^2-r^2)), m, which cancels no digit; infinite beyond R."""
         square = (np.asarray(r, dtype=float) / self.tip_radius) ** 2
         rise = self.tip_radius * square / (1.0 + np.sqrt(np.maximum(1.0 - square, 0.0)))
         return np.where(square <= 1.0, rise, np.inf)
 
-    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+    def slope(self, r: ArrayLike) -> Array:
         """r/sqrt(R^2-r^2), infinite from R on."""
         ratio = np.abs(np.asarray(r, dtype=float)) / self.tip_radius
         with np.errstate(divide="ignore"):
@@ -152,10 +146,10 @@ class Circular(Round):
 class Parabolic(Round):
     """An outline that is a parabola."""
 
-    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+    def height(self, r: ArrayLike) -> Array:
         """r^2/(2R), m."""
         return np.asarray(np.asarray(r, dtype=float) ** 2 / (2.0 * self.tip_radius))
 
-    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+    def slope(self, r: ArrayLike) -> Array:
         """r/R."""
         return np.asarray(np.abs(np.asarray(r, dtype=float)) / self.tip_radius)

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.load_curves import cone
+from lumped.numbers import Array
 from lumped.schema.keys import Key, Number
 from lumped.schema.record import Part
 from lumped.shapes.base import Shape
@@ -24,11 +25,11 @@ class Cone(Shape):
     ]
     name: ClassVar[str] = "cone"
 
-    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+    def height(self, r: ArrayLike) -> Array:
         """r tan(angle)."""
         return np.asarray(self._tangent * np.abs(np.asarray(r, dtype=float)))
 
-    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+    def slope(self, r: ArrayLike) -> Array:
         """tan(angle)."""
         return np.full(np.shape(r), self._tangent)
 

@@ -6,9 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
@@ -26,11 +23,6 @@ class Cylinder(Circular):
     length: Annotated[float, Key(Number(1e-9, 1e6, "m"), "length along the surface")]
     name: ClassVar[str] = "cylinder"
     plane: ClassVar[bool] = True
-
-    def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
-        """None: dimensionality reduction is for axisymmetric contact. Raises BadInput."""
-        reason = "no dimensionality reduction in plane strain; accepted: an axisymmetric shape"
-        raise BadInput(Fault("cylinder", "striker.shape", reason))
 
     @property
     def exponent_of_force(self) -> float:

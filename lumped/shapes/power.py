@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.load_curves.power import Power
+from lumped.numbers import Array
 from lumped.schema.keys import Key, Number
 from lumped.schema.record import Part
 from lumped.shapes.base import Shape
@@ -22,11 +23,11 @@ class PowerProfile(Shape):
     exponent: Annotated[float, Key(Number(1.0, 20.0), "n of the height c r^n")]
     name: ClassVar[str] = "power"
 
-    def height(self, r: ArrayLike) -> NDArray[np.float64]:
+    def height(self, r: ArrayLike) -> Array:
         """c r^n."""
         return np.asarray(self.coefficient * np.abs(np.asarray(r, dtype=float)) ** self.exponent)
 
-    def slope(self, r: ArrayLike) -> NDArray[np.float64]:
+    def slope(self, r: ArrayLike) -> Array:
         """n c r^(n - 1)."""
         ratio = np.abs(np.asarray(r, dtype=float))
         return np.asarray(self.exponent * self.coefficient * ratio ** (self.exponent - 1.0))

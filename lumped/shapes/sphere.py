@@ -6,9 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 from lumped.load_curves.hertz import Hertz, HertzImpact, hertz_impact
 from lumped.load_curves.sneddon_sphere import SneddonSphere
 from lumped.schema.keys import Key
@@ -42,12 +39,6 @@ class Sphere(Circular, RoundShape):
     """A sphere of this radius, m. Raises BadInput for a radius out of range."""
 
     name: ClassVar[str] = "sphere"
-
-    def mdr_profile(self, x: ArrayLike) -> NDArray[np.float64]:
-        """x artanh(x/R)."""
-        ratio = np.asarray(x, dtype=float) / self.radius
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(ratio <= 1.0, self.radius * ratio * np.arctanh(ratio), np.inf)
 
     def whole_mass(self, density: float) -> float:
         """density 4/3 pi R^3, kg."""

@@ -19,12 +19,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import NotReached
+from lumped.numbers import Array
 
-Array = NDArray[np.float64]
-MOST_PIECES = 100_000
+MOST_PIECES = 100_000  # work: waves in the bar until the time asked for
 ROUNDING = 1e-12  # of the transit time and of the largest speed
 
 

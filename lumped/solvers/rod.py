@@ -26,7 +26,7 @@ x of the striker, u of the rod's end; a delay equation, integrated echo by echo,
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -36,21 +36,19 @@ from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from lumped.errors import NotReached
-from lumped.numbers import Real
-from lumped.numbers.quadrature import gauss
+from lumped.numbers import Array, Real, gauss
 from lumped.scene.scene import Scene
 from lumped.targets.rod import Rod
 
-Array = NDArray[np.float64]
-GAUSS_POINTS = 24
-MOST_PIECES = 400
+GAUSS_POINTS = 24  # Gauss points between two rows, for the energy that waves carry
+MOST_PIECES = 400  # work: echoes of the exact series, each a polynomial
 PLACES = 65  # in a piece, where its greatest force and its zeros are looked for
 FADING = np.linspace(0.0, 30.0, 601)[1:]  # m/Z until what is left of a front is rounding, and so many places in it
 NOTHING = Polynomial([0.0])
-MOST_ECHOES = 100
+MOST_ECHOES = 100  # work: echoes that are integrated, each through all before it
 LONGEST, FIRST = 0.25, 4e-3  # steps, as `longest` says, and the first one over that
 ABSOLUTE = 1e-2  # over the relative tolerance, in units of the elastic impact
-STRIKER, SPEED, END = range(3)
+STRIKER, SPEED, END = range(3)  # of the state that is integrated
 
 
 @dataclass(frozen=True)
@@ -181,12 +179,9 @@ class FlatImpact:
 
     def _waves(self, times: Array) -> tuple[Array, Array]:
         """p and echo q at times (n,)."""
-        pieces, _, _ = self.pieces
-        starts, echo = self.starts, self.waves.echo
-        place = np.clip(np.searchsorted(starts, times, side="right") - 1, 0, len(pieces) - 1)
+        pieces, starts, echo = self.pieces[0], self.starts, self.waves.echo
         leaves, came = np.empty_like(times), np.zeros_like(times)
-        for index in np.unique(place):
-            here = place == index
+        for index, here in _by_piece(starts, times):
             s = (times[here] - starts[index]) / self.unit
             leaves[here] = pieces[index](s)
             if index:
@@ -204,6 +199,13 @@ class FlatImpact:
             weight = 2.0 * self.waves.echo**echoes if echoes else 1.0
             depth += np.where(ago > 0.0, weight * impulse / self.waves.impedance, 0.0)
         return depth
+
+
+def _by_piece(starts: Array, times: Array) -> Iterator[tuple[int, NDArray[np.bool_]]]:
+    """The pieces that begin at `starts`, in which some of the times are, and which; the first knows what is earlier."""
+    place = np.clip(np.searchsorted(starts, times, side="right") - 1, 0, starts.size - 1)
+    for index in np.unique(place):
+        yield int(index), place == index
 
 
 def _next(found: list[RodPiece], alpha: float, echo: float, weight: float) -> RodPiece:
@@ -331,10 +333,7 @@ class TippedImpact:
 
     def _states(self, times: Array) -> Array:
         """x, x', u at times (n,), shape (3, n)."""
-        starts, pieces = self.starts, self.pieces[0]
-        place = np.clip(np.searchsorted(starts, times, side="right") - 1, 0, len(pieces) - 1)
-        found = np.empty((3, times.size))
-        for index in np.unique(place):
-            here = place == index
+        pieces, found = self.pieces[0], np.empty((3, times.size))
+        for index, here in _by_piece(self.starts, times):
             found[:, here] = pieces[index](times[here])
         return found

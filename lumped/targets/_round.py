@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
+from lumped.numbers import Array
 from lumped.schema.keys import Choice, Key
 from lumped.shapes.base import SIZE, Shape
 from lumped.targets.base import MOVES, Target, vibrations
@@ -41,7 +42,7 @@ class RoundTarget(Target):
     def outline(self) -> Shape:
         """Its own profile."""
 
-    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
+    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> Array:
         """depth - height(r) of both profiles; where the striker's is a parabola, the target's is one too."""
         return np.asarray(np.asarray(depth, dtype=float) - shape.height(r) - self.matching(shape).height(r))
 

@@ -7,12 +7,13 @@ from abc import ABC
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse, radiated_share
+from lumped.numbers import Array
 from lumped.schema import Table
 from lumped.schema.record import Record, written
 from lumped.shapes._block import Block
@@ -35,6 +36,7 @@ class Target(Record, ABC):
     only_with_inertia: ClassVar[bool] = False
     deformable: ClassVar[bool] = True
     yielding_strikers: ClassVar[bool] = False
+    through: ClassVar[str] = ""  # what no depth may reach, where that is the height pressed
 
     @property
     def has_length(self) -> bool:
@@ -55,7 +57,7 @@ class Target(Record, ABC):
         """Length along the surface per unit of its places, m."""
         return 1.0
 
-    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
+    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> Array:
         """Interpenetration of the undeformed surfaces, m, positive inside; broadcasts over r and depth, m.
 
         `r` is the place on the surface, zero at first touch: a radius, m, or what else the target counts in. Here that
@@ -123,8 +125,10 @@ class Target(Record, ABC):
         return shape.fixed_radius
 
     def check_depth(self, shape: Shape, depth: float) -> str:
-        """What is wrong with a depth, m, of this shape; empty where nothing is."""
-        radius = shape.tip_radius
+        """What is wrong with a depth, m, of this shape: `through` the body, or past the striker's equator; or empty."""
+        height, radius = self.pressed_height(shape), shape.tip_radius
+        if self.through and height is not None and depth >= height:
+            return f"accepted below {self.through} {height:g} m"
         return f"accepted below the striker's radius {radius:g} m" if radius is not None and depth >= radius else ""
 
     def check_contact(self, contact_radius: float) -> str:

@@ -39,6 +39,7 @@ class Layer(Target):
     base: Annotated[str, BASE]
     name: ClassVar[str] = "layer"
     has_inertia: ClassVar[bool] = True
+    through: ClassVar[str] = "the layer's thickness"
 
     @property
     def body_depth(self) -> float:
@@ -70,12 +71,6 @@ class Layer(Target):
         if radiated is not None and radiated <= added:
             return radiated, note
         return added, MOVES.format(added)
-
-    def check_depth(self, shape: Shape, depth: float) -> str:
-        """Neither through the layer nor past the equator."""
-        if depth >= self.thickness:
-            return f"accepted below the layer's thickness {self.thickness:g} m"
-        return super().check_depth(shape, depth)
 
 
 MEMBER = Part(Layer)

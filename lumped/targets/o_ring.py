@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
+from lumped.numbers import Array
 from lumped.schema.keys import Key
 from lumped.schema.record import Part
 from lumped.shapes.base import SIZE, Shape
@@ -30,6 +31,7 @@ class ORing(Target):
     section_radius: Annotated[float, Key(SIZE, "radius of the section")]
     name: ClassVar[str] = "o_ring"
     has_inertia: ClassVar[bool] = False
+    through: ClassVar[str] = "the ring's thickness"
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -37,7 +39,7 @@ class ORing(Target):
             reason = f"{self.section_radius:g}: accepted below the mean radius {self.mean_radius:g} m"
             raise BadInput(Fault("o_ring", "section_radius", reason))
 
-    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
+    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> Array:
         """depth/2 - (s - sqrt(s^2 - x^2)), s the section's radius and `r` the distance x from its top."""
         section = Sphere(self.section_radius)
         return np.asarray(self.lead * np.asarray(depth, dtype=float) - section.height(r))
@@ -75,11 +77,6 @@ class ORing(Target):
         if (shape.fixed_radius or 0.0) < outside:
             reason = f"{shape.fixed_radius:g}: accepted from the ring's outer radius {outside:g} m on"
             raise BadInput(Fault(source, "striker.radius", reason))
-
-    def check_depth(self, shape: Shape, depth: float) -> str:
-        """Not through the ring."""
-        thickness = 2.0 * self.section_radius
-        return f"accepted below the ring's thickness {thickness:g} m" if depth >= thickness else ""
 
 
 MEMBER = Part(ORing)

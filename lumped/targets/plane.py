@@ -25,6 +25,7 @@ class Plane(Target):
     has_inertia: ClassVar[bool] = True
     deformable: ClassVar[bool] = False
     yielding_strikers: ClassVar[bool] = True
+    through: ClassVar[str] = "the block's"
 
     def pressed_height(self, shape: Shape) -> float | None:
         """A block's, m."""
@@ -56,12 +57,6 @@ class Plane(Target):
     def load_curve(self, shape: Shape, nu: float) -> LoadCurve:
         """A block's own, per unit of its modulus; raises BadInput where its strain is not uniform, and for a sphere."""
         return shape.load_curve if isinstance(shape, Block) else super().load_curve(shape, nu)
-
-    def check_depth(self, shape: Shape, depth: float) -> str:
-        """Not through a block, nor deeper than a sphere is round."""
-        if not isinstance(shape, Block):
-            return super().check_depth(shape, depth)
-        return f"accepted below the block's {shape.thickness:g} m" if depth >= shape.thickness else ""
 
 
 MEMBER = Part(Plane)

@@ -6,13 +6,14 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.ring import RodInRing
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
+from lumped.numbers import Array
 from lumped.schema.keys import Key
 from lumped.schema.record import Part
 from lumped.shapes.base import SIZE, Shape
@@ -31,6 +32,7 @@ class Ring(Target):
     thickness: Annotated[float, Key(SIZE, "between the hole and what holds the ring")]
     name: ClassVar[str] = "ring"
     has_inertia: ClassVar[bool] = False
+    through: ClassVar[str] = "the ring's thickness"
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -48,7 +50,7 @@ class Ring(Target):
         """Its thickness, m."""
         return self.thickness
 
-    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> NDArray[np.float64]:
+    def overlap(self, shape: Shape, r: ArrayLike, depth: ArrayLike) -> Array:
         """D cos(theta) + sqrt(R^2 - D^2 sin^2(theta)) - inner_radius, D = clearance + depth; `r` is theta."""
         radius, angle = shape.tip_radius or 0.0, np.asarray(r, dtype=float)
         clearance = self.inner_radius - radius
@@ -73,12 +75,6 @@ class Ring(Target):
         if (shape.tip_radius or 0.0) >= self.inner_radius:
             reason = f"{shape.tip_radius:g}: accepted below the ring's inner radius {self.inner_radius:g} m"
             raise BadInput(Fault(source, "striker.radius", reason))
-
-    def check_depth(self, shape: Shape, depth: float) -> str:
-        """Neither through the ring nor past the rod's middle."""
-        if depth >= self.thickness:
-            return f"accepted below the ring's thickness {self.thickness:g} m"
-        return super().check_depth(shape, depth)
 
 
 MEMBER = Part(Ring)

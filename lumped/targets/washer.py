@@ -26,6 +26,7 @@ class Washer(Target):
     base: Annotated[str, BASE]
     name: ClassVar[str] = "washer"
     has_inertia: ClassVar[bool] = False
+    through: ClassVar[str] = "the washer's height"
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -59,10 +60,6 @@ class Washer(Target):
         if (shape.fixed_radius or 0.0) <= self.inner_radius:
             reason = f"{shape.fixed_radius:g}: accepted above the washer's inner radius {self.inner_radius:g} m"
             raise BadInput(Fault(source, "striker.radius", reason))
-
-    def check_depth(self, shape: Shape, depth: float) -> str:
-        """Not through the washer."""
-        return f"accepted below the washer's height {self.height:g} m" if depth >= self.height else ""
 
 
 MEMBER = Part(Washer)

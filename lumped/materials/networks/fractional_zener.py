@@ -17,7 +17,7 @@ from lumped.schema.keys import Key, Number, Numbers
 
 # In units of tau: impacts far shorter or longer need a window of their own, and the model ledger says so.
 WINDOW = (1e-6, 1e3)
-ACCURACY = 1e-6
+ACCURACY = 1e-6  # default: relative deviation of the series from the law within the window
 
 
 def of(

@@ -4,16 +4,14 @@ from typing import Annotated
 
 import numpy as np
 from numpy.polynomial import polynomial
-from numpy.typing import NDArray
 
 from lumped.materials.networks.base import Network
 from lumped.materials.relaxation import Relaxation
+from lumped.numbers import Array
 from lumped.schema.keys import Key, Number, Numbers
 
 COEFFICIENT = Number(-1e30, 1e30)
-NEGLIGIBLE = 1e-11
-
-Array = NDArray[np.float64]
+NEGLIGIBLE = 1e-11  # rounding: weights over the modulus: less below zero is forgiven, less above is dropped
 
 
 def of(

@@ -14,21 +14,20 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import BadInput, NotReached
+from lumped.numbers import Array
 from lumped.result.history import AT_REST
 from lumped.solvers.hereditary.march import HereditaryMarch, HereditaryPiece, Settings, Stretch
 from lumped.solvers.hereditary.path import Path
 from lumped.solvers.hereditary.problem import Hereditary
-from lumped.solvers.hereditary.radau import Radau
+from lumped.solvers.radau import Nodes
 
-Array = NDArray[np.float64]
-NEWTON_STEPS = 14
+NEWTON_STEPS = 14  # work: of one piece of the approach, more is no convergence
 # Newton's last correction, relative: what is left after it is its square, or as many times less as its square is less
 # than that of the one before. At rest, where accelerations are rounding, the square of this share of gravity and depth.
 CONVERGED, DIVERGED = 1e-6, 1e100
-DEPTH, VELOCITY, WORK, FORCE, MEMORIES = range(5)
+DEPTH, VELOCITY, WORK, FORCE, MEMORIES = range(5)  # rows of the state
 # A velocity of AT_REST is rest only if the striker would take longer than this share of the time so far to
 # stop.
 SLOW = 1e-3
@@ -50,16 +49,16 @@ class PieceMotion:
     weights: Array
 
     @classmethod
-    def over_root(cls, problem: Hereditary, table: Radau, root: float, length: float) -> PieceMotion:
+    def over_root(cls, problem: Hereditary, table: Nodes, root: float, length: float) -> PieceMotion:
         """The piece from `root` over this length in r = sqrt(t)."""
-        step = length * table.nodes
-        return cls(problem, step * (2.0 * root + step), 2.0 * length * table.integral * (root + step))
+        step = length * table.points
+        return cls(problem, step * (2.0 * root + step), 2.0 * length * table.once * (root + step))
 
     @classmethod
-    def to_end(cls, problem: Hereditary, table: Radau, duration: float) -> PieceMotion:
+    def to_end(cls, problem: Hereditary, table: Nodes, duration: float) -> PieceMotion:
         """The piece of this duration in the root of the time left: there contact closes smoothly."""
-        left = 1.0 - table.nodes
-        return cls(problem, duration * (1.0 - left * left), 2.0 * duration * table.integral * left)
+        left = 1.0 - table.points
+        return cls(problem, duration * (1.0 - left * left), 2.0 * duration * table.once * left)
 
     def piece(self, state: Array, guess: float | Array) -> HereditaryPiece | None:
         """The piece from a state, (4 + K,), the acceleration guessed; None where Newton's steps fail."""
@@ -142,7 +141,7 @@ def follow(
     def piece(root: float, length: float, state: Array) -> HereditaryPiece | None:
         motion, found = PieceMotion.over_root(problem, settings.table, root, length), None
         if before is not None:
-            force = before.value(FORCE, root + length * settings.table.nodes)
+            force = before.value(FORCE, root + length * settings.table.points)
             found = motion.piece(state, problem.gravity - force)
         return found or motion.piece(state, problem.gravity - float(state[FORCE]))
 
@@ -202,4 +201,4 @@ def _to_velocity(
 def _touch(problem: Hereditary, settings: Settings) -> Path:
     """The very first piece, at the velocity of touch."""
     end = (TOUCH * problem.shortest) ** 0.5
-    return Path.of([0.0, end], [problem.early((end * settings.table.places) ** 2)], settings.table)
+    return Path.of([0.0, end], [problem.early((end * np.append(0.0, settings.table.points)) ** 2)])

@@ -11,21 +11,20 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import NotReached, TooManySteps
+from lumped.numbers import Array
 from lumped.solvers.hereditary.approach import DEPTH, FORCE, VELOCITY, Approach, PieceMotion, follow
 from lumped.solvers.hereditary.march import SHORTEST, Settings, tail
 from lumped.solvers.hereditary.path import Path
 from lumped.solvers.hereditary.problem import Hereditary
 
-Array = NDArray[np.float64]
-MOST_ATTEMPTS = 300
+MOST_ATTEMPTS = 300  # work: stretches followed until the contact has ended
 # The duration is found to this relative change; the first time, with few nodes, this share of the accuracy will do.
 CLOSED, NEARLY_CLOSED = 1e-12, 1e-2
 # Of the force now, what decelerates in the mean until the end of an elastic contact: 0.37 F t^2 = depth.
 MEAN_FORCE = 0.37
-TRIES = 12
+TRIES = 12  # work: guesses of the last piece's duration
 # Loads as near to each other tell no slope; a relative change of the duration that is noise once it falls no more.
 SAME, ROUNDED = 1e-11, 1e-7
 # A duration is near that changes by no more than this share.
@@ -140,7 +139,7 @@ class Guess(NamedTuple):
     @classmethod
     def of(cls, problem: Hereditary, duration: float, over: Path, steep: float, settings: Settings) -> Guess:
         """From a piece over q that was found, and ends as this one of another duration."""
-        places = -(duration**0.5) * (1.0 - settings.table.nodes)
+        places = -(duration**0.5) * (1.0 - settings.table.points)
         return cls(duration, problem.gravity - over.value(FORCE, places), steep)
 
 
@@ -170,7 +169,7 @@ def shut(
         if piece is None:
             return None
         steps += piece.steps
-        now, error = _Fallen.of(piece.values[:, -1], power), tail(piece.values[FORCE], settings.table)
+        now, error = _Fallen.of(piece.values[:, -1], power), tail(piece.values[FORCE])
         if before:
             steep = now.steep(before) or steep
         change = now.lasts(steep, power)
@@ -180,7 +179,7 @@ def shut(
         if not fits and abs(change) > NEAR * duration:
             return None
         if abs(change) <= close * duration or rounded or not fits:
-            path = Path.of([-(duration**0.5), 0.0], [piece.values], settings.table)
+            path = Path.of([-(duration**0.5), 0.0], [piece.values])
             return Shut(path, duration if fits else longer * duration, steep, steps, fits)
         before, missed = now, abs(change) if before else math.inf
         duration, a = longer * duration, problem.gravity - piece.values[FORCE, 1:]

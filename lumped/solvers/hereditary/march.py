@@ -7,18 +7,18 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import NotReached, TooManySteps
+from lumped.numbers import Array
 from lumped.solvers.hereditary.path import Path
-from lumped.solvers.hereditary.radau import Radau, radau
+from lumped.solvers.radau import Nodes, chebyshev_through_zero, radau
 
-Array = NDArray[np.float64]
-POINTS = 16
-MOST_PIECES = 3000
+POINTS = 16  # default: nodes of a piece
+MOST_PIECES = 3000  # work: pieces of one march
+# Safety: most and least by which the next piece is longer, and the share of what its error allows.
 GROWTH, SHRINKAGE, CAUTION = 3.0, 0.15, 0.8
-UNSOLVED = 0.25
-SHORTEST, SAME = 1e-13, 1e-14
+UNSOLVED = 0.25  # work: of the length, to try after a piece that found no solution
+SHORTEST, SAME = 1e-13, 1e-14  # rounding: of the span: a piece as short fails, breaks as near are one
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class Settings:
     points: int = POINTS
 
     @property
-    def table(self) -> Radau:
-        """The nodes and what belongs to them."""
+    def table(self) -> Nodes:
+        """The nodes and what belongs to them, in time itself."""
         return radau(self.points)
 
 
@@ -83,7 +83,7 @@ class Stretch:
         plan = [] if before is None else before.breaks[1:].tolist()
         breaks, steps, length = [span[0]], 0, _ahead(plan, span, span[0], first)
         values: list[Array] = []
-        table, state = settings.table, start
+        state = start
         while len(values) < MOST_PIECES:
             place = breaks[-1]
             length = min(length, span[1] - place)
@@ -92,29 +92,29 @@ class Stretch:
             if piece is not None:
                 steps += piece.steps
                 peak = max(largest, float(np.abs(piece.values[self.force]).max()))
-                factor = _factor(self._error(piece.values, peak, table), settings)
+                factor = _factor(self._error(piece.values, peak), settings)
                 if factor >= CAUTION:
                     largest, state = peak, piece.values[:, -1]
                     values.append(piece.values)
                     breaks.append(_landed(plan, span, place + length))
                     over = self.over(piece.values)
                     if over or breaks[-1] >= span[1]:
-                        return HereditaryMarch(Path.of(breaks, values, table), steps, largest, over)
+                        return HereditaryMarch(Path.of(breaks, values), steps, largest, over)
                     length = _ahead(plan, span, breaks[-1], length * factor)
                     continue
             length *= factor
             if length <= SHORTEST * (span[1] - span[0]):
                 if not values:
                     raise NotReached("the impact could not be followed from its very start")
-                return HereditaryMarch(Path.of(breaks, values, table), steps, largest, False, stuck=True)
+                return HereditaryMarch(Path.of(breaks, values), steps, largest, False, stuck=True)
         raise TooManySteps(f"more than {MOST_PIECES} pieces: accepted: a looser tolerance, an earlier end_time")
 
-    def _error(self, values: Array, peak: float, table: Radau) -> float:
+    def _error(self, values: Array, peak: float) -> float:
         """Relative error of a piece."""
-        error = tail(values[self.force], table) / (peak or 1.0)
+        error = tail(values[self.force]) / (peak or 1.0)
         if self.time is None:
             return error
-        return max(error, tail(values[self.time], table) / float(values[self.time, -1]))
+        return max(error, tail(values[self.time]) / float(values[self.time, -1]))
 
 
 def _ahead(plan: list[float], span: tuple[float, float], place: float, length: float) -> float:
@@ -129,9 +129,9 @@ def _landed(plan: list[float], span: tuple[float, float], place: float) -> float
     return next((known for known in (*plan, span[1]) if abs(known - place) <= near), place)
 
 
-def tail(force: Array, table: Radau) -> float:
+def tail(force: Array) -> float:
     """What the last two of N+1 polynomials add to a force, given at the first place and the nodes."""
-    return float(np.abs(table.series[-2:] @ force).sum())
+    return float(np.abs(chebyshev_through_zero(force.size - 1)[-2:] @ force).sum())
 
 
 def _factor(error: float, settings: Settings) -> float:

@@ -10,18 +10,17 @@ from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.polynomial import chebyshev as polynomial
 
-from lumped.solvers.hereditary.radau import Radau, slopes
+from lumped.numbers import Array, falling_zero
+from lumped.solvers.radau import chebyshev_through_zero
 
-Array = NDArray[np.float64]
 Curve = Callable[[float], float]
 # Shares of a piece that lie densely, and those between which a fall is sought.
 DENSE, CLOSE = np.linspace(0.0, 1.0, 25), np.linspace(0.0, 1.0, 65)
 # So many places are few.
 FEW = 100
-ROOT_STEPS = 100
-ROUNDING = 4e-16
+# Work: steps that place a time within its interval; rounding: halvings towards both ends in the table of times.
 NEWTON_STEPS, ENDS = 4, 34
 
 
@@ -37,9 +36,10 @@ class Path:
     end: float
 
     @classmethod
-    def of(cls, breaks: Sequence[float], values: Sequence[Array], table: Radau) -> Path:
+    def of(cls, breaks: Sequence[float], values: Sequence[Array]) -> Path:
         """The path through `values`, for every piece (fields, N+1) at its first place and its nodes."""
-        return cls(np.array(breaks), np.array(values) @ table.series.T, float(breaks[-1]))
+        series = chebyshev_through_zero(values[0].shape[1] - 1)
+        return cls(np.array(breaks), np.array(values) @ series.T, float(breaks[-1]))
 
     def joined(self, later: Path) -> Path:
         """The path, whole, and one that goes on from its last break."""
@@ -158,6 +158,12 @@ def chebyshev(x: Array, count: int) -> Array:
 
 
 @cache
+def slopes(count: int) -> Array:
+    """The matrix (n, n) from `count` coefficients to those of the derivative over (-1, 1)."""
+    return np.pad(polynomial.chebder(np.eye(count), axis=0), ((0, 1), (0, 0)))
+
+
+@cache
 def _at_dense(count: int) -> Array:
     """The Chebyshev polynomials at DENSE, shape (count, shares)."""
     return chebyshev(2.0 * DENSE - 1.0, count)
@@ -175,23 +181,6 @@ def chebyshev_sum(series: list[float], x: float) -> float:
     for coefficient in series[:0:-1]:
         above, value = value, coefficient + twice * value - above
     return series[0] + x * value - above
-
-
-def falling_zero(value: Curve, low: float, high: float) -> float:
-    """Where `value` falls to zero between `low`, where it is positive, and `high`: false position, Illinois."""
-    at_low, at_high, side, place = value(low), value(high), 0, high
-    if at_low <= 0.0:
-        return low
-    for _ in range(ROOT_STEPS):
-        before, place = place, high - at_high * (high - low) / (at_high - at_low)
-        found = value(place)
-        if found == 0.0 or abs(place - before) <= ROUNDING * abs(high):
-            break
-        if found > 0.0:
-            low, at_low, at_high, side = place, found, at_high * (0.5 if side == 1 else 1.0), 1
-        else:
-            high, at_high, at_low, side = place, found, at_low * (0.5 if side == -1 else 1.0), -1
-    return place
 
 
 class PathClock(Protocol):

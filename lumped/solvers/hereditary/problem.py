@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.load_curves import LoadCurve
 from lumped.materials import Relaxation
+from lumped.numbers import Array
 
-Array = NDArray[np.float64]
 # A relative step for a difference, and a depth too small to matter.
 NEARBY, TINY = 1e-6, 1e-150
 # A share of the shortest contact time, to see how a load starts; a power is whole that is as near to a whole number.

@@ -5,7 +5,7 @@ and the force is F(t) = int_0^{t1} E(t-s) dy(s). The rebound is followed over s 
 0, where contact ends: the approach is known at every place, the time is what is sought, and all is smooth.
 
 The depth's memories are split at the turn t_m. With E(t) = sum_j E_j exp(-t/tau_j) + eta delta(t), E_inf among the
-E_j with an endless tau_j, Y_j(t1) of :mod:`lumped.solvers.hereditary.rebound` and X_j' = depth' - X_j/tau_j from
+E_j with an endless tau_j, Y_j(t1) as below and X_j' = depth' - X_j/tau_j from
 X_j(t_m) = 0,
     0 = sum_j E_j (Y_j(t1) exp(-(t-t_m)/tau_j) + X_j(t)) + eta depth'(t).
 
@@ -25,29 +25,28 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
-from numpy.typing import NDArray
 
 from lumped.errors import NotReached
+from lumped.numbers import Array, falling_zero, gauss
 from lumped.result.history import End
 from lumped.solvers.hereditary import approach as forth
 from lumped.solvers.hereditary.approach import Approach
 from lumped.solvers.hereditary.march import HereditaryPiece, Settings, Stretch
-from lumped.solvers.hereditary.path import Path, falling_zero
+from lumped.solvers.hereditary.path import Path
 from lumped.solvers.hereditary.problem import Hereditary
-from lumped.solvers.hereditary.radau import Radau
+from lumped.solvers.radau import Nodes
 
-Array = NDArray[np.float64]
-TIME, DEPTH, VELOCITY, WORK, FORCE, EDGE, MEMORIES = range(7)
-NEWTON_STEPS = 16
-CONVERGED, ROUNDING = 1e-8, 1e-14
-FIRST = 0.5
+TIME, DEPTH, VELOCITY, WORK, FORCE, EDGE, MEMORIES = range(7)  # rows of the state
+NEWTON_STEPS = 16  # work: of one piece of the rebound, more is no convergence
+CONVERGED, ROUNDING = 1e-8, 1e-14  # rounding: last change over the largest pace; change of a time over the time
+FIRST = 0.5  # work: first piece over the length of the way back
+# Safety: a change of the pace as large has no solution; in place of a stiffness of zero, in a quotient.
 DIVERGED, TINY = 1e100, 1e-200
 # A turn with a force above the weight by less than this share of it is none: the striker has crept to rest.
 BORNE = 1e-9
 # The nodes of a piece integrate what fades by less than this power of e within it; a fade of FORGOTTEN leaves nothing.
 RESOLVED, FORGOTTEN = 2.0, 40.0
-NODES, WEIGHTS = (0.5 * (1.0 + leggauss(32)[0]), 0.5 * leggauss(32)[1])
+NODES, WEIGHTS = gauss(32)  # Gauss's rule on (0, 1), over what a fast memory still sees
 
 
 class Then(NamedTuple):
@@ -76,12 +75,12 @@ class ReboundPieces:
 
     problem: Hereditary
     past: Past
-    table: Radau
+    table: Nodes
     before: Path | None
 
     def piece(self, place: float, length: float, state: Array) -> HereditaryPiece | None:
         """The piece of a length at a place, from the state there; None where Newton's steps fail."""
-        over, weights = place + length * self.table.nodes, length * self.table.integral
+        over, weights = place + length * self.table.points, length * self.table.once
         then = self._then(place, over, weights, state)
         tried = (self._solved(weights, state, then, pace) for pace in self._paces(over))
         return next((found for found in tried if found), None)
@@ -174,8 +173,8 @@ def rebound(
     known = before.path if before else None
     end, start = inward.path.end, _turned(problem, inward)
     if start[FORCE] <= problem.gravity * (1.0 + BORNE):
-        return Rebound(Path.of([-end, -end * (1.0 - 1e-12)], [np.repeat(start[:, None], settings.points + 1, 1)],
-                               settings.table), End.SECOND_APPROACH, 0)  # fmt: skip
+        still = np.repeat(start[:, None], settings.points + 1, 1)
+        return Rebound(Path.of([-end, -end * (1.0 - 1e-12)], [still]), End.SECOND_APPROACH, 0)
     retreat = ReboundPieces(problem, Past(inward.path, forth.VELOCITY, problem.fadings), settings.table, known)
 
     def over(values: Array) -> bool:

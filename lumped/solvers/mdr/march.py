@@ -1,25 +1,21 @@
 """One impact of the row of springs: approach, then rebound, each a phase that is followed to its exact end.
 
-In one step of the approach the edge stands where the profile meets the surface. A coarse march at its own pace is
-quick, and good to about 1/elements^2.
-
-How long the steps are: by the error they make, or as they were before, each cut into equal parts.
+In one step of the approach the edge stands where the profile meets the surface. In every step of the rebound the edge
+runs over the ground of one step of the approach, the last that is left; sought is how long it takes.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import Protocol
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
 
 from lumped.errors import NotReached, TooManySteps
+from lumped.numbers import falling_zero
 from lumped.result.history import AT_REST, End
-from lumped.scene.geometry import stiffest_impact
-from lumped.scene.scene import Scene
-from lumped.solvers.mdr.memory import Fading, fadings
-from lumped.solvers.mdr.retreat import retreat
 from lumped.solvers.mdr.row import (
+    Fading,
     Instant,
     Place,
     RowProblem,
@@ -27,32 +23,30 @@ from lumped.solvers.mdr.row import (
     Springs,
     SpringsInRow,
     Values,
+    fadings,
     followed,
     followed_bend,
+    left,
     stretched,
     yielding,
 )
 
-GROWTH = 3.0
-CAUTION = 0.9
-SHRINKAGE = 0.2
-# Below this share of the velocity at touch, errors of the velocity count absolutely.
-REST = 1e-5
-# Once the contact has shrunk to this share of its reach, its edge may run to the axis in any step.
-NEARLY_CLOSED = 0.1
-OVERREACH = 1.5
-LOCATING_STEPS = 60
-CLOSE = 1e-13
-SHORTEST = 1e-14
-AT_END = 1.0 - 1e-12
-SECANTS = 60
+# Where the approach turns: to this share of the velocities around it.
+TURNED = 1e-13
+SHORTEST = 1e-14  # rounding: of the time so far, a step as short fails
+AT_END = 1.0 - 1e-12  # rounding: of the end time, from which on it is reached
+SECANTS = 60  # work: of a step's mean velocity
 # The last correction of the rate; what is left after it is the product of two such.
 CONVERGED = 1e-9
 # Gauss' two points on (0, 1).
 GAUSS = (0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0))
-MOST_STEPS = 10_000
-# An end time is near a turn that comes before so many times it, and not more than so many steps before it.
-FURTHER, NEAR = 1.2, 1.5
+# Work: steps tried for the separation; of the step, to which it is found; times it, most to try next.
+TRIES, CLOSE, WIDER = 100, 1e-7, 4.0
+WHOLE_STEPS = 4  # the finer of two marches needs two more than the coarser to get as far
+# What to try first at least, of the time so far.
+SHORT = 1e-14
+# A step that takes no time, s.
+LEAST = 1e-200
 
 
 class Pace(Protocol):
@@ -63,79 +57,6 @@ class Pace(Protocol):
 
     def accepts(self, now: Instant, then: Instant) -> bool:
         """Whether a step from `now` to `then` may be taken; if not, `propose` answers with a shorter one."""
-
-
-@dataclass
-class Adaptive:
-    """Steps that keep the error of the velocity below `tolerance` of it, and the edge's travel below 1/elements.
-
-    The error of a step is h^3 a''/12, a'' from the accelerations at three instants. `reach`, m: the contact
-    radius which `elements` steps are to cover at least.
-    """
-
-    first: float
-    elements: int
-    reach: float
-    velocity: float
-    tolerance: float = field(init=False)
-    before: Instant | None = None
-    h: float = field(init=False)
-
-    def __post_init__(self) -> None:
-        # A half sine of acceleration errs by this per step at 0.6 `elements` steps per contact.
-        self.tolerance = 12.0 / self.elements**3
-        self.h = self.first
-
-    def propose(self, now: Instant) -> float:
-        return self.h
-
-    def accepts(self, now: Instant, then: Instant) -> bool:
-        h = then.time - now.time
-        # An error grows as h^3, the travel as h: cubed, both ask for a step in the same way.
-        share = max(self._error(now, then, h), (CAUTION * self._travel(now, then)) ** 3)
-        factor = GROWTH if share <= 0.0 else min(GROWTH, max(SHRINKAGE, CAUTION * share ** (-1.0 / 3.0)))
-        self.h = h * factor
-        if share > 2.0:
-            return False
-        self.before = now
-        return True
-
-    def _error(self, now: Instant, then: Instant, h: float) -> float:
-        """Estimated error of the step over the tolerance."""
-        return 0.0 if self.before is None else self.error(self.before, now, then)
-
-    def error(self, before: Instant, now: Instant, then: Instant) -> float:
-        """Estimated error of the step between the last two of three instants over the tolerance."""
-        h, back = then.time - now.time, now.time - before.time
-        if not h > 0.0 or not back > 0.0:
-            return 0.0
-        bend = (then.acceleration - now.acceleration) / h - (now.acceleration - before.acceleration) / back
-        scale = max(abs(now.velocity), abs(then.velocity), REST * self.velocity)
-        return abs(h**3 * bend / (6.0 * (h + back))) / (self.tolerance * scale)
-
-    def _travel(self, now: Instant, then: Instant) -> float:
-        """The edge's travel over its allowance."""
-        if then.edge < now.edge and then.edge < NEARLY_CLOSED * self.reach:
-            return 0.0
-        allowed = max(now.edge, then.edge, self.reach) / self.elements
-        return abs(then.edge - now.edge) / allowed
-
-
-@dataclass
-class Prescribed:
-    """Steps that end at given instants, s; the last reaches beyond its own, for the event that cuts it."""
-
-    instants: Sequence[float]
-    taken: int = 0
-
-    def propose(self, now: Instant) -> float:
-        if self.taken < len(self.instants) - 1:
-            return self.instants[self.taken] - now.time
-        return OVERREACH * (self.instants[-1] - (self.instants[-2] if len(self.instants) > 1 else 0.0))
-
-    def accepts(self, now: Instant, then: Instant) -> bool:
-        self.taken += 1
-        return True
 
 
 @dataclass(frozen=True)
@@ -175,9 +96,8 @@ def approach(problem: RowProblem, end_time: float, pace: Pace, most: int, at_res
     row = SpringsInRow(problem)
     touch = Instant(0.0, 0.0, problem.velocity, problem.gravity, 0.0, 0.0)
     slow = at_rest * problem.velocity if problem.is_fluid and problem.gravity == 0.0 else 0.0
-    growing = RowPhase(lambda now, h: grown(row, now, h), row.take, lambda step: step.now.velocity)
-    instants, turned = growing.run(touch, pace, end_time, slow, most)
-    rests = turned is None and instants[-1].velocity < slow
+    instants, turned = _followed(row, touch, pace, end_time, slow, most)
+    rests = not turned and instants[-1].velocity < slow
     return Inward(row, instants, None if turned else End.REST if rests else End.TIME)
 
 
@@ -198,68 +118,44 @@ def _track(inward: Inward, outward: list[Instant], end: End, beyond: list[Instan
     return RowTrack(inward.instants, outward, end, 2.0 * row.spent, 2.0 * (row.released + held), beyond or [])
 
 
-@dataclass(frozen=True)
-class RowPhase:
-    """How to try a step, how to take it, and what is `left` of the phase after it: at zero it is over."""
+def _followed(
+    row: SpringsInRow, start: Instant, pace: Pace, end_time: float, slow: float, most: int
+) -> tuple[list[Instant], bool]:
+    """Instants of the steps until the turn, `end_time`, or until the velocity has died away below `slow`.
 
-    attempt: Callable[[Instant, float], RowStep]
-    take: Callable[[RowStep], None]
-    left: Callable[[RowStep], float]
+    And whether it is the turn. Raises NotReached, and TooManySteps after `most` of them.
+    """
+    track = [start]
+    for _ in range(most):
+        now = track[-1]
+        h = min(pace.propose(now), end_time - now.time)
+        if h <= SHORTEST * now.time:
+            raise NotReached(f"the steps became too short at {now.time:.6g} s")
+        step = grown(row, now, h)
+        if not pace.accepts(now, step.now):
+            continue
+        turned = step.now.velocity <= 0.0
+        if turned:
+            step = _to_turn(row, now, step)
+        row.take(step)
+        track.append(step.now)
+        if turned or step.now.time >= AT_END * end_time or 0.0 < step.now.velocity < slow:
+            return track, turned
+    raise TooManySteps(f"contact had not ended after {most} steps: accepted: a looser tolerance, an earlier end_time")
 
-    def run(
-        self, start: Instant, pace: Pace, end_time: float, slow: float, most: int
-    ) -> tuple[list[Instant], RowStep | None]:
-        """Steps until nothing is left, until `end_time`, or until the velocity has died away below `slow`.
 
-        Returns the instants, and the step after which nothing was left (None in the other cases). Raises
-        NotReached, and TooManySteps after `most` of them.
-        """
-        track, level = [start], start.velocity  # which is zero at the turn: what is left there is not known
-        for _ in range(most):
-            now = track[-1]
-            h = min(pace.propose(now), end_time - now.time)
-            if h <= SHORTEST * now.time:
-                raise NotReached(f"the steps became too short at {now.time:.6g} s")
-            step = self.attempt(now, h)
-            if not pace.accepts(now, step.now):
-                continue
-            over = self.left(step) <= 0.0
-            if over:
-                step = self._located(now, step, level)
-            self.take(step)
-            track.append(step.now)
-            level = self.left(step)
-            if over or step.now.time >= AT_END * end_time or 0.0 < step.now.velocity < slow:
-                return track, step if over else None
-        raise TooManySteps(
-            f"contact had not ended after {most} steps: accepted: a looser tolerance, an earlier end_time"
-        )
+def _to_turn(row: SpringsInRow, now: Instant, beyond: RowStep) -> RowStep:
+    """The step from an instant, where the striker moves inward, that ends where it turns."""
+    tried, velocities = beyond, (now.velocity, beyond.now.velocity)
 
-    def _located(self, now: Instant, beyond: RowStep, level: float) -> RowStep:
-        """The step from `now`, with `level` left, that ends with nothing left: secant in a bracket, Illinois."""
-        low, high = 0.0, beyond.now.time - now.time
-        miss_high = self.left(beyond)
-        miss_low = level if level > 0.0 else -miss_high
-        step, close, side = beyond, CLOSE * max(miss_low, -miss_high), 0
-        for _ in range(LOCATING_STEPS):
-            if -miss_high <= close:
-                break
-            h = high - miss_high * (high - low) / (miss_high - miss_low)
-            if not low < h < high:
-                h = 0.5 * (low + high)
-            step = self.attempt(now, h)
-            miss = self.left(step)
-            if abs(miss) <= close:
-                break
-            if miss > 0.0:
-                low, miss_low = h, miss
-                miss_high *= 0.5 if side == 1 else 1.0
-                side = 1
-            else:
-                high, miss_high = h, miss
-                miss_low *= 0.5 if side == -1 else 1.0
-                side = -1
-        return step
+    def velocity(h: float) -> float:
+        nonlocal tried
+        tried = grown(row, now, h)
+        return tried.now.velocity
+
+    small = TURNED * max(now.velocity, -beyond.now.velocity)
+    falling_zero(velocity, 0.0, beyond.now.time - now.time, velocities, close=0.0, small=small)
+    return tried
 
 
 def grown(row: SpringsInRow, now: Instant, h: float) -> RowStep:
@@ -329,39 +225,173 @@ def _touched(row: SpringsInRow, now: Instant, h: float, rate: float) -> tuple[fl
     return width, min(max((depth - 0.5 * (low + high)) / rate, 0.0), h)
 
 
-def problem_of(scene: Scene) -> RowProblem:
-    """What the row of springs needs of a scene."""
-    return RowProblem(scene.profile, scene.contact_modulus, scene.reduced_mass, scene.velocity, scene.gravity)
+class Retreat(NamedTuple):
+    """Its instants from the turn on, how it ended; whole steps past an end by time."""
+
+    instants: list[Instant]
+    end: End
+    beyond: list[Instant]
 
 
-def coarse(problem: RowProblem, end_time: float, elements: int) -> RowTrack:
-    """One march with steps by their error and by the travel of the edge, 1/elements. Raises NotReached."""
-    return march(problem, end_time, pace_of(problem, end_time, elements), MOST_STEPS)
+def retreat(row: SpringsInRow, start: Instant, end_time: float) -> Retreat:
+    """From the turn until the springs at the axis leave, gravity turns the striker, or `end_time`, s.
 
-
-def coarse_beyond(problem: RowProblem, end_time: float, elements: int) -> tuple[RowTrack, float]:
-    """One march with when it stops, s: at the end time or, where that lies within some steps of the turn, beyond both.
-
-    Finer marches than this turn at other times: if all go further none of them is cut short of the turn, or by it.
     Raises NotReached.
     """
-    track = coarse(problem, end_time, elements)
-    if track.end is not End.TIME:
-        return track, end_time
-    further = coarse(problem, FURTHER * end_time, elements)
-    if not further.rebound:
-        return track, end_time
-    *_, before, last, turn = (instant.time for instant in further.approach)
-    later = max(end_time, turn) + 2.0 * NEAR * (last - before)
-    if end_time > turn + NEAR * (last - before):
-        return track, end_time
-    beyond = coarse(problem, later, elements)
-    return (beyond, later) if beyond.end is End.TIME else (track, end_time)
+    track, paces = [start], [1.0]
+    while len(row.places) > 1:
+        now = track[-1]
+        shrinking = Shrinking(row, now)
+        tried, end = _found(shrinking, _next(row, paces))
+        if now.time + tried.h > end_time:
+            beyond = _beyond(row.copy(), now, paces)
+            cut = shrinking.step(shrinking.attempt(end_time - now.time))
+            row.take(cut)
+            return Retreat([*track, cut.now], End.TIME, beyond)
+        track.append(_taken(row, shrinking, tried, paces))
+        if end is not End.SEPARATED:
+            return Retreat(track, end, [])
+    return Retreat(track, End.SEPARATED, [])
 
 
-def pace_of(problem: RowProblem, end_time: float, elements: int) -> Adaptive:
-    """Its pace."""
-    reach = stiffest_impact(problem.shape, problem.modulus, problem.mass, problem.velocity).contact_radius
-    first = float(problem.shape.load_curve.depth(reach / elements)) / problem.velocity
+def _taken(row: SpringsInRow, shrinking: Shrinking, tried: Attempt, paces: list[float]) -> Instant:
+    """Where a step leads, once it is taken; its time, over what the approach took for this ground, is noted."""
+    step = shrinking.step(tried)
+    paces.append(tried.h / _inward(row))
+    row.take(step)
+    return step.now
 
-    return Adaptive(min(first, end_time), elements, reach, problem.velocity)
+
+def _beyond(row: SpringsInRow, now: Instant, paces: list[float]) -> list[Instant]:
+    """A few whole steps from an instant on: limits of marches are smooth at these, not within a step."""
+    track, paces = [now], list(paces)
+    while len(row.places) > 1 and len(track) <= WHOLE_STEPS:
+        shrinking = Shrinking(row, track[-1])
+        tried, end = _found(shrinking, _next(row, paces))
+        if end is not End.SEPARATED:
+            break
+        track.append(_taken(row, shrinking, tried, paces))
+    return track[1:]
+
+
+def _next(row: SpringsInRow, paces: list[float]) -> float:
+    """How long a step will take: as the last three have, over the times that the approach took for their ground."""
+    last = paces[-1]
+    before = paces[-2] if len(paces) > 1 else last
+    once = paces[-3] if len(paces) > 2 else 2.0 * before - last
+    return _inward(row) * min(max(3.0 * (last - before) + once, 0.5 * last), 2.0 * last)
+
+
+def _inward(row: SpringsInRow) -> float:
+    """The time which the approach took for the ground over which the edge runs back next."""
+    return row.places[-1].time - row.places[-2].time
+
+
+def _found(shrinking: Shrinking, guess: float) -> tuple[Attempt, End]:
+    """The step after which nothing is left of the force at the next place; or after which gravity turns the striker."""
+    low, left, h = 0.0, shrinking.pull, max(guess, SHORT * shrinking.now.time)
+    if left <= 0.0:
+        return shrinking.attempt(0.0), End.SEPARATED
+    for _ in range(TRIES):
+        tried = shrinking.attempt(h)
+        if tried.pull <= 0.0:
+            return _zero(shrinking, lambda attempt: attempt.pull, low, left, tried), End.SEPARATED
+        if tried.velocity > 0.0:
+            fast = -shrinking.now.velocity or tried.velocity
+            return _zero(shrinking, lambda attempt: -attempt.velocity, 0.0, fast, tried), End.SECOND_APPROACH
+        further = h + tried.pull * (h - low) / (left - tried.pull) if tried.pull < left else WIDER * h
+        if further - h <= CLOSE * h:
+            return tried, End.SEPARATED
+        low, left, h = h, tried.pull, min(WIDER * h, further)
+    raise NotReached(f"the springs at the edge did not leave after {shrinking.now.time:.6g} s")
+
+
+def _zero(
+    shrinking: Shrinking, left: Callable[[Attempt], float], low: float, at_low: float, beyond: Attempt
+) -> Attempt:
+    """The step with nothing left, between a length with something left and a step beyond."""
+    tried = beyond
+
+    def left_after(h: float) -> float:
+        nonlocal tried
+        tried = shrinking.attempt(h)
+        return left(tried)
+
+    falling_zero(left_after, low, beyond.h, (at_low, left(beyond)), CLOSE)
+    return tried
+
+
+class Attempt(NamedTuple):
+    """A step of length h: its rate, the fadings over it and until the springs leave, what the axis carries after it.
+
+    `pull`: force per length of the spring at the place to which the edge runs.
+    """
+
+    h: float
+    rate: float
+    velocity: float
+    faded: list[Fading]
+    shortly: list[Fading]
+    axis: Values
+    pull: float
+
+
+class Shrinking:
+    """Steps of any length from an instant; the springs of that ground are pressed for a share of it."""
+
+    def __init__(self, row: SpringsInRow, now: Instant) -> None:
+        modulus, last = row.problem.modulus, row.places[-1]
+        self.row, self.now, self.place = row, now, row.places[-2]
+        shares = left(modulus, now.time - last.time)
+        # what the spring at the place to which the edge runs lacks now to the one at the axis
+        since = left(modulus, now.time - self.place.time)
+        self.lacking = [kept * share for kept, share in zip(self.place.axis, since, strict=True)]
+        self.leaving = last.springs.aged(shares)
+        self.kept = [k - own * share for k, own, share in zip(row.kept, last.kept, shares, strict=True)]
+        self.staying = row.springs.plus(self.leaving, -1.0)
+        ground = (last.depth - self.place.depth) * self.leaving.width
+        self.share = (last.depth * self.leaving.width - self.leaving.rest) / ground if ground > 0.0 else 0.0
+
+    @property
+    def pull(self) -> float:
+        """Force per length, now, of the spring at the place to which the edge runs."""
+        lift = self._lift(self.now.depth, self.now.velocity)
+        return lift + sum(self.row.axis) - sum(self.lacking)
+
+    def attempt(self, h: float) -> Attempt:
+        """A step of this length: m (v1 - v0) = m g h - int F dt with v0 + v1 twice the rate."""
+        problem, modulus, now, even = self.row.problem, self.row.problem.modulus, self.now, self.row.even
+        h = max(h, LEAST)
+        pressed = self.share * h
+        faded, shortly = fadings(modulus, h), fadings(modulus, pressed)
+        passed = self.staying.impulse(modulus, now.depth, even, faded, h)
+        passed += self.leaving.impulse(modulus, now.depth, even, shortly, pressed)
+        give = self.staying.width * yielding(modulus, faded, h)
+        give += self.leaving.width * yielding(modulus, shortly, pressed)
+        rate = (now.velocity + 0.5 * h * problem.gravity - passed / problem.mass) / (1.0 + give / problem.mass)
+        velocity = 2.0 * rate - now.velocity
+        axis = followed(modulus, self.row.axis, faded, now.velocity, velocity, h)
+        pull = self._lift(now.depth + h * rate, velocity)
+        for z, lack, fade in zip(axis, self.lacking, faded, strict=True):
+            pull += z - lack * fade.left
+        return Attempt(h, rate, velocity, faded, shortly, axis, pull)
+
+    def _lift(self, depth: float, velocity: float) -> float:
+        """What the spring at the place carries without its branches."""
+        modulus = self.row.problem.modulus
+        return modulus.equilibrium * (depth - self.place.depth) + modulus.viscosity * velocity
+
+    def step(self, tried: Attempt) -> RowStep:
+        """The step which was tried, not yet taken."""
+        row, now, (h, rate, velocity, faded, shortly, axis, _) = self.row, self.now, tried
+        modulus = row.problem.modulus
+        pressed = self.share * h
+        spent = self.staying.spent(modulus, row.even, faded, h, rate)
+        spent += self.leaving.spent(modulus, row.even, shortly, pressed, rate)
+        parted = self.leaving.aged([fade.left for fade in shortly])
+        released = parted.held(modulus, now.depth + rate * pressed, stretched(modulus, row.even, shortly, rate))
+        springs = self.staying.aged([fade.left for fade in faded])
+        even = stretched(modulus, row.even, faded, rate)
+        kept = [k * fade.left for k, fade in zip(self.kept, faded, strict=True)]
+        instant = row.instant(now.time + h, now.depth + h * rate, velocity, self.place.edge, springs, axis, kept)
+        return RowStep(instant, springs, even, axis, kept, spent, released)

@@ -2,26 +2,150 @@
 
 The row of springs errs by even powers of h: the limit of two marches errs by h^4, that of three by h^6.
 
-Where the steps of an approach lie, so that they can be cut into equal parts.
+Where the steps of an approach lie, so that they can be cut into equal parts. The first are as long as a coarse march
+at its own pace has them, by the error they make: that one is quick, and good to about 1/elements^2.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import NotReached
-from lumped.numbers.interpolation import local
+from lumped.numbers import Array, local
 from lumped.result.history import End
-from lumped.solvers.mdr.march import Adaptive, Inward, Prescribed, RowTrack, approach, rebound
+from lumped.scene.geometry import stiffest_impact
+from lumped.scene.scene import Scene
+from lumped.solvers.mdr.march import Inward, RowTrack, approach, march, rebound
 from lumped.solvers.mdr.row import Instant, RowProblem
 
-Array = NDArray[np.float64]
+# Work: marches until the turn falls on a step; safety: the secant's slope is no flatter.
 ALIGNING_TRIES, LEAST_SLOPE = 12, -0.3
-NEARLY = 1e-3
+NEARLY = 1e-3  # of the last step before the turn: how near to its end the turn has to lie
+GROWTH = 3.0  # safety: the most by which the next step is longer
+CAUTION = 0.9  # safety: share of what the error, or the edge's travel, allows
+SHRINKAGE = 0.2  # safety: the least by which the next step is longer
+# Below this share of the velocity at touch, errors of the velocity count absolutely.
+REST = 1e-5
+# Once the contact has shrunk to this share of its reach, its edge may run to the axis in any step.
+NEARLY_CLOSED = 0.1
+OVERREACH = 1.5  # safety: the last step over its own length, so that it reaches beyond the event that cuts it
+MOST_STEPS = 10_000  # work: of one coarse march
+# An end time is near a turn that comes before so many times it, and not more than so many steps before it.
+FURTHER, NEAR = 1.2, 1.5
+
+
+@dataclass
+class Adaptive:
+    """Steps that keep the error of the velocity below `tolerance` of it, and the edge's travel below 1/elements.
+
+    The error of a step is h^3 a''/12, a'' from the accelerations at three instants. `reach`, m: the contact
+    radius which `elements` steps are to cover at least.
+    """
+
+    first: float
+    elements: int
+    reach: float
+    velocity: float
+    tolerance: float = field(init=False)
+    before: Instant | None = None
+    h: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        # A half sine of acceleration errs by this per step at 0.6 `elements` steps per contact.
+        self.tolerance = 12.0 / self.elements**3
+        self.h = self.first
+
+    def propose(self, now: Instant) -> float:
+        return self.h
+
+    def accepts(self, now: Instant, then: Instant) -> bool:
+        h = then.time - now.time
+        # An error grows as h^3, the travel as h: cubed, both ask for a step in the same way.
+        share = max(self._error(now, then, h), (CAUTION * self._travel(now, then)) ** 3)
+        factor = GROWTH if share <= 0.0 else min(GROWTH, max(SHRINKAGE, CAUTION * share ** (-1.0 / 3.0)))
+        self.h = h * factor
+        if share > 2.0:
+            return False
+        self.before = now
+        return True
+
+    def _error(self, now: Instant, then: Instant, h: float) -> float:
+        """Estimated error of the step over the tolerance."""
+        return 0.0 if self.before is None else self.error(self.before, now, then)
+
+    def error(self, before: Instant, now: Instant, then: Instant) -> float:
+        """Estimated error of the step between the last two of three instants over the tolerance."""
+        h, back = then.time - now.time, now.time - before.time
+        if not h > 0.0 or not back > 0.0:
+            return 0.0
+        bend = (then.acceleration - now.acceleration) / h - (now.acceleration - before.acceleration) / back
+        scale = max(abs(now.velocity), abs(then.velocity), REST * self.velocity)
+        return abs(h**3 * bend / (6.0 * (h + back))) / (self.tolerance * scale)
+
+    def _travel(self, now: Instant, then: Instant) -> float:
+        """The edge's travel over its allowance."""
+        if then.edge < now.edge and then.edge < NEARLY_CLOSED * self.reach:
+            return 0.0
+        allowed = max(now.edge, then.edge, self.reach) / self.elements
+        return abs(then.edge - now.edge) / allowed
+
+
+@dataclass
+class Prescribed:
+    """Steps that end at given instants, s; the last reaches beyond its own, for the event that cuts it."""
+
+    instants: Sequence[float]
+    taken: int = 0
+
+    def propose(self, now: Instant) -> float:
+        if self.taken < len(self.instants) - 1:
+            return self.instants[self.taken] - now.time
+        return OVERREACH * (self.instants[-1] - (self.instants[-2] if len(self.instants) > 1 else 0.0))
+
+    def accepts(self, now: Instant, then: Instant) -> bool:
+        self.taken += 1
+        return True
+
+
+def problem_of(scene: Scene) -> RowProblem:
+    """What the row of springs needs of a scene."""
+    return RowProblem(scene.profile, scene.contact_modulus, scene.reduced_mass, scene.velocity, scene.gravity)
+
+
+def coarse(problem: RowProblem, end_time: float, elements: int) -> RowTrack:
+    """One march with steps by their error and by the travel of the edge, 1/elements. Raises NotReached."""
+    return march(problem, end_time, pace_of(problem, end_time, elements), MOST_STEPS)
+
+
+def coarse_beyond(problem: RowProblem, end_time: float, elements: int) -> tuple[RowTrack, float]:
+    """One march with when it stops, s: at the end time or, where that lies within some steps of the turn, beyond both.
+
+    Finer marches than this turn at other times: if all go further none of them is cut short of the turn, or by it.
+    Raises NotReached.
+    """
+    track = coarse(problem, end_time, elements)
+    if track.end is not End.TIME:
+        return track, end_time
+    further = coarse(problem, FURTHER * end_time, elements)
+    if not further.rebound:
+        return track, end_time
+    *_, before, last, turn = (instant.time for instant in further.approach)
+    later = max(end_time, turn) + 2.0 * NEAR * (last - before)
+    if end_time > turn + NEAR * (last - before):
+        return track, end_time
+    beyond = coarse(problem, later, elements)
+    return (beyond, later) if beyond.end is End.TIME else (track, end_time)
+
+
+def pace_of(problem: RowProblem, end_time: float, elements: int) -> Adaptive:
+    """Its pace."""
+    reach = stiffest_impact(problem.shape, problem.modulus, problem.mass, problem.velocity).contact_radius
+    first = float(problem.shape.load_curve.depth(reach / elements)) / problem.velocity
+
+    return Adaptive(min(first, end_time), elements, reach, problem.velocity)
 
 
 @dataclass(frozen=True)

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import NamedTuple, Protocol
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from lumped.numbers import Real
-from lumped.solvers.point.nodes import Nodes
+from lumped.numbers import Array, Real, bisected
+from lumped.solvers.radau import Nodes
 
-Array = NDArray[np.float64]
 # The least depth a law is asked for: powers below one of it stay finite, as do their slopes.
 TINY = 1e-200
-BISECTIONS = 200
 
 
 class Bodies(NamedTuple):
@@ -85,20 +84,22 @@ class Step(NamedTuple):
         return np.asarray(gains / (power * (high - low) * root ** (power - 1)))
 
 
-class PointLaw(Protocol):
+class PointLaw(ABC):
     """A force between two masses, F(depth, rate), N; depths >= 0 in m, rates in m/s, scalars or arrays.
 
     Within one stage the force is smooth but for its corners. `tensile`: whether it can pull before the depth is zero.
+    What is said here is so without a memory, without corners, and where the force is smooth in time from touch on.
     """
 
-    @property
-    def tensile(self) -> bool: ...
+    tensile: ClassVar[bool] = False
 
     def grading(self, stage: Stage) -> int:
         """The power p for which a stage's force near depth zero is smooth in the p-th root of the time from there."""
+        return 1
 
     def touch(self, bodies: Bodies) -> State:
-        """The state at first touch."""
+        """The state at first touch: at the surface, nothing lost yet."""
+        return State(0.0, bodies.velocity, 0.0)
 
     def within(self, start: State, length: float) -> PointLaw:
         """The law as the Radau points of one step see it, which begins at `start` and is `length` s long.
@@ -106,41 +107,73 @@ class PointLaw(Protocol):
         Itself without memory. With memory the force at one point depends on the depths at the others too: the
         slope over depth is then a matrix (s, s).
         """
+        return self
 
     def remembered(self, depth: Array) -> tuple[float, ...]:
         """The memory at the end of such a step, from the depths at its points, shape (s,)."""
+        return ()
 
+    @abstractmethod
     def force(self, depth: Real, rate: Real, stage: Stage) -> Real:
-        """F, compression positive."""
+        """F, N, compression positive; depth >= 0, m, rate, m/s."""
 
+    @abstractmethod
     def tangents(self, depth: Real, rate: Real, stage: Stage) -> tuple[Real, Real]:
         """dF/d depth, N/m, and dF/d rate, N s/m."""
 
     def corners(self, stage: Stage) -> tuple[float, ...]:
         """Depths, m, in the order in which a stage meets them, where the force has a corner."""
+        return ()
 
     def kept(self, depth: float, stage: Stage) -> tuple[float, ...]:
         """What the next stage has to know of this one, which ends at `depth`."""
+        return ()
 
     def between(
         self, steps: Sequence[Step], place: NDArray[np.intp], share: Array, depth: Array, rate: Array, stage: Stage
     ) -> Array:
-        """F at places in a row of steps, each shape (n,): which step, what share of it has passed, depth and rate."""
+        """F at places in a row of steps, each shape (n,): which step, what share of it has passed, depth and rate.
+
+        Without memory where in the steps does not matter.
+        """
+        return np.asarray(self.force(np.maximum(depth, TINY), rate, stage))
 
     def returned(self, bodies: Bodies, last: State) -> tuple[float, State] | None:
-        """How long the bodies are apart after a contact, s, and the state when they meet again; None: for ever."""
+        """How long the bodies are apart after a contact, s, and the state when they meet again; None: for ever.
+
+        They meet at depth zero, the surface as it was; where gravity turns them before they have left the dent, when
+        the force rises above zero.
+        """
+        gravity = bodies.gravity
+        if gravity <= 0.0:
+            return None
+        time = time_to_return(last, gravity, 0.0)
+        if time is not None:
+            return time, flown(last, gravity, time)._replace(depth=0.0)
+        stage = Stage(False, last.depth, bodies.velocity)
+
+        def apart(elapsed: float) -> bool:
+            there = flown(last, gravity, elapsed)
+            return bool(self.force(there.depth, there.rate, stage) <= 0.0)
+
+        _, time = bisected(apart, 0.0, -last.rate / gravity)
+        return time, flown(last, gravity, time)
 
     def carried(self, depth: float, stage: Stage) -> float:
         """The weight, N, under which a striker stays at rest at a depth; NaN of what creeps under every one."""
+        return float(self.force(depth, 0.0, stage))
 
+    @abstractmethod
     def lost(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """The part of the force whose work is not stored, N."""
 
+    @abstractmethod
     def stored(self, depth: float, stage: Stage) -> float:
         """Energy that the law could still give back at a depth, J."""
 
+    @abstractmethod
     def time_scale(self, bodies: Bodies) -> float:
-        """A time in which an impact changes by its own size, s: about the elastic contact time."""
+        """A time in which an impact changes by its own size, s: the elastic contact time."""
 
 
 def flown(state: State, gravity: float, time: float) -> State:
@@ -156,35 +189,3 @@ def time_to_return(last: State, gravity: float, depth: float) -> float | None:
     top = -last.rate / gravity
     fall = depth - flown(last, gravity, top).depth
     return top + math.sqrt(2.0 * fall / gravity) if fall >= 0.0 else None
-
-
-def returned(law: PointLaw, bodies: Bodies, last: State) -> tuple[float, State] | None:
-    """Flight of a law without memory: s, and the state when the bodies meet again; None for ever.
-
-    They meet at depth zero; where gravity turns them before they have left the dent, when the force of the law
-    rises above zero.
-    """
-    gravity = bodies.gravity
-    if gravity <= 0.0:
-        return None
-    time = time_to_return(last, gravity, 0.0)
-    if time is not None:
-        return time, flown(last, gravity, time)._replace(depth=0.0)
-    stage = Stage(False, last.depth, bodies.velocity)
-
-    def apart(elapsed: float) -> bool:
-        there = flown(last, gravity, elapsed)
-        return bool(law.force(there.depth, there.rate, stage) <= 0.0)
-
-    time = bisected(apart, 0.0, -last.rate / gravity)
-    return time, flown(last, gravity, time)
-
-
-def bisected(before: Callable[[float], bool], low: float, high: float) -> float:
-    """Where `before` stops being true between `low`, where it is, and `high`, to the last digit."""
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        low, high = (middle, high) if before(middle) else (low, middle)
-    return high

@@ -8,16 +8,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import TooManySteps
+from lumped.numbers import Array
 from lumped.result.history import AT_REST, End
 from lumped.solvers.point.bodies import Bodies, PointLaw, Stage, State, Step
-from lumped.solvers.point.nodes import STAGES
 from lumped.solvers.point.phase import Event, PointMarch, PointPhase
+from lumped.solvers.radau import STAGES
 
-Array = NDArray[np.float64]
-MOST_TURNS = 2000
+MOST_TURNS = 2000  # work: phases of one contact, each until a turn or a corner of the law
 # Of the velocity at touch: what leaves so slowly creeps back for ever, but for rounding.
 FAINTEST_EXIT = 1e-20
 # Contacts whose velocity at touch is below this share of the first one's: the bodies count as at rest.

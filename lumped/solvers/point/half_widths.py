@@ -1,6 +1,4 @@
-"""What the deviations of a march are worth in its outcome: an estimate of every error, to first order.
-
-How far a march is from the motion: the defect of its polynomials, followed by the linearised motion.
+"""Error bars of a march: how far it is from the motion, to first order, and what that changes of every quantity.
 
 The polynomials of a step satisfy m a + F(depth, rate) = m g at its nodes and miss it by a defect between them. What
 depth and rate still lack, delta and epsilon, solves, to first order,
@@ -20,19 +18,18 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
+from lumped.numbers import Array
 from lumped.result.history import AT_REST, End
 from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, Stage
 from lumped.solvers.point.contact import Contact, following, leaving
-from lumped.solvers.point.nodes import STAGES, paced, radau
 from lumped.solvers.point.phase import PointPhase
 from lumped.solvers.point.track import Outcome, PointRow, PointTrack, legendre_terms
+from lumped.solvers.radau import STAGES, paced, radau
 
-Array = NDArray[np.float64]
 # Estimates are to first order, and tell the largest of a smooth error from its values at some points.
 SAFETY = 3.0
-UNSURE = 0.2
+UNSURE = 0.2  # safety: share of the largest lack that is added between a step's ends, where the estimate may be wrong
 # Rounding of depths and rates along a march, relative to the largest; of times; of forces; of the time of a flat peak.
 ROUNDING, ROUNDING_OF_TIME, ROUNDING_OF_FORCE, ROUNDING_OF_PEAK = 1e-14, 3e-14, 1e-13, 3e-9
 NODES = radau(12)

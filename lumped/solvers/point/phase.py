@@ -12,25 +12,25 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg.lapack import dgesv
 
 from lumped.errors import TooManySteps
+from lumped.numbers import Array
 from lumped.result.history import AT_REST
 from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, Stage, State, Step
-from lumped.solvers.point.nodes import STAGES, Nodes, radau
+from lumped.solvers.radau import STAGES, Nodes, radau
 
-Array = NDArray[np.float64]
 NODES = radau(STAGES)
-ITERATIONS = 12
+ITERATIONS = 12  # work: Newton's, of one step
 # Newton's last correction times its ratio to the one before is more than what is left; relative to the largest gain
 # and to the gain that would change the rate by as much as it is.
 SMALL = 1e-11
 # A correction as small as this is rounding.
 ROUNDING = 1e-14
-MOST_STEPS = 5000
-LOCATIONS = 60
+MOST_STEPS = 5000  # work: time steps of one phase
+LOCATIONS = 60  # work: trials of where in a step an event lies
 PRECISE = 1e-14  # of the time reached: where an event lies
+# Safety: least and most of the next step over this one, and the share of what is allowed.
 SHORTEST, LONGEST, CAUTION = 0.1, 5.0, 0.8
 # So much rougher than allowed a step need not be located any better to be refused.
 HOPELESS = 2.0

@@ -10,23 +10,23 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.numbers import Array
 from lumped.result.history import End
 from lumped.solvers.point.bodies import PointLaw, Step
 from lumped.solvers.point.contact import Contact, PointMotion
-from lumped.solvers.point.nodes import STAGES, place_of
 from lumped.solvers.point.phase import PointPhase
+from lumped.solvers.radau import STAGES, place_of
 
-Array = NDArray[np.float64]
 # How near to a touch the rows begin, as a power of 1/2, in the length of its step.
 NEAREST = 96.0
-IN_FLIGHT = 17
+IN_FLIGHT = 17  # look: rows of a flight, its ends among them
 # Share of a step within which its first depth and the mean rate tell the depth better than its polynomial.
 EARLY = 1e-6
 # Half the widths of the quartics through which a peak is found, in that of its surroundings, and their points.
 CLOSER = (0.5, 0.1, 0.03)
-FIVE = np.linspace(0.0, 1.0, 5)
+FIVE = np.linspace(0.0, 1.0, 5)  # places through which the quartic is laid
 QUARTIC = np.linalg.inv(np.vander(FIVE, increasing=True))
-NEWTONS = 8
+NEWTONS = 8  # work: steps to the top of a quartic
 
 
 class PointRow(NamedTuple):

@@ -8,33 +8,36 @@ from dataclasses import dataclass
 from typing import Annotated, get_type_hints
 
 from lumped.errors import BadInput, Fault
+from lumped.materials.material import DENSITY, MODULUS, POISSON
+from lumped.materials.networks.base import TIME, Viscosity
+from lumped.ptmd.system import DAMPING, MASS, STIFFNESS
+from lumped.scene.tables import SPEED
 from lumped.schema import Table
 from lumped.schema.files import data_folder
 from lumped.schema.keys import Key, Number, Numbers
 from lumped.schema.record import keys_of, read_table, unknown_key
 from lumped.schema.toml_file import overridden, parsed
+from lumped.shapes.base import SIZE
 
-LENGTH, VELOCITY, MODULUS = Number(1e-9, 1e4, "m"), Number(1e-9, 1e5, "m/s"), Number(1.0, 1e15, "Pa")
-TIME, DENSITY, FORCE = Number(1e-15, 1e12, "s"), Number(1e-3, 1e6, "kg/m3"), Number(1e-15, 1e15, "N")
-RATIO, NU = Number(1e-9, 1e9), Number(-0.99, 0.5)
-Length = Annotated[float, Key(LENGTH, "length")]
-Mass = Annotated[float, Key(Number(1e-9, 1e12, "kg"), "mass")]
+RATIO, FORCE = Number(1e-9, 1e9), Number(1e-15, 1e15, "N")
+Length = Annotated[float, Key(SIZE, "length")]
+Mass = Annotated[float, Key(MASS, "mass")]
 Modulus = Annotated[float, Key(MODULUS, "modulus")]
 Time = Annotated[float, Key(TIME, "time")]
 Density = Annotated[float, Key(DENSITY, "density")]
 Ratio = Annotated[float, Key(RATIO, "ratio")]
 Force = Annotated[float, Key(FORCE, "force")]
-Poisson = Annotated[float, Key(NU, "Poisson's ratio")]
-Stiffness = Annotated[float, Key(Number(1e-9, 1e18, "N/m"), "stiffness")]
-Damping = Annotated[float, Key(Number(1e-15, 1e15, "N s/m"), "damping")]
-Lengths = Annotated[tuple[float, ...], Key(Numbers(LENGTH), "length, several")]
-Velocities = Annotated[tuple[float, ...], Key(Numbers(VELOCITY), "velocity, several")]
+Poisson = Annotated[float, Key(POISSON, "Poisson's ratio")]
+Stiffness = Annotated[float, Key(STIFFNESS, "stiffness")]
+Damping = Annotated[float, Key(DAMPING, "damping")]
+Lengths = Annotated[tuple[float, ...], Key(Numbers(SIZE), "length, several")]
+Velocities = Annotated[tuple[float, ...], Key(Numbers(SPEED), "velocity, several")]
 Moduli = Annotated[tuple[float, ...], Key(Numbers(MODULUS), "modulus, several")]
 Times = Annotated[tuple[float, ...], Key(Numbers(TIME), "time, several")]
 Densities = Annotated[tuple[float, ...], Key(Numbers(DENSITY), "density, several")]
 Ratios = Annotated[tuple[float, ...], Key(Numbers(RATIO), "ratio, several")]
 Forces = Annotated[tuple[float, ...], Key(Numbers(FORCE), "force, several")]
-Poissons = Annotated[tuple[float, ...], Key(Numbers(NU), "Poisson's ratio, several")]
+Poissons = Annotated[tuple[float, ...], Key(Numbers(POISSON), "Poisson's ratio, several")]
 
 
 @dataclass(frozen=True)
@@ -93,7 +96,7 @@ class Concrete:
     velocities: Velocities
     E1: Modulus
     E2: Modulus
-    C1: Annotated[float, Key(Number(1e-9, 1e18, "Pa s"))]
+    C1: Viscosity
     peak_error: Ratio
     jankowski_peak_error: Ratio
     radii: Lengths

@@ -15,8 +15,8 @@ from lumped.errors import BadInput, Fault
 from lumped.laws import correspondence
 from lumped.materials import Material
 from lumped.materials.networks import sls
-from lumped.paper.examples.given import Concrete
-from lumped.paper.examples.value import read
+from lumped.paper.given import Concrete, Examples
+from lumped.paper.value import Value, closed, duration, peak, read
 from lumped.result.history import History
 from lumped.result.result import Result
 from lumped.result.score import Curve
@@ -24,7 +24,7 @@ from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.shapes import Sphere
 
-TOLERANCE = 1e-6
+TOLERANCE = 1e-6  # of the impacts by the correspondence law
 # The fit takes the printed moduli as contact moduli, so Poisson's ratio plays no part.
 NU = 0.0
 Array = NDArray[np.float64]
@@ -39,6 +39,18 @@ def proposed(concrete: Concrete, radius: float, velocity: float) -> Result:
     return correspondence.of(scene).simulate(scene, TOLERANCE)
 
 
+def slow(c: Concrete) -> Result:
+    """At the lower velocity, with the smallest assumed radius."""
+    return proposed(c, min(c.radii), min(c.velocities))
+
+
+def memory(e: Examples) -> list[Value]:
+    """R2 and tau = C1/(E1 + E2), s; tau over the contact time, and the restitution, smallest assumed radius."""
+    c, impact = e.concrete, slow(e.concrete)
+    R2, tau = closed(c.C1 / c.E1, c.C1 / (c.E1 + c.E2))
+    return [R2, tau, tau / duration(impact), read(impact, "restitution")]
+
+
 @cache
 def cut_at_measured_peak(concrete: Concrete) -> PlateauCut:
     """The force at the higher velocity cut at the experiment's peak, which its printed error tells.
@@ -46,7 +58,7 @@ def cut_at_measured_peak(concrete: Concrete) -> PlateauCut:
     Over the uncut force and its duration no radius enters; the smallest assumed one is taken.
     """
     impact = proposed(concrete, min(concrete.radii), max(concrete.velocities))
-    return plateau_cut(impact.history, read(impact, "peak_force").value / (1.0 + concrete.peak_error))
+    return plateau_cut(impact.history, peak(impact).value / (1.0 + concrete.peak_error))
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +88,14 @@ def plateau_cut(history: History, plateau: float) -> PlateauCut:
     curve = Curve(np.append(rising[0], [end, end]), np.append(rising[1], [plateau, 0.0]))
     durations = float(time[-1] - time[0]), end - float(time[0])
     return PlateauCut(curve, durations, (whole, _impulse(curve.time, curve.force)))
+
+
+def plateau(e: Examples) -> list[Value]:
+    """The force at the higher velocity cut at the experiment's peak: duration, impulse over those of the uncut one."""
+    cut = cut_at_measured_peak(e.concrete)
+    # rows of the history are linear to its tolerance, and so are areas below them
+    error = 2.0 * TOLERANCE
+    return [Value(after / before, error * after / before) for before, after in (cut.duration, cut.impulse)]
 
 
 def _impulse(time: Array, force: Array) -> float:

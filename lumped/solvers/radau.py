@@ -12,13 +12,12 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import legendre
+from numpy.polynomial import chebyshev, legendre
 from numpy.typing import NDArray
 
-from lumped.numbers import Real
+from lumped.numbers import Array, Real
 
-Array = NDArray[np.float64]
-STAGES = 8
+STAGES = 8  # default: Radau points of a step
 
 
 class Nodes(NamedTuple):
@@ -112,3 +111,10 @@ def through_zero(share: Array, count: int = STAGES) -> Array:
     places = np.concatenate([[0.0], radau(count).points])
     basis = legendre.legvander(2.0 * share - 1.0, count)
     return np.asarray(basis @ np.linalg.inv(legendre.legvander(2.0 * places - 1.0, count)))
+
+
+@cache
+def chebyshev_through_zero(count: int) -> Array:
+    """The matrix (n + 1, n + 1) from values at zero and at n points to the Chebyshev coefficients of the polynomial."""
+    basis = chebyshev.chebvander(2.0 * np.append(0.0, radau(count).points) - 1.0, count)
+    return np.asarray(np.linalg.inv(basis), dtype=float)

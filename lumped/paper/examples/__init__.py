@@ -1,1 +1,0 @@
-"""The paper's own examples: what it gives, and what the laws make of it."""

@@ -1,0 +1,200 @@
+"""What a material remembers under a load, and by three rules what becomes of that between two contacts (Fig. 15).
+
+F = int E*(t-s) dy, "(17)" to "(19)", at the Radau points of a step: the Maxwell branches by collocation too. With
+w_k' = (y - w_k)/tau_k the force is E_glassy y - sum E_k w_k + eta y'. At the points of one step w_k is linear in
+the loads y there, w_k = q_k w_k(0) + L_k y, so the force is too: F = b + B y.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumped.errors import BadInput, Fault
+from lumped.load_curves.base import LoadCurve
+from lumped.materials import Recovery, Relaxation
+from lumped.numbers import Array, Real, bisected
+from lumped.schema.members import unavailable
+from lumped.solvers.point.bodies import Bodies, State, flown, time_to_return
+from lumped.solvers.point.phase import NODES
+from lumped.solvers.radau import Nodes
+
+STEPS = 16  # in a stretch of the flight, for the memory of what is followed above the surface
+
+
+@dataclass(frozen=True)
+class HereditaryLoad:
+    """An elastic load curve y(depth), m2, under the modulus E*(t), Pa; memories w_k in m2."""
+
+    curve: LoadCurve
+    modulus: Relaxation
+
+    @property
+    def at_rest(self) -> tuple[float, ...]:
+        """The memory of a relaxed surface."""
+        return (0.0,) * len(self.modulus.moduli)
+
+    def load(self, depth: Real) -> Real:
+        """y, zero above the surface."""
+        return self.curve.force(np.maximum(depth, 0.0))
+
+    def slope(self, depth: Real) -> Real:
+        """dy/d depth."""
+        return self.curve.dforce_ddepth(np.maximum(depth, 0.0))
+
+    def slope_slope(self, depth: Array) -> Array:
+        """d2y/d depth2 = 2 da/d depth, zero where the depth is."""
+        radius = np.asarray(self.curve.contact_radius(depth))
+        over_radius = np.asarray(self.curve.depth_slope(radius))
+        return np.asarray(np.divide(2.0, over_radius, out=np.zeros_like(radius), where=over_radius > 0.0))
+
+    def force(self, depth: Real, rate: Real, memory: Real) -> Array:
+        """F, N; `memory` has the branches first, shape (K, ...)."""
+        remembered = np.tensordot(np.array(self.modulus.moduli), np.asarray(memory), axes=(0, 0))
+        viscous = self.modulus.viscosity * self.slope(depth) * rate
+        return np.asarray(self.modulus.glassy * self.load(depth) - remembered + viscous)
+
+
+@dataclass(frozen=True, eq=False)
+class StepLoad:
+    """A hereditary load within one step: gains q, shape (K, s), and L, shape (K, s, s); memory at its start (K,)."""
+
+    load: HereditaryLoad
+    memory: Array
+    gains: Array
+    response: Array
+
+    @classmethod
+    def of(cls, load: HereditaryLoad, memory: tuple[float, ...], length: float, nodes: Nodes) -> StepLoad:
+        """For a step of `length`, s: (I + A h/tau) w = w(0) + (A h/tau) y with A the collocation's integrals."""
+        terms = load.modulus.times
+        one = np.eye(nodes.points.size)
+        driven = np.array([nodes.once * (length / tau) for tau in terms]).reshape(-1, *one.shape)
+        response = np.linalg.solve(one + driven, driven)
+        gains = 1.0 - response.sum(axis=2)
+        return cls(load, np.array(memory), gains, response)
+
+    def memories(self, depth: Array) -> Array:
+        """w_k at the points from the depths there, shape (K, s)."""
+        return np.asarray(self.gains * self.memory[:, None] + self.response @ self.load.load(depth))
+
+    def force(self, depth: Array, rate: Array) -> Array:
+        """F at the points, N."""
+        return np.asarray(self.load.force(depth, rate, self.memories(depth)))
+
+    def tangents(self, depth: Array, rate: Array) -> tuple[Array, Array]:
+        """dF/d depth, shape (s, s), and dF/d rate, shape (s,)."""
+        modulus, slope = self.load.modulus, np.asarray(self.load.slope(depth))
+        remembered = np.tensordot(np.array(modulus.moduli), self.response, axes=(0, 0))
+        over_depth = -remembered * slope
+        bent = modulus.viscosity * rate * self.load.slope_slope(depth) if modulus.viscosity else 0.0
+        over_depth.flat[:: depth.size + 1] += modulus.glassy * slope + bent
+        return over_depth, modulus.viscosity * slope
+
+
+def continuous(load: HereditaryLoad, bodies: Bodies, last: State) -> tuple[float, State] | None:
+    """The transfer function keeps running on the depth above zero, as if the bodies still touched.
+
+    They meet after the top of the flight, where its force, counted as zero while it is negative, becomes positive.
+    """
+    if bodies.gravity <= 0.0:
+        return None
+    top = -last.rate / bodies.gravity
+    left = top - ((time_to_return(last, bodies.gravity, 0.0) or top) - top)
+    memory = _run(load, bodies, last, last.memory, 0.0, left)
+    low = 2.0 * top - left
+    memory = _run(load, bodies, last, memory, left, low)
+
+    def apart(time: float) -> bool:
+        there = flown(last, bodies.gravity, time)
+        return bool(load.force(there.depth, there.rate, _run(load, bodies, last, memory, low, time)) <= 0.0)
+
+    _, time = bisected(apart, low, 2.0 * top)
+    kept = _run(load, bodies, last, memory, low, time)
+    return time, flown(last, bodies.gravity, time)._replace(memory=kept)
+
+
+def _run(
+    load: HereditaryLoad, bodies: Bodies, last: State, memory: tuple[float, ...], start: float, end: float
+) -> tuple[float, ...]:
+    """The memory at `end` from that at `start`, times of flight, s."""
+    if end <= start:
+        return memory
+    length = (end - start) / STEPS
+    for begin in start + length * np.arange(STEPS):
+        times = begin + length * NODES.points
+        depth = last.depth + times * (last.rate + 0.5 * bodies.gravity * times)
+        memory = tuple(StepLoad.of(load, memory, length, NODES).memories(depth)[:, -1].tolist())
+    return memory
+
+
+def recovering(load: HereditaryLoad, bodies: Bodies, last: State) -> tuple[float, State] | None:
+    """Out of contact the surface creeps back freely.
+
+    They meet after the top of the flight, when the load y of the depth is that of the free surface.
+    """
+    if bodies.gravity <= 0.0:
+        return None
+    top = -last.rate / bodies.gravity
+    surface = FreeSurface.of(load, last)
+
+    def apart(time: float) -> bool:
+        depth = flown(last, bodies.gravity, time).depth
+        return depth <= 0.0 or bool(load.load(depth) < surface.at(time)[0])
+
+    _, time = bisected(apart, top, 2.0 * top)
+    memory = tuple(surface.at(time)[1:].tolist())
+    return time, flown(last, bodies.gravity, time)._replace(memory=memory)
+
+
+@dataclass(frozen=True)
+class FreeSurface:
+    """A surface without force, its load y recovering; the memories, (K,), m2, follow: w_k' = (y - w_k)/tau_k."""
+
+    load: Recovery
+    remembered: Array
+    times: Array
+
+    @classmethod
+    def of(cls, load: HereditaryLoad, last: State) -> FreeSurface:
+        """From the end of a contact on: memories of the load are what the dashpots of a strain y have yielded."""
+        recovery = Recovery.of(load.modulus, float(load.load(last.depth)), last.memory)
+        return cls(recovery, np.array(last.memory), np.array(load.modulus.times))
+
+    def at(self, time: float) -> Array:
+        """y and the memories w_k, shape (1 + K,), m2."""
+        rates = 1.0 / self.times
+        left = np.exp(-time * rates)
+        memories = self.remembered * left + self.load.permanent * (1.0 - left)
+        for amplitude, tau in zip(self.load.amplitudes, self.load.times, strict=True):
+            # of two exponentials the slower one, and what the other fills of it
+            apart, slower = np.abs(rates - 1.0 / tau), np.exp(-time * np.minimum(rates, 1.0 / tau))
+            filled = np.divide(-np.expm1(-time * apart), apart, out=np.full_like(left, time), where=apart != 0.0)
+            memories += amplitude * rates * slower * filled
+        return np.append(self.load(time), memories)
+
+
+def reset(load: HereditaryLoad, bodies: Bodies, last: State) -> tuple[float, State] | None:
+    """The surface is relaxed and flat again whenever the bodies meet, at depth zero.
+
+    Bodies that do not leave the dent by then never count as apart.
+    """
+    time = time_to_return(last, bodies.gravity, 0.0)
+    if time is None:
+        return None
+    return time, flown(last, bodies.gravity, time)._replace(depth=0.0, memory=load.at_rest)
+
+
+# From a load, its bodies and the state in which they parted: how long they are apart, s, and the state when contact
+# begins again; None: they never meet.
+Rule = Callable[[HereditaryLoad, Bodies, State], tuple[float, State] | None]
+RULES: Mapping[str, Rule] = {"continuous": continuous, "recovering": recovering, "reset": reset}
+
+
+def rule_of(name: str) -> Rule:
+    """The rule called so; raises BadInput with the nearest name."""
+    if name not in RULES:
+        raise BadInput(Fault("law", "memory", unavailable(tuple(RULES), name)))
+    return RULES[name]
