@@ -10,8 +10,7 @@ import numpy as np
 from skfem import MeshTri
 
 from meshes.errors import MeshError
-from meshes.session import session
-from meshes.triangles import Outline, beyond, checked, distance, elements_checked, larger, smaller, triangulated
+from meshes.triangles import Outline, beyond, checked, distance, elements_checked, filled, larger, smaller
 
 EDGE_REFINEMENT = 24.0  # element size inside the contact over element size at its edge
 GROWTH = 2.0  # growth of the element size per unit distance, for one element per contact radius
@@ -79,7 +78,9 @@ def half_space_for_waves(elements_per_radius: float, smallest: float, far_radius
 
 def _quarter(size: str, node: float, far_radius: float) -> MeshTri:
     """Triangles of a size over (x, y), in the words of gmsh; a node of the surface at ``node``."""
-    points, triangles = _triangulate(size, node, far_radius)
+    corners = [(0.0, 0.0), (node, 0.0), (far_radius, 0.0), (0.0, -far_radius)]
+    outline = Outline((0, -far_radius), (far_radius, 0), (0, 0, far_radius))
+    points, triangles = filled(corners, [(0, 1), (1, 2), (2, 0, 3), (3, 0)], [(1, 2, 3, 4)], size, outline)
     points[np.abs(points) < 1e-12 * far_radius] = 0.0  # onto the axis and the surface exactly
     mesh = MeshTri(points, triangles)
     return mesh.with_boundaries(
@@ -89,20 +90,3 @@ def _quarter(size: str, node: float, far_radius: float) -> MeshTri:
             "far": lambda x: (x[0] > 0.0) & (x[1] < 0.0),
         }
     )
-
-
-def _triangulate(size: str, node: float, far_radius: float) -> tuple[np.ndarray, np.ndarray]:
-    """Node coordinates (2, n) and triangles (3, m), unused nodes dropped."""
-    with session("half_space") as gmsh:
-        geometry = gmsh.model.geo
-        centre, edge = geometry.addPoint(0, 0, 0), geometry.addPoint(node, 0, 0)
-        right, bottom = geometry.addPoint(far_radius, 0, 0), geometry.addPoint(0, -far_radius, 0)
-        outline = [
-            geometry.addLine(centre, edge),
-            geometry.addLine(edge, right),
-            geometry.addCircleArc(right, centre, bottom),
-            geometry.addLine(bottom, centre),
-        ]
-        geometry.addPlaneSurface([geometry.addCurveLoop(outline)])
-        geometry.synchronize()
-        return triangulated(gmsh, size, Outline((0, -far_radius), (far_radius, 0), (0, 0, far_radius)))

@@ -7,7 +7,7 @@ from skfem import MeshLine
 
 from meshes.errors import MeshError
 
-MOST = 100_000
+MOST = 100_000  # work: elements along a rod
 
 
 def rod(elements: int) -> MeshLine:

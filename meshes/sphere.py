@@ -8,8 +8,7 @@ from __future__ import annotations
 import numpy as np
 from skfem import MeshTri, MeshTri2
 
-from meshes.session import session
-from meshes.triangles import Outline, beyond, checked, distance, elements_checked, larger, smaller, triangulated
+from meshes.triangles import Outline, beyond, checked, distance, elements_checked, filled, larger, smaller
 
 # of elements of order one, of which one lies along the contact's half-width; those of another are so many times larger
 GROWTH = 1.25  # growth of the element size per unit distance from the contact
@@ -40,17 +39,11 @@ def sphere(elements: float, smallest: float, contact: float, order: int) -> Mesh
     n = elements_checked("a contact", elements, 1.0, 200.0)
     low = checked("smallest contact over the largest", smallest, 1e-6, 1.0)
     size = sizes(n, low, checked("angle of the largest contact", contact, 1e-9, 1.4), order)
-    with session("sphere") as gmsh:
-        geometry = gmsh.model.geo
-        corners = ((0, 0), (1, -1), (0, -2), (0, -1))
-        pole, equator, foot, centre = (geometry.addPoint(x, y, 0) for x, y in corners)
-        middle = geometry.addLine(centre, equator)
-        upper = [geometry.addLine(pole, centre), middle, geometry.addCircleArc(equator, centre, pole)]
-        lower = [geometry.addLine(centre, foot), geometry.addCircleArc(foot, centre, equator), -middle]
-        for outline in (upper, lower):
-            geometry.addPlaneSurface([geometry.addCurveLoop(outline)])
-        geometry.synchronize()
-        nodes, triangles = triangulated(gmsh, size, Outline((0, -2), (1, 0), (0, -1, 1)))
+    pole, equator, foot, centre = range(4)
+    edges = [(centre, equator), (pole, centre), (equator, centre, pole), (centre, foot), (foot, centre, equator)]
+    halves = [(2, 1, 3), (4, 5, -1)]  # with the middle plane between them
+    corners = [(0, 0), (1, -1), (0, -2), (0, -1)]
+    nodes, triangles = filled(corners, edges, halves, size, Outline((0, -2), (1, 0), (0, -1, 1)))
     nodes[0, abs(nodes[0]) < 1e-14] = 0.0  # onto the axis exactly
     nodes[1, abs(nodes[1] + 1.0) < 1e-14] = -1.0  # onto the middle plane
     return rounded(

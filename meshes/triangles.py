@@ -19,6 +19,7 @@ Array = npt.NDArray[np.float64]
 
 MOST_NODES = 40_000  # some five seconds of gmsh, in which it answers to nothing
 PER_AREA = 2 / 3**0.5  # nodes of equal triangles of size h a square h
+DIGITS = 10  # of sizes: a mesh is to be the same whatever unit or machine made the sixteenth one
 COARSE = 2.0  # sides of a cell over the size of the elements in it, at most: a finer look hardly changes the sum
 
 
@@ -71,16 +72,36 @@ def triangulated(gmsh: Any, size: str, outline: Outline) -> tuple[np.ndarray, np
     return np.ascontiguousarray(points), np.ascontiguousarray(triangles.reshape(-1, 3).T)
 
 
+def filled(
+    points: Sequence[tuple[float, float]],
+    edges: Sequence[tuple[int, ...]],
+    faces: Sequence[tuple[int, ...]],
+    size: str,
+    outline: Outline,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes (2, n) and triangles (3, m) of faces whose edges are lines and arcs between points (x, y).
+
+    An edge is the places of its points in their list, an arc's centre between them; a face the numbers of its edges,
+    from 1 on, negative where it runs along one backwards.
+    """
+    with session("faces") as gmsh:
+        geometry = gmsh.model.geo
+        tags = [geometry.addPoint(x, y, 0) for x, y in points]
+        adding = {2: geometry.addLine, 3: geometry.addCircleArc}
+        lines = [adding[len(edge)](*(tags[place] for place in edge)) for edge in edges]
+        for face in faces:
+            loop = [lines[number - 1] if number > 0 else -lines[-number - 1] for number in face]
+            geometry.addPlaneSurface([geometry.addCurveLoop(loop)])
+        geometry.synchronize()
+        return triangulated(gmsh, size, outline)
+
+
 def polygon(corners: Sequence[tuple[float, float]], size: str) -> tuple[np.ndarray, np.ndarray]:
     """Nodes (2, n) and triangles (3, m) of a rectangle by its corners (x, y), other nodes of its rim among them."""
-    with session("polygon") as gmsh:
-        geometry = gmsh.model.geo
-        points = [geometry.addPoint(x, y, 0) for x, y in corners]
-        lines = [geometry.addLine(points[i], points[(i + 1) % len(points)]) for i in range(len(points))]
-        geometry.addPlaneSurface([geometry.addCurveLoop(lines)])
-        geometry.synchronize()
-        low, high = ((extreme(x for x, _ in corners), extreme(y for _, y in corners)) for extreme in (min, max))
-        return triangulated(gmsh, size, Outline(low, high))
+    count = len(corners)
+    edges = [(start, (start + 1) % count) for start in range(count)]
+    low, high = ((extreme(x for x, _ in corners), extreme(y for _, y in corners)) for extreme in (min, max))
+    return filled(corners, edges, [tuple(range(1, count + 1))], size, Outline(low, high))
 
 
 def expected_nodes(size: str, outline: Outline, most: float) -> float:
@@ -150,7 +171,7 @@ def elements_checked(along: str, value: float, low: float, high: float) -> float
 
 
 def checked(name: str, value: float, low: float, high: float) -> float:
-    """A number within its range, as a plain float: gmsh reads its digits. Raises MeshError, `name` in plain words."""
+    """A number within its range, of ``DIGITS``: gmsh reads them. Raises MeshError, `name` in plain words."""
     if not low <= value <= high:
         raise MeshError(f"{name} = {value:g}: accepted {low:g} to {high:g}")
-    return float(value)
+    return float(f"{value:.{DIGITS}g}")

@@ -1,11 +1,21 @@
-"""Static far field: a tensor Robin condition that is exact for a point force on the half-space.
+"""What lies beyond the mesh: springs that carry the static load on, and dashpots that let waves out.
 
-On the outer boundary the traction is ``t = -k u`` with a symmetric 2 x 2 tensor ``k(x)`` chosen so that
-Boussinesq's displacement meets Boussinesq's traction at every point. What is left decays like the next
-moments of the pressure; a fixed boundary would err by about 1.1 contact radii over far radius instead.
+Static: a tensor Robin condition that is exact for a point force on the half-space, or for a line force on the
+half-plane. On the outer boundary the traction is ``t = -k u`` with a symmetric 2 x 2 tensor ``k(x)`` chosen so that
+Boussinesq's displacement, or Flamant's, meets the traction that belongs to it at every point. What is left decays like
+the next moments of the pressure; a fixed boundary would err by about 1.1 contact radii over far radius instead.
+
+In plane strain the displacement of a line force has no value of its own, only a difference between two places: it is
+measured from a place far beyond the mesh.
+
+Dynamic: dashpots beside these springs, ``t = -density (c_p n n + c_s s s) v``, n the normal, s along the boundary: no
+reflection of what arrives head on (Lysmer and Kuhlemeyer 1969, doi:10.1061/JMCEA3.0001144). With the springs the pair
+is nearly the impedance of an expanding wave.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 import scipy.sparse as sparse
@@ -78,3 +88,54 @@ def boussinesq(position: Array, normal: Array, poisson: float) -> tuple[Array, A
 
 def _outer(first: Array, second: Array) -> Array:
     return first[:, None] * second[None]
+
+
+BEYOND = 5.0  # logarithm of where the displacement vanishes on the axis, over the size of the mesh
+
+
+def plane_robin(facets: Basis, poisson: float) -> sparse.coo_matrix:
+    """Stiffness of the outside on the far boundary for E* = 1, per unit length and of both halves, (2 N, 2 N)."""
+    position = np.asarray(facets.global_coordinates())
+    origin = np.exp(BEYOND) * float(np.hypot(*position).min())
+    displacement, traction = flamant(position, np.asarray(facets.normals), poisson, origin)
+    return springs(facets, displacement, traction, 2.0)
+
+
+def flamant(position: Array, normal: Array, poisson: float, origin: float) -> tuple[Array, Array]:
+    """Displacement and traction of a unit line force pressing on the half-plane z <= 0 with E* = 1.
+
+    As :func:`boussinesq`, (x, z); ``origin``: the depth below the force that is taken to
+    be at rest. Johnson, Contact Mechanics (1985), (2.15), (2.19).
+    """
+    x, depth = position[0], -position[1]
+    distance, angle = np.hypot(x, depth), np.arctan2(x, depth)
+    sine, cosine = np.sin(angle), np.cos(angle)
+    far = np.log(origin / distance)
+    side = (1.0 - 2.0 * poisson) / (1.0 - poisson)
+    radial = 2.0 * cosine * far - side * angle * sine
+    turning = -2.0 * sine * far + (2.0 * poisson / (1.0 - poisson) + side) * sine - side * angle * cosine
+    displacement = np.stack([radial * sine + turning * cosine, -(radial * cosine - turning * sine)]) / np.pi
+    direction = np.stack([sine, -cosine])
+    stress = -2.0 * cosine / (np.pi * distance)
+    return displacement, stress * direction * np.einsum("c...,c...", direction, normal)
+
+
+def dashpots(facets: Basis, poisson: float) -> sparse.coo_matrix:
+    """Force over velocity on the far boundary for E* = 1 and density 1, shape (2 N, 2 N).
+
+    Parameters
+    ----------
+    facets : scalar scikit-fem facet basis of the far boundary, coordinates (r, z).
+    poisson : Poisson's ratio.
+    """
+    normal = np.asarray(facets.normals)
+    along = np.stack([-normal[1], normal[0]])
+    pressure, shear = wave_speeds(poisson)
+    tensor = pressure * normal[:, None] * normal[None] + shear * along[:, None] * along[None]
+    return on_boundary(facets, tensor, 2 * np.pi * np.asarray(facets.global_coordinates())[0])
+
+
+def wave_speeds(poisson: float) -> tuple[float, float]:
+    """c_p and c_s for E* = E/(1 - nu^2) = 1 and density 1."""
+    shear = (1 - poisson) / 2
+    return math.sqrt(shear * (2 - 2 * poisson) / (1 - 2 * poisson)), math.sqrt(shear)

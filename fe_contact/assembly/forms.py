@@ -52,28 +52,10 @@ def elastic(bulk: float, shear: float) -> Array:
     return law
 
 
-def axisymmetric_strain(basis: Basis) -> Array:
-    """Strain of every vector shape function, shape (elements, points, 4, 2 x scalar functions).
-
-    Rows: ``du_r/dr``, ``du_z/dz``, ``u_r/r``, ``du_r/dz + du_z/dr``. Gauss points never lie on the axis,
-    so ``u_r/r`` is finite.
-    """
-    radius = np.asarray(basis.global_coordinates())[0]
-    value = np.stack([np.broadcast_to(np.asarray(shape[0]), radius.shape) for shape in basis.basis], axis=-1)
-    gradient = np.stack([shape[0].grad for shape in basis.basis], axis=-1)
-    strain = np.zeros((*radius.shape, 4, 2 * value.shape[-1]))
-    strain[:, :, 0, 0::2] = gradient[0]
-    strain[:, :, 1, 1::2] = gradient[1]
-    strain[:, :, 2, 0::2] = value / radius[:, :, None]
-    strain[:, :, 3, 0::2] = gradient[1]
-    strain[:, :, 3, 1::2] = gradient[0]
-    return strain
-
-
 def plane_strain(basis: Basis) -> Array:
     """Strain of every vector shape function in plane strain, shape (elements, points, 4, 2 x scalar functions).
 
-    Rows as in :func:`axisymmetric_strain`, the hoop's now that out of the plane: zero.
+    Rows: ``du_r/dr``, ``du_z/dz``, out of the plane zero, ``du_r/dz + du_z/dr``.
     """
     gradient = np.stack([shape[0].grad for shape in basis.basis], axis=-1)
     strain = np.zeros((*gradient.shape[1:3], 4, 2 * gradient.shape[-1]))
@@ -84,6 +66,14 @@ def plane_strain(basis: Basis) -> Array:
     return strain
 
 
+def axisymmetric_strain(basis: Basis) -> Array:
+    """As :func:`plane_strain`, with the hoop's ``u_r/r``: Gauss points never lie on the axis, so that it is finite."""
+    radius = np.asarray(basis.global_coordinates())[0]
+    strain = plane_strain(basis)
+    strain[:, :, 2, 0::2] = _values(basis, radius.shape) / radius[:, :, None]
+    return strain
+
+
 def polar_strain(basis: Basis, inner_radius: float) -> Array:
     """Plane strain of a ring laid flat: x is arc length on its inner surface, z = inner_radius - r out of the body.
 
@@ -91,15 +81,11 @@ def polar_strain(basis: Basis, inner_radius: float) -> Array:
     """
     place = np.asarray(basis.global_coordinates())
     radius = inner_radius - place[1]
-    value = np.stack([np.broadcast_to(np.asarray(shape[0]), radius.shape) for shape in basis.basis], axis=-1)
-    gradient = np.stack([shape[0].grad for shape in basis.basis], axis=-1)
-    along = gradient[0] * (inner_radius / radius)[:, :, None]
-    strain = np.zeros((*radius.shape, 4, 2 * value.shape[-1]))
-    strain[:, :, 0, 0::2] = along
-    strain[:, :, 0, 1::2] = -value / radius[:, :, None]
-    strain[:, :, 1, 1::2] = gradient[1]
-    strain[:, :, 3, 0::2] = gradient[1] + value / radius[:, :, None]
-    strain[:, :, 3, 1::2] = along
+    turned, strain = _values(basis, radius.shape) / radius[:, :, None], plane_strain(basis)
+    for row, column in ((0, 0), (3, 1)):
+        strain[:, :, row, column::2] *= (inner_radius / radius)[:, :, None]
+    strain[:, :, 0, 1::2] = -turned
+    strain[:, :, 3, 0::2] += turned
     return strain
 
 
@@ -133,7 +119,7 @@ def plane_mass(basis: Basis) -> Array:
 
 
 def _mass(basis: Basis, weight: Array) -> Array:
-    value = np.stack([np.broadcast_to(np.asarray(shape[0]), weight.shape) for shape in basis.basis], axis=-1)
+    value = _values(basis, weight.shape)
     scalar = np.einsum("eqi,eqj,eq->eij", value, value, weight, optimize=True)
     elements, functions, _ = scalar.shape
     local = np.zeros((elements, 2 * functions, 2 * functions))
@@ -154,6 +140,11 @@ def _assembled(basis: Basis, law: Array, strain: Array, weight: Array) -> sparse
     flat = (elements, 4 * points, functions)
     local = np.matmul(strain.reshape(flat).transpose(0, 2, 1), stress.reshape(flat))
     return scatter(local, vector_dofs(basis.element_dofs), 2 * basis.N)
+
+
+def _values(basis: Basis, shape: tuple[int, ...]) -> Array:
+    """Of the scalar shape functions at the points of a ``shape``, (elements, points, functions)."""
+    return np.stack([np.broadcast_to(np.asarray(one[0]), shape) for one in basis.basis], axis=-1)
 
 
 def vector_dofs(scalar_dofs: Indices) -> Indices:

@@ -1,5 +1,6 @@
-"""Mesh and Poisson's ratio -> what the contact surface knows of the body: one condensed operator.
+"""Mesh and material -> matrices, and what the contact surface knows of the body: one condensed operator.
 
+A body is its mesh with its supports, for any isotropic material: a new Poisson's ratio needs no new mesh.
 Assembled and factorised once; a unit force on every surface degree of freedom gives the compliance
 ``C = B K^-1 B^T``. All quantities are for contact radius 1 and contact modulus E* = 1.
 """
@@ -23,12 +24,10 @@ from skfem import (
     MeshTri,
 )
 
-from fe_contact.assembly import far_field as static
-from fe_contact.assembly.floating import Floating
-from fe_contact.assembly.forms import Array, Indices, Matrix, isotropic, stiffness
-from fe_contact.assembly.interior import Interior, Solve
-from fe_contact.assembly.surface import Surface, flat
-from fe_contact.assembly.trace import contact_quadrature, trace_between
+from fe_contact.assembly.far_field import plane_robin, robin
+from fe_contact.assembly.forms import Array, Indices, Matrix, elastic, isotropic, plane_stiffness, stiffness
+from fe_contact.assembly.interior import Floating, Interior, Solve
+from fe_contact.assembly.surface import Surface, flat, trace_between
 from fe_contact.errors import BodyTooFine
 from meshes.errors import MeshTooLarge
 
@@ -177,9 +176,8 @@ def condensed(
     factors : whether to keep them.
     """
     order = basis.elem.maxdeg
-    corners = surface.coordinate[::order]
-    zone = corners[: np.searchsorted(corners, surface.zone) + 1]  # whole facets only
-    loaded = (len(zone) - 1) * order + 1
+    points, weights, trace = surface.quadrature(order)
+    loaded = trace.shape[1]
     normal = _normals(surface, matrix.shape[0])
     free = np.setdiff1d(np.arange(matrix.shape[0]), fixed)
     interior = Interior(matrix[free][:, free], free, normal[:, :loaded], floating)
@@ -187,8 +185,6 @@ def condensed(
     response, watched = _influence(displacement, normal, watch, loaded)
     compliance = response[:loaded]
     condensed = np.linalg.inv((compliance + compliance.T) / 2)
-    points, lengths, trace = contact_quadrature(zone, order)
-    weights = lengths * surface.measure(points)
     return SurfaceOperator(
         nodes=surface.coordinate,
         order=order,
@@ -223,9 +219,49 @@ def _normals(surface: Surface, size: int) -> sparse.csc_matrix:
     return sparse.csc_matrix(entries, shape=(size, columns.size))
 
 
-def system_matrix(basis: Basis, poisson: float) -> Matrix:
-    """Stiffness of body and far field for E* = 1, sparse (2 N, 2 N); the axis is not yet fixed."""
-    order = basis.elem.maxdeg
-    far = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["far"], intorder=2 * order + 4)
-    body = stiffness(basis, isotropic(1 - poisson**2, poisson))
-    return (body + static.robin(far, poisson)).tocsc()
+def system_matrix(basis: Basis, poisson: float, ends: tuple[str, ...] = ("far",), plane: bool = False) -> Matrix:
+    """Stiffness of body and far field for E* = 1, sparse (2 N, 2 N); the axis is not yet fixed.
+
+    ``ends``: boundaries beyond which the half-space goes on, or, in plane strain, the half-plane.
+    """
+    facets = np.concatenate([basis.mesh.boundaries[name] for name in ends])
+    outside = FacetBasis(basis.mesh, basis.elem, facets=facets, intorder=2 * basis.elem.maxdeg + 4)
+    law = isotropic(1 - poisson**2, poisson)
+    if plane:
+        return (plane_stiffness(basis, law) + plane_robin(outside, poisson)).tocsc()
+    return (stiffness(basis, law) + robin(outside, poisson)).tocsc()
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticBody:
+    """``basis`` scalar scikit-fem basis with N functions; ``stiffness`` sparse (2 N, 2 N), of bulk and shear modulus.
+
+    ``fixed`` degrees of freedom held at zero; ``surface`` where contact may happen. What lies beyond the mesh is part
+    of the stiffness, hence linear in both moduli too. ``floating``: of a body that nothing holds but its inertia.
+    """
+
+    basis: Basis
+    stiffness: Callable[[float, float], Matrix]
+    fixed: Indices
+    surface: Surface
+    floating: Floating | None = None
+
+    def operator(self, poisson: float, factors: bool = False) -> SurfaceOperator:
+        """What the contact surface knows of it with this Poisson's ratio, for E* = 1; see :func:`condensed`."""
+        matrix = self.stiffness(*moduli(poisson)).tocsc()
+        return condensed(self.basis, matrix, self.fixed, poisson, self.surface, floating=self.floating, factors=factors)
+
+
+def axisymmetric(basis: Basis, bulk: float, shear: float) -> Matrix:
+    """Stiffness of a body of revolution that ends with its mesh, sparse (2 N, 2 N)."""
+    return stiffness(basis, elastic(bulk, shear))
+
+
+def plane(basis: Basis, bulk: float, shear: float) -> Matrix:
+    """The same in plane strain, both halves."""
+    return plane_stiffness(basis, elastic(bulk, shear))
+
+
+def moduli(poisson: float) -> tuple[float, float]:
+    """Bulk and shear modulus for E* = 1, that is E = 1 - nu^2."""
+    return (1.0 - poisson**2) / (3.0 * (1.0 - 2.0 * poisson)), 0.5 * (1.0 - poisson)

@@ -1,9 +1,10 @@
-"""Where contact may happen: the nodes of a boundary, in order, with normals and a measure."""
+"""Where contact may happen: the nodes of a boundary, in order, with normals and a measure, and quadrature on them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -29,6 +30,16 @@ class Surface:
     motion: Callable[[Array], Array]
     zone: float
     dimension: int
+
+    def corners(self, order: int, end: float | None = None) -> Array:
+        """Ends of whole facets of elements of an order, ascending, up to the end of the zone, or another, at least."""
+        corners = self.coordinate[::order]
+        return corners[: np.searchsorted(corners, self.zone if end is None else end) + 1]
+
+    def quadrature(self, order: int) -> tuple[Array, Array, Array]:
+        """Points of the zone and their areas, each (q,), and the displacement there from that of its nodes, (q, n)."""
+        points, lengths, trace = contact_quadrature(self.corners(order), order)
+        return points, lengths * self.measure(points), trace
 
 
 def flat(basis: Basis, dimension: int = 3, motion: Callable[[Array], Array] = np.ones_like) -> Surface:
@@ -85,3 +96,48 @@ def ring_area(radius: Array) -> Array:
 def both_halves(coordinate: Array) -> Array:
     """2: the other side of a plane of symmetry counts too."""
     return np.full_like(coordinate, 2.0)
+
+
+FACET_POINTS = 4  # quadrature points a facet beyond the element order: the contact edge is a kink
+
+
+def contact_quadrature(corners: Array, order: int) -> tuple[Array, Array, Array]:
+    """Gauss points, weights in the coordinate, and Lagrange trace on the facets between ``corners``."""
+    gauss, weight = np.polynomial.legendre.leggauss(order + FACET_POINTS)
+    left, length = corners[:-1, None], np.diff(corners)[:, None]
+    points = (left + length * (gauss + 1) / 2).ravel()
+    weights = (length * weight / 2).ravel()
+    local = lagrange((gauss + 1) / 2, order)
+    trace = np.zeros((len(points), (len(corners) - 1) * order + 1))
+    for facet in range(len(corners) - 1):
+        rows = slice(facet * len(gauss), (facet + 1) * len(gauss))
+        trace[rows, facet * order : (facet + 1) * order + 1] = local
+    return points, weights, trace
+
+
+def hats(count: int, order: int) -> Array:
+    """Linear shape functions of the facets at so many points of a quadrature as above, (q, corners)."""
+    gauss, _ = np.polynomial.legendre.leggauss(order + FACET_POINTS)
+    corners = np.arange(count // gauss.size + 1.0)
+    return trace_between(corners, (corners[:-1, None] + (gauss + 1) / 2).ravel(), 1)
+
+
+def trace_between(corners: Array, points: Array, order: int) -> Array:
+    """Displacement at points (q,) anywhere on the facets between ``corners`` from that of their nodes, (q, n)."""
+    facet = np.clip(np.searchsorted(corners, points) - 1, 0, len(corners) - 2)
+    local = lagrange((points - corners[facet]) / (corners[facet + 1] - corners[facet]), order)
+    trace = np.zeros((len(points), (len(corners) - 1) * order + 1))
+    trace[np.arange(len(points))[:, None], order * facet[:, None] + np.arange(order + 1)] = local
+    return trace
+
+
+def lagrange(x: Array, order: int) -> Array:
+    """Equispaced Lagrange polynomials on [0, 1] at ``x``, shape (len(x), order + 1)."""
+    return np.vander(x, order + 1, increasing=True) @ monomials(order)
+
+
+@cache
+def monomials(order: int) -> Array:
+    """Coefficients (power, function) of the equispaced Lagrange polynomials on [0, 1]."""
+    nodes: Array = np.arange(order + 1) / order
+    return np.asarray(np.linalg.inv(np.vander(nodes, increasing=True)), dtype=np.float64)

@@ -18,14 +18,15 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import SurfaceOperator
 from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
 from fe_contact.bodies.modes import Modes
-from fe_contact.bodies.offer import Offer, Recalled
+from fe_contact.bodies.offer import Recalled, Whole
 from fe_contact.schemes.base import MemoryScheme
 from lumped.materials import Material, Relaxation
 
-SURFACES_KEPT = 4
+SURFACES_KEPT = 4  # work: memory, bodies whose pressed surface is kept
 OFFERS_KEPT = 64  # step lengths whose condensed stiffness is kept: like marches have like steps
 
 
@@ -67,7 +68,7 @@ class BulkLaw(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class BulkBody:
+class BulkBody(Whole):
     """Contracts of :class:`fe_contact.bodies.offer.Body` and ``Half``; ``scale``, m, is the mesh's unit of length."""
 
     modes: Modes
@@ -83,22 +84,15 @@ class BulkBody:
             SurfaceMemory.at_rest(unit * self.modes.shear, self.moduli.shear, fields=1),
         )
 
-    def offer(self, memory: BulkMemory, length: float) -> Offer:
-        """What contact meets in a step of a length, s."""
-        law = self._law(length)
-        now, past = law.contact_modulus, self._past(memory, law)
-        return Offer(length, now, self.modes.operator.trace @ past, _pressed(self.modes, law.ratio))
+    @property
+    def operator(self) -> SurfaceOperator:
+        """Of the elastic body at one of the ratios: points and weights are those of all."""
+        return self.modes.operator
 
     def recalled(self, memory: BulkMemory, length: float) -> Recalled:
-        """The same at the nodes."""
+        """What its past makes of a step of a length, s."""
         law = self._law(length)
-        return Recalled(law.contact_modulus, self._past(memory, law), _pressed(self.modes, law.ratio).stiffness)
-
-    def after(self, memory: BulkMemory, offer: Offer, pressure: Array) -> tuple[BulkMemory, float]:
-        """The memory after the step under a pressure (q,), and the axis' elastic displacement times modulus."""
-        operator = self.modes.operator
-        load = operator.trace.T @ (operator.weights * pressure)
-        return self.pushed(memory, offer.length, load), float(operator.response[0] @ load)
+        return Recalled(law.contact_modulus, self._past(memory, law), _pressed(self.modes, law.ratio))
 
     def pushed(self, memory: BulkMemory, length: float, load: Array) -> BulkMemory:
         """The memory after a step of a length, s, under forces at the nodes, (n,)."""
@@ -106,12 +100,8 @@ class BulkBody:
         amplitude = ((self.modes.shape.T @ load - self._carried(memory, law)) / self._now(law))[None]
         return BulkMemory(memory.volume.advanced(law.bulk, amplitude), memory.shear.advanced(law.shear, amplitude))
 
-    def displacement(self, memory: BulkMemory) -> Array:
-        """Inward displacement of the surface at the quadrature points, (q,), m."""
-        return np.asarray(self.modes.operator.trace @ self.sunk(memory))
-
     def sunk(self, memory: BulkMemory) -> Array:
-        """The same of the nodes, (n,), m."""
+        """Inward displacement of the nodes, (n,), m."""
         return np.asarray(self.modes.shape @ memory.shear.strain[0])
 
     def stored(self, memory: BulkMemory) -> float:

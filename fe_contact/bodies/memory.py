@@ -7,22 +7,29 @@ Constant Poisson's ratio, or any isotropic homogeneous half-space: the surface d
 
 at every point of the surface, so that the past is a few numbers a point and the bulk need not be stored.
 The same recursion run on the pressure itself gives the pressure each branch carries, hence the energies.
+
+A body whose surface alone remembers, whatever its lengths, has the memory of the contact zone's nodes: displacement u
+and the nodal forces f that hold it elastically with unit modulus, so that energies are sums of f u.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import SurfaceOperator
+from fe_contact.assembly.pressed_surface import PressedSurface
+from fe_contact.bodies.offer import Recalled, Whole
 from fe_contact.schemes import galerkin
 from fe_contact.schemes.base import MemoryScheme
 from lumped.materials import Relaxation
 
 LAWS_KEPT = 1024  # the steps of a march: their energies are counted when it has ended
-STENCIL = np.arange(4)[:, None]
+STENCIL = np.arange(4)[:, None]  # the four values of a cubic
 TO_MONOMIALS = np.linalg.inv(np.vander(np.arange(4.0), increasing=True))  # of the cubic through four values
 
 
@@ -150,3 +157,54 @@ def product(weights: Array, first: Array, second: Array) -> float:
     Where pressure is displacement times the weight, one field is both.
     """
     return 0.5 * float(weights @ (first[0] * second[-1] + first[-1] * second[0]))
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceBody(Whole):
+    """Contracts of :class:`fe_contact.bodies.offer.Body` and ``Half``; ``scale``, m, is the mesh's unit of length.
+
+    ``share``: its stiffness over that of its operator.
+    """
+
+    operator: SurfaceOperator
+    pressed: PressedSurface
+    relaxation: Relaxation
+    scheme: MemoryScheme
+    scale: float
+    share: float = 1.0
+
+    def at_rest(self) -> SurfaceMemory:
+        """A relaxed, undeformed body."""
+        nodes = np.ones(len(self.operator.stiffness))
+        return SurfaceMemory.at_rest(nodes, self.relaxation, fields=2)
+
+    def recalled(self, memory: SurfaceMemory, length: float) -> Recalled:
+        """What its past makes of a step of a length, s."""
+        law = self._law(length)
+        return Recalled(law.now, memory.carried(law)[0], self.pressed)
+
+    def pushed(self, memory: SurfaceMemory, length: float, load: Array) -> SurfaceMemory:
+        """The memory after a step of a length, s, under forces at the nodes, (n,)."""
+        law = self._law(length)
+        displacement = self.operator.compliance @ load / self.share
+        force = load * self.scale ** (self.operator.dimension - 2)
+        return memory.advanced(law, (np.array([displacement, force]) - memory.carried(law)) / law.now)
+
+    def sunk(self, memory: SurfaceMemory) -> Array:
+        """Inward displacement of the nodes, (n,), m."""
+        return np.asarray(memory.strain[0])
+
+    def stored(self, memory: SurfaceMemory) -> float:
+        """Elastic energy in all springs, J."""
+        return memory.stored(self.relaxation)
+
+    def dissipated(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
+        """Heat of a step, J."""
+        return before.dissipated(after, self.relaxation, length)
+
+    def lost(self, before: SurfaceMemory, after: SurfaceMemory, length: float) -> float:
+        """Of the work in a step, what the scheme leaves unaccounted for, J."""
+        return before.lost(after, self.relaxation, self.scheme, length)
+
+    def _law(self, length: float) -> StepLaw:
+        return step_law(self.relaxation, self.scheme, length)

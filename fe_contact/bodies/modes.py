@@ -15,14 +15,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import eigh
 
 from fe_contact.assembly.cache import kept
-from fe_contact.assembly.elastic_body import ElasticBody, moduli
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import SurfaceOperator
+from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, moduli
 
 FEWEST, PER_E_FOLD = 3, 0.5  # ratios, at least and for every factor e of the interval: errors of some 1e-7
 LEAST_HALF_WIDTH = 0.3  # of the interval's logarithm: closer ratios would cancel
@@ -147,3 +147,38 @@ def _compliance(operator: SurfaceOperator) -> Array:
 
 def _symmetric(matrix: Array) -> Array:
     return np.asarray(0.5 * (matrix + matrix.T))
+
+
+class Condensed:
+    """Condensed once, on one mesh."""
+
+    if TYPE_CHECKING:  # members have it as a field or as a property
+
+        @property
+        def operator(self) -> SurfaceOperator: ...
+
+    @property
+    def factorizations(self) -> int:
+        """One for one mesh."""
+        return 1
+
+    @property
+    def solves(self) -> int:
+        """One a node of the contact zone."""
+        return len(self.operator.stiffness)
+
+
+class ByModes:
+    """Condensed at every ratio of the moduli that its modes were made for, whatever the steps."""
+
+    modes: Modes
+
+    @property
+    def factorizations(self) -> int:
+        """One a ratio."""
+        return self.modes.ratios
+
+    @property
+    def solves(self) -> int:
+        """Those of the modes."""
+        return self.modes.solves

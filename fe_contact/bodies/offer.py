@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
+
+import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import SurfaceOperator
 from fe_contact.assembly.pressed_surface import PressedSurface
-from fe_contact.contact.problem import ContactProblem
-from fe_contact.schemes.base import MemoryScheme
-from lumped.materials import Relaxation
 
 Memory: TypeAlias = Any  # what a body carries from step to step, each kind its own
 
@@ -29,19 +28,32 @@ class Offer(NamedTuple):
 class Recalled(NamedTuple):
     """A step at the contact zone's own n nodes: displacement x ``now`` = unit compliance x forces - ``past`` (n,).
 
-    ``now``: contact modulus of the step, Pa; ``stiffness``: inverse of the unit compliance, (n, n).
+    ``now``: contact modulus of the step, Pa; ``surface``: for unit modulus.
     """
 
     now: float
     past: Array
-    stiffness: Array
+    surface: PressedSurface
 
 
-class Half(Protocol):
-    """One of the bodies under a common pressure, by the nodes of its own contact zone."""
+class Remembering(Protocol):
+    """What carries a memory from step to step, which is its own affair, and passed in and out."""
 
     def at_rest(self) -> Memory:
         """Memory of a relaxed, undeformed body."""
+
+    def stored(self, memory: Memory) -> float:
+        """Elastic energy in all springs, J."""
+
+    def dissipated(self, before: Memory, after: Memory, length: float) -> float:
+        """Heat of a step, J."""
+
+    def lost(self, before: Memory, after: Memory, length: float) -> float:
+        """Of the work in a step, what the scheme leaves unaccounted for, J."""
+
+
+class Half(Remembering, Protocol):
+    """One of the bodies under a common pressure, by the nodes of its own contact zone."""
 
     def recalled(self, memory: Memory, length: float) -> Recalled:
         """What its past makes of a step of a length, s."""
@@ -52,21 +64,9 @@ class Half(Protocol):
     def sunk(self, memory: Memory) -> Array:
         """Inward displacement of the nodes, (n,), m."""
 
-    def stored(self, memory: Memory) -> float:
-        """Elastic energy in all springs, J."""
 
-    def dissipated(self, before: Memory, after: Memory, length: float) -> float:
-        """Heat of a step, J."""
-
-    def lost(self, before: Memory, after: Memory, length: float) -> float:
-        """Of the work in a step, what the scheme leaves unaccounted for, J."""
-
-
-class Body(Protocol):
-    """A deformable body; its memory is its own affair, and passed in and out."""
-
-    def at_rest(self) -> Memory:
-        """Memory of a relaxed, undeformed body."""
+class Body(Remembering, Protocol):
+    """A deformable body, by the quadrature points of its contact zone."""
 
     def offer(self, memory: Memory, length: float) -> Offer:
         """What contact meets in a step of a length, s."""
@@ -77,52 +77,38 @@ class Body(Protocol):
     def displacement(self, memory: Memory) -> Array:
         """Inward displacement of the surface at the quadrature points, (q,), m."""
 
-    def stored(self, memory: Memory) -> float:
-        """Elastic energy in all springs, J."""
 
-    def dissipated(self, before: Memory, after: Memory, length: float) -> float:
-        """Heat of a step, J."""
+class Whole:
+    """A half that may be all there is: what its nodes know, by the points of its ``operator``."""
 
-    def lost(self, before: Memory, after: Memory, length: float) -> float:
-        """Of the work in a step, what the scheme leaves unaccounted for, J."""
+    if TYPE_CHECKING:  # members have it as a field or as a property
 
+        @property
+        def operator(self) -> SurfaceOperator: ...
 
-class Meshed(Protocol):
-    """The surface of one elastic body on its mesh; ``operator``: its places, weights and scale."""
+    def recalled(self, memory: Memory, length: float) -> Recalled:
+        """See :class:`Half`."""
+        raise NotImplementedError
 
-    @property
-    def operator(self) -> SurfaceOperator: ...
+    def pushed(self, memory: Memory, length: float, load: Array) -> Memory:
+        """See :class:`Half`."""
+        raise NotImplementedError
 
+    def sunk(self, memory: Memory) -> Array:
+        """See :class:`Half`."""
+        raise NotImplementedError
 
-class Staying(Meshed, Protocol):
-    """One on a mesh that stays while the contact grows."""
+    def offer(self, memory: Memory, length: float) -> Offer:
+        """What contact meets in a step of a length, s."""
+        now, past, surface = self.recalled(memory, length)
+        return Offer(length, now, self.operator.trace @ past, surface)
 
-    @property
-    def rim(self) -> float | None:
-        """Where all contacts end, m, if the body is loaded no farther."""
+    def after(self, memory: Memory, offer: Offer, pressure: Array) -> tuple[Memory, float]:
+        """The memory after the step under a pressure (q,), and the axis' elastic displacement times modulus."""
+        operator = self.operator
+        load = operator.trace.T @ (operator.weights * pressure)
+        return self.pushed(memory, offer.length, load), float(operator.compliance[0] @ load)
 
-    def body(self, relaxation: Relaxation, scheme: MemoryScheme, scale: float) -> Body:
-        """The body with a contact modulus E*(t), Pa, marched by a scheme, on a mesh whose unit is ``scale``, m."""
-
-    def unit(self, contact_radius: float) -> float:
-        """The mesh's unit of length, m, where contacts up to this radius, m, are expected."""
-
-    def places(self, unit: float) -> Array:
-        """Distance of the quadrature points from the first touch as the striker's profile counts it, m; (q,)."""
-
-
-class Breathing(Meshed, Protocol):
-    """One on a mesh for contact radius 1 and E* = 1, which is scaled to the contact of each instant."""
-
-    @property
-    def pressed(self) -> PressedSurface:
-        """What contact knows of it."""
-
-    def problem(self, overlap: Array, penalty: float, yielding: float | Array) -> ContactProblem:
-        """Contact problem on the unit mesh, of free overlaps times modulus (q,)."""
-
-    def response(self, pressure: Array) -> Array:
-        """Displacement times modulus of all surface nodes, (n_s,), under a unit-mesh pressure (q,)."""
-
-    def sample(self, nodal: Array, radii: Array) -> Array:
-        """A nodal surface field at increasing radii in units of the contact radius."""
+    def displacement(self, memory: Memory) -> Array:
+        """Inward displacement of the surface at the quadrature points, (q,), m."""
+        return np.asarray(self.operator.trace @ self.sunk(memory))

@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.bodies.offer import Breathing
+from fe_contact.assembly.operators import SurfaceOperator
+from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
-from fe_contact.contact.problem import ContactSolution, Touching
+from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching
 from fe_contact.errors import ContactTooWide, IndentationNotSettled
 from fe_contact.settings import Numerics
 from lumped.scene.indenter import Indenter
 
 EDGE_WINDOW = 0.02  # the contact edge may lie this far from the node where the mesh is finest
-RESCALINGS = 60
+RESCALINGS = 60  # work: of the mesh, until the contact edge lies where it is finest
 EDGE_ORDER = 1.5  # of the force's error where the contact ends anywhere in an element
 BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 # The gap tells where contact ends up to this distance from the edge, in contact radii and in thicknesses of the body,
 # but for the nearest share of it.
 GAP_REACH, GAP_REACH_OF_THICKNESS, GAP_NEAREST = 0.4, 0.6, 0.2
 GAP_POINTS = 16  # beyond the edge of a contact that has just begun to recede, or is steep: two elements
-GAP_DEGREE = 2
+GAP_DEGREE = 2  # of the polynomial fitted to the gap's power 2/3 beyond the edge
+STIFFER = 6.0  # penalty where the contact ends at a rim, over that where it may move: no edge asks for softness
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,20 @@ class Pressed:
     contact_radius: float
     problems: int
     iterations: int
+
+
+class Meshed(Protocol):
+    """The surface of one body on its mesh for E* = 1, scaled to its place; ``operator``: points and weights."""
+
+    @property
+    def operator(self) -> SurfaceOperator: ...
+
+    @property
+    def pressed(self) -> PressedSurface:
+        """What contact knows of it."""
+
+    def problem(self, overlap: Array, penalty: float, yielding: float | Array) -> ContactProblem:
+        """Contact problem on the unit mesh, of free overlaps times modulus (q,)."""
 
 
 class Still(Protocol):
@@ -56,27 +72,25 @@ class Still(Protocol):
 
 
 @dataclass(frozen=True)
-class ScaledStill:
-    """A body without a length of its own: the mesh is scaled until the contact edge lies in its finest elements."""
+class OnMesh:
+    """An ``indenter`` on a body of which one mesh is known, whose sides are far away."""
 
-    surface: Breathing
+    surface: Meshed
     indenter: Indenter
     numerics: Numerics
+    ends: ClassVar[bool] = False
 
     @property
     def degrees_of_freedom(self) -> int:
         """Unknowns of the one mesh."""
         return self.surface.operator.degrees_of_freedom
 
-    @property
-    def mesh_order(self) -> float:
-        """That of the elements: the edge is a node but for little."""
-        return np.inf
 
-    @property
-    def ends(self) -> bool:
-        """Never."""
-        return False
+@dataclass(frozen=True)
+class ScaledStill(OnMesh):
+    """A body without a length of its own: the mesh is scaled until the contact edge lies in its finest elements."""
+
+    mesh_order: ClassVar[float] = np.inf  # that of the elements: the edge is a node but for little
 
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m. Raises IndentationNotSettled."""
@@ -97,34 +111,21 @@ class ScaledStill:
 
 
 @dataclass(frozen=True)
-class FixedStill:
+class FixedStill(OnMesh):
     """A body with lengths of its own, on one mesh in units of ``reference``, m: the contact may end anywhere in it.
 
     ``stretch``: the target's place on the surface over the mesh's coordinate; ``thickness`` of the body, in units of
     the mesh.
     """
 
-    surface: Breathing
-    indenter: Indenter
-    numerics: Numerics
     reference: float
     stretch: float
     thickness: float
 
     @property
-    def degrees_of_freedom(self) -> int:
-        """Unknowns of the one mesh."""
-        return self.surface.operator.degrees_of_freedom
-
-    @property
     def mesh_order(self) -> float:
         """Less where the edge may lie anywhere in an element, at which the pressure has no slope."""
         return EDGE_ORDER if self.indenter.shape.fixed_radius is None else np.inf
-
-    @property
-    def ends(self) -> bool:
-        """Its sides are far away."""
-        return False
 
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m; raises IndentationNotSettled, ContactTooWide."""
@@ -152,8 +153,49 @@ class FixedStill:
         return _enforced(self.surface, overlap, self.reference, numerics, operator.points < expected)
 
 
+@dataclass(frozen=True, eq=False)
+class BodyStill:
+    """Contact at fixed points on one mesh, whose unit is ``scale``, m.
+
+    ``surface`` of all bodies, in units of their common modulus; ``operator`` of the one that has the points;
+    ``places`` (q,) of the points as the target counts them, m, zero at the first touch.
+    """
+
+    surface: PressedSurface
+    operator: SurfaceOperator
+    places: Array
+    scale: float
+    indenter: Indenter
+    numerics: Numerics
+    degrees_of_freedom: int
+    ends: ClassVar[bool] = True
+
+    @property
+    def mesh_order(self) -> float:
+        """Less where the edge may lie anywhere in an element; a rim is a node."""
+        return EDGE_ORDER if self.indenter.target.fixed_radius(self.indenter.shape) is None else np.inf
+
+    def press(self, depth: float, guess: float) -> Pressed:
+        """Press to a depth, m; raises IndentationNotSettled, or ContactTooWide where a contact leaves the fine mesh."""
+        target, shape = self.indenter.target, self.indenter.shape
+        fixed = target.fixed_radius(shape)
+        overlap = target.overlap(self.indenter.profile, self.places, depth)
+        penalty = self.numerics.penalty * self.scale / guess * (1.0 if fixed is None else STIFFER)
+        problem = ContactProblem(self.surface, np.maximum(overlap, -BEYOND * self.scale), penalty)
+        enforcement = ENFORCEMENTS.get(self.numerics.enforcement)
+        solution = enforcement.enforce(problem, np.abs(self.places) < guess)
+        gap, height = -solution.signed_pressure, target.lead * depth - overlap
+        radius = fixed or half_width(self.places, solution.signed_pressure, gap, height=height)
+        if not solution.converged or radius == 0.0:
+            raise IndentationNotSettled(depth)
+        if not np.isfinite(radius):
+            raise ContactTooWide(depth)
+        force = self.operator.force(self.scale, solution.pressure)
+        return Pressed(force, radius, enforcement.solves, solution.iterations)
+
+
 def _enforced(
-    surface: Breathing, overlap: Array, scale: float, numerics: Numerics, touching: Touching
+    surface: Meshed, overlap: Array, scale: float, numerics: Numerics, touching: Touching
 ) -> tuple[ContactSolution, int]:
     """The contact problem on the mesh scaled by ``scale``, m; and how many solves it took."""
     enforcement = ENFORCEMENTS.get(numerics.enforcement)

@@ -26,7 +26,7 @@ from fe_contact.assembly.cache import Store
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.pressed_surface import PressedSurface, solved
 
-MAX_ITERATIONS = 60
+MAX_ITERATIONS = 60  # work: sets of touching points tried, more is no convergence
 UNGUARDED = 8  # iterations that nearly always suffice, and need no line search
 TRUSTED = 1e-3  # of the following: where a striker moved by one leaves no more, other overlaps do not either
 RESIDUAL = 1e-6  # of the largest overlap that presses: the answer is exact for one which differs by less

@@ -14,7 +14,8 @@ import numpy as np
 from fe_contact.assembly.forms import Array
 from fe_contact.schemes.base import MemoryScheme
 
-SERIES_BELOW = 0.02
+SERIES_BELOW = 0.02  # rounding: of step over relaxation time, below it the difference would cancel
+# Of (x - 1 + exp(-x))/x^2, the highest power first.
 SERIES = [(-1) ** k / math.factorial(k + 2) for k in range(5, -1, -1)]
 
 

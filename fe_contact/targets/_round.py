@@ -11,13 +11,12 @@ from skfem import Basis
 
 import meshes
 from fe_contact.assembly.cache import kept
-from fe_contact.assembly.elastic_body import ElasticBody, axisymmetric, plane
-from fe_contact.assembly.floating import Floating
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import SurfaceOperator, basis_on, made
-from fe_contact.assembly.surface import crown
+from fe_contact.assembly.interior import Floating
+from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, axisymmetric, basis_on, made, plane
+from fe_contact.assembly.surface import crown, trace_between
 from fe_contact.bodies.bulk_memory import Moduli
-from fe_contact.bodies.pressing import Still
+from fe_contact.bodies.pressing import BodyStill, Still
 from fe_contact.bodies.zone import (
     LINE_REFINEMENT,
     MARGIN,
@@ -28,9 +27,7 @@ from fe_contact.bodies.zone import (
 )
 from fe_contact.settings import Numerics
 from fe_contact.steppers.bulk_surface import Pace
-from fe_contact.steppers.sides import BodySide, BulkSide, stacked
-from fe_contact.steppers.stacked import Stacked
-from fe_contact.targets._body import BodyStill, trace_at
+from fe_contact.steppers.stacked import BodySide, BulkSide, Stacked, stacked
 from lumped.materials import Material
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
@@ -106,7 +103,8 @@ def _together(
         larger = other.meshed(Zone.round(SPARE * radii, other.radius), elements, order, shape.plane)
         ratio, power = first.radius / other.radius, 2 - own.operator.dimension
         side = _side(other, larger, shape, pace)
-        trace = trace_at(side.operator, np.arcsin(np.minimum(ratio * np.sin(own.operator.points), 1.0)))
+        points = np.arcsin(np.minimum(ratio * np.sin(own.operator.points), 1.0))
+        trace = trace_between(side.operator.corners, points, side.operator.order)
         sides.append(replace(side, trace=trace, share=ratio**power))
     return Stacked(own.operator, tuple(sides), first.radius)
 

@@ -6,9 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import ElasticBody
+from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.pressing import Still
 from fe_contact.settings import Numerics
+from fe_contact.steppers import bulk_surface
 from fe_contact.steppers.flat_end import FlatEnd
+from fe_contact.steppers.scaled_surface import on_mesh
 from fe_contact.steppers.struck import Deformable, Struck
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
@@ -26,6 +30,23 @@ class MeshedTarget:
     still: Callable[[Indenter, Array, Numerics], Still]
     struck: Callable[[Geometry, Numerics], Deformable] | None = None
     relaxing: Callable[[Geometry, Numerics], Deformable] | None = None
+
+    @classmethod
+    def meshed(
+        cls,
+        still: Callable[[Indenter, Array, Numerics], Still],
+        meshed: Callable[[Geometry, Numerics], ElasticBody],
+    ) -> MeshedTarget:
+        """One that is ``meshed`` for an impact alike whatever it is made of."""
+
+        def struck(geometry: Geometry, numerics: Numerics) -> Deformable:
+            return on_mesh(meshed(geometry, numerics), geometry.material.nu)
+
+        def relaxing(geometry: Geometry, numerics: Numerics) -> Deformable:
+            moduli = Moduli.of(geometry.material, geometry.shape.total)
+            return bulk_surface.relaxing(meshed(geometry, numerics), moduli, numerics)
+
+        return cls(still, struck, relaxing)
 
 
 TARGETS = Folder[MeshedTarget]("fe_contact.targets", "numerics", "target")

@@ -1,27 +1,30 @@
 """The homogeneous half-space: graded quarter disc, point-force far field, one operator for every scale.
 
 The half-space under a flat end, whose rim no depth moves: the mesh is as fine there as the pressure is steep.
+
+The half-plane struck by a cylinder: depth relative to the point at the datum.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from skfem import FacetBasis
+import scipy.sparse as sparse
 
 import meshes
-from fe_contact.assembly import far_field as static
 from fe_contact.assembly.cache import kept
-from fe_contact.assembly.forms import Array, isotropic, stiffness
-from fe_contact.assembly.operators import basis_on, condensed, made, surface_operator
-from fe_contact.assembly.surface import flat
+from fe_contact.assembly.forms import Array, Basis, Matrix
+from fe_contact.assembly.operators import basis_on, condensed, made, surface_operator, system_matrix
+from fe_contact.assembly.surface import flat, lagrange
 from fe_contact.bodies.pressing import FixedStill, ScaledStill, Still
-from fe_contact.bodies.zone import REFINEMENT, held
+from fe_contact.bodies.zone import LINE_REFINEMENT, REFINEMENT, STRUCK_REFINEMENT, Zone, held, smallest_struck
 from fe_contact.settings import Numerics
 from fe_contact.steppers.scaled_surface import ScaledSurface
-from fe_contact.targets import _half_plane as half_plane
 from fe_contact.targets.base import MeshedTarget
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
+
+ENDS = ("base", "side")  # of a box of it
+DATUM = 0.15  # size of the mesh over the datum's depth, per far radius of the settings
 
 
 def surface(poisson: float, numerics: Numerics) -> ScaledSurface:
@@ -32,14 +35,14 @@ def surface(poisson: float, numerics: Numerics) -> ScaledSurface:
 def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
     """The half-space in an impact, or the half-plane relative to its datum."""
     if geometry.shape.plane:
-        return half_plane.struck(geometry, numerics)
+        return _plane_struck(geometry, numerics)
     return surface(geometry.material.nu, numerics)
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The half-space at rest, or the half-plane relative to its datum; ``radii``: of the contacts, m."""
     if indenter.shape.plane:
-        return half_plane.still(indenter, radii, numerics)
+        return _plane_still(indenter, radii, numerics)
     if indenter.shape.fixed_radius is not None:
         return under_rim(indenter, indenter.shape.fixed_radius, numerics)
     return ScaledStill(surface(indenter.material.nu, numerics), indenter, numerics)
@@ -48,9 +51,6 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 @kept
 def _surface(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
     return ScaledSurface(surface_operator(made(meshes.half_space, elements, far_radius), order, poisson))
-
-
-MEMBER = MeshedTarget(still, struck=struck)
 
 
 def under_rim(indenter: Indenter, radius: float, numerics: Numerics) -> Still:
@@ -64,8 +64,50 @@ def under_rim(indenter: Indenter, radius: float, numerics: Numerics) -> Still:
 def _rimmed(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
     """Condensed for unit radius."""
     basis = basis_on(made(meshes.layer_under_rim, elements, far_radius, far_radius), order)
-    ends = [basis.mesh.boundaries[name] for name in ("base", "side")]
-    outside = FacetBasis(basis.mesh, basis.elem, facets=np.concatenate(ends), intorder=2 * order + 4)
-    matrix = stiffness(basis, isotropic(1.0 - poisson**2, poisson)) + static.robin(outside, poisson)
-    fixed = held(basis, along=("axis",), across=())
-    return ScaledSurface(condensed(basis, matrix.tocsc(), fixed, poisson, flat(basis)), breathes=False)
+    matrix, fixed = system_matrix(basis, poisson, ENDS), held(basis, along=("axis",), across=())
+    return ScaledSurface(condensed(basis, matrix, fixed, poisson, flat(basis)), breathes=False)
+
+
+def _plane_still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
+    """The half-plane at rest; ``radii``, m: between which the contacts will end."""
+    datum, zone = getattr(indenter.target, "datum_depth", None), Zone.of(radii)
+    assert datum is not None
+    elements, depth = LINE_REFINEMENT * numerics.elements_per_contact, datum / zone.reference
+    size = numerics.far_radius * max(1.0, DATUM * depth)
+    surface = _plane_surface(indenter.material.nu, elements, numerics.order, zone.smallest, depth, size)
+    return FixedStill(surface, indenter, numerics, zone.reference, zone.reference, np.inf)
+
+
+def _plane_struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
+    """The half-plane in an impact whose contact grows from nothing to the half-width that the settings expect."""
+    datum = getattr(geometry.target, "datum_depth", None)
+    assert datum is not None
+    depth = datum / numerics.contact_radius
+    elements, size = STRUCK_REFINEMENT * numerics.elements_per_contact, numerics.far_radius * max(1.0, DATUM * depth)
+    return _plane_surface(geometry.material.nu, elements, numerics.order, smallest_struck(geometry.shape), depth, size)
+
+
+@kept
+def _plane_surface(
+    poisson: float, elements: float, order: int, smallest: float, datum: float, size: float
+) -> ScaledSurface:
+    """Condensed for unit reference radius; the datum's motion upwards is watched."""
+    basis = basis_on(made(meshes.layer, elements, smallest, size, size), order)
+    matrix, fixed = system_matrix(basis, poisson, ENDS, plane=True), held(basis, along=("axis",), across=())
+    operator = condensed(basis, matrix, fixed, poisson, flat(basis, 2), _upwards(basis, datum))
+    return ScaledSurface(operator, breathes=False)
+
+
+def _upwards(basis: Basis, depth: float) -> Matrix:
+    """Weights of the displacement upwards at a depth on the plane of symmetry, sparse (1, 2 N)."""
+    order, dofs = basis.elem.maxdeg, basis.get_dofs("axis").flatten()
+    dofs = dofs[np.argsort(-basis.doflocs[1, dofs])]
+    corners = -basis.doflocs[1, dofs[::order]]
+    facet = int(np.searchsorted(corners, depth)) - 1
+    share = (depth - corners[facet]) / (corners[facet + 1] - corners[facet])
+    members = dofs[order * facet : order * (facet + 1) + 1]
+    entries = (lagrange(np.array([share]), order)[0], (np.zeros_like(members), 2 * members + 1))
+    return sparse.csr_matrix(entries, shape=(1, 2 * basis.N))
+
+
+MEMBER = MeshedTarget(still, struck=struck)

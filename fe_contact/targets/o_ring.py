@@ -8,13 +8,11 @@ import numpy as np
 
 import meshes
 from fe_contact.assembly.cache import kept
-from fe_contact.assembly.elastic_body import ElasticBody, axisymmetric
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import SurfaceOperator, basis_on, made
-from fe_contact.assembly.pressed_surface import PressedSurface
+from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made
 from fe_contact.assembly.surface import crown
 from fe_contact.bodies.bulk_memory import Moduli
-from fe_contact.bodies.pressing import Still
+from fe_contact.bodies.pressing import BodyStill, Still
 from fe_contact.bodies.zone import (
     LINE_REFINEMENT,
     MARGIN,
@@ -25,9 +23,8 @@ from fe_contact.bodies.zone import (
 )
 from fe_contact.settings import Numerics
 from fe_contact.steppers.bulk_surface import Pace
-from fe_contact.steppers.sides import BodySide, BulkSide
-from fe_contact.steppers.stacked import Stacked
-from fe_contact.targets._body import BodyStill
+from fe_contact.steppers.scaled_surface import on_mesh
+from fe_contact.steppers.stacked import BodySide, BulkSide, Stacked
 from fe_contact.targets.base import MeshedTarget
 from lumped.materials import Relaxation
 from lumped.scene.geometry import Geometry
@@ -42,22 +39,18 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     target = indenter.target
     assert isinstance(target, ORing)
     zone = Zone.round(radii, target.section_radius)
-    operator, surface = _surface(
-        indenter.material.nu,
-        LINE_REFINEMENT * numerics.elements_per_contact,
-        numerics.order,
-        zone.smallest,
-        zone.reference,
-        target.mean_radius / target.section_radius,
-    )
+    mean_radius = target.mean_radius / target.section_radius
+    elements = LINE_REFINEMENT * numerics.elements_per_contact
+    body = _body(elements, numerics.order, zone.smallest, zone.reference, mean_radius)
+    surface = on_mesh(body, indenter.material.nu)
     return BodyStill(
-        surface=surface,
-        operator=operator,
-        places=target.section_radius * np.sin(operator.points),
+        surface=surface.pressed,
+        operator=surface.operator,
+        places=target.section_radius * np.sin(surface.operator.points),
         scale=target.section_radius,
         indenter=indenter,
         numerics=numerics,
-        degrees_of_freedom=operator.degrees_of_freedom,
+        degrees_of_freedom=surface.degrees_of_freedom,
     )
 
 
@@ -100,15 +93,6 @@ def _struck(poisson: float, relaxation: Relaxation, target: ORing, sizes: Sizes)
 def _relaxing(relaxation: Relaxation, moduli: Moduli, target: ORing, sizes: Sizes, pace: Pace) -> Stacked:
     side = BulkSide.of(_body(*sizes), moduli, pace, relaxation, target.lead)
     return Stacked(side.operator, (side,), target.section_radius)
-
-
-@kept
-def _surface(
-    poisson: float, elements: float, order: int, smallest: float, contact: float, mean_radius: float
-) -> tuple[SurfaceOperator, PressedSurface]:
-    """Condensed for unit radius of the section."""
-    operator = _body(elements, order, smallest, contact, mean_radius).operator(poisson)
-    return operator, PressedSurface(operator.stiffness, operator.trace, operator.weights, recurring=False)
 
 
 @kept

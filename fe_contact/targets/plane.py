@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import ClassVar
 
 import numpy as np
 import scipy.sparse.linalg as linalg
@@ -14,10 +15,8 @@ from fe_contact.assembly.operators import basis_on, made
 from fe_contact.bodies.pressing import Pressed, Still
 from fe_contact.bodies.zone import held
 from fe_contact.settings import Numerics
-from fe_contact.steppers.struck import Deformable
 from fe_contact.targets import _round
 from fe_contact.targets.base import MeshedTarget
-from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.shapes._block import Block
 
@@ -34,16 +33,8 @@ class BlockStill:
     stiffness: float
     radius: float
     degrees_of_freedom: int
-
-    @property
-    def mesh_order(self) -> float:
-        """That of the elements: nothing moves over the mesh."""
-        return np.inf
-
-    @property
-    def ends(self) -> bool:
-        """It does."""
-        return True
+    mesh_order: ClassVar[float] = np.inf  # that of the elements: nothing moves over the mesh
+    ends: ClassVar[bool] = True
 
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m."""
@@ -67,16 +58,6 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     return BlockStill(radius * answer, radius, unknowns)
 
 
-def struck(geometry: Geometry, numerics: Numerics) -> Deformable:
-    """The ball in an impact."""
-    return _round.struck(geometry, numerics)
-
-
-def relaxing(geometry: Geometry, numerics: Numerics) -> Deformable:
-    """The same of constant bulk modulus."""
-    return _round.relaxing(geometry, numerics)
-
-
 @lru_cache(maxsize=32)
 def _answer(
     poisson: float, elements: float, order: int, half_height: float, sides: str, faces: str
@@ -96,4 +77,4 @@ def _answer(
     return 2.0 * float(displacement @ (matrix @ displacement)), displacement.size
 
 
-MEMBER = MeshedTarget(still, struck=struck, relaxing=relaxing)
+MEMBER = MeshedTarget(still, struck=_round.struck, relaxing=_round.relaxing)

@@ -32,9 +32,4 @@ def struck(geometry: Geometry, numerics: Numerics) -> Deformable:
     return half_space.surface(geometry.material.nu, numerics)
 
 
-def relaxing(geometry: Geometry, numerics: Numerics) -> Deformable:
-    """The same where one of true size is of constant bulk modulus: a half-space's surface remembers all."""
-    return _round.relaxing(geometry, numerics)
-
-
-MEMBER = MeshedTarget(still, struck=struck, relaxing=relaxing)
+MEMBER = MeshedTarget(still, struck=struck, relaxing=_round.relaxing)  # a half-space's surface remembers all

@@ -8,18 +8,16 @@ import numpy as np
 
 import meshes
 from fe_contact.assembly.cache import kept
-from fe_contact.assembly.elastic_body import ElasticBody, axisymmetric
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import SurfaceOperator, basis_on, made
-from fe_contact.assembly.pressed_surface import PressedSurface
+from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made
 from fe_contact.assembly.surface import Surface, ring_area
 from fe_contact.bodies.bulk_memory import Moduli
-from fe_contact.bodies.pressing import Still
+from fe_contact.bodies.pressing import BodyStill, Still
 from fe_contact.bodies.zone import held, thickness_over
 from fe_contact.settings import Numerics
 from fe_contact.steppers import bulk_surface
 from fe_contact.steppers.bulk_surface import BulkSurface
-from fe_contact.targets._body import BodyStill
+from fe_contact.steppers.scaled_surface import on_mesh
 from fe_contact.targets.base import MeshedTarget
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
@@ -34,15 +32,15 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The washer at rest; ``radii``, m: where the contact ends, alike at every depth."""
     target = indenter.target
     assert isinstance(target, Washer)
-    operator, surface = _surface(indenter.material.nu, *_sizes(target, float(radii.max()), numerics))
+    surface = on_mesh(_body(*_sizes(target, float(radii.max()), numerics)), indenter.material.nu)
     return BodyStill(
-        surface=surface,
-        operator=operator,
-        places=target.height * operator.points,
+        surface=surface.pressed,
+        operator=surface.operator,
+        places=target.height * surface.operator.points,
         scale=target.height,
         indenter=indenter,
         numerics=numerics,
-        degrees_of_freedom=operator.degrees_of_freedom,
+        degrees_of_freedom=surface.degrees_of_freedom,
     )
 
 
@@ -65,13 +63,6 @@ def _sizes(target: Target, rim: float, numerics: Numerics) -> Sizes:
     thickness_over(target.outer_radius - target.inner_radius, target.height)
     inner, outer, end = (length / target.height for length in (target.inner_radius, target.outer_radius, rim))
     return COARSER * numerics.elements_per_contact, numerics.order, inner, outer, end, target.base == "bonded"
-
-
-@kept
-def _surface(poisson: float, *sizes: *Sizes) -> tuple[SurfaceOperator, PressedSurface]:
-    """Condensed for unit height."""
-    operator = _body(*sizes).operator(poisson)
-    return operator, PressedSurface(operator.stiffness, operator.trace, operator.weights, recurring=False)
 
 
 @kept

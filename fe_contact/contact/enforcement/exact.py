@@ -17,7 +17,7 @@ from fe_contact.contact import problem as contact
 from fe_contact.contact.enforcement.base import Enforcement
 from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching
 
-SURFACES_KEPT = 8
+SURFACES_KEPT = 8  # work: memory, surfaces whose dense system is kept
 
 
 def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:
