@@ -15,10 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.dynamics import memory
-from fe_contact.dynamics.body import BodyWithMass
+from fe_contact.dynamics.body import BodyState, BodyWithMass
 from fe_contact.dynamics.schemes.base import Scheme
-from fe_contact.dynamics.state import BodyState
 
 
 class Energies(NamedTuple):
@@ -58,7 +56,7 @@ def entered(ledger: Energies, body: BodyWithMass, scheme: Scheme, before: BodySt
     change = after.displacement - before.displacement
     standing = _standing(body, after)
     radiated = 0.0 if body.dashpots is None else float(change @ (body.dashpots @ change)) / step
-    heats = [memory.heat(part, step, change, own) for part, own in zip(body.parts, before.branches, strict=True)]
+    heats = [part.heat(step, change, own) for part, own in zip(body.parts, before.branches, strict=True)]
     numerical = _of_inertia(body, scheme, before, after, step) + _of_stress(body, scheme, before, after, step, change)
     pressed = _contact_work(body, scheme, before, after, change) - (standing[-1] - ledger.contact)
     return Energies(
@@ -78,7 +76,7 @@ def _standing(body: BodyWithMass, state: BodyState) -> tuple[float, float, float
     strain = 0.5 * float(state.displacement @ state.internal)
     if not body.is_elastic:
         parts = zip(body.parts, state.branches, strict=True)
-        strain = sum(memory.stored(part, state.displacement, own) for part, own in parts)
+        strain = sum(part.stored(state.displacement, own) for part, own in parts)
     return 0.5 * float(body.rigid @ v**2), 0.5 * float(v @ (body.mass @ v)), strain, springs
 
 
@@ -100,7 +98,7 @@ def _of_stress(
     forces = late * after.internal + early * before.internal - _average(body, before, after, step, change)
     if not (body.is_elastic or scheme.explicit):
         parts = zip(body.parts, before.branches, after.branches, strict=True)
-        forces = forces + sum(memory.later(p, memory.part_law(p, step), z, own) for p, z, own in parts)
+        forces = forces + sum(p.later(p.law(step), z, own) for p, z, own in parts)
     if body.damping is not None:
         forces = forces + body.damping @ (late * after.velocity + early * before.velocity - change / step)
     return float(change @ forces)
@@ -111,7 +109,7 @@ def _average(body: BodyWithMass, before: BodyState, after: BodyState, step: floa
     if body.is_elastic:
         return 0.5 * (before.internal + after.internal)
     parts = zip(body.parts, before.branches, strict=True)
-    means = [p.stiffness @ memory.averaged(p, step, before.displacement, change, own) for p, own in parts]
+    means = [p.stiffness @ p.averaged(step, before.displacement, change, own) for p, own in parts]
     return np.asarray(sum(means, np.zeros(body.size)))
 
 

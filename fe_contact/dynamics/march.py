@@ -1,6 +1,7 @@
 """The loop: from a body and the choices of a run to its motion.
 
-How many stages a step of central difference needs: 2/omega_max, bounded without an eigenvalue.
+First touch and separation within a step, from what is known at its ends. How many stages a step of central difference
+needs: 2/omega_max, bounded without an eigenvalue.
 """
 
 from __future__ import annotations
@@ -15,14 +16,11 @@ import numpy as np
 import scipy.sparse as sparse
 
 from fe_contact.assembly.forms import Array, Matrix
-from fe_contact.dynamics import events, ledger
-from fe_contact.dynamics.body import BodyWithMass
-from fe_contact.dynamics.explicit import ExplicitStepper
-from fe_contact.dynamics.implicit import ImplicitStepper
+from fe_contact.dynamics import ledger
+from fe_contact.dynamics.body import BodyState, BodyWithMass, undeformed
 from fe_contact.dynamics.ledger import Energies
-from fe_contact.dynamics.pressed import Enforced
 from fe_contact.dynamics.schemes.base import Scheme
-from fe_contact.dynamics.state import BodyState, undeformed
+from fe_contact.dynamics.stepping import Enforced, ExplicitStepper, ImplicitStepper
 from fe_contact.errors import ContactLost, MotionUnbounded, TooManySteps
 from lumped.errors import BadInput, Fault
 
@@ -99,9 +97,9 @@ class Motion:
         for before, after, was, now in zip(self.samples, self.samples[1:], touching, touching[1:], strict=False):
             step = after.time - before.time
             if now and not was:
-                start = events.touched(before.time, step, before.overlap, before.closing)
+                start = touched(before.time, step, before.overlap, before.closing)
             elif was and not now and start is not None:
-                end = events.parted(before.time, step, before.signed_pressure, after.signed_pressure)
+                end = parted(before.time, step, before.signed_pressure, after.signed_pressure)
                 found.append((start, end))
                 start = None
         return tuple(found if start is None else [*found, (start, self.samples[-1].time)])
@@ -112,6 +110,20 @@ class Motion:
         if not self.contacts:
             raise ContactLost(self.samples[-1].time)
         return self.contacts
+
+
+def touched(time: float, step: float, overlap: Array, closing: Array) -> float:
+    """When the first open point closes, s, in a step from ``time`` that ends in touch; overlaps (q,) at its start."""
+    coming = closing > 0.0
+    if not coming.any():
+        return time + step
+    return time + float(np.clip(np.min(-overlap[coming] / closing[coming]), 0.0, step))
+
+
+def parted(time: float, step: float, held: Array, open_: Array) -> float:
+    """When the last point opened, s, in a step from ``time``: the signed pressures (q,) at its ends, along a line."""
+    last, beyond = float(held.max()), float(open_.max())
+    return time + step * last / (last - beyond)
 
 
 def march(

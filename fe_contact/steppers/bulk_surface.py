@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from fe_contact.assembly.cache import kept
-from fe_contact.assembly.elastic_body import ElasticBody
-from fe_contact.assembly.operators import SurfaceOperator
+from fe_contact.assembly.operators import ElasticBody, SurfaceOperator
 from fe_contact.bodies.bulk_memory import BulkBody, Moduli
-from fe_contact.bodies.condensed import ByModes
 from fe_contact.bodies.memory import step_law
-from fe_contact.bodies.modes import Modes, modes
+from fe_contact.bodies.modes import ByModes, Modes, modes
 from fe_contact.schemes.base import SCHEMES, MemoryScheme
 from fe_contact.settings import Numerics
 from fe_contact.steppers.struck import Deformable

@@ -21,8 +21,7 @@ from fe_contact.errors import ContactLost
 from fe_contact.schemes.base import SCHEMES
 from fe_contact.settings import Numerics
 from fe_contact.steppers.march import Snapshot, Strike, Work
-from fe_contact.steppers.steps import OfSurface, State, Step, Stepping
-from fe_contact.steppers.striker import Inertia
+from fe_contact.steppers.steps import Inertia, OfSurface, State, Step, Stepping
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 

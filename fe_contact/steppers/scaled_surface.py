@@ -9,6 +9,16 @@ and the pressure in units of the unit mesh,
 
 A time step solves the contact problem on the mesh scaled to the contact radius expected in it. Where the edge turns out
 to lie outside the mesh's finest elements, the mesh is scaled again and the step redone.
+
+A step knows its mean pressure alone, with a kink wherever the edge stood at the end of an earlier step. At an instant
+the surface within the contact is the striker's, its memory is known, and nothing presses outside. With the mesh scaled
+to the contact radius a, so that its finest node is the edge, compliance C and mass M of the nodes up to there,
+
+    pressure = M^-1 C^-1 w / a ,    w = E_inf u + sum_k E_k z_k + viscosity du/dt .
+
+In the march a surface moves on a straight line within a step. Where the contact arrives in the middle of one, the
+gap closes like the power 3/2 of the time left. No force notices, but the branches z_k are left with a kink at every
+former edge: at an instant they get what the straight line missed.
 """
 
 from __future__ import annotations
@@ -20,31 +30,32 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from fe_contact.assembly.cache import kept
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import SurfaceOperator
+from fe_contact.assembly.operators import ElasticBody, SurfaceOperator
 from fe_contact.assembly.pressed_surface import PressedSurface
-from fe_contact.assembly.trace import monomials
-from fe_contact.bodies.memory import StepLaw, SurfaceMemory, area_weights, graded, interpolate, step_law
-from fe_contact.bodies.offer import Breathing
+from fe_contact.assembly.surface import monomials
+from fe_contact.bodies.memory import StepLaw, SurfaceBody, SurfaceMemory, area_weights, graded, interpolate, step_law
 from fe_contact.bodies.pressing import BEYOND, EDGE_WINDOW, RESCALINGS
-from fe_contact.bodies.surface_body import SurfaceBody
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching, count, moved
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
 from fe_contact.schemes.base import SCHEMES, MemoryScheme
 from fe_contact.settings import Numerics
-from fe_contact.steppers import instants
 from fe_contact.steppers.march import Snapshot, Strike, Work
-from fe_contact.steppers.steps import OfSurface, State, Step, Stepping, coming_square
-from fe_contact.steppers.striker import Inertia
+from fe_contact.steppers.steps import Inertia, OfSurface, State, Step, Stepping, coming_square
 from fe_contact.steppers.struck import Deformable
 from lumped.materials import Relaxation
+from lumped.numbers import gauss
 
 LEAST_KEPT = 0.05  # share of its area that a contact is expected to keep over a step
 PATIENCE = 8  # rescalings after which the window widens by half each time: the edge may jitter in the last tail
-MEMORY_POINTS = 1000
+MEMORY_POINTS = 1000  # radii at which the surface's past is remembered
 MEMORY_REACH = 1.25  # memory extends to this multiple of the expected contact radius
 COARSE = np.geomspace(1e-6, 1.0, 200)  # where, in units of the memory's reach, the first contact is looked for
+CLOSING = 1.5  # power of the time left with which the gap closes before an edge
+EDGE = 1.0 - 1e-9  # of the unit mesh, safe from rounding
+SHARES, WEIGHTS = gauss(8)  # of a step, by Gauss's rule
 VANISHING = 1e-4  # contact that shrinks by this much within a step is lost
 
 
@@ -61,7 +72,7 @@ class Stepper(OfSurface):
     def __init__(
         self,
         strike: Strike,
-        surface: Breathing,
+        surface: ScaledSurface,
         numerics: Numerics,
         expected: Sequence[float] | Array = (),
     ) -> None:
@@ -105,7 +116,7 @@ class Stepper(OfSurface):
 
     def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
         """Pressures at instants: at the end of a step while the contact grows, else where it is sampled."""
-        return instants.read(self, steps)
+        return _at_instants(self, steps)
 
     def between(self, before: State, step: Step) -> float:
         """Work of the striker in a step that does not reach the body, J: where surfaces meet or part within it."""
@@ -269,3 +280,85 @@ class ScaledSurface(Deformable):
         corners = nodes[::order]
         members = np.arange(order + 1)[:, None] + order * np.arange(len(corners) - 1)
         return corners, np.stack([corners[:-1], 1 / np.diff(corners)]), members
+
+
+@kept
+def on_mesh(body: ElasticBody, poisson: float) -> ScaledSurface:
+    """A body with lengths of its own, condensed for this Poisson's ratio: its mesh stays while the contact grows."""
+    return ScaledSurface(body.operator(poisson), breathes=False)
+
+
+def _at_instants(stepper: Stepper, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
+    """One snapshot a step, when its contact radius was: pressure (q,), Pa, at the mesh's points, zero outside."""
+    operator = stepper.surface.operator
+    zone = int(operator.nodes.searchsorted(EDGE)) + 1
+    radii = np.array([step.radius for step in steps])
+    # what pulls at the last points is the error of the radius: a contact never does
+    unit = np.maximum(_pressures(operator, _stresses(stepper, steps, operator.nodes[:zone, None] * radii)), 0.0)
+    forces = radii * (operator.weights @ unit)
+    return tuple(
+        Snapshot(step.radius_time, float(force), step.radius, step.radius * operator.points, pressure)
+        for step, force, pressure in zip(steps, forces, (unit / radii).T, strict=True)
+    )
+
+
+def _pressures(operator: SurfaceOperator, stresses: Array) -> Array:
+    """Unit-mesh pressures at the points, (q, s), that hold displacements times modulus, (m, s), of the contact's nodes.
+
+    Exactly the nodal forces' moments; none beyond the edge.
+    """
+    zone = len(stresses)
+    inside = int(operator.points.searchsorted(EDGE))
+    trace, weights = operator.trace[:inside, :zone], operator.weights[:inside, None]
+    forces = np.linalg.solve(operator.response[:zone, :zone], stresses)
+    found = np.zeros((len(operator.points), stresses.shape[1]))
+    found[:inside] = trace @ np.linalg.solve(trace.T @ (weights * trace), forces)
+    return found
+
+
+def _stresses(stepper: Stepper, steps: Sequence[Step], places: Array) -> Array:
+    """w at places (m, s), m, one column a step; Pa m."""
+    times = np.array(stepper.strike.relaxation.times)
+    missed = np.zeros((len(times), len(stepper.radii)))
+    found = np.empty_like(places)
+    before, edge, read_at = stepper.touch(), 0.0, 0.0
+    for number, step in enumerate(steps):
+        missed *= np.exp(-(step.radius_time - read_at) / times)[:, None]
+        if step.radius > edge:
+            missed += _missed(stepper, before, step, edge)
+        found[:, number] = _stress(stepper, before, step, missed, places[:, number])
+        before, edge, read_at = step.state, step.radius, step.radius_time
+    return found
+
+
+def _stress(stepper: Stepper, before: State, step: Step, missed: Array, places: Array) -> Array:
+    """w at places (m,), m, when the contact radius was that of a step; ``missed`` (k, r) goes to the branches."""
+    relaxation, after = stepper.strike.relaxation, step.state
+    share = (step.radius_time - before.time) / step.length
+    depth = before.depth + share * (after.depth - before.depth)
+    velocity = before.velocity + share * (after.velocity - before.velocity)
+    strain = before.memory.strain + share * (after.memory.strain - before.memory.strain)
+    law = step_law(relaxation, stepper.scheme, share * step.length)
+    branches = before.memory.advanced(law, strain).branches[:, 0] + missed
+    now = relaxation.equilibrium * (depth - stepper.strike.height(places)) + relaxation.viscosity * velocity
+    return np.asarray(now + interpolate(np.asarray(relaxation.moduli) @ branches, stepper.radii[-1], places))
+
+
+def _missed(stepper: Stepper, before: State, step: Step, edge: float) -> Array:
+    """What the branches (k, r) miss, m, of a step in which the contact grew from ``edge``, m.
+
+    Of a detour from the straight line, dz/dt = du/dt - z/tau leaves -1/tau times its faded integral.
+    """
+    after, ratios = step.state, step.length / np.array(stepper.strike.relaxation.times)
+    beside = slice(int(stepper.radii.searchsorted(edge, "right")), None)
+    radii = stepper.radii[beside]
+    height = np.minimum(stepper.heights[beside], BEYOND * stepper.radii[-1])  # a profile may end
+    wide = np.maximum(before.memory.strain[0, beside] - (before.depth - height), np.finfo(float).tiny)
+    narrow = np.clip(after.memory.strain[0, beside] - (after.depth - height), 0.0, EDGE * wide)
+    reached = (radii**2 - edge**2) / (step.radius**2 - edge**2)
+    arrival = np.where(radii < step.radius, reached, 1.0 / (1.0 - (narrow / wide) ** (1 / CLOSING)))
+    left = np.maximum(1.0 - SHARES[:, None] / arrival, 0.0)
+    detour = wide * left**CLOSING - (wide + SHARES[:, None] * (narrow - wide))
+    missed = np.zeros((len(ratios), len(stepper.radii)))
+    missed[:, beside] = -ratios[:, None] * ((WEIGHTS * np.exp(-np.outer(ratios, 1 - SHARES))) @ detour)
+    return missed

@@ -1,29 +1,126 @@
-"""Round bodies of their true size under one pressure: their displacements add, and each remembers its own past.
+"""Bodies under one pressure at common points: their displacements add, and each remembers its own past.
 
-With a constant Poisson's ratio the surface of each obeys the law of :mod:`fe_contact.bodies.memory`; where volume and
-shape relax apart its bulk does that of :mod:`fe_contact.bodies.bulk_memory`. In a step one over the modulus of all is
-the sum of one over theirs.
+Each has nodes and a memory of its own. With a constant Poisson's ratio its surface obeys the law of
+:mod:`fe_contact.bodies.memory`; where volume and shape relax apart its bulk does that of
+:mod:`fe_contact.bodies.bulk_memory`. In a step one over the modulus of all is the sum of one over theirs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import SurfaceOperator
+from fe_contact.assembly.operators import ElasticBody, SurfaceOperator
 from fe_contact.assembly.pressed_surface import PressedSurface
+from fe_contact.bodies.bulk_memory import BulkBody, Moduli
+from fe_contact.bodies.memory import SurfaceBody
+from fe_contact.bodies.modes import ByModes, Condensed, Modes, modes
 from fe_contact.bodies.offer import Half, Offer, Recalled
 from fe_contact.schemes.base import MemoryScheme
+from fe_contact.steppers.bulk_surface import Pace
 from fe_contact.steppers.march import Snapshot
-from fe_contact.steppers.sides import BodySide, carriers, stacked
 from fe_contact.steppers.struck import Deformable
 from lumped.materials import Relaxation
+
+
+@dataclass(frozen=True, eq=False)
+class BodySide(Condensed):
+    """One body: its ``operator``, its own contact modulus ``relaxation``, Pa (times a length in plane strain).
+
+    ``trace`` (q, n): displacement at the common points from that of its n nodes in the contact zone; ``share``: its
+    stiffness over that of its operator, in units of the body that has the points.
+    """
+
+    operator: SurfaceOperator
+    relaxation: Relaxation
+    trace: Array
+    share: float = 1.0
+
+    @property
+    def stiffness(self) -> Array:
+        """Condensed, in units of the body that has the points, (n, n)."""
+        return self.share * self.operator.stiffness
+
+    @cached_property
+    def at_points(self) -> Array:
+        """Displacement times modulus of the common points under unit forces there, (q, q), symmetric."""
+        found = self.trace @ np.linalg.solve(self.stiffness, self.trace.T)
+        return np.asarray((found + found.T) / 2)
+
+    @property
+    def steady(self) -> bool:
+        """Whether its compliance is the same, but for the modulus, in every step."""
+        return True
+
+    def half(self, scheme: MemoryScheme, scale: float) -> Half:
+        """The body, whose surface remembers; ``scale``, m, is the common unit."""
+        operator = self.operator
+        pressed = PressedSurface(self.stiffness, operator.trace, operator.weights, recurring=False)
+        return SurfaceBody(operator, pressed, self.relaxation, scheme, scale, self.share)
+
+
+@dataclass(frozen=True, eq=False)
+class BulkSide(ByModes, BodySide):
+    """The same of a body whose bulk remembers; ``operator`` is one of its ``modes``', which count with the share."""
+
+    modes: Modes = field(kw_only=True)
+    moduli: Moduli = field(kw_only=True)
+
+    @classmethod
+    def of(
+        cls,
+        body: ElasticBody,
+        moduli: Moduli,
+        pace: Pace,
+        relaxation: Relaxation,
+        share: float = 1.0,
+        trace: Callable[[SurfaceOperator], Array] = attrgetter("trace"),
+    ) -> BulkSide:
+        """A meshed body in an impact of this pace; ``trace``: at the common points, from its operator."""
+        found = modes(body, *pace.ratios(moduli))
+        return cls(found.operator, relaxation, trace(found.operator), share, modes=found, moduli=moduli)
+
+    @property
+    def steady(self) -> bool:
+        """No: its Poisson's ratio relaxes."""
+        return False
+
+    def half(self, scheme: MemoryScheme, scale: float) -> Half:
+        """The body, whose bulk remembers; ``scale``, m, is the common unit."""
+        return BulkBody(self._stiffer, self.moduli, scheme, scale)
+
+    @cached_property
+    def _stiffer(self) -> Modes:
+        return self.modes.stiffer(self.share)
+
+
+def stacked(operator: SurfaceOperator, sides: tuple[BodySide, ...], weights: tuple[float, ...]) -> PressedSurface:
+    """The sides under one pressure at the operator's points; ``weights``: modulus of each over the common one."""
+    blocks = (weight * side.stiffness for side, weight in zip(sides, weights, strict=True))
+    trace = np.hstack([side.trace for side in sides])
+    shares = [side.at_points / weight for side, weight in zip(sides, weights, strict=True)] if len(sides) > 1 else []
+    compliance = np.sum(shares, axis=0) if shares else None
+    return PressedSurface(
+        block_diag(*blocks),
+        trace,
+        operator.weights,
+        recurring=False,
+        compliance=compliance,
+        carriers=carriers(operator, sides),
+    )
+
+
+def carriers(operator: SurfaceOperator, sides: tuple[BodySide, ...]) -> Array | None:
+    """What two meshes that do not match can both follow: of a facet of the first its mean and its tilt."""
+    return operator.hat_shapes if len(sides) > 1 else None
+
 
 Memory = tuple[Any, ...]
 
@@ -137,7 +234,7 @@ class StackedBody:
         weights = tuple(one.now / now for one in found)
         if len(self.sides) > 1 and all(side.steady for side in self.sides):
             return stacked(self.operator, self.sides, weights)
-        blocks = (weight * one.stiffness for one, weight in zip(found, weights, strict=True))
+        blocks = (weight * one.surface.stiffness for one, weight in zip(found, weights, strict=True))
         return self._points.stiffened(block_diag(*blocks))
 
     @cached_property

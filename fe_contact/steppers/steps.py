@@ -1,4 +1,7 @@
-"""What a march carries from step to step: named tuples, of which there are many and which are quick to make."""
+"""What a march carries from step to step: named tuples, of which there are many and which are quick to make.
+
+The rigid striker in a time step: where it would be free of force, and where the force leaves it.
+"""
 
 from __future__ import annotations
 
@@ -83,7 +86,7 @@ class Stepping(Protocol):
         """Of the work on the body in a step of a length, s, what a scheme leaves unaccounted for, J."""
 
     def between(self, before: State, step: Step) -> float:
-        """Work of the striker in a step that does not reach the body, J: its pressure stands where a gap changes."""
+        """Work of the striker in a step that does not reach the body, J: across a gap that opens or closes."""
 
 
 class OfSurface:
@@ -131,3 +134,45 @@ def coming_square(steps: Sequence[Step], at: float) -> float:
     first, start = known[0]
     bend = (slope - (previous - start) / (before - first)) / (last - first)
     return value + (at - last) * (slope + bend * (at - before))
+
+
+class Inertia(NamedTuple):
+    """All that contact sees of the striker in a step of a ``length``, s, from a state: depth = free depth - give force.
+
+    ``lever``, s2: displacement in the step per acceleration, by the scheme.
+    """
+
+    strike: Strike
+    state: State
+    length: float
+    lever: float
+
+    @classmethod
+    def of(cls, strike: Strike, scheme: MemoryScheme, state: State, length: float) -> Inertia:
+        """In a step of the scheme."""
+        return cls(strike, state, length, scheme.lever * length**2)
+
+    @property
+    def free_depth(self) -> float:
+        """Depth at the end of the step without a force, m."""
+        return self.state.depth + self.length * self.state.velocity + self.lever * self.strike.gravity
+
+    @property
+    def give(self) -> float:
+        """How far a force pushes it back, m/N."""
+        return float(self.lever / self.strike.mass)
+
+    def depth(self, force: float) -> float:
+        """At the end of the step under a force, N; m."""
+        return float(self.free_depth - self.lever * force / self.strike.mass)
+
+    def moved(self, force: float, memory: Memory) -> State:
+        """The state after the step under a force, N, of a body that then has this memory."""
+        strike, state, length = self.strike, self.state, self.length
+        return State(
+            time=strike.end_time if length >= strike.end_time - state.time else state.time + length,
+            depth=self.depth(force),
+            velocity=state.velocity + length * (strike.gravity - force / strike.mass),
+            impulse=state.impulse + length * force,
+            memory=memory,
+        )

@@ -10,42 +10,57 @@ A march with waves as a curve: through fewer rows than steps, between which the 
 Points of a mesh that stays begin and end their contact one by one, and a dashpot in parallel differentiates that. The
 impulse hardly knows of it: a local cubic through the mean force since touch, as Savitzky and Golay smooth
 (doi:10.1021/ac60214a047), keeps what is smooth and knows of chatter even less.
+
+A march is dear, so that no more is refined than the measured budget says is missing.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.budget import Budget, Causes, TotalWork
-from fe_contact.budget.certify import MESH_ORDER, WITNESS, other_setting
-from fe_contact.budget.change import SAFETY, UNORDERED, Change, factor
+from fe_contact.budget.budget import Causes, TotalWork, shares_of
+from fe_contact.budget.certify import other_mesh, other_setting
+from fe_contact.budget.change import SAFETY, Change, factor
 from fe_contact.budget.curve import Curve
-from fe_contact.budget.several import Several
+from fe_contact.budget.plan import Plan
+from fe_contact.budget.refine import Finer, Growth, missing
+from fe_contact.budget.runs import AnyRuns
+from fe_contact.budget.several import Judged, Several
 from fe_contact.march.impacts import Followed, follow
-from fe_contact.progress import Counted, uncounted
+from fe_contact.progress import Count, Counted, Progress, uncounted
 from fe_contact.settings import Numerics, WaveNumerics
 from fe_contact.steppers.march import March, Strike
-from fe_contact.waves.bounces import Flights, WaveBouncer
-from fe_contact.waves.impact import graded
+from fe_contact.waves.impact import Flights, WaveBouncer
 from fe_contact.waves.moving import Moving
-from lumped.errors import NotReached
+from fe_contact.waves.plan import Cost, graded
+from lumped.result.result import LedgerEntry, meets
 from lumped.scene.scene import Scene
 
-ORDER = {"mesh": 1, "penalty": 1, "time_step": 1, "far_field": 2}
+ORDER = {"mesh": 1, "penalty": 1, "time_step": 1, "far_field": 2}  # of convergence, by cause
 # along the contact radius: half of fewer may err alike by chance, and are hardly larger in the bulk
 LEAST_NODES = 24.0
 ROWS, AT = 60, 3e-3  # along a contact, and the tolerance for which they suffice: polynomials through six of them
 ROWS_ORDER = 5  # of the force between them
 TRUSTED = 2  # of that
 DEGREE, REACH = 3, 2  # of the polynomial through all steps so many rows to either side
+ROUNDS = 3  # refinements before giving up
+GROWTH = {
+    "mesh": Growth(ORDER["mesh"], step=2**0.25, most=2.0, work=2.0),
+    "penalty": Growth(ORDER["penalty"], step=2.0, most=8.0, work=0.1),
+    "time_step": Growth(ORDER["time_step"], step=2.0, most=4.0, work=1.0),  # half of twice as many has been run
+    "far_field": Growth(ORDER["far_field"], step=2.0, most=4.0, work=0.3),
+}
+
+Body = Callable[[Scene, WaveNumerics], Moving]
+tells_of_mesh = partial(other_mesh, most=ORDER["mesh"], nodes=LEAST_NODES)
 
 
 class WaveRun(NamedTuple):
@@ -61,7 +76,7 @@ class WaveRun(NamedTuple):
         return self.flights.steps + sum(one.march.work.steps for one in self.followed.contacts)
 
 
-class WaveRuns:
+class WaveRuns(AnyRuns[WaveNumerics]):
     """Marches of one scene with different settings, each run once, and a count of what they cost.
 
     ``cheap``: steps of those in which another setting is varied, whose effect does not depend on the step.
@@ -70,8 +85,8 @@ class WaveRuns:
     def __init__(
         self, scene: Scene, strike: Strike, moving: Callable[[Scene, WaveNumerics], Moving], cheap: int
     ) -> None:
+        super().__init__()
         self._scene, self._strike, self._moving, self.cheap = scene, strike, moving, cheap
-        self._curves: dict[WaveNumerics, tuple[Curve, ...]] = {}
         self._runs: dict[WaveNumerics, WaveRun] = {}
         self.counted: Counted = uncounted  # told of every step, as the share of one on the largest body so far
         self._largest = 1
@@ -90,16 +105,6 @@ class WaveRuns:
             self._curves[settings] = tuple(curve_of(one.march, one.strike, settings) for one in followed.contacts)
         return self._runs[settings].followed
 
-    def curve(self, number: int, settings: WaveNumerics) -> Curve | None:
-        """A contact of one run, None where that fails or has fewer: its cause of error is then unknown."""
-        if settings not in self._curves:
-            try:
-                self.follow(settings)
-            except NotReached:
-                self._curves[settings] = ()
-        curves = self._curves[settings]
-        return curves[number] if number < len(curves) else None
-
     @property
     def spent(self) -> float:
         """Unknowns times steps of all runs so far."""
@@ -108,17 +113,11 @@ class WaveRuns:
     def work(self) -> TotalWork:
         """What all runs cost together: a factorisation for every length of step, one back-substitution a step."""
         marches = [(one.march, settings) for settings, run in self._runs.items() for one in run.followed.contacts]
-        works, runs = [march.work for march, _ in marches], list(self._runs.values())
-        steps = sum(run.steps for run in runs)
-        return TotalWork(
-            degrees_of_freedom=max(run.size for run in runs),
-            factorizations=sum(_lengths(*one) for one in marches) + sum(run.flights.factorizations for run in runs),
-            solves=steps,
-            marches=len(works),
-            steps=steps,
-            contact_problems=sum(w.contact_problems for w in works),
-            iterations=sum(w.iterations for w in works),
-        )
+        runs = list(self._runs.values())
+        factorizations = sum(_lengths(*one) for one in marches) + sum(run.flights.factorizations for run in runs)
+        flown, solves = sum(run.flights.steps for run in runs), sum(run.steps for run in runs)
+        unknowns = max(run.size for run in runs)
+        return TotalWork.of([march.work for march, _ in marches], unknowns, factorizations, solves, flown)
 
 
 def _lengths(march: March, settings: WaveNumerics) -> int:
@@ -133,40 +132,25 @@ def certify(runs: WaveRuns, numerics: WaveNumerics) -> Several:
     The budget is that of the first contact, those of the ``later`` ones, judged from the same runs, stand in it.
     """
     followed = runs.follow(numerics)
-    changes = [_judged(runs, number, numerics) for number in range(len(followed.contacts))]
-    row = [
-        Budget(curve_of(one.march, one.strike, numerics), one.march, change, runs.work(), numerics)
-        for one, change in zip(followed.contacts, changes, strict=True)
-    ]
-    first, later = row[0], tuple(row[1:])
-    return Several(first.curve, first.march, first.changes, first.work, numerics, followed, later)
+    judged = [_judged(runs, number, numerics) for number in range(len(followed.contacts))]
+    return Several.judged(followed, judged, runs.work(), numerics)
 
 
-def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Mapping[str, Causes]:
-    """What the settings change of one contact."""
+def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
+    """One contact of all runs."""
     contact = runs.follow(numerics).contacts[number]
     cheap, changed = numerics.varied(steps=runs.cheap), partial(_changed, partial(runs.curve, number))
-    (mesh, by_mesh), half = other_mesh(cheap), numerics.varied(steps=numerics.steps // 2)
+    (mesh, by_mesh), half = tells_of_mesh(cheap), numerics.varied(steps=numerics.steps // 2)
     penalty, stiffer = other_setting(cheap, "penalty")
-    coarse = min(cheap, mesh, key=_nodes)  # of what is far, coarse is fine
+    coarse = min(cheap, mesh, key=_nodes)  # it is fine enough to tell of the far field
     far, farther = other_setting(coarse, "far_radius")
-    return {
+    changes: dict[str, Causes] = {
         "mesh": (changed(cheap, mesh, by_mesh), reading(contact.march, contact.strike, numerics)),
         "penalty": (changed(cheap, penalty, factor(ORDER["penalty"], stiffer)),),
         "time_step": (changed(numerics, half, factor(ORDER["time_step"], False)),),
         "far_field": (changed(coarse, far, factor(ORDER["far_field"], farther)),),
     }
-
-
-def other_mesh(settings: WaveNumerics) -> tuple[WaveNumerics, float]:
-    """Settings of the mesh that tell of this one, half as fine or at least twice, and error over change."""
-    if settings.order not in MESH_ORDER:
-        order = WITNESS * settings.order
-        elements = max(settings.elements_per_contact, LEAST_NODES / order)
-        return settings.varied(order=order, elements_per_contact=elements), UNORDERED
-    elements, finer = settings.elements_per_contact, _nodes(settings) < LEAST_NODES
-    other = max(2 * elements, LEAST_NODES / settings.order) if finer else elements / 2
-    return settings.varied(elements_per_contact=other), factor(ORDER["mesh"], finer)
+    return curve_of(contact.march, contact.strike, numerics), changes
 
 
 def _nodes(settings: WaveNumerics) -> float:
@@ -235,3 +219,55 @@ def _smoothed(places: Array, values: Array, rows: npt.NDArray[np.intp]) -> Array
         if len(x) > DEGREE + 1:
             found[number] = np.polyfit(x / np.abs(x).max(), values[around], DEGREE)[-1]
     return found
+
+
+@dataclass(frozen=True, eq=False)
+class Waves:
+    """A scene whose body ``moving`` makes; its runs are kept, as a finer budget asks for some of them again."""
+
+    scene: Scene
+    chosen: Plan
+    moving: Body
+    progress: Progress
+    runs: WaveRuns
+    rounds: ClassVar[int] = ROUNDS
+
+    @classmethod
+    def of(cls, scene: Scene, chosen: Plan, progress: Progress, moving: Body) -> Waves:
+        """Nothing is run yet."""
+        return cls(
+            scene, chosen, moving, progress, WaveRuns(scene, Strike.of(scene), moving, chosen.numerics.steps // 2)
+        )
+
+    def certified(self, numerics: Numerics) -> Several:
+        """A contact, or several, and the bars.
+
+        Raises NotReached where no march ends or the budget costs too much, BadInput for an impact that goes deeper than
+        its bodies.
+        """
+        assert isinstance(numerics, WaveNumerics)
+        cost = cost_of(self.scene, numerics, self.moving)
+        cost.check(self.runs.spent)
+        self.progress(f"waves, {cost}")
+        self.runs.counted = Count(self.progress, f"waves, {cost.unknowns} unknowns", cost.all_steps)
+        found = certify(self.runs, numerics)
+        self.scene.check_sunk(max(budget.curve.quantities["peak_depth"] or 0.0 for budget in found.row))
+        return found
+
+    def finer(self, found: Several) -> Finer:
+        """Settings whose bars are predicted to meet the tolerance."""
+        if all(meets(part, found.numerics.tolerance) for part in found.parts):
+            return Finer(None)
+        shares = {cause: np.concatenate([shares_of(one, cause) for one in found.row]) for cause in GROWTH}
+        finer = missing(shares, GROWTH, found.numerics, self.chosen.pinned)
+        return Finer(None if finer == found.numerics else finer)
+
+    def ledger(self, found: Several) -> tuple[LedgerEntry, ...]:
+        """What the model leaves out, as was planned."""
+        return self.chosen.ledger
+
+
+def cost_of(scene: Scene, numerics: WaveNumerics, moving: Body) -> Cost:
+    """What one error budget costs with these settings. Raises BodyTooFine."""
+    own, judging = (moving(scene, one).body.size for one in (numerics, tells_of_mesh(numerics)[0]))
+    return Cost.of(own, numerics, scene.motion.impacts, judging if judging > own else 0)

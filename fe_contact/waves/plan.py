@@ -1,20 +1,23 @@
-"""Scene and tolerance -> settings of an impact on the half-space with waves, and model ledger; nothing is run.
+"""Scales of an impact with waves -> its settings, the lengths of its steps, and what an error budget with them costs.
 
-The exact row of springs, which has no inertia, places mesh and time steps. Nothing of it enters a value or a bar.
+An impact without inertia places mesh and time steps: of the half-space the exact row of springs. Nothing of it enters a
+value or a bar. Steps are short about an early peak of the force, doubled ever again later.
+
+Work is counted, a unit of it is one unknown, one step later. A step is a back-substitution and a few products with
+sparse matrices, so its time goes as the unknowns; factors and what contact knows of the body are kept a length of step.
 """
 
 from __future__ import annotations
 
 import math
-from functools import partial
+from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.assembly.absorbing import wave_speeds
-from fe_contact.assembly.forms import check_compressible
-from fe_contact.budget.plan import SOONEST_PEAK, Plan
-from fe_contact.settings import RANGES, Given, WaveNumerics
-from lumped.laws import mdr
+from fe_contact.budget.plan import EARLY_PEAK, SOONEST_PEAK, Plan
+from fe_contact.dynamics.march import MOST_WORK
+from fe_contact.errors import WavesTooDear
+from fe_contact.settings import Given, Numerics, WaveNumerics
 from lumped.laws.mdr import ImpactScales
 from lumped.materials import Relaxation
 from lumped.result.model_ledger import Peak, model_ledger
@@ -24,13 +27,11 @@ DEFAULT_TOLERANCE = 3e-3  # of a peak force; what chatter at the contact's edge 
 SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
 ELEMENTS = 9.0  # along every contact radius
 FINER = 2.0  # times as many at the surface where dashpots carry much: pressure is infinite at an edge that advances
-PENALTY = 120.0
+PENALTY = 120.0  # default: the contact penalty, before stiffness and dashpots raise it
 STIFF = 16.0  # times as much there
-MUCH = 0.5  # of the stiffness until the force peaks: less than this of dashpots asks for less than all of both
+MUCH = 0.5  # share of dashpots in the stiffness until the force peaks, below which FINER and STIFF count in part
 STEPS = 320  # along a contact, shorter ones about an early peak
 TRAVEL = 0.5  # of the contact time: an echo from the far radius returns after the contact
-LEAST_RESTITUTION = 0.1  # a striker that comes back slower hardly comes back again
-NEAREST = 20.0  # contact radii: the far springs' own need
 SPREAD = 3.0  # lengths over which a dashpot in parallel, which has no wave speed, spreads a motion in a contact
 DEFAULTS: Given = {
     "order": 3,
@@ -39,17 +40,14 @@ DEFAULTS: Given = {
     "rho": 0.5,
     "mass": "consistent",
 }
-
-
-def plan(scene: Scene, given: Given) -> Plan:
-    """Choose what ``given`` (checked settings) leaves open.
-
-    Raises NotReached where even the row of springs does not come to an end.
-    """
-    check_compressible(scene)
-    scales = mdr.estimate(scene, SPRINGS)
-    longest = _slowest(scene, scales.restitution) * contact_time(scene, scales)
-    return placed(scene, given, scales, _far_radius(scene, scales.contact_radius, longest))
+STEP = 300  # unknowns whose share of a step takes as long as all the rest of it
+SECONDS = 1.5e-6  # of one core a unit of work: 1.1 to 1.7 of them were measured over all kinds of bodies
+BYTES, AT_LEAST = 8e3, 150e6  # an unknown, and at all, as measured
+MARCHES = 2.5  # that a budget takes beside the finest one, at most, in units of that
+JUDGED = 0.5  # the same of one with half the steps
+FLIGHT = 1.5  # a contact and the flight that follows, in contacts
+MANY = 12  # contacts that are expected at most: few bodies come back so often
+MOST_BYTES = 2e9  # work: memory of one march, bytes
 
 
 def contact_time(scene: Scene, scales: ImpactScales) -> float:
@@ -100,18 +98,62 @@ def viscous_share(modulus: Relaxation, time: float) -> float:
     return flowing / (modulus.equilibrium + modulus.viscosity / time + float(np.dot(modulus.moduli, held)))
 
 
-def _slowest(scene: Scene, restitution: float | None) -> float:
-    """How much longer the last contact lasts than the first: as an elastic one does, with its speed to the -1/5."""
-    elastic = partial(scene.profile.hertz_impact, 1.0, 1.0)
-    slower = max(restitution or 1.0, LEAST_RESTITUTION) ** (scene.motion.impacts - 1)
-    return elastic(slower).duration / elastic(1.0).duration
+def graded(numerics: Numerics) -> tuple[float, tuple[float, ...]]:
+    """First step, s, and the times, s, from which steps are twice as long as before.
+
+    From a share of the contact on at which a force may well peak there are ``steps`` to the contact time; half that
+    time before they are half as long, down to the time of the peak.
+    """
+    octaves = max(math.ceil(math.log2(EARLY_PEAK / numerics.peak_share)), 0)
+    times = [EARLY_PEAK * numerics.contact_time / 2**earlier for earlier in range(octaves)]
+    return numerics.contact_time / numerics.steps / 2**octaves, tuple(reversed(times))
 
 
-def _far_radius(scene: Scene, contact_radius: float, duration: float) -> float:
-    """In contact radii: so far that pressure waves of the stiffest answer return too late, or viscosity has faded."""
-    material = scene.geometry.material
-    modulus = material.contact_modulus()  # the target's own, whatever strikes it
-    density = material.density or 1.0
-    fastest = wave_speeds(material.nu)[0] * math.sqrt(modulus.glassy / density)
-    travel = max(TRAVEL * fastest * duration, SPREAD * math.sqrt(modulus.viscosity * duration / density))
-    return min(max(travel / contact_radius, NEAREST), RANGES["far_radius"][1])
+@dataclass(frozen=True)
+class Cost:
+    """``unknowns`` of the body, ``steps`` of the finest march and the ``work`` of all marches of one error budget."""
+
+    unknowns: int
+    steps: int
+    work: float
+
+    @classmethod
+    def of(cls, unknowns: int, numerics: Numerics, impacts: int, finer: int = 0) -> Cost:
+        """Of a budget with these settings; nearly every contact asked for is expected to come.
+
+        ``finer``: unknowns of the mesh that judges one which is too coarse to be halved.
+        """
+        octaves = len(graded(numerics)[1])
+        row = 1.0 if impacts == 1 else FLIGHT * min(impacts, MANY)
+        steps = math.ceil(row * numerics.steps * (1.0 + EARLY_PEAK * octaves))
+        return cls(max(unknowns, finer), steps, (MARCHES * (unknowns + STEP) + JUDGED * finer) * steps)
+
+    @property
+    def all_steps(self) -> float:
+        """Of all marches of the budget, counted as if all were on the finest mesh."""
+        return MARCHES * self.steps
+
+    @property
+    def seconds(self) -> float:
+        """Of one core."""
+        return SECONDS * self.work
+
+    @property
+    def bytes(self) -> float:
+        """Of memory."""
+        return AT_LEAST + BYTES * self.unknowns
+
+    def __str__(self) -> str:
+        return (
+            f"{self.unknowns} unknowns, {self.steps} steps: "
+            f"about {self.seconds:.2g} s of one core and {self.bytes / 1e9:.1f} GB"
+        )
+
+    def as_dict(self) -> dict[str, float]:
+        """Plain data for JSON."""
+        return {"unknowns": self.unknowns, "steps": self.steps, "cpu_s": self.seconds, "memory_bytes": self.bytes}
+
+    def check(self, spent: float = 0.0) -> None:
+        """Raise WavesTooDear where this, after what has been ``spent``, is more work than one march may be."""
+        if spent + self.work > MOST_WORK or self.bytes > MOST_BYTES:
+            raise WavesTooDear(str(self), f"{SECONDS * MOST_WORK:.2g} s and {MOST_BYTES / 1e9:.0f} GB")

@@ -1,37 +1,41 @@
-"""The half-space with waves: what it radiates never comes back, and its force is smooth."""
+"""The half-space with waves: what it radiates never comes back, and its force is smooth.
+
+A quarter disc so large that no echo returns, dashpots and springs beyond it. Its fields at peak force, displacement,
+velocity and stress, are those of the march again, up to that instant.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from functools import lru_cache, partial
+from pathlib import Path
 
+import numpy as np
+from skfem import FacetBasis
+
+import meshes
+from fe_contact.assembly.far_field import dashpots, wave_speeds
+from fe_contact.assembly.forms import Array, check_compressible, isotropic, mass
+from fe_contact.assembly.operators import basis_on, made, system_matrix
+from fe_contact.assembly.surface import flat
+from fe_contact.bodies.zone import held
 from fe_contact.budget.plan import Plan
-from fe_contact.progress import Progress
-from fe_contact.settings import WaveNumerics
-from fe_contact.waves.cost import Cost
-from fe_contact.waves.fields import write_fields
-from fe_contact.waves.flying_ball import on_half_space
-from fe_contact.waves.half_space_body import moving
-from fe_contact.waves.moving import Moving
-from fe_contact.waves.plan import plan
-from fe_contact.waves.refining import Waves, cost_of
-from fe_contact.waves.refusals import changing, too_fast
-from fe_contact.waves.targets.base import WaveTarget
+from fe_contact.dynamics.body import BodyState, Part
+from fe_contact.dynamics.march import march
+from fe_contact.fields import Fields, nodal_stress, subdivided, written
+from fe_contact.settings import RANGES, Given, WaveNumerics
+from fe_contact.waves.balls import Ball, flying
+from fe_contact.waves.impact import choices_of
+from fe_contact.waves.moving import BEYOND, SMALLEST, Flying, Moving, UnitBody, WaveSide
+from fe_contact.waves.plan import SPREAD, SPRINGS, TRAVEL, contact_time, placed
+from fe_contact.waves.targets.base import WaveTarget, changing, too_fast
 from lumped.errors import BadInput, Fault
+from lumped.laws import mdr
+from lumped.result.result import Result
 from lumped.scene.scene import Scene
 
-
-def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
-    """Of an error budget with these settings. Raises BodyTooFine."""
-    return cost_of(scene, numerics, _body(scene))
-
-
-def way(scene: Scene, chosen: Plan, progress: Progress) -> Waves:
-    """Marched with waves, refined by what is missing."""
-    return Waves.of(scene, chosen, _body(scene), progress)
-
-
-def _body(scene: Scene) -> Callable[[Scene, WaveNumerics], Moving]:
-    return moving if scene.striker_material is None else on_half_space
+NEAREST = 20.0  # contact radii: the far springs' own need
+LEAST_RESTITUTION = 0.1  # a striker that comes back slower hardly comes back again
 
 
 def check(scene: Scene) -> None:
@@ -46,4 +50,123 @@ def check(scene: Scene) -> None:
         raise BadInput(faults)
 
 
-MEMBER = WaveTarget(check=check, plan=plan, cost=cost, way=way, write_fields=write_fields)
+def plan(scene: Scene, given: Given) -> Plan:
+    """Choose what ``given`` (checked settings) leaves open.
+
+    Raises NotReached where even the row of springs does not come to an end.
+    """
+    check_compressible(scene)
+    scales = mdr.estimate(scene, SPRINGS)
+    longest = _slowest(scene, scales.restitution) * contact_time(scene, scales)
+    return placed(scene, given, scales, _far_radius(scene, scales.contact_radius, longest))
+
+
+def _slowest(scene: Scene, restitution: float | None) -> float:
+    """How much longer the last contact lasts than the first: as an elastic one does, with its speed to the -1/5."""
+    elastic = partial(scene.profile.hertz_impact, 1.0, 1.0)
+    slower = max(restitution or 1.0, LEAST_RESTITUTION) ** (scene.motion.impacts - 1)
+    return elastic(slower).duration / elastic(1.0).duration
+
+
+def _far_radius(scene: Scene, contact_radius: float, duration: float) -> float:
+    """In contact radii: so far that pressure waves of the stiffest answer return too late, or viscosity has faded."""
+    material = scene.geometry.material
+    modulus = material.contact_modulus()  # the target's own, whatever strikes it
+    density = material.density or 1.0
+    fastest = wave_speeds(material.nu)[0] * math.sqrt(modulus.glassy / density)
+    travel = max(TRAVEL * fastest * duration, SPREAD * math.sqrt(modulus.viscosity * duration / density))
+    return min(max(travel / contact_radius, NEAREST), RANGES["far_radius"][1])
+
+
+def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
+    """The half-space of a scene and its striker, rigid or a ball, at first touch, in SI units."""
+    if scene.striker_material is not None:
+        return under_ball(scene, numerics)
+    return Moving.under(scene, *side(scene, numerics), BEYOND * numerics.contact_radius)
+
+
+def under_ball(scene: Scene, numerics: WaveNumerics) -> Flying:
+    """The ball of a scene and the half-space, which has the points."""
+    struck, places, areas = side(scene, numerics)
+    sides = [Ball.striking(scene).side(numerics, places), struck]
+    return flying(scene, numerics, sides, (places, areas), (1.0, 0.0), endless=True)
+
+
+def side(scene: Scene, numerics: WaveNumerics) -> tuple[WaveSide, Array, Array]:
+    """The half-space of a scene in SI units, points where it may be touched, m from the axis, and their areas, m2."""
+    material, a, unit = scene.geometry.material, numerics.contact_radius, unit_of(scene, numerics)
+    modulus, density, (points, areas, trace) = material.contact_modulus(), material.density or 0.0, unit.zone
+    # a dashpot in parallel has no wave speed of its own
+    impedance = None if modulus.viscosity else (a**2 * np.sqrt(modulus.glassy * density)) * unit.dashpots[0]
+    own = WaveSide(
+        mass=density * a**3 * unit.mass,
+        parts=(Part(a * unit.stiffness[0], modulus),),
+        dashpots=impedance,
+        push=unit.pushed(trace.shape[1]),
+        trace=trace,
+        axial=np.zeros(unit.free.size),
+    )
+    return own, a * points, a**2 * areas
+
+
+def unit_of(scene: Scene, numerics: WaveNumerics) -> UnitBody:
+    """The body of unit size that a scene's is scaled from."""
+    nu = scene.geometry.material.nu
+    size = (numerics.elements_per_contact, numerics.finer, numerics.far_radius)
+    return unit_body(nu, size, numerics.order, numerics.mass)
+
+
+@lru_cache(maxsize=8)
+def unit_body(poisson: float, size: tuple[float, float, float], order: int, masses: str) -> UnitBody:
+    """Mesh and assemble for contact radius and E* one; made once for all steps and penalties.
+
+    ``size``: elements, how much finer they are at the surface, far radius.
+    """
+    elements, finer, far_radius = size
+    basis = basis_on(made(meshes.half_space_for_waves, elements, SMALLEST, far_radius, finer), order)
+    far = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["far"], intorder=2 * order + 4)
+    springs, fixed = system_matrix(basis, poisson), held(basis, along=("axis",), across=())
+    return UnitBody.of(basis, flat(basis), fixed, mass(basis), masses, [springs], [dashpots(far, poisson)])
+
+
+def write_fields(scene: Scene, result: Result, where: Path) -> Path:
+    """Write ``fields.vtu``, see :mod:`fe_contact.fields`, of an impact that was solved; its path. Raises NotReached.
+
+    Of several contacts the first is shown.
+    """
+    peak_time = result.contacts[0]["peak_time"] if result.contacts else result.quantities["peak_time"].value
+    fields, velocity = fields_at(scene, WaveNumerics(**result.numerics), peak_time or 0.0)
+    return written(fields, where, velocity)
+
+
+def fields_at(scene: Scene, numerics: WaveNumerics, time: float) -> tuple[Fields, Array]:
+    """The fields at a time, s, to the next step, and the velocity of the points (n, 2), m/s. Raises NotReached."""
+    body, unit, a = moving(scene, numerics), unit_of(scene, numerics), numerics.contact_radius
+    state = march(body.body, body.velocity, choices_of(scene, numerics), time, body.watch).final
+    points = a * unit.basis.doflocs.T
+    surface = points[:, 1] == 0.0
+    pressure = np.where(surface, np.interp(points[:, 0], body.places, state.pressure, right=0.0), 0.0)
+    radius = float(body.places[state.signed_pressure > 0.0].max(initial=0.0))
+    poisson = scene.geometry.material.nu
+    law = isotropic(1 - poisson**2, poisson)  # of E* = 1
+    found = Fields(
+        time=state.time,
+        depth=float(state.displacement[-1]),
+        contact_radius=radius,
+        points=points,
+        triangles=subdivided(unit.basis),
+        displacement=unit.everywhere(state.displacement).reshape(-1, 2),
+        stress=nodal_stress(unit.basis, unit.everywhere(_stressed(body, state)) / a, law),
+        pressure=pressure,
+        contact=(surface & (points[:, 0] <= radius)).astype(np.int64),
+    )
+    return found, unit.everywhere(state.velocity).reshape(-1, 2)
+
+
+def _stressed(moving: Moving, state: BodyState) -> Array:
+    """Modulus times displacement, of all that it remembers, (N,), N/m."""
+    (part,), (branches,) = moving.body.parts, state.branches
+    return part.stressed(state.displacement, branches) + part.relaxation.viscosity * state.velocity
+
+
+MEMBER = WaveTarget.meshed(check, plan, moving, write_fields)

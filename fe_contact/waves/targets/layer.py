@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
-from fe_contact.assembly.forms import check_compressible
+import numpy as np
+from skfem import FacetBasis
+
+import meshes
+from fe_contact.assembly.far_field import on_boundary
+from fe_contact.assembly.forms import Basis, Matrix, check_compressible, mass, plane_mass
+from fe_contact.assembly.operators import basis_on, made, moduli
+from fe_contact.assembly.surface import flat
+from fe_contact.bodies.zone import held, thickness_over
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.scales import scales
-from fe_contact.progress import Progress
+from fe_contact.dynamics.body import Part
 from fe_contact.settings import RANGES, Given, WaveNumerics
-from fe_contact.waves.cost import Cost
-from fe_contact.waves.layer_body import moving
+from fe_contact.targets.layer import matrix
+from fe_contact.waves.moving import BEYOND, SMALLEST, Moving, UnitBody, WaveSide
 from fe_contact.waves.plan import DEFAULTS, SPREAD, TRAVEL, contact_time, placed
-from fe_contact.waves.refining import Waves, cost_of
-from fe_contact.waves.refusals import too_fast
-from fe_contact.waves.targets.base import WaveTarget
+from fe_contact.waves.targets.base import WaveTarget, too_fast
 from lumped.errors import BadInput, Fault
 from lumped.laws.mdr import ImpactScales
+from lumped.materials import Material, Relaxation
 from lumped.scene.scene import Scene
 from lumped.targets.layer import Layer
 
@@ -25,7 +33,7 @@ SPARE = 1.2  # a resonance may press the striker deeper than statics
 # echoes no wave fast enough to come back is left either.
 NEAREST, FARTHEST = 8.0, 20.0
 LEAST = 4.0  # contact radii, of which half still holds the contact
-ROUGH: Given = {
+ROUGH: Given = {  # work: settings of a coarse body that only tells the contact's scales
     "tolerance": 1e-2,
     "elements_per_contact": 2.0,
     "penalty": 100.0,
@@ -46,16 +54,6 @@ def plan(scene: Scene, given: Given) -> Plan:
     check_compressible(scene)
     size = scales(scene, WaveNumerics(**DEFAULTS, **ROUGH))
     return placed(scene, given, size, _far_radius(scene, size), SPARE, _stiffness(scene, size))
-
-
-def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
-    """Of an error budget with these settings. Raises BodyTooFine."""
-    return cost_of(scene, numerics, moving)
-
-
-def way(scene: Scene, chosen: Plan, progress: Progress) -> Waves:
-    """Marched with waves, refined by what is missing."""
-    return Waves.of(scene, chosen, moving, progress)
 
 
 def check(scene: Scene) -> None:
@@ -89,4 +87,86 @@ def _far_radius(scene: Scene, size: ImpactScales) -> float:
     return min(max(1.0 + width / (SPARE * size.contact_radius), LEAST), RANGES["far_radius"][1])
 
 
-MEMBER = WaveTarget(check=check, plan=plan, cost=cost, way=way)
+def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
+    """The layer of a scene at first touch, in SI units; in plane strain all of its length. Raises BodyTooThin."""
+    unit, a, shape = unit_of(scene, numerics), numerics.contact_radius, scene.geometry.shape
+    total, plane = shape.total, 1 if shape.plane else 0  # a dimension less to scale by
+    points, areas, trace = unit.zone
+    own = WaveSide(
+        mass=(scene.geometry.material.density or 0.0) * total * a ** (3 - plane) * unit.mass,
+        parts=_parts(scene, unit, total * a ** (1 - plane)),
+        dashpots=_dashpots(scene, unit, total * a ** (2 - plane)),
+        push=unit.pushed(trace.shape[1]),
+        trace=trace,
+        axial=np.zeros(unit.free.size),
+    )
+    return Moving.under(scene, own, a * points, total * a ** (2 - plane) * areas, BEYOND * a)
+
+
+def unit_of(scene: Scene, numerics: WaveNumerics) -> UnitBody:
+    """The layer of unit contact radius that a scene's is scaled from; one serves every material."""
+    target = scene.target
+    assert isinstance(target, Layer)
+    thickness = thickness_over(numerics.contact_radius, target.thickness)
+    sizes = (numerics.elements_per_contact, numerics.finer, thickness, numerics.far_radius)
+    return unit_layer(sizes, numerics.order, target.base == "bonded", scene.geometry.shape.plane, numerics.mass)
+
+
+@lru_cache(maxsize=8)
+def unit_layer(
+    sizes: tuple[float, float, float, float], order: int, bonded: bool, plane: bool, masses: str
+) -> UnitBody:
+    """Mesh and assemble; made once for all steps and penalties.
+
+    ``sizes``: elements, how much finer they are at the surface, thickness, far radius. Stiffness of unit bulk and of
+    unit shear modulus, dashpots on the side against motion through it and along it.
+    """
+    elements, finer, thickness, far_radius = sizes
+    basis = basis_on(made(meshes.layer_for_waves, elements, SMALLEST, thickness, far_radius - 1.0, finer), order)
+    fixed = held(basis, along=("axis", "base") if bonded else ("axis",), across=("base",))
+    local = plane_mass(basis) if plane else mass(basis)
+    springs = [matrix(basis, bonded, plane, *one) for one in ((1.0, 0.0), (0.0, 1.0))]
+    sides = [_side(basis, plane, component) for component in (0, 1)]
+    return UnitBody.of(basis, flat(basis, 2 if plane else 3), fixed, local, masses, springs, sides)
+
+
+def _side(basis: Basis, plane: bool, component: int) -> Matrix:
+    """Unit impedance of one component of the motion on the side, sparse (2 N, 2 N)."""
+    facets = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["side"], intorder=2 * basis.elem.maxdeg)
+    radius = np.asarray(facets.global_coordinates())[0]
+    tensor = np.zeros((2, 2, *radius.shape))
+    tensor[component, component] = 1.0
+    return on_boundary(facets, tensor, 2.0 if plane else 2 * np.pi * radius)
+
+
+def _parts(scene: Scene, unit: UnitBody, scale: float) -> tuple[Part, ...]:
+    """Where nu stays one modulus tells all, else volume and shape relax apart."""
+    material = scene.geometry.material
+    if scene.geometry.surface_remembers:
+        bulk, shear = moduli(material.nu)  # of E* = 1
+        return (Part(scale * (bulk * unit.stiffness[0] + shear * unit.stiffness[1]), material.contact_modulus()),)
+    volume, shape = Relaxation(material.bulk), material.shear
+    return Part(scale * unit.stiffness[0], volume), Part(scale * unit.stiffness[1], shape)
+
+
+def _dashpots(scene: Scene, unit: UnitBody, scale: float) -> Matrix:
+    """What the side's dashpots resist, of waves as fast as the first answer sends them.
+
+    Through a bonded layer's side go pressure waves; a sliding one's slowest mode is the plate's, modulus E*, which its
+    springs follow at rest. A dashpot in parallel has no wave speed of its own: none.
+    """
+    material, target = scene.geometry.material, scene.target
+    assert isinstance(target, Layer)
+    if material.young.viscosity:
+        return None
+    leaving = material.confined_modulus() if target.base == "bonded" else material.contact_modulus()
+    through, along = (_impedance(material, modulus) for modulus in (leaving.glassy, material.shear.glassy))
+    return scale * (through * unit.dashpots[0] + along * unit.dashpots[1])
+
+
+def _impedance(material: Material, modulus: float) -> float:
+    """Pa s/m."""
+    return math.sqrt(modulus * (material.density or 0.0))
+
+
+MEMBER = WaveTarget.meshed(check, plan, moving)

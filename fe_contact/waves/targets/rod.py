@@ -1,5 +1,7 @@
 """The rod: waves that come back, forces that jump; steps and elements go together, a wave crosses one in each.
 
+Line elements with a striker on their end.
+
 A dent in the end of a rod: the force that a half-space of its material would answer with, given by the model.
 """
 
@@ -10,22 +12,26 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+import scipy.sparse as sparse
 
+import meshes
+from fe_contact.assembly.forms import scatter
 from fe_contact.budget.plan import Plan
 from fe_contact.contact.enforcement.base import ENFORCEMENTS, Enforcement
 from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching
+from fe_contact.dynamics.body import Part, Pressing
 from fe_contact.dynamics.march import Choices, march
-from fe_contact.dynamics.pressed import Enforced
+from fe_contact.dynamics.mass.base import MASSES
 from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
+from fe_contact.dynamics.stepping import Enforced
 from fe_contact.errors import RodTooLong
 from fe_contact.progress import Progress
 from fe_contact.settings import RANGES, Given, WaveNumerics
-from fe_contact.waves.cost import Cost
-from fe_contact.waves.doubling import Doubling, witness
 from fe_contact.waves.impact import energies, left
-from fe_contact.waves.rod_body import elements, moving, rod_mass, transit
-from fe_contact.waves.rod_reading import read
-from fe_contact.waves.rod_record import Run
+from fe_contact.waves.line import LINE, Doubling, Run, witness
+from fe_contact.waves.line_reading import read_rod
+from fe_contact.waves.moving import Moving, WaveSide, with_rigid
+from fe_contact.waves.plan import Cost
 from fe_contact.waves.targets.base import WaveTarget
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
@@ -35,7 +41,7 @@ from lumped.scene.scene import Scene
 from lumped.schema import Table
 from lumped.targets.rod import Rod
 
-DEFAULT_TOLERANCE = 1e-3
+DEFAULT_TOLERANCE = 1e-3  # default: relative, of every certified quantity of a rod
 STEPS = 400  # along the contact time of the scene, at the default tolerance
 FEWEST, MANY, MOST = 48, 2_500, 20_000  # elements: at first, and as far as they are doubled
 MOST_MESHED = 100_000  # at all
@@ -45,7 +51,7 @@ FRONT = 40.0  # of them which it crosses while the dent's force grows to that of
 RELAXED = 6.0  # of them which it crosses in the shortest relaxation time
 COARSEST = 8  # of them that a user's own steps may leave
 ROUNDING = 1e-9  # of the striker's velocity, below which it does not leave the rod
-MOST_STEPS = 60
+MOST_STEPS = 60  # work: Newton's, of the dent in one step
 PRECISE = 1e-13  # of the overlap
 
 
@@ -59,16 +65,12 @@ def plan(scene: Scene, given: Given) -> Plan:
     flat = scene.profile.fixed_radius is not None
     coarse = WaveNumerics(
         tolerance=tolerance,
-        elements_per_contact=1.0,
-        order=1,
-        penalty=1.0,
+        **LINE,
         **_usual(scene),
         steps=int(min(STEPS * max(1.0, (DEFAULT_TOLERANCE / tolerance) ** 0.5), RANGES["steps"][1])),
         far_radius=rod.length / radius,
         contact_radius=radius,
         contact_time=contact_time,
-        peak_share=0.5,
-        rho=1.0,
     ).varied(**given)
     shape = scene.profile.hertz_impact(scene.contact_modulus.glassy, scene.reduced_mass, scene.velocity)
     more = max(_fewest(scene, None if flat else shape) / elements(scene, coarse), 1.0)
@@ -151,7 +153,7 @@ def run(scene: Scene, numerics: WaveNumerics) -> Run:
     choices = Choices(WAVE_SCHEMES.get(numerics.scheme).of(numerics.rho), _enforced(scene, numerics), step)
     gone = partial(left, slow=ROUNDING * scene.velocity)  # of a light striker's force an echo finds but rounding
     found = march(body.body, body.velocity, choices, scene.end_time, body.watch, gone)
-    reading = read(found, scene, count, gone(found.samples[-1]))
+    reading = read_rod(found, scene, count, gone(found.samples[-1]))
     return Run(reading, energies(body, found, scene), len(found.samples) - 1, body.body.size)
 
 
@@ -160,9 +162,6 @@ def _enforced(scene: Scene, numerics: WaveNumerics) -> Enforced:
     if scene.profile.fixed_radius is not None:
         return Enforced(ENFORCEMENTS.get(numerics.enforcement), numerics.penalty * scene.contact_modulus.glassy)
     return Enforced(Enforcement(Dent(scene.contact_modulus.glassy, scene.profile.load_curve).enforce), 1.0)
-
-
-MEMBER = WaveTarget(check=check, plan=plan, cost=cost, way=way)
 
 
 @dataclass(frozen=True)
@@ -191,3 +190,62 @@ class Dent:
         """N, and N/m."""
         force, slope = self.curve.force_and_slope(dent)
         return self.modulus * float(force), self.modulus * float(slope)
+
+
+def elements(scene: Scene, numerics: WaveNumerics) -> int:
+    """How many a wave crosses one a step."""
+    return max(round(transit(scene) * numerics.steps / numerics.contact_time), 1)
+
+
+def rod_mass(scene: Scene) -> float:
+    """Of the whole rod, kg."""
+    rod = scene.target
+    assert isinstance(rod, Rod)
+    return (scene.geometry.material.density or 0.0) * rod.area * rod.length
+
+
+def speed(scene: Scene) -> float:
+    """Of the fastest waves along the rod, m/s."""
+    material = scene.geometry.material
+    return float(np.sqrt(material.uniaxial_modulus().glassy / (material.density or 1.0)))
+
+
+def transit(scene: Scene) -> float:
+    """How long they take from one end to the other, s."""
+    rod = scene.target
+    assert isinstance(rod, Rod)
+    return rod.length / speed(scene)
+
+
+def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
+    """The rod of a scene at first touch, in SI units; displacements count along the motion."""
+    rod, material = scene.target, scene.geometry.material
+    assert isinstance(rod, Rod)
+    mesh = meshes.rod(elements(scene, numerics))
+    dofs, size = mesh.t.T, mesh.p.shape[1]
+    length = rod.length / len(dofs)
+    density, modulus = material.density or 0.0, material.uniaxial_modulus()
+    of_element = density * rod.area * length / 6 * np.array([[2.0, 1.0], [1.0, 2.0]])
+    springs = rod.area / length * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    free = np.setdiff1d(np.arange(size), mesh.boundaries["end"] if rod.end == "fixed" else [])
+    mass = MASSES.get(numerics.mass).of(np.tile(of_element, (len(dofs), 1, 1)), dofs, size, np.array([0]))
+    stiffness = scatter(np.tile(springs, (len(dofs), 1, 1)), dofs, size).tocsc()
+    own = WaveSide(
+        mass=mass[free][:, free],
+        parts=(Part(stiffness[free][:, free], modulus),),
+        dashpots=_dashpot(rod.impedance(modulus.glassy, density), free.size) if rod.end == "absorbing" else None,
+        push=sparse.csc_matrix(([1.0], ([0], [0])), shape=(free.size, 1)),
+        trace=np.ones((1, 1)),
+        axial=np.zeros(free.size),
+    )
+    push = sparse.csc_matrix(([1.0, -1.0], ([0, free.size], [0, 0])), shape=(free.size + 1, 1))
+    pressing = Pressing(push, own.trace, weights=np.ones(1), clearance=np.zeros(1))
+    return Moving(with_rigid(scene, own, pressing), scene.velocity, np.zeros(1), endless=False)
+
+
+def _dashpot(impedance: float, size: int) -> sparse.csc_matrix:
+    """On the last of so many nodes, all the rod that goes on behind it."""
+    return sparse.csc_matrix(([impedance], ([size - 1], [size - 1])), shape=(size, size))
+
+
+MEMBER = WaveTarget(check=check, plan=plan, cost=cost, way=way)

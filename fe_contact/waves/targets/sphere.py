@@ -5,13 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from fe_contact.budget.plan import Plan
-from fe_contact.progress import Progress
 from fe_contact.settings import Given, WaveNumerics
-from fe_contact.waves.cost import Cost
-from fe_contact.waves.flying_ball import on_ball
-from fe_contact.waves.refining import Waves, cost_of
-from fe_contact.waves.targets._ball import check, flying
-from fe_contact.waves.targets.base import WaveTarget
+from fe_contact.waves.balls import Ball, flying, plan_in_flight
+from fe_contact.waves.moving import Flying
+from fe_contact.waves.targets.base import WaveTarget, check_balls
 from lumped.laws import correspondence
 from lumped.scene.scene import Scene
 from lumped.targets.sphere import SphereTarget
@@ -25,17 +22,18 @@ def plan(scene: Scene, given: Given) -> Plan:
     target, own = scene.target, scene.geometry.shape.tip_radius
     assert isinstance(target, SphereTarget)
     without = replace(scene, target=replace(target, support=None), model=replace(scene.model, inertia=False))
-    return flying(scene, given, correspondence.estimate(without), max(target.radius, own or 0.0))
+    return plan_in_flight(scene, given, correspondence.estimate(without), max(target.radius, own or 0.0))
 
 
-def cost(scene: Scene, numerics: WaveNumerics) -> Cost:
-    """Of an error budget with these settings. Raises BodyTooFine."""
-    return cost_of(scene, numerics, on_ball)
+def moving(scene: Scene, numerics: WaveNumerics) -> Flying:
+    """Two balls about their common centre of mass; the smaller one, whose surface ends first, has the points."""
+    target, mass = scene.target, scene.target_mass
+    assert isinstance(target, SphereTarget)
+    assert mass is not None
+    balls = [Ball.striking(scene), Ball(target.radius, scene.geometry.material, mass)]
+    points = min(balls, key=lambda ball: ball.radius).points(numerics)
+    sides = [ball.side(numerics, points[0]) for ball in balls]
+    return flying(scene, numerics, sides, points, [scene.reduced_mass / ball.mass for ball in balls])
 
 
-def way(scene: Scene, chosen: Plan, progress: Progress) -> Waves:
-    """Marched with waves, refined by what is missing."""
-    return Waves.of(scene, chosen, on_ball, progress)
-
-
-MEMBER = WaveTarget(check=check, plan=plan, cost=cost, way=way)
+MEMBER = WaveTarget.meshed(check_balls, plan, moving)

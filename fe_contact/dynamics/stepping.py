@@ -1,0 +1,280 @@
+"""A step in time of a body with mass, implicit or explicit, and the contact problem in it.
+
+What would overlap without new pressure, and how the body yields to it, is all that contact knows.
+
+Implicit: one effective matrix, factorised once for every length of step. With the increment d = u' - u of a
+:class:`~fe_contact.dynamics.schemes.base.Scheme` (beta > 0) the balance
+
+    M a_(1 - alpha_m) + C v_(1 - alpha_f) + f_(1 - alpha_f) = weight + push p_(1 - alpha_f)
+
+is A d = known + (1 - alpha_f) push p' ,
+A = (1 - alpha_m)/(beta dt^2) M + (1 - alpha_f) [gamma/(beta dt) C + sum of modulus x stiffness] ,
+
+where branches count a little later, see :mod:`fe_contact.dynamics.body`.
+
+Explicit (beta = 0): displacements first, then the pressure, then accelerations. Where the surface has mass, its overlap
+at the step's end is known: a pressure law needs no more, while a constraint keeps the *next* overlap closed, which is
+the first that the pressure can move (Carpenter, Taylor and Katona 1991, doi:10.1002/nme.1620320107). Where it has none
+it obeys statics at the step's end, and so does the contact (Doyen, Ern and Piperno 2011, doi:10.1137/100791440,
+section 6.2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from fe_contact.assembly.forms import Array, Indices, Matrix
+from fe_contact.assembly.interior import factorized
+from fe_contact.assembly.pressed_surface import PressedSurface
+from fe_contact.contact.enforcement.base import Enforcement
+from fe_contact.contact.problem import ContactProblem, Touching
+from fe_contact.dynamics.body import BodyState, BodyWithMass, Pressing, internal
+from fe_contact.dynamics.schemes.base import Scheme
+from fe_contact.errors import ContactNotSettled
+from lumped.errors import BadInput, Fault
+
+
+@dataclass(frozen=True, eq=False)
+class Enforced:
+    """A member of :mod:`fe_contact.contact.enforcement`, or like one, and its penalty, Pa/m."""
+
+    member: Enforcement
+    penalty: float
+
+    @property
+    def is_law(self) -> bool:
+        """Whether pressure follows from the overlap alone, wherever that comes from."""
+        return self.member.law is not None
+
+    def known(self, overlap: Array) -> Found:
+        """Pressure of an overlap (q,) that no pressure changes any more, of a member that is a law."""
+        assert self.member.law is not None
+        return Found(self.member.law(overlap, self.penalty), 0)
+
+    def found(self, surface: PressedSurface, overlap: Array, touching: Touching, time: float) -> Found:
+        """Pressure that leaves of a free overlap (q,) what the member allows; raises ContactNotSettled."""
+        if not (touching.any() or (overlap > 0.0).any()):
+            return Found(self.penalty * overlap, 0)
+        problem = ContactProblem(surface, overlap, self.penalty)
+        solution = self.member.enforce(problem, touching)
+        if not solution.converged:
+            raise ContactNotSettled(time)
+        return Found(solution.signed_pressure, solution.iterations)
+
+
+class Found(NamedTuple):
+    """Signed pressure (q,), negative where open, and Newton iterations."""
+
+    signed_pressure: Array
+    iterations: int
+
+    @property
+    def pressure(self) -> Array:
+        """Contact pressure (q,), >= 0."""
+        return np.maximum(self.signed_pressure, 0.0)
+
+
+def surface_of(compliance: Array, pressing: Pressing, nodes: Indices | slice = slice(None)) -> PressedSurface:
+    """What contact knows of a body whose surface ``nodes`` (m,) move by ``compliance`` (m, m) per force."""
+    symmetric = (compliance + compliance.T) / 2
+    stiffness = np.linalg.inv(symmetric)
+    trace = pressing.trace[:, nodes]
+    return PressedSurface((stiffness + stiffness.T) / 2, trace, pressing.weights, carriers=pressing.carriers)
+
+
+class ImplicitStepper:
+    """Takes steps of one length, s, of one body by one scheme."""
+
+    def __init__(self, body: BodyWithMass, scheme: Scheme, enforced: Enforced, step: float) -> None:
+        self.body, self.scheme, self.enforced, self.step = body, scheme, enforced, step
+        self.laws = [part.law(step) for part in body.parts]
+        self.solve = factorized(self._effective())
+
+    def begun(self, state: BodyState) -> BodyState:
+        """The first state: the pressure of a first step belongs to its end."""
+        return state
+
+    @cached_property
+    def moved(self) -> Array:
+        """Increments (N, m) of unit surface forces."""
+        return np.asarray((1 - self.scheme.alpha_f) * self.solve(self.body.pressing.push.toarray()))
+
+    @cached_property
+    def surface(self) -> PressedSurface:
+        """What contact knows of the body in a step."""
+        pressing = self.body.pressing
+        return surface_of(pressing.push.T @ self.moved, pressing)
+
+    def advance(self, state: BodyState) -> tuple[BodyState, Found]:
+        """The state a step later; raises ContactNotSettled."""
+        pressing = self.body.pressing
+        change = self._free(state)
+        overlap = pressing.overlap(state.displacement + change)
+        found = self.enforced.found(self.surface, overlap, state.signed_pressure > 0.0, state.time)
+        change += self.moved @ pressing.forces(found.pressure)
+        return self._moved(state, change, found), found
+
+    def flown(self, state: BodyState) -> BodyState:
+        """The state a step later if nothing presses in it, its signed pressure that of the overlap."""
+        change = self._free(state)
+        overlap = self.body.pressing.overlap(state.displacement + change)
+        return self._moved(state, change, Found(self.enforced.penalty * overlap, 0))
+
+    def _free(self, state: BodyState) -> Array:
+        """The increment (N,) without new pressure."""
+        return self.solve(self._known(state) + self.scheme.alpha_f * self.body.pressing.load(state.pressure))
+
+    def _effective(self) -> Matrix:
+        body, (alpha_m, alpha_f, beta, gamma), dt = self.body, self.scheme, self.step
+        matrix = (1 - alpha_m) / (beta * dt**2) * body.inertia
+        for part, law in zip(body.parts, self.laws, strict=True):
+            matrix = matrix + ((1 - alpha_f) * law.now + float(law.late @ law.gain)) * part.stiffness
+        if body.damping is not None:
+            matrix = matrix + (1 - alpha_f) * gamma / (beta * dt) * body.damping
+        return matrix
+
+    def _known(self, state: BodyState) -> Array:
+        """Forces that the past fixes, (N,)."""
+        body, (alpha_m, alpha_f, _, _) = self.body, self.scheme
+        v, a = self._newmark(state, np.zeros(body.size))  # at the end of a step in which nothing moves
+        forces = body.weight - body.inertia @ ((1 - alpha_m) * a + alpha_m * state.acceleration)
+        forces -= alpha_f * state.internal
+        for part, law, branches in zip(body.parts, self.laws, state.branches, strict=True):
+            held = part.past(law, state.displacement, branches)
+            faded = law.late @ ((law.decay - 1.0)[:, None] * branches)
+            forces -= part.stiffness @ ((1 - alpha_f) * held + faded)
+        if body.damping is not None:
+            forces -= body.damping @ ((1 - alpha_f) * v + alpha_f * state.velocity)
+        return np.asarray(forces)
+
+    def _newmark(self, state: BodyState, change: Array) -> tuple[Array, Array]:
+        """Velocity and acceleration at the end of a step with an increment of displacement."""
+        (_, _, beta, gamma), dt = self.scheme, self.step
+        v, a = state.velocity, state.acceleration
+        late = (change - dt * v - dt**2 * (0.5 - beta) * a) / (beta * dt**2)
+        return v + dt * ((1 - gamma) * a + gamma * late), late
+
+    def _moved(self, state: BodyState, change: Array, found: Found) -> BodyState:
+        velocity, acceleration = self._newmark(state, change)
+        displacement = state.displacement + change
+        branches = tuple(law.moved(own, change) for law, own in zip(self.laws, state.branches, strict=True))
+        return BodyState(
+            time=state.time + self.step,
+            displacement=displacement,
+            velocity=velocity,
+            acceleration=acceleration,
+            branches=branches,
+            internal=internal(self.body, displacement, branches),
+            signed_pressure=found.signed_pressure,
+        )
+
+
+class ExplicitStepper:
+    """Takes steps of one length, s, of one body. Raises BadInput for a material with a parallel viscosity."""
+
+    def __init__(self, body: BodyWithMass, scheme: Scheme, enforced: Enforced, step: float) -> None:
+        if any(part.relaxation.viscosity > 0.0 for part in body.parts):
+            reason = "an explicit scheme has no answer to a parallel viscosity; accepted: an implicit one"
+            raise BadInput(Fault("numerics", "scheme", reason))
+        self.body, self.scheme, self.enforced, self.step = body, scheme, enforced, step
+        self.laws = [part.law(step) for part in body.parts]
+        inertia = body.inertia if body.damping is None else body.inertia + step / 2 * body.damping
+        self._surfaces: dict[float, PressedSurface] = {}  # by lever: one, and at first another
+        self.accelerate = factorized(inertia[body.massive][:, body.massive])
+
+    def begun(self, state: BodyState) -> BodyState:
+        """The first state with the pressure that a constraint on a surface with mass needs at once."""
+        if self.body.massless.size or self.enforced.is_law:
+            return state
+        ahead = state.displacement + self.step * (state.velocity + self.step / 2 * state.acceleration)
+        found = self._constrained(state, ahead, self.step**2 / 2)
+        pushed = state.acceleration + self._accelerated(self.body.pressing.load(found.pressure))
+        return state._replace(acceleration=pushed, signed_pressure=found.signed_pressure)
+
+    def advance(self, state: BodyState) -> tuple[BodyState, Found]:
+        """The state a step later; raises ContactNotSettled."""
+        body, dt = self.body, self.step
+        middle = state.velocity + dt / 2 * state.acceleration  # half a step on
+        change = dt * middle
+        found = None
+        if body.massless.size:
+            change[body.massless] = 0.0
+            change, found = self._settled(state, change)
+        displacement = state.displacement + change
+        branches = tuple(law.moved(own, change) for law, own in zip(self.laws, state.branches, strict=True))
+        forces = internal(body, displacement, branches)
+        driving = body.weight - forces if body.damping is None else body.weight - forces - body.damping @ middle
+        if found is None:
+            found = self._pressed(state, displacement, middle, driving)
+        acceleration = self._accelerated(driving + body.pressing.load(found.pressure))
+        velocity = middle + dt / 2 * acceleration
+        velocity[body.massless] = change[body.massless] / dt
+        pressure = found.signed_pressure
+        return BodyState(state.time + dt, displacement, velocity, acceleration, branches, forces, pressure), found
+
+    def _accelerated(self, forces: Array) -> Array:
+        """Acceleration (N,) under forces (N,) or of several, (N, m); zero without mass."""
+        found = np.zeros_like(forces)
+        found[self.body.massive] = self.accelerate(forces[self.body.massive])
+        return found
+
+    def _pressed(self, state: BodyState, displacement: Array, middle: Array, driving: Array) -> Found:
+        """Pressure on a surface with mass."""
+        if self.enforced.is_law:
+            return self.enforced.known(self.body.pressing.overlap(displacement))
+        ahead = displacement + self.step * (middle + self.step * self._accelerated(driving))
+        return self._constrained(state, ahead, self.step**2)
+
+    def _constrained(self, state: BodyState, ahead: Array, lever: float) -> Found:
+        """Pressure that keeps the next displacement closed, which it moves by ``lever``, s^2, times acceleration."""
+        overlap = self.body.pressing.overlap(ahead)
+        return self.enforced.found(self._heavy(lever), overlap, state.signed_pressure > 0.0, state.time)
+
+    def _heavy(self, lever: float) -> PressedSurface:
+        if lever not in self._surfaces:
+            pressing = self.body.pressing
+            moved = self._accelerated(pressing.push.toarray())
+            self._surfaces[lever] = surface_of(lever * (pressing.push.T @ moved), pressing)
+        return self._surfaces[lever]
+
+    def _settled(self, state: BodyState, change: Array) -> tuple[Array, Found]:
+        """The increment with that of the surface without mass, and the pressure on it."""
+        body, pressing = self.body, self.body.pressing
+        forces = body.weight.copy()
+        for part, law, branches in zip(body.parts, self.laws, state.branches, strict=True):
+            held = part.past(law, state.displacement, branches) + law.now * change
+            forces -= part.stiffness @ held
+        light = self._light
+        change[body.massless] = light.solve(forces[body.massless])
+        overlap = pressing.overlap(state.displacement + change)
+        found = self.enforced.found(light.surface, overlap, state.signed_pressure > 0.0, state.time)
+        change[body.massless] += light.moved @ pressing.forces(found.pressure)[light.yielding]
+        return change, found
+
+    @cached_property
+    def _light(self) -> _Light:
+        pressing, light = self.body.pressing, self.body.massless
+        held = [law.now * part.stiffness[light][:, light] for part, law in zip(self.body.parts, self.laws, strict=True)]
+        solve = factorized(sum(held[1:], held[0]))
+        push = pressing.push[light].toarray()
+        yielding = np.flatnonzero(push.any(axis=0))  # a rigid striker does not yield at once
+        moved = solve(push[:, yielding])
+        surface = surface_of(push[:, yielding].T @ moved, pressing, yielding)
+        return _Light(solve, moved, yielding, surface)
+
+
+class _Light(NamedTuple):
+    """Statics of the degrees of freedom without mass: ``solve`` their stiffness, ``moved`` per surface force of the
+    ``yielding`` ones, which the ``surface`` consists of.
+    """
+
+    solve: Callable[[Array], Array]
+    moved: Array
+    yielding: npt.NDArray[np.intp]
+    surface: PressedSurface

@@ -1,0 +1,296 @@
+"""What the steps of an impact say whose waves run along a line: a history, its quantities, and each of its contacts.
+
+On a rod a front crosses one element a step: it leaves at touch and is back after twice as many steps as there are
+elements. A struck surface with mass of its own needs two steps to follow it.
+
+Forces before and behind a wave front are rows in pairs of one time, where a march has the mean of both in one step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from fe_contact.assembly.forms import Array
+from fe_contact.dynamics.march import Motion, Sample
+from lumped.numbers import peak
+from lumped.scene.scene import Scene
+
+TIME, DEPTH, VELOCITY, FORCE, DENT = range(5)  # rows of a reading
+Steps = npt.NDArray[np.intp]
+Contacts = tuple[Mapping[str, float | None], ...]
+TELLING = 3  # steps on either side of a front that tell the force there
+SPOILED = 2  # steps behind a front
+LASTING = 0.5  # of the force before a front, which it would still have had
+RINGING, CLEAR = 8, 8  # steps at the ends of a contact in which its element rings, and those beside them
+DROPPED = 0.6  # of what was to be expected, below which a force drops
+UNENDED = {"duration": None, "restitution": None}
+
+
+def with_fronts(rows: Array, fronts: Steps, spoiled: int) -> Array:
+    """Rows (5, n), the last one no longer pressed, with both forces at the ``fronts``, steps of their arrival.
+
+    A surface with mass of its own follows a front after ``spoiled`` steps, in which the force carries that mass along:
+    they are left out, and the forces at the front are read off the steps before and behind.
+    """
+    parts, begin = list[Array](), 0
+    for front in fronts.tolist():
+        first = front + spoiled + 1
+        clean = rows[FORCE, first : min(first + TELLING, rows.shape[1] - 1)]
+        before, behind = rows[:, [front]].copy(), rows[:, [front]].copy()
+        if front - begin >= TELLING:
+            before[FORCE] = _reached(rows[FORCE, front - TELLING : front][::-1], 1)
+        if front:
+            parts += [rows[:, begin:front], before]
+        if clean.size:
+            behind[FORCE] = _reached(clean, spoiled + 1)
+            parts.append(behind)
+        begin = first if clean.size else front + (front > 0)
+    return np.hstack([*parts, rows[:, begin:]])
+
+
+def _reached(forces: Array, away: int) -> float:
+    """The force ``away`` steps before the first of some, N, by the polynomial through them; none pulls."""
+    steps = away + np.arange(forces.size)
+    return max(float(np.polyfit(steps, forces, forces.size - 1)[-1]), 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class RodReading:
+    """``rows`` (5, n): time, s, never decreasing; depth, m; velocity, m/s, of a ``mass``, kg; force, N; dent, m. Did
+    contact end?
+    """
+
+    rows: Array
+    mass: float
+    separated: bool
+    quantities: Mapping[str, float | None]
+
+    def force_at(self, time: Array) -> Array:
+        """N, linear between the rows."""
+        return np.asarray(np.interp(time, self.rows[TIME], self.rows[FORCE]))
+
+
+def read_rod(found: Motion, scene: Scene, elements: int, separated: bool) -> RodReading:
+    """From the samples of a march; ``elements`` of the rod; whether it has ``separated``. Raises ContactLost."""
+    jumping = scene.profile.fixed_radius is not None
+    rows = np.array([_rod_row(sample) for sample in found.samples]).T
+    end = max(found.seen[-1][1], found.samples[-2].time)  # where rounding opens and closes it, the last of all
+    if jumping:
+        fronts = np.arange(0, rows.shape[1], 2 * elements, dtype=np.intp)
+        if separated and _ended_by(rows[FORCE], fronts[-1]):
+            rows = rows[:, : fronts[-1] + 1]
+            end, rows = rows[TIME, -1], np.hstack([rows, rows[:, -1:]])
+        rows = with_fronts(rows, fronts, SPOILED)
+    elif separated:
+        end = _undented(rows)
+    rows = _rod_ended(rows, end, scene.gravity) if separated else stopped(rows, scene.end_time)
+    highest = _highest(rows) if jumping else peak(rows[TIME], rows[FORCE])
+    time, _, velocity, _, _ = rows[:, -1]
+    quantities = {
+        "peak_force": highest[1],
+        "peak_time": highest[0],
+        "peak_depth": peak(rows[TIME], rows[DEPTH])[1],
+        "duration": float(time) if separated else None,
+        "restitution": float(-velocity / scene.velocity) if separated else None,
+        "impulse": float(scene.reduced_mass * (scene.velocity - velocity + scene.gravity * time)),
+        "history_l2": 0.0,
+    }
+    return RodReading(rows, scene.reduced_mass, separated, quantities)
+
+
+def _rod_row(sample: Sample) -> tuple[float, ...]:
+    dent = max(float(sample.overlap[0]), 0.0)
+    return sample.time, float(sample.displacement[0]), float(sample.velocity[0]), max(sample.force, 0.0), dent
+
+
+def _undented(rows: Array) -> float:
+    """When the dent of the last pressed rows, smooth, comes to nothing, s; at the latest a step after them."""
+    time, dent = rows[TIME, -4:-1], rows[DENT, -4:-1]
+    step = time[-1] - time[-2]
+    roots = np.roots(np.polyfit((time - time[-1]) / step, dent, 2))
+    ahead = [float(root.real) for root in roots if abs(root.imag) < 1e-9 and 0.0 <= root.real <= 1.0]
+    return float(time[-1] + step * min(ahead, default=1.0))
+
+
+def _ended_by(force: Array, front: int) -> bool:
+    """Whether a front ended the contact: the last row, open, follows at once, and the force would have gone on."""
+    late = force.size - 1 - front
+    if front < TELLING or late > SPOILED + 1:
+        return False
+    onwards = force[front - 1] + 0.5 * (force[front - 1] - force[front - TELLING]) * (late + 1)
+    return bool(onwards > LASTING * force[front - 1])
+
+
+def stopped(rows: Array, end: float) -> Array:
+    """Rows up to a time, s, within the last step; those of a march that stopped before as they are."""
+    kept = rows[:, rows[TIME] < end]
+    if kept.shape[1] == rows.shape[1]:
+        return rows
+    return np.hstack([kept, np.array([[np.interp(end, rows[TIME], row)] for row in rows])])
+
+
+def _rod_ended(rows: Array, end: float, gravity: float) -> Array:
+    """Rows up to the end of contact, s, where nothing but gravity moves any more; the last one lies beyond it."""
+    last = rows[:, -1].copy()
+    beyond = last[TIME] - end
+    last[DEPTH] -= beyond * (last[VELOCITY] - 0.5 * beyond * gravity)
+    last[VELOCITY] -= beyond * gravity
+    last[[TIME, FORCE, DENT]] = end, 0.0, 0.0
+    kept = rows[:, :-1][:, rows[TIME, :-1] <= end]
+    return np.hstack([kept, last[:, None]])
+
+
+def _highest(rows: Array) -> tuple[float, float]:
+    """Time and force of the highest row: where the force jumps no polynomial goes through its rows."""
+    top = int(np.argmax(rows[FORCE]))
+    return float(rows[TIME, top]), float(rows[FORCE, top])
+
+
+@dataclass
+class Ending:
+    """Told sample after sample, says when the last of some contacts is over: open for longer than a ``pause``, s."""
+
+    impacts: int
+    pause: float
+    begun: int = 0
+    last: float = -np.inf
+    open: bool = True
+
+    def __call__(self, sample: Sample) -> bool:
+        away = sample.time - self.last
+        if sample.force > 0.0:
+            self.begun += self.open and away > self.pause
+            self.last = sample.time
+        self.open = sample.force <= 0.0
+        return self.open and self.begun == self.impacts and away > self.pause
+
+
+def read_bar(found: Motion, total: float, scene: Scene, pause: float, echo: int | None) -> tuple[RodReading, Contacts]:
+    """Rows up to the last separation and every contact; ``total`` mass, kg; those within a ``pause``, s, are one.
+
+    ``echo``: steps after which a front comes back, None where steps do not follow it.
+    Impulse and history are those of all contacts, the other quantities those of the first.
+    """
+    rows = np.array([_bar_row(sample) for sample in found.samples]).T
+    spans = clustered(found.seen, pause)
+    if scene.motion.impacts > 1:
+        rows = _cleaned(rows, spans)
+    elif echo:
+        rows = with_fronts(rows, np.arange(echo, rows.shape[1] - 2, echo), spoiled=0)
+    separated = len(spans) == scene.motion.impacts and rows[FORCE, -1] <= 0.0
+    if separated:
+        rows, end = _bar_ended(rows, spans[-1][1])
+        spans[-1] = (spans[-1][0], end)
+    else:
+        rows = stopped(rows, scene.end_time)
+    impulses = np.cumsum([sample.impulse for sample in found.samples])
+    contacts = tuple(_contact(rows, found.time, impulses, span, total, scene.gravity) for span in spans)
+    if found.force[-1] > 0.0:  # it goes on
+        contacts = (*contacts[:-1], {**contacts[-1], **UNENDED})
+    first = contacts[0]  # of the later ones a front that comes a little early or late makes another peak
+    quantities = {
+        "peak_force": first["peak_force"],
+        "peak_time": first["peak_time"],
+        "peak_depth": first["peak_depth"],
+        "duration": first["duration"],
+        "restitution": first["restitution"],
+        "impulse": float(np.interp(rows[TIME, -1], found.time, impulses)),
+        "history_l2": 0.0,
+    }
+    return RodReading(rows, total, separated, quantities), contacts
+
+
+def clustered(contacts: tuple[tuple[float, float], ...], pause: float) -> list[tuple[float, float]]:
+    """Contacts that follow each other within a pause, s, as one."""
+    found = list[tuple[float, float]]()
+    for start, end in contacts:
+        if found and start - found[-1][1] < pause:
+            found[-1] = (found[-1][0], end)
+        else:
+            found.append((start, end))
+    return found
+
+
+def _bar_row(sample: Sample) -> tuple[float, ...]:
+    """A bar has no dent: in its place stands the gap to the plane, below zero."""
+    return sample.time, float(sample.displacement[0]), float(sample.velocity[0]), sample.force, float(sample.overlap[0])
+
+
+def _bar_ended(rows: Array, end: float) -> tuple[Array, float]:
+    """Rows up to the separation, s, and when that is; a force that drops there does so between two rows of one time.
+
+    A front that ends the contact leaves the mean of before and behind in its own step: there the contact ends.
+    """
+    pressed = rows[:, : 1 + int(np.flatnonzero(rows[FORCE] > 0.0)[-1])]
+    before = pressed[FORCE, -4:-1]
+    dropped = bool(before.size == 3 and pressed[FORCE, -1] < DROPPED * _onwards(before))
+    if dropped:
+        end, pressed = float(pressed[TIME, -1]), pressed[:, :-1]
+    pressed = pressed[:, pressed[TIME] < end]
+    last = np.array([np.interp(end, rows[TIME], row) for row in rows])
+    last[TIME] = end
+    ends = [last * np.where(np.arange(len(last)) == FORCE, 0.0, 1.0)]
+    if dropped or pressed[FORCE, -1] > DROPPED * pressed[FORCE].max():
+        last[FORCE] = max(_onwards(pressed[FORCE, -3:]), 0.0)
+        ends.insert(0, last)
+    return np.hstack([pressed, *(row[:, None] for row in ends)]), end
+
+
+def _cleaned(rows: Array, spans: list[tuple[float, float]]) -> Array:
+    """Forces without the ringing of the first element at both ends of every contact, but a line through what follows.
+
+    There the force jumps: two rows of one time at every end within the rows.
+    """
+    time, cleaned, ends = rows[TIME], rows.copy(), list[Array]()
+    for start, end in spans:
+        pressed = np.flatnonzero((time >= start) & (time <= end))
+        if pressed.size < 2 * (RINGING + CLEAR):
+            continue
+        for ordered, edge in ((pressed, start), (pressed[::-1], end)):
+            telling, spoiled = ordered[RINGING : RINGING + CLEAR], ordered[:RINGING]
+            line = np.polyfit(time[telling] - start, rows[FORCE, telling], 1)
+            cleaned[FORCE, spoiled] = np.maximum(np.polyval(line, time[spoiled] - start), 0.0)
+            if time[0] < edge < spans[-1][1]:
+                ends += _jump(rows, edge, max(float(np.polyval(line, edge - start)), 0.0), edge == end)
+    places = np.searchsorted(time, [row[TIME] for row in ends])
+    return np.insert(cleaned, places, np.array(ends).T, axis=1) if ends else cleaned
+
+
+def _jump(rows: Array, time: float, force: float, falls: bool) -> list[Array]:
+    """Two rows of a time, s, between which the force jumps to nothing or from it."""
+    without = np.array([np.interp(time, rows[TIME], row) for row in rows])
+    without[[TIME, FORCE]] = time, 0.0
+    pressed = without.copy()
+    pressed[FORCE] = force
+    return [pressed, without] if falls else [without, pressed]
+
+
+def _onwards(values: Array) -> float:
+    """The next of some equidistant values along their last straight line."""
+    return float(2 * values[-1] - values[-2])
+
+
+def _contact(
+    rows: Array, time: Array, impulses: Array, span: tuple[float, float], total: float, gravity: float
+) -> dict[str, float | None]:
+    """One contact; velocities are those of the centre of mass, by the force's impulse."""
+    start, end = span
+    before, after = np.interp([start, end], time, impulses)
+    came = float(np.interp(start, rows[TIME], rows[VELOCITY]))
+    left = came + gravity * (end - start) - (after - before) / total
+    inside = (rows[TIME] >= start) & (rows[TIME] <= end)
+    inside[np.searchsorted(rows[TIME], start, side="right") - 1] = True
+    top = int(np.argmax(np.where(inside, rows[FORCE], -1.0)))
+    return {
+        "start": start,
+        "duration": end - start,
+        "velocity": came,
+        "restitution": -left / came,
+        "peak_force": float(rows[FORCE, top]),
+        "peak_time": float(rows[TIME, top]),
+        "peak_depth": float(rows[DEPTH, inside].max()),
+    }
