@@ -13,6 +13,11 @@ that the points are the nodes of the element, at (x, y, z) = (r, z, 0) m with th
     pressure       Pa, on the contact surface; zero elsewhere
     contact        1 where the bodies touch, 0 elsewhere
     velocity       (v_r, v_z, 0), m/s, of a body with inertia, whose fields are those of the march itself
+
+The contact pressure is as the body feels it, without what its shape functions cannot see. The march keeps it at
+quadrature points, where the surface's memory leaves a roughness of some per cent that has no moment against any shape
+function: projected onto them it is smooth, and its integral unchanged. Where the mesh follows the contact it is read
+otherwise, see :mod:`fe_contact.steppers.scaled_surface`, and has no such roughness.
 """
 
 from __future__ import annotations
@@ -25,11 +30,12 @@ import numpy as np
 from skfem import Basis
 
 from fe_contact.assembly.forms import Array, Indices, isotropic
+from fe_contact.assembly.operators import SurfaceOperator
 from fe_contact.bodies.pressing import BEYOND
 from fe_contact.budget.certify import Certified
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
-from fe_contact.results.surface_pressure import felt, peak_step, scale
 from fe_contact.settings import Numerics
+from fe_contact.steppers.march import Snapshot
 from fe_contact.steppers.scaled_surface import ScaledSurface
 from fe_contact.targets.base import struck
 from lumped.errors import BadInput, Fault
@@ -173,3 +179,39 @@ def subdivided(basis: Basis) -> Indices:
 def _lifted(plane: Array) -> Array:
     """Vectors (n, 2) of the half-plane as vectors (n, 3) of space."""
     return np.column_stack([plane, np.zeros(len(plane))])
+
+
+@dataclass(frozen=True, eq=False)
+class Pressure:
+    """Pressure (n,), Pa, at radii (n,), m, of the surface in one step; time, s; contact radius, m."""
+
+    time: float
+    contact_radius: float
+    radii: Array
+    values: Array
+
+    def at(self, radii: Array) -> Array:
+        """Pressure at other radii, linear in between, zero beyond the contact."""
+        return np.where(radii <= self.contact_radius, np.interp(radii, self.radii, self.values), 0.0)
+
+
+def felt(certified: Certified, step: int) -> Pressure:
+    """Pressure in a step of the finest march."""
+    snapshot = certified.march.snapshots[step]
+    radii, values = certified.surface.felt(snapshot)
+    return Pressure(snapshot.time, snapshot.contact_radius, radii, values / certified.curve.strike.total)
+
+
+def scale(operator: SurfaceOperator, snapshot: Snapshot) -> float:
+    """Length of the unit mesh in a step, m."""
+    return float(snapshot.radii[0] / operator.points[0])
+
+
+def peak_step(certified: Certified) -> int:
+    """Index of the step of largest force."""
+    return int(np.argmax([snapshot.force for snapshot in certified.march.snapshots]))
+
+
+def nearest_step(certified: Certified, time: float) -> int:
+    """Index of the step whose pressure lies nearest to a time, s."""
+    return int(np.argmin([abs(s.time - time) for s in certified.march.snapshots]))

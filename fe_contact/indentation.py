@@ -26,7 +26,7 @@ from fe_contact.targets.base import TARGETS
 from fe_contact.threads import one_thread
 from lumped.errors import BadInput, Fault
 from lumped.indentation import Indentation
-from lumped.numbers.clock import Clock
+from lumped.numbers import Clock
 from lumped.scene.indenter import Indenter
 from lumped.shapes import Shape
 
@@ -36,7 +36,7 @@ ROUNDING = 1e-9  # relative, of a solve of nearly incompressible bodies: where n
 ROUNDS = 5  # refinements before giving up
 FEWEST = 12  # depths that tell an error bar
 SPREAD = 0.6  # of them at least, smallest over largest: contact edges over an element of the coarser mesh
-BISECTIONS = 40
+BISECTIONS = 40  # work: halvings of the place where undeformed surfaces cease to overlap
 SMALL = 1e-3  # radius, in depths, from which the search for the overlap's end begins
 SCOUTING, SCOUTING_ORDER = 2.0, 2  # elements along the contact radius that tell how large contacts will be
 LEAST_SHARE, LARGEST_SHARE = 0.4, 2.0  # contact radius over the one at which the undeformed surfaces overlap

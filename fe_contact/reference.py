@@ -21,7 +21,7 @@ from fe_contact.budget.several import Row, Several
 from fe_contact.errors import says_which_key
 from fe_contact.march.flight import UNFOLLOWED
 from fe_contact.progress import Progress, silent
-from fe_contact.results.recovery import indentation_left, recovers
+from fe_contact.recovery import indentation_left, recovers
 from fe_contact.settings import Given, Numerics, check_kind
 from fe_contact.steppers.march import Strike
 from fe_contact.targets.base import TARGETS, struck
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 CURE = "cure: a larger tolerance, or fewer numerics of your own"
 ROUNDS = 4  # refinements before giving up
 MOST_STEPS = 20_000  # of all marches of a round, about half a minute; the next one may take twice as many
-MOST_OPERATIONS = 2e12  # of a round, some eighty seconds at the 2.6e10 a second that large contact problems reach
+MOST_OPERATIONS = 5e12  # of a round, half a minute to two: contact problems reach 5e10 to 2e11 a second
 
 Answer = TypeVar("Answer", bound=Solution, covariant=True)
 

@@ -5,7 +5,7 @@ Whatever found them, bars are asked for in one way: see :class:`Solution`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Protocol
@@ -18,14 +18,14 @@ from fe_contact.budget.curve import Curve
 from fe_contact.budget.softening import Softening
 from fe_contact.march.flight import Grounded
 from fe_contact.settings import Numerics
-from fe_contact.steppers.march import March
+from fe_contact.steppers.march import March, Work
 from lumped.result.history import History, densified
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity
 
 CAUSES = ("mesh", "penalty", "time_step", "far_field")
 SETTING = {"mesh": "elements_per_contact", "penalty": "penalty", "time_step": "steps", "far_field": "far_radius"}
-OUTSIDE = ("in", "out")  # terms of the energy account that the striker knows
-LOST = ("contact", "numerical", "residual")  # terms that are zero but for errors
+OUTSIDE = ("in", "out")  # terms of the energy account by the motion of the striker alone
+LOST = ("contact", "numerical", "residual")  # terms that are zero but for numerical errors
 ROWS_SHARE = 0.1  # of the tolerance that a line between two rows may err
 
 Causes = tuple[Change | Softening | None, ...]  # what one setting changes, None: unknown
@@ -45,6 +45,21 @@ class TotalWork:
     steps: int
     contact_problems: int
     iterations: int
+
+    @classmethod
+    def of(
+        cls, marches: Sequence[Work], degrees_of_freedom: int, factorizations: int, solves: int, flown: int = 0
+    ) -> TotalWork:
+        """Of all marches together, and of so many steps ``flown`` between contacts."""
+        return cls(
+            degrees_of_freedom=degrees_of_freedom,
+            factorizations=factorizations,
+            solves=solves,
+            marches=len(marches),
+            steps=flown + sum(one.steps for one in marches),
+            contact_problems=sum(one.contact_problems for one in marches),
+            iterations=sum(one.iterations for one in marches),
+        )
 
 
 class Solution(Protocol):

@@ -20,8 +20,8 @@ dashpot; else mesh and rounding leave it.
 
 The order to trust after extrapolation is one more than the scheme's own where nothing speaks against it. What adds up
 over the contact loses an order to any relaxation. A dashpot's force is one of velocities, and so is that of a branch
-which relaxes within two steps: its extrapolated error falls no faster than the scheme's. All forces lose as much of an
-order as such ones have in all that presses, and so does what adds up.
+which relaxes within two steps: its extrapolated error falls no faster than the scheme's. The order of all forces
+is less by the share of the force that such branches and dashpots carry, and so is that of impulse and velocity.
 
 A relaxation about as long as a step gives the scheme's order one coefficient for longer steps and another for
 shorter ones, so that extrapolation gains no order. By chance it may even agree with itself where it is wrong: of what
@@ -41,11 +41,11 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from fe_contact.budget.budget import SETTING, Budget, Causes
-from fe_contact.budget.change import SAFETY, TOP, UNORDERED, Change, factor
+from fe_contact.budget.budget import SETTING, Causes
+from fe_contact.budget.change import RIPPLED, SAFETY, TOP, UNORDERED, Change, factor
 from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.runs import Runs
-from fe_contact.budget.several import Several
+from fe_contact.budget.several import Judged, Several
 from fe_contact.budget.softening import Softening, compliance_change
 from fe_contact.progress import Count, Progress, silent
 from fe_contact.schemes.base import SCHEMES
@@ -57,7 +57,7 @@ from lumped.scene.geometry import Geometry
 
 MARCHES = 2.5  # steps of all marches of a contact over those of the finest one: half and a quarter, and three of these
 UNSEEN = 2  # first steps of the coarsest run in which no order shows
-LEAST_ORDER = {"penalty": 1, "far_field": 2}
+LEAST_ORDER = {"penalty": 1, "far_field": 2}  # of convergence that is trusted without being seen, by cause
 MESH_ORDER = {3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
 WITNESS = 2  # times the order have the elements that tell of those which lock
 WITNESS_ELEMENTS = 4.0  # of them along the contact radius, at least
@@ -65,7 +65,7 @@ MESH_ORDER_ANYWHERE = 1  # where the edge falls anywhere in an element: 1.6 is w
 TOP_ANYWHERE = 0.95  # share of the largest depth above which such changes count: their sign turns ever again
 # of the steps' change in the share that branches about as fast as a step carry, by quantity, and of the force
 KEPT = {"peak_depth": 0.4, "duration": 0.4, "impulse": 1.5, "restitution": 1.5}
-KEPT_OF_FORCE = 0.1
+KEPT_OF_FORCE = 0.1  # the same share of the force
 LEAST_HALVED = 40  # steps below which halving them twice would leave too few to tell anything
 # half of less tells nothing: a corrected penalty below a hundred errs to either side in turn
 LEAST_HALVED_SETTING = {"elements_per_contact": 2.0, "penalty": 200.0, "far_radius": 5.0}
@@ -105,16 +105,10 @@ def certify(
     followed = runs.follow(numerics)
     judged = [_judged(runs, number, numerics, impacts == 1) for number in range(len(followed.contacts))]
     surface = runs.surface(numerics)
-    work = runs.work(surface)
-    row = [
-        Budget(curve, contact.march, changes, work, numerics)
-        for (curve, changes), contact in zip(judged, followed.contacts, strict=True)
-    ]
-    first, later = row[0], tuple(row[1:])
-    return Certified(first.curve, first.march, first.changes, work, numerics, followed, later, surface)
+    return Certified.judged(followed, judged, runs.work(surface), numerics, surface=surface)
 
 
-def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[Curve, Mapping[str, Causes]]:
+def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
     """One contact of all runs, where it is ``alone`` with the fewest marches."""
     curve = partial(runs.curve, number)
     surface = runs.surface(numerics)
@@ -126,12 +120,12 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> tuple[C
     cheap = numerics.varied(steps=steps.cheap)
     meshed, pressed = (_judging(numerics, cheap, cause) for cause in ("mesh", "penalty"))
     mesh, by_mesh = other_mesh(meshed) if surface.breathes else other_mesh(meshed, MESH_ORDER_ANYWHERE)
-    top = TOP if surface.breathes else TOP_ANYWHERE
+    top, ripples = (TOP, {}) if surface.breathes else (TOP_ANYWHERE, {"duration": RIPPLED})
     penalty, stiffer = other_setting(pressed, "penalty")
     swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long
     by_steps = swings or steps.jitter_falls
     changes: dict[str, Causes] = {
-        "mesh": (_change(curve(meshed), curve(mesh), by_mesh, top), *(() if by_steps else steps.jitter)),
+        "mesh": (_change(curve(meshed), curve(mesh), by_mesh, top, ripples), *(() if by_steps else steps.jitter)),
         "penalty": (_change(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
         "time_step": (*steps.changes, *(steps.jitter if by_steps else ())),
         "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
@@ -169,7 +163,7 @@ def _far_field(
     runs: Runs, value: Curve, cheap: Numerics, mesh: Numerics, number: int, alone: bool
 ) -> Change | Softening | None:
     """By one press of either surface where an elastic one breathes with one contact; else by a march more, on the
-    varied mesh: what a surface remembers beside a small contact, the far field lifts by more than its share there.
+    varied mesh: beside a small contact the far field changes what a surface remembers by more than it does the contact.
 
     Bodies that end have none.
     """
@@ -262,26 +256,41 @@ def _end_alike(*curves: Curve) -> bool:
     return len({curve.separated for curve in curves}) == 1 and max(durations) <= MOST_APART * min(durations)
 
 
-def _change(first: Curve | None, second: Curve | None, trusted: float, top: float = TOP) -> Change | None:
+def _change(
+    first: Curve | None,
+    second: Curve | None,
+    trusted: float,
+    top: float = TOP,
+    weights: Mapping[str, float] | None = None,
+) -> Change | None:
     """Change between settings, ``trusted`` so many times as the error of the first."""
-    return None if first is None or second is None else Change(first, second, trusted, top=top)
+    return None if first is None or second is None else Change(first, second, trusted, weights or {}, top=top)
 
 
-def other_setting(numerics: AnyNumerics, key: str) -> tuple[AnyNumerics, bool]:
-    """One setting halved; where half of it would tell nothing, at least doubled, until it would, and True."""
-    value, least = getattr(numerics, key), LEAST_HALVED_SETTING[key]
+def other_setting(numerics: AnyNumerics, key: str, least: float | None = None) -> tuple[AnyNumerics, bool]:
+    """One setting halved; where half of it would tell nothing, at least doubled, until it would, and True.
+
+    ``least`` that may be halved, None: as without waves.
+    """
+    value, least = getattr(numerics, key), LEAST_HALVED_SETTING[key] if least is None else least
     finer = value < least
     changed: Any = {key: max(2 * value, least) if finer else value / 2}
     return replace(numerics, **changed), finer
 
 
-def other_mesh(numerics: Numerics, most: float = np.inf) -> tuple[Numerics, float]:
-    """Settings of the mesh that tells of this one, and error over change, by an order of ``most`` at most."""
-    if numerics.order not in MESH_ORDER:
-        elements = max(numerics.elements_per_contact, WITNESS_ELEMENTS)
-        return numerics.varied(order=WITNESS * numerics.order, elements_per_contact=elements), UNORDERED
-    other, finer = other_setting(numerics, "elements_per_contact")
-    return other, factor(min(MESH_ORDER[numerics.order], most), finer)
+def other_mesh(numerics: AnyNumerics, most: float = np.inf, nodes: float | None = None) -> tuple[AnyNumerics, float]:
+    """Settings of the mesh that tells of this one, and error over change, by an order of ``most`` at most.
+
+    Where half as fine a mesh would tell nothing it is at least twice as fine: of fewer ``nodes`` along the contact
+    radius than so many, None: of fewer elements than without waves.
+    """
+    order = numerics.order
+    if order not in MESH_ORDER:
+        least = WITNESS_ELEMENTS if nodes is None else nodes / (WITNESS * order)
+        elements = max(numerics.elements_per_contact, least)
+        return numerics.varied(order=WITNESS * order, elements_per_contact=elements), UNORDERED
+    other, finer = other_setting(numerics, "elements_per_contact", None if nodes is None else nodes / order)
+    return other, factor(min(MESH_ORDER[order], most), finer)
 
 
 @dataclass(frozen=True)

@@ -11,14 +11,15 @@ import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.curve import Curve, Reading
-from fe_contact.budget.local_polynomial import PLACES, steepest
+from fe_contact.budget.local_polynomial import BETWEEN, NEAREST_QUARTIC, PLACES
 
 TOP = 0.998  # of the largest depth or force, above which it is near: further away what comes later counts as an error
 STEEPER = 2.0  # times the chord there, that the slope of a change under a flat end may have
-RIPPLED = 1.5  # times the slope of its nearest quartic there, that a change which ripples on a mesh may have
+RIPPLED = 1.5  # times its nearest quartic there, and its end, that a change which ripples on a mesh may have
 SMOOTHING = 0.07  # share of the contact over which a pointwise change counts as the error of its neighbours
 FIRST_ORDER = 1.25  # factor where order one is all that shows
 SAFETY = 1.25  # of a grid convergence index by three runs, doi:10.1115/1.2910291
+FEWEST = 24  # steps that a curve keeps: a kink and both ends want as many
 UNORDERED = 2.5  # factor where no order shows: the finer of two runs errs by less than twice their distance
 
 
@@ -56,7 +57,7 @@ class Change:
         first, depth = self.first, self._depth_change
         speed = abs(first.leaving_speed) if first.separated else np.inf
         around = {
-            "peak_force": float(self._force_change[first.near_peak].max()),
+            "peak_force": self._peak_force,
             "peak_time": self._peak_time,
             "peak_depth": float(depth[first.dense.depth > self.top * first.dense.depth.max()].max()),
             "duration": float(depth[first.late :].max()) / speed if speed > 0.0 else np.inf,
@@ -174,25 +175,65 @@ class Change:
         return np.abs(self.first.dense.depth - self._second.depth)
 
     @property
+    def _peak_force(self) -> float:
+        """Largest change of the force near its peak, N; where the peak is read from a quartic, less of what ripples."""
+        largest = float(self._force_change[self.first.near_peak].max())
+        if self._fitless:
+            return largest
+        return min(largest, RIPPLED * float(np.abs(np.polyval(self._near_peak, BETWEEN)).max()))
+
+    @property
     def _peak_time(self) -> float:
         """How far a change of the force's slope moves its peak: slope over curvature, s.
 
         The curvature is that of all forces near the peak, the slope that of the change over the top: of the quartic
         nearest to it, which the peak is read from too; under a flat end, which is not read so, of its chord.
         """
-        time, force, near = self.first.dense_time, self.first.dense_force, self.first.near_peak
-        top = min(max(int(force.argmax()), 1), len(force) - 2)
-        left, right = min(near.start, top - 1), max(near.stop - 1, top + 1)
+        time, force = self.first.dense_time, self.first.dense_force
+        top, left, right = self._about_peak
         falling = (force[top] - force[right]) / (time[right] - time[top])
         rising = (force[top] - force[left]) / (time[top] - time[left])
         curvature = 2 * (falling + rising) / (time[right] - time[left])
         high = np.flatnonzero(force > TOP * force.max())
         begin, end = min(high[0], top - 1), max(high[-1], top + 1)
-        if self.first.fitless or self.second.fitless:
+        if self._fitless:
             change = self._second.force - force
             slope = STEEPER * np.ptp(change[begin : end + 1]) / (time[end] - time[begin])
         else:
-            places = np.linspace(time[left], time[right], PLACES)
-            change = self.second.force(places) - self.first.force(places)
-            slope = RIPPLED * steepest(places, change, time[begin], time[end])
+            half, middle = 0.5 * (time[right] - time[left]), 0.5 * (time[right] + time[left])
+            between = (np.linspace(time[begin], time[end], PLACES) - middle) / half
+            slope = RIPPLED * np.abs(np.polyval(np.polyder(self._near_peak), between)).max() / half
         return float(min(slope / abs(curvature), self.first.duration)) if curvature else self.first.duration
+
+    @property
+    def _fitless(self) -> bool:
+        """Whether either peak is not read from a fit."""
+        return self.first.fitless or self.second.fitless
+
+    @property
+    def _about_peak(self) -> tuple[int, int, int]:
+        """Dense times at the peak of the force, and before and after it where that is near its peak."""
+        near = self.first.near_peak
+        top = min(max(int(self.first.dense_force.argmax()), 1), len(self.first.dense_force) - 2)
+        return top, min(near.start, top - 1), max(near.stop - 1, top + 1)
+
+    @cached_property
+    def _near_peak(self) -> Array:
+        """The quartic nearest to the force's change between those, over -1 to 1."""
+        _, left, right = self._about_peak
+        places = np.linspace(self.first.dense_time[left], self.first.dense_time[right], PLACES)
+        return np.asarray(NEAREST_QUARTIC @ (self.second.force(places) - self.first.force(places)))
+
+
+def calmest(curve: Curve) -> Curve:
+    """The curve through every other of its steps as long as its force jitters less so, down to ``FEWEST`` of them.
+
+    On a mesh that stays, the edge crosses node after node: a dashpot's force, which is one of velocities, jitters by
+    the more the shorter the step is. What it jitters by is what every other step less changes.
+    """
+    while len(curve.x) > 2 * FEWEST:
+        thinner = curve.thinned()
+        if Change(thinner, thinner.thinned(), 1.0).history >= Change(curve, thinner, 1.0).history:
+            break
+        curve = thinner
+    return curve

@@ -28,7 +28,7 @@ from fe_contact.steppers.march import March, Strike
 
 PEAK_SHARE = 0.98  # of its peak above which a force is near it
 HALF_AS_HIGH = 0.25  # of the error of a peak's place, of fourth order in the width, is left where a fit is half as high
-SHARES = np.linspace(0.0, 1.0, 601)
+SHARES = np.linspace(0.0, 1.0, 601)  # of the contact, equally spaced
 EARLIEST = 4  # rows after touch that tell whether steps or shares are more crowded there
 LATE = 0.75  # of the contact: from here on path and speed count for those at separation
 DENSE = SHARES**2 * (3 - 2 * SHARES)  # shares of the contact, crowded at its ends, for peaks and norms

@@ -11,7 +11,8 @@ from fe_contact.assembly.forms import Array
 STENCIL = 6  # nodes of a polynomial
 PLACES = 17  # equidistant, from which a quartic is fitted
 FINE = np.linspace(0.0, 1.0, 201)  # where in an interval a maximum is looked for
-NEAREST_QUARTIC = np.linalg.pinv(np.vander(np.linspace(-1.0, 1.0, PLACES), 5))
+BETWEEN = np.linspace(-1.0, 1.0, PLACES)  # places on (-1, 1) through which a quartic is fitted
+NEAREST_QUARTIC = np.linalg.pinv(np.vander(BETWEEN, 5))  # from values there to its five coefficients
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,14 +67,6 @@ def fitted_peak(first: float, last: float, values: Array) -> tuple[float, float]
     """
     best, height = _top(NEAREST_QUARTIC @ values, -1.0, 1.0)
     return first + 0.5 * (best + 1.0) * (last - first), height
-
-
-def steepest(places: Array, values: Array, begin: float, end: float) -> float:
-    """Largest slope between ``begin`` and ``end`` of the quartic nearest to values at ``PLACES`` equidistant places."""
-    half = 0.5 * (places[-1] - places[0])
-    between = np.linspace(begin, end, PLACES) - 0.5 * (places[-1] + places[0])
-    slopes = np.polyval(np.polyder(NEAREST_QUARTIC @ values), between / half)
-    return float(np.abs(slopes).max() / half)
 
 
 def _top(quartic: Array, low: float, high: float) -> tuple[float, float]:

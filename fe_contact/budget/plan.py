@@ -16,7 +16,7 @@ from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import LedgerEntry
 from lumped.scene.scene import Scene
 
-DEFAULT_TOLERANCE = 1e-3
+DEFAULT_TOLERANCE = 1e-3  # default: relative, of every certified quantity
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-4: see `fe-contact tradeoff`
 LOOSER = math.log10(4.0 / 3.2)  # three and a fifth of them at 1e-3 where the mesh follows the contact
 FIXED_ELEMENTS = 2.0  # the same on a mesh that stays, four times refined where the contact may end

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 from functools import partial
+from typing import Generic, TypeVar
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import TotalWork
+from fe_contact.budget.change import calmest
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import share_of_peak
 from fe_contact.march.impact import march
 from fe_contact.march.impacts import Followed, SurfaceBouncer, follow
 from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import Numerics
+from fe_contact.steppers.flat_end import FlatEnd
 from fe_contact.steppers.march import Strike, Work
 from fe_contact.steppers.struck import Deformable, Struck
 from fe_contact.targets.base import struck
@@ -22,6 +25,8 @@ from lumped.scene.geometry import Geometry
 PILOT_STEPS = 24  # of a march that only places the steps of others
 PLACED = 0.05  # share by which a contact may last longer, or less, than was expected
 PLACINGS = 4  # marches of few steps that look for its end, where an estimate is out by an order
+
+AnyNumerics = TypeVar("AnyNumerics", bound=Numerics)
 
 
 def operations(work: TotalWork, finest: Struck) -> float:
@@ -36,16 +41,40 @@ def operations(work: TotalWork, finest: Struck) -> float:
     return float(inside + work.iterations * (zone**2 * points + zone**3 / 3))
 
 
-class Runs:
+class AnyRuns(Generic[AnyNumerics]):
+    """Runs of one strike with different settings, their contacts as curves; each kind says how one is followed."""
+
+    def __init__(self) -> None:
+        self._curves: dict[AnyNumerics, tuple[Curve, ...]] = {}
+
+    def follow(self, settings: AnyNumerics) -> Followed:
+        """One run, whose curves are known then; raises where it fails."""
+        raise NotImplementedError
+
+    def curve(self, number: int, settings: AnyNumerics) -> Curve | None:
+        """One contact of a run as a curve, None where it fails or has fewer: its cause of error is then unknown.
+
+        Settings asked for again are not run again: the fewest steps serve every other variation as base.
+        """
+        if settings not in self._curves:
+            try:
+                self.follow(settings)
+            except NotReached:
+                self._curves[settings] = ()
+        curves = self._curves[settings]
+        return curves[number] if number < len(curves) else None
+
+
+class Runs(AnyRuns[Numerics]):
     """Marches of a strike and of up to so many ``impacts`` in a row, with different settings, steps ``counted``."""
 
     def __init__(self, strike: Strike, geometry: Geometry, impacts: int, counted: Counted = uncounted) -> None:
+        super().__init__()
         self._counted = counted
         self._strike, self._geometry, self._impacts = strike, geometry, impacts
         self._works: list[Work] = []
         self._radii: dict[int, list[Array]] = {}
         self._surfaces: dict[int, Struck] = {}
-        self._curves: dict[Numerics, tuple[Curve, ...]] = {}
         self._places: dict[int, dict[str, float]] = {}
 
     def placed(self, settings: Numerics, few: int) -> Numerics:
@@ -70,7 +99,9 @@ class Runs:
         marches = [contact.march for contact in followed.contacts]
         self._works += [one.work for one in marches]
         self._radii.setdefault(settings.steps, [one.radius for one in marches])
-        self._curves[settings] = tuple(Curve.of(contact.march, contact.strike) for contact in followed.contacts)
+        curves = (Curve.of(contact.march, contact.strike) for contact in followed.contacts)
+        jitters = not (surface.breathes or isinstance(surface, FlatEnd) or self._strike.relaxation.is_elastic)
+        self._curves[settings] = tuple(calmest(curve) if jitters else curve for curve in curves)
         return followed
 
     def surface(self, settings: Numerics) -> Struck:
@@ -80,31 +111,11 @@ class Runs:
         self._surfaces[id(surface)] = surface
         return surface
 
-    def curve(self, number: int, settings: Numerics) -> Curve | None:
-        """One contact of a run as a curve, None where it fails or has fewer: its cause of error is then unknown.
-
-        Settings asked for again are not run again: the fewest steps serve every other variation as base.
-        """
-        if settings not in self._curves:
-            try:
-                self.follow(settings)
-            except NotReached:
-                self._curves[settings] = ()
-        curves = self._curves[settings]
-        return curves[number] if number < len(curves) else None
-
     def work(self, finest: Struck) -> TotalWork:
         """What all runs cost together."""
-        works = self._works
-        return TotalWork(
-            degrees_of_freedom=finest.degrees_of_freedom,
-            factorizations=sum(s.factorizations for s in self._surfaces.values()),
-            solves=sum(s.solves for s in self._surfaces.values()),
-            marches=len(works),
-            steps=sum(w.steps for w in works),
-            contact_problems=sum(w.contact_problems for w in works),
-            iterations=sum(w.iterations for w in works),
-        )
+        surfaces = self._surfaces.values()
+        factorizations, solves = sum(one.factorizations for one in surfaces), sum(one.solves for one in surfaces)
+        return TotalWork.of(self._works, finest.degrees_of_freedom, factorizations, solves)
 
     def _placed(self, settings: Numerics, surface: Struck, number: int, begun: Strike) -> Numerics:
         """Settings for one of the contacts: of a later one a march of few steps tells the finest run where to lie."""

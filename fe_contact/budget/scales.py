@@ -3,7 +3,8 @@
 By the exact row of springs, by the target's exact load curve, or, where there is none, by one that a coarse mesh
 answers at a few depths.
 
-A scene of constant Poisson's ratio much like one of constant bulk modulus, of which the plan takes its scales.
+A body of constant bulk modulus has the scales of one of constant Poisson's ratio that is as stiff at once and in the
+end (:func:`with_constant_nu`).
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ from lumped.scene.scene import Answered, Scene
 from lumped.targets import HalfSpace
 
 SPRINGS = 32  # along the contact radius: scales within one per cent place everything well
+# Work: of the mesh that tells how large a contact will be; order of its elements.
 COARSE = {"elements_per_contact": 2.0, "order": 2}
 # Contact radii on a round body, over its radius, at which the coarse mesh is asked.
 WIDTHS = tuple(float(share) for share in np.geomspace(5e-3, 0.6, 9))

@@ -6,15 +6,16 @@ settings change of the touch itself and of what the bars before amount to over t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import Any, Self
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.budget import CAUSES, Budget, Contacts
+from fe_contact.budget.budget import CAUSES, Budget, Causes, Contacts, TotalWork
 from fe_contact.budget.change import Change
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.softening import Softening
@@ -28,6 +29,7 @@ from lumped.result.result import UNITS, Quantity
 IN_FLIGHT = 65  # rows of a flight
 OF_EACH = ("duration", "restitution", "peak_force", "peak_depth")  # of every contact
 Shares = Mapping[str, float]  # of an error, by cause
+Judged = tuple[Curve, Mapping[str, Causes]]  # a contact, and what the settings change of it
 
 
 @dataclass(frozen=True)
@@ -36,6 +38,18 @@ class Several(Budget):
 
     followed: Followed
     later: tuple[Budget, ...]
+
+    @classmethod
+    def judged(
+        cls, followed: Followed, known: Iterable[Judged], work: TotalWork, numerics: Numerics, **more: Any
+    ) -> Self:
+        """From what is ``known`` of every contact; ``more``: what else the whole says."""
+        budgets = [
+            Budget(curve, contact.march, changes, work, numerics)
+            for (curve, changes), contact in zip(known, followed.contacts, strict=True)
+        ]
+        first, later = budgets[0], tuple(budgets[1:])
+        return cls(first.curve, first.march, first.changes, work, numerics, followed, later, **more)
 
     @property
     def row(self) -> tuple[Budget, ...]:

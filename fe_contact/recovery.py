@@ -22,7 +22,7 @@ from lumped.scene.scene import Scene
 from lumped.targets import HalfSpace
 
 SHARES = np.linspace(0.0, 1.0, 4001) ** 2  # of the contact, at which its path is read
-ROWS = 25
+ROWS = 25  # look: of the recovery, zero among them
 FIRST_GONE, LAST_LEFT = 0.99, 0.01  # of what goes, left at the first and at the last row after separation
 
 
