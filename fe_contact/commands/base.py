@@ -1,4 +1,4 @@
-"""What commands share: common options, overrides, where results go, progress and the result's print-out."""
+"""What commands share: common options, overrides, where results go, progress and what is said in the end."""
 
 from __future__ import annotations
 
@@ -8,18 +8,21 @@ import json
 import os
 import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
+from operator import methodcaller
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 from fe_contact.progress import Progress, clear, log_to, terminal, to_all
 from fe_contact.settings import Given, faults
 from lumped.errors import BadInput, Fault, shown
-from lumped.result.result import NO_KEY, LedgerEntry, Result, good_to, worst
+from lumped.indentation import Indentation
+from lumped.result.folder import publish
+from lumped.result.result import NO_KEY, Result, worst
 from lumped.scene.file import load, load_indenter
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
@@ -27,50 +30,49 @@ from lumped.schema import Table
 from lumped.schema.files import SCENES
 from lumped.schema.toml_file import overridden, parse_assignment, parsed
 
-DONE, NOT_REACHED = 0, 3
+DONE, NOT_REACHED = 0, 3  # two of the exit codes of cli, which loads this file only when it is needed
 LONGEST = 80  # characters of what --set changed in a folder's name: file systems take 255 bytes with the scene's name
 Read = TypeVar("Read")
 
 
+option = partial(methodcaller, "add_argument")  # with argparse's names and keywords: an option, which a parser takes
+SETTINGS = "set a key of the scene file, as striker.velocity=0.1"
+
+
 @dataclass(frozen=True)
 class Command:
-    """A member of this folder: what it does, in one line; what it reads; and what it executes, to an exit code 0 or 3.
+    """A member of this folder: what it does, in one line; its options; and what it executes, to an exit code 0 or 3.
 
     Raises named failures for the other codes.
     """
 
     summary: str
-    arguments: Callable[[argparse.ArgumentParser], None]
+    options: Sequence[Callable[[argparse.ArgumentParser], object]]
     execute: Callable[[argparse.Namespace], int]
 
 
-def scene_arguments(parser: argparse.ArgumentParser) -> None:
-    """SCENE, --tolerance and --set."""
-    parser.add_argument("scene", help="scene file (TOML), or the name of a packaged one: fe-contact scenes")
-    parser.add_argument(
-        "--tolerance", metavar="T", help="relative error asked of forces, depths and times; default 1e-3"
-    )
-    override_argument(parser)
-
-
-def override_argument(
-    parser: argparse.ArgumentParser, says: str = "set a key of the scene file, as striker.velocity=0.1"
-) -> None:
+def override(says: str = SETTINGS) -> methodcaller:
     """--set, as often as it is given."""
-    parser.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE", help=says)
+    return option("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE", help=says)
 
 
-def json_argument(parser: argparse.ArgumentParser) -> None:
-    """--json."""
-    parser.add_argument("--json", action="store_true", help="machine-readable result on stdout")
+JSON = option("--json", action="store_true", help="machine-readable result on stdout")
+OUTPUT = (
+    option("--out", type=Path, metavar="DIR", help="folder for the results"),
+    JSON,
+    option("--quiet", action="store_true", help="no progress on stderr"),
+    option("--log", metavar="FILE", help="write progress into a file, line by line"),
+)
+SCENE = (
+    option("scene", help="scene file (TOML), or the name of a packaged one: fe-contact scenes"),
+    option("--tolerance", metavar="T", help="relative error asked of forces, depths and times; default 1e-3"),
+    override(),
+)
 
 
-def output_arguments(parser: argparse.ArgumentParser) -> None:
-    """--out, --json, --quiet and --log."""
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder for the results")
-    json_argument(parser)
-    parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
-    parser.add_argument("--log", metavar="FILE", help="write progress into a file, line by line")
+def quick(says: str) -> methodcaller:
+    """--quick: what it leaves out."""
+    return option("--quick", action="store_true", help=says)
 
 
 def overrides_of(args: argparse.Namespace) -> dict[str, object]:
@@ -176,45 +178,59 @@ def progress_of(args: argparse.Namespace) -> Progress:
     return to_all(listeners)
 
 
-def tell(args: argparse.Namespace, content: Given, lines: Sequence[str], where: Path, title: str = "") -> None:
-    """On stdout what was found: as JSON, or line by line, under a title indented, and where it was written."""
+@dataclass(frozen=True)
+class StudyRun:
+    """A study at work: its command line, the folder of its results, and who hears how far it is."""
+
+    args: argparse.Namespace
+    where: Path
+    progress: Progress
+
+    @classmethod
+    def of(cls, args: argparse.Namespace, command: str, name: str) -> StudyRun:
+        """Of a command on a scene or the like; raises BadInput, before any work, where nothing can be written."""
+        return cls(args, folder(args, command, name), progress_of(args))
+
+    def finish(
+        self,
+        record: str,
+        lines: Sequence[str],
+        write: Callable[[Path], object],
+        plot: Callable[[Path], object],
+        title: str = "",
+        missed: str = "",
+    ) -> int:
+        """Publish files and charts, say what was found, complain of what missed its tolerance; the exit code."""
+
+        def written(where: Path) -> None:
+            write(where)
+            self.progress("chart")
+            plot(where)
+
+        content = publish(self.where, written, record)
+        say(self.args, content, [*lines, f"written to {self.where}"], title)
+        if missed:
+            complain(missed)
+        return NOT_REACHED if missed else DONE
+
+
+def say(args: argparse.Namespace, content: Given, lines: Sequence[str], title: str = "") -> None:
+    """On stdout what was found: as JSON, or line by line, under a title indented."""
     clear()
-    if args.json:
-        print(json.dumps(content, allow_nan=False))
-    else:
-        told = [*lines, f"written to {where}"]
-        print("\n  ".join([title, *told]) if title else "\n".join(told))
+    text = "\n  ".join([title, *lines]) if title else "\n".join(lines)
+    print(json.dumps(content, allow_nan=False) if args.json else text)
 
 
-def report(args: argparse.Namespace, result: Result, content: Given, where: Path) -> int:
-    """Print a result, or the content of its file, warn of what the model lacks; the exit code."""
-    clear()
-    if args.json:
-        print(json.dumps(content, allow_nan=False))
-    else:
-        print(summary(result, where))
-    warn(result)
-    return DONE if result.converged else NOT_REACHED
-
-
-class Judged(Protocol):
-    """What a result tells of itself."""
-
-    @property
-    def converged(self) -> bool: ...
-
-    @property
-    def message(self) -> str: ...
-
-    @property
-    def model_sufficient(self) -> bool: ...
-
-    @property
-    def model_ledger(self) -> Sequence[LedgerEntry]: ...
-
-
-def warn(result: Judged) -> None:
-    """One line each on stderr: a tolerance not reached, a model that is too small."""
+def report(
+    args: argparse.Namespace,
+    result: Result | Indentation,
+    content: Given,
+    lines: Sequence[str],
+    where: Path,
+    title: str,
+) -> int:
+    """Say what was found, warn of a tolerance not reached and of a model that is too small; the exit code."""
+    say(args, content, [*lines, f"written to {where}"], title)
     if not result.converged:
         complain(result.message)
     if not result.model_sufficient:
@@ -223,31 +239,10 @@ def warn(result: Judged) -> None:
             f"model too small for the tolerance: {most.effect}, {most.treated}, "
             f"about {most.estimate:.2g} of the peak force; {'; '.join(filter(None, (most.note, most.key or NO_KEY)))}"
         )
+    return DONE if result.converged else NOT_REACHED
 
 
 def complain(message: str) -> None:
     """One line on stderr."""
     clear()
     print(f"fe-contact: {message}", file=sys.stderr)
-
-
-def summary(result: Result, where: Path) -> str:
-    """Quantities with their error bars, one a line."""
-    lines = [f"{result.scene.name}: {result.method}, tolerance {result.tolerance:g}"]
-    for name, quantity in result.quantities.items():
-        if quantity.value is None:
-            lines.append(f"  {name:13s} undefined: no separation")
-        else:
-            lines.append(f"  {name:13s} {quantity.value:.6g} +- {quantity.error or 0.0:.1e} {quantity.unit}")
-    lines += [_contact(number, contact) for number, contact in enumerate(result.contacts, start=1)]
-    if result.contacts and result.converged and result.message:
-        lines.append(f"  {result.message}")
-    lines += [f"  {line}" for line in (good_to(result.model_ledger),) if line]
-    return "\n".join([*lines, f"  written to {where}"])
-
-
-def _contact(number: int, contact: Mapping[str, float | None]) -> str:
-    """One of several contacts in a line."""
-    names = {"duration": "s", "restitution": "", "peak_force": "N"}
-    told = [f"{name} {contact[name]:.6g} {unit}".rstrip() for name, unit in names.items() if contact[name] is not None]
-    return f"  contact {number} at {contact['start']:.6g} s: {', '.join(told)}"

@@ -11,45 +11,34 @@ from lumped.result.folder import publish
 from lumped.scene.scene import Scene
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """SCENE [--laws a,b] [--measured CURVE.csv] [--tolerance T] [--set a.b=value ...] [--out DIR]."""
-    base.scene_arguments(parser)
-    base.output_arguments(parser)
-    parser.add_argument("--laws", metavar="a,b,...", help="lumped laws; default: all that the target has")
-    parser.add_argument("--measured", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N")
-
-
 def execute(args: argparse.Namespace) -> int:
     """Solve, judge, write, say the verdict; 0 or 3."""
     from fe_contact.methods import settings, simulate
     from fe_contact.reference import result_of, solve
     from fe_contact.studies.compare.chart import plot_comparison
-    from fe_contact.studies.compare.study import compare
-    from fe_contact.studies.compare.verdict import comparison_content, write_comparison
+    from fe_contact.studies.compare.study import compare, comparison_content, write_comparison
     from lumped.result.score import read_curve
 
     scene, table = base.read_scene(args)
     given, names = settings(table, None, scene.source), law_names(args.laws, scene)
     measured = None if args.measured is None else read_curve(args.measured)
-    where = base.folder(args, "compare", scene.name)
-    progress = base.progress_of(args)
+    run = base.StudyRun.of(args, "compare", scene.name)
     if scene.model.inertia:
-        solved, reference = None, simulate(scene, "fe", given, progress=progress)
+        solved, reference = None, simulate(scene, "fe", given, progress=run.progress)
     else:
         scene.check_single("compare")
-        solved = solve(scene, given, progress)
+        solved = solve(scene, given, run.progress)
         reference = result_of(scene, solved)
-    comparison = compare(solved, reference, names, measured, progress)
+    comparison = compare(solved, reference, names, measured, run.progress)
     content = comparison_content(comparison)
 
     def write(folder: Path) -> None:
         write_comparison(comparison, folder)
         plot_comparison(comparison, folder)
 
-    publish(where, write)
-    base.tell(args, content, content["verdict"], where, f"{scene.name}: against finite elements")
-    base.warn(reference)
-    return base.DONE if reference.converged else base.NOT_REACHED
+    publish(run.where, write)
+    title = f"{scene.name}: against finite elements"
+    return base.report(args, reference, content, content["verdict"], run.where, title)
 
 
 def law_names(text: str | None, scene: Scene) -> tuple[str, ...]:
@@ -72,4 +61,13 @@ def law_names(text: str | None, scene: Scene) -> tuple[str, ...]:
     return names
 
 
-MEMBER = base.Command("the finite-element reference against lumped laws: scores, verdict, chart", arguments, execute)
+MEMBER = base.Command(
+    "the finite-element reference against lumped laws: scores, verdict, chart",
+    (
+        *base.SCENE,
+        *base.OUTPUT,
+        base.option("--laws", metavar="a,b,...", help="lumped laws; default: all that the target has"),
+        base.option("--measured", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N"),
+    ),
+    execute,
+)

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from fe_contact.progress import clear
 from lumped.errors import BadInput, Fault, NotReached, addressed, shown
 from lumped.result.folder import publish
 from lumped.schema import Table
@@ -20,23 +18,9 @@ if TYPE_CHECKING:
 WIDTH = 12  # of a parameter's name
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """CURVE.csv --law NAME --scene SCENE [--free a,b] [--fix a=v] [--bounds a=low:high] [--peak] [--opensees]."""
-    parser.add_argument("curve", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N")
-    parser.add_argument("--law", required=True, metavar="NAME", help="a lumped law: fe-contact laws")
-    parser.add_argument("--scene", required=True, help="scene (file or packaged name) with mass, velocity, geometry")
-    parser.add_argument("--free", metavar="a,b,...", help="parameters to find; default: stiffness and damping")
-    parser.add_argument("--fix", default="", metavar="a=v,...", help="parameters held at a value")
-    parser.add_argument("--bounds", default="", metavar="a=low:high,...", help="bounds of free parameters")
-    parser.add_argument("--peak", action="store_true", help="least error at equal peak force, (26)")
-    parser.add_argument("--opensees", nargs="?", const="tcl", metavar="tcl|python", help="print the law for OpenSees")
-    base.override_argument(parser)
-    base.output_arguments(parser)
-
-
 def execute(args: argparse.Namespace) -> int:
     """Fit, write, report; 0 or 3."""
-    from fe_contact.studies.fit.chart import plot_fit
+    from fe_contact.studies.fit_chart import plot_fit
     from lumped.fit import RECORD, fit, write_failure
     from lumped.result.score import read_curve
 
@@ -68,13 +52,12 @@ def _report(args: argparse.Namespace, found: Fit, content: Table, where: Path) -
     from lumped import laws
     from lumped.fit import opensees
 
-    text = summary(found, where)
+    text = summary(found, where).splitlines()
     if args.opensees:
-        lines = opensees.lines(laws.get(found.law).of(found.scene), found.scene, language=args.opensees)
-        text = "\n".join([*(f"# {line}" for line in text.splitlines()), lines])
-        content["opensees"] = lines.splitlines()
-    clear()
-    print(json.dumps(content, allow_nan=False) if args.json else text)
+        law = opensees.lines(laws.get(found.law).of(found.scene), found.scene, language=args.opensees)
+        text = [*(f"# {line}" for line in text), law]
+        content["opensees"] = law.splitlines()
+    base.say(args, content, text)
     for warning in found.warnings:
         base.complain(warning)
 
@@ -125,4 +108,19 @@ def _bounds(text: str) -> Iterator[tuple[str, tuple[float, float]]]:
         yield name, (base.number(low, "--bounds"), base.number(high, "--bounds"))
 
 
-MEMBER = base.Command("parameters of a law from a force history, with 95 % confidence intervals", arguments, execute)
+MEMBER = base.Command(
+    "parameters of a law from a force history, with 95 % confidence intervals",
+    (
+        base.option("curve", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N"),
+        base.option("--law", required=True, metavar="NAME", help="a lumped law: fe-contact laws"),
+        base.option("--scene", required=True, help="scene (file or packaged name) with mass, velocity, geometry"),
+        base.option("--free", metavar="a,b,...", help="parameters to find; default: stiffness and damping"),
+        base.option("--fix", default="", metavar="a=v,...", help="parameters held at a value"),
+        base.option("--bounds", default="", metavar="a=low:high,...", help="bounds of free parameters"),
+        base.option("--peak", action="store_true", help="least error at equal peak force, (26)"),
+        base.option("--opensees", nargs="?", const="tcl", metavar="tcl|python", help="print the law for OpenSees"),
+        base.override(),
+        *base.OUTPUT,
+    ),
+    execute,
+)

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import json
 
 from fe_contact.commands import base
-from fe_contact.progress import clear
 from lumped.errors import BadInput, Fault, NotReached, nearest, shown
 from lumped.indentation import Indentation
 from lumped.result.folder import publish
@@ -15,15 +13,6 @@ from lumped.scene.indenter import Indenter
 from lumped.schema import Table
 
 EXACT = ("mdr", "ting", "correspondence")  # at rest all are the exact load curve, the first the half-space's alone
-
-
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """SCENE --depths d1,d2,... [--method M] [--tolerance T] [--instant] [--set a.b=value ...] [--out DIR]."""
-    base.scene_arguments(parser)
-    base.output_arguments(parser)
-    parser.add_argument("--depths", required=True, metavar="d1,d2,...", help="depths in m")
-    parser.add_argument("--method", default="fe", metavar="M", help="fe (default), cheapest, hertz, or an exact law")
-    parser.add_argument("--instant", action="store_true", help="the material against a sudden indentation")
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -36,13 +25,8 @@ def execute(args: argparse.Namespace) -> int:
     where = base.folder(args, "indent", indenter.name)
     found = _indented(args, indenter, depths, given)
     content = publish(where, found.write_files)
-    clear()
-    if args.json:
-        print(json.dumps(content, allow_nan=False))
-    else:
-        print("\n".join([*_lines(found), f"  written to {where}"]))
-    base.warn(found)
-    return base.DONE if found.converged else base.NOT_REACHED
+    title = f"{found.indenter.name}: {found.method}, tolerance {found.tolerance:g}"
+    return base.report(args, found, content, _lines(found), where, title)
 
 
 def _indented(args: argparse.Namespace, indenter: Indenter, depths: tuple[float, ...], given: Table) -> Indentation:
@@ -70,17 +54,24 @@ def _indented(args: argparse.Namespace, indenter: Indenter, depths: tuple[float,
 
 def _lines(found: Indentation) -> list[str]:
     """Depth and force, one a line, and the power law through them."""
-    lines = [f"{found.indenter.name}: {found.method}, tolerance {found.tolerance:g}"]
-    for depth, force, error in zip(found.depth, found.force, found.force_error, strict=True):
-        lines.append(f"  {depth:.6g} m  {force:.6g} +- {error:.1e} N")
+    table = zip(found.depth, found.force, found.force_error, strict=True)
+    lines = [f"{depth:.6g} m  {force:.6g} +- {error:.1e} N" for depth, force, error in table]
     for name, quantity in found.quantities.items():
-        lines.append(f"  {name:11s} {quantity.value:.6g} +- {quantity.error or 0.0:.1e} {quantity.unit}")
+        lines.append(f"{name:11s} {quantity.value:.6g} +- {quantity.error or 0.0:.1e} {quantity.unit}")
     if found.finite_size is not None:
         slope = found.finite_size.slope
-        lines.append(f"  F/F_Hertz-1 {slope.value:.4g} +- {slope.error or 0.0:.1e} a/R")
-    return [*lines, f"  {good_to(found.model_ledger)}"]
+        lines.append(f"F/F_Hertz-1 {slope.value:.4g} +- {slope.error or 0.0:.1e} a/R")
+    return [*lines, good_to(found.model_ledger)]
 
 
 MEMBER = base.Command(
-    "slow indentation to given depths: indentation.csv and result.json, with error bars", arguments, execute
+    "slow indentation to given depths: indentation.csv and result.json, with error bars",
+    (
+        *base.SCENE,
+        *base.OUTPUT,
+        base.option("--depths", required=True, metavar="d1,d2,...", help="depths in m"),
+        base.option("--method", default="fe", metavar="M", help="fe (default), cheapest, hertz, or an exact law"),
+        base.option("--instant", action="store_true", help="the material against a sudden indentation"),
+    ),
+    execute,
 )

@@ -3,24 +3,16 @@
 from __future__ import annotations
 
 import argparse
-import json
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from fe_contact.progress import clear
 from lumped.errors import FeContactError, NotReached
 from lumped.result.result import good_to
 from lumped.scene.scene import Scene
 
 if TYPE_CHECKING:  # finite elements are loaded when they are needed
     from fe_contact.budget.plan import Plan
-    from fe_contact.waves.cost import Cost
-
-
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """SCENE [--tolerance T] [--set a.b=value ...] [--json]."""
-    base.scene_arguments(parser)
-    base.output_arguments(parser)
+    from fe_contact.waves.plan import Cost
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -33,27 +25,26 @@ def execute(args: argparse.Namespace) -> int:
     progress("plan")
     chosen = plan(scene, settings(table, None, scene.source))
     takes, refused = _takes(scene, chosen)
-    clear()
+    ledger = [entry.to_json(float(chosen.numerics.tolerance)) for entry in chosen.ledger]
+    content = {"numerics": chosen.numerics.as_dict(), "model_ledger": ledger, "cost": takes and takes.as_dict()}
+    base.say(args, content | {"refused": refused and str(refused)}, _lines(chosen, takes), scene.name)
+    if refused and not args.json:
+        base.complain(str(refused))
+    return base.NOT_REACHED if isinstance(refused, NotReached) else base.DONE  # what only laws can follow is a plan too
+
+
+def _lines(chosen: Plan, takes: Cost | None) -> list[str]:
+    """Every setting, what waves take, every effect left out."""
     tolerance = float(chosen.numerics.tolerance)
-    ledger = [entry.to_json(tolerance) for entry in chosen.ledger]
-    if args.json:
-        content = {"numerics": chosen.numerics.as_dict(), "model_ledger": ledger, "cost": takes and takes.as_dict()}
-        print(json.dumps(content | {"refused": refused and str(refused)}, allow_nan=False))
-        return _code(refused)
-    print(f"{scene.name}")
-    for key, value in chosen.numerics.as_dict().items():
-        print(f"  {key:21s} {value if not isinstance(value, float) else format(value, '.6g')}")
-    if takes is not None:
-        print(f"  takes {takes}")
-    print("  left out, relative to the peak force:")
+    settings = chosen.numerics.as_dict().items()
+    lines = [f"{key:21s} {value if not isinstance(value, float) else format(value, '.6g')}" for key, value in settings]
+    lines += [] if takes is None else [f"takes {takes}"]
+    lines.append("left out, relative to the peak force:")
     for entry in chosen.ledger:
         size = f"{entry.spread[0]:.2g} to {entry.spread[1]:.2g}, " if entry.spread else ""
         size += f"{entry.estimate:.2g}, " if entry.estimate is not None else ""
-        print(f"    {entry.effect} ({entry.treated}): {size}{entry.verdict(tolerance)}")
-    print(f"  {good_to(chosen.ledger)}")
-    if refused:
-        base.complain(str(refused))
-    return _code(refused)
+        lines.append(f"  {entry.effect} ({entry.treated}): {size}{entry.verdict(tolerance)}")
+    return [*lines, good_to(chosen.ledger)]
 
 
 def _takes(scene: Scene, chosen: Plan) -> tuple[Cost | None, FeContactError | None]:
@@ -73,9 +64,11 @@ def _takes(scene: Scene, chosen: Plan) -> tuple[Cost | None, FeContactError | No
     return takes, None
 
 
-def _code(refused: FeContactError | None) -> int:
-    """A plan that only laws can follow is one too."""
-    return base.NOT_REACHED if isinstance(refused, NotReached) else base.DONE
-
-
-MEMBER = base.Command("the settings chosen and what the model leaves out, without solving", arguments, execute)
+MEMBER = base.Command(
+    "the settings chosen and what the model leaves out, without solving",
+    (
+        *base.SCENE,
+        *base.OUTPUT,
+    ),
+    execute,
+)

@@ -3,27 +3,19 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.result.folder import publish
-from lumped.result.result import Result, write_failure
+from lumped.result.result import Result, good_to, write_failure
 from lumped.scene.scene import Scene
 from lumped.schema import Table
 
 if TYPE_CHECKING:  # finite elements are loaded when they are needed
     from fe_contact.reference import Solved
-
-
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """SCENE [--method M] [--tolerance T] [--out DIR] [--set a.b=value ...] [--fields] [--plot]."""
-    base.scene_arguments(parser)
-    base.output_arguments(parser)
-    parser.add_argument("--method", help="fe (default without [law]), cheapest, or a lumped law")
-    parser.add_argument("--fields", action="store_true", help="VTU of the fields at peak force")
-    parser.add_argument("--plot", action="store_true", help="force history and contact pressure as SVG and PNG")
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -52,7 +44,29 @@ def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path) -
     else:
         solved, result = None, simulate(scene, args.method, table, progress=base.progress_of(args))
     content = publish(where, lambda folder: _write(args, solved, result, folder))
-    return base.report(args, result, content, where)
+    title = f"{scene.name}: {result.method}, tolerance {result.tolerance:g}"
+    return base.report(args, result, content, _lines(result), where, title)
+
+
+def _lines(result: Result) -> list[str]:
+    """Quantities with their error bars, one a line, then every contact of several."""
+    lines = [
+        f"{name:13s} undefined: no separation"
+        if quantity.value is None
+        else f"{name:13s} {quantity.value:.6g} +- {quantity.error or 0.0:.1e} {quantity.unit}"
+        for name, quantity in result.quantities.items()
+    ]
+    lines += [_contact(number, contact) for number, contact in enumerate(result.contacts, start=1)]
+    if result.contacts and result.converged and result.message:
+        lines.append(result.message)
+    return [*lines, *filter(None, [good_to(result.model_ledger)])]
+
+
+def _contact(number: int, contact: Mapping[str, float | None]) -> str:
+    """One of several contacts in a line."""
+    names = {"duration": "s", "restitution": "", "peak_force": "N"}
+    told = [f"{name} {contact[name]:.6g} {unit}".rstrip() for name, unit in names.items() if contact[name] is not None]
+    return f"contact {number} at {contact['start']:.6g} s: {', '.join(told)}"
 
 
 def _write(args: argparse.Namespace, solved: Solved | None, result: Result, folder: Path) -> None:
@@ -94,4 +108,14 @@ def _write_fields(scene: Scene, solved: Solved | None, result: Result, where: Pa
         write_fields(scene, solved.certified, where)
 
 
-MEMBER = base.Command("one impact: history.csv and result.json, with error bars", arguments, execute)
+MEMBER = base.Command(
+    "one impact: history.csv and result.json, with error bars",
+    (
+        *base.SCENE,
+        *base.OUTPUT,
+        base.option("--method", help="fe (default without [law]), cheapest, or a lumped law"),
+        base.option("--fields", action="store_true", help="VTU of the fields at peak force"),
+        base.option("--plot", action="store_true", help="force history and contact pressure as SVG and PNG"),
+    ),
+    execute,
+)

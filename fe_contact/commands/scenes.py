@@ -3,15 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import json
 
 from fe_contact.commands import base
 from lumped.scene.scene import Scene
-
-
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """[--json]."""
-    base.json_argument(parser)
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -19,12 +13,11 @@ def execute(args: argparse.Namespace) -> int:
     from lumped.schema.files import SCENES
 
     scenes = {name: Scene.load(name) for name in SCENES.names}
-    if args.json:
-        print(json.dumps({name: scene.to_dict() for name, scene in scenes.items()}, allow_nan=False))
-        return base.DONE
     width = max(map(len, scenes))
-    for name, scene in scenes.items():
-        print(f"{name:{width}s} {described(scene)}, {scene.mass:g} kg at {scene.velocity:g} m/s")
+    lines = [
+        f"{name:{width}s} {described(one)}, {one.mass:g} kg at {one.velocity:g} m/s" for name, one in scenes.items()
+    ]
+    base.say(args, {name: scene.to_dict() for name, scene in scenes.items()}, lines)
     return base.DONE
 
 
@@ -35,4 +28,4 @@ def described(scene: Scene) -> str:
     return f"law {scene.law.name}" if scene.law is not None else "two masses"
 
 
-MEMBER = base.Command("the packaged scenes, one line each", arguments, execute)
+MEMBER = base.Command("the packaged scenes, one line each", (base.JSON,), execute)

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from fe_contact.fields import Pressure, felt, peak_step
 from fe_contact.reference import Solved
-from fe_contact.results.surface_pressure import Pressure, felt, peak_step
 from fe_contact.studies import style
 from fe_contact.studies.style import prefixed, readable, with_error
 from lumped.result.history import History

@@ -6,12 +6,15 @@ import math
 import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.gridspec import GridSpec
 
 COLUMN, PAGE = 3.5, 7.2  # widths of a paper's column and page, in
 
@@ -51,7 +54,7 @@ RC: Any = {
     "svg.hashsalt": "fe-contact",
     "path.simplify": False,
 }
-PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}  # by power of ten
 
 
 @contextmanager
@@ -116,3 +119,55 @@ def heading_height(lines: list[str], width: int) -> float:
     """Room that :func:`heading` needs, in."""
     count = sum(len(textwrap.wrap(line, width, subsequent_indent="    ")) for line in lines)
     return 0.36 + 0.152 * count
+
+
+def footnote(figure: Figure, text: str) -> None:
+    """One line at the figure's lower left."""
+    figure.text(0.011, 0.011, text.replace("\n", " "), fontsize=6.0, color="#4d4d4d")
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A figure with panels below a heading; ``top`` and ``bottom`` of all panels, in shares of its height."""
+
+    figure: Figure
+    top: float
+    bottom: float
+    paths: tuple[Path, Path]
+
+    def grid(self, rows: int, columns: int, left: float, right: float, **look: Any) -> GridSpec:
+        """Places of panels between two shares of the width."""
+        grid = self.figure.add_gridspec(rows, columns, **look)
+        grid.update(left=left, right=right, top=self.top, bottom=self.bottom)
+        return grid
+
+    def panels(self, rows: int, columns: int, left: float, right: float, **look: Any) -> list[Axes]:
+        """A panel in every place of such a grid, row by row."""
+        grid = self.grid(rows, columns, left, right, **look)
+        return [self.figure.add_subplot(grid[place]) for place in np.ndindex(rows, columns)]
+
+
+@contextmanager
+def sheet(
+    where: Path,
+    name: str,
+    title: str,
+    lines: list[str],
+    panels: float,
+    *,
+    width: int,
+    above: float = 0.35,
+    below: float = 0.45,
+    size: float = PAGE,
+) -> Iterator[Sheet]:
+    """A figure to draw on, saved as ``name.svg`` and ``name.png`` in a folder, under a title and wrapped lines.
+
+    `panels`: height of all panels with what is between them, in; `above` and `below` them, in; `size`: width, in.
+    """
+    with look():
+        above += heading_height(lines, width)
+        height = above + panels + below
+        figure = Figure(figsize=(size, height))
+        heading(figure, title, lines, width)
+        yield Sheet(figure, 1 - above / height, below / height, (where / f"{name}.svg", where / f"{name}.png"))
+        save(figure, where, name)

@@ -12,13 +12,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from fe_contact.fields import felt
 from fe_contact.reference import Solved
-from fe_contact.results.surface_pressure import felt
 from fe_contact.studies import style
 from fe_contact.studies.compare.deviations import rebound_steps, surface_radii
 from fe_contact.studies.compare.law_pressure import LawPressure
-from fe_contact.studies.compare.study import Comparison
-from fe_contact.studies.compare.verdict import verdicts
+from fe_contact.studies.compare.study import Comparison, verdicts
 from fe_contact.studies.history_chart import caption
 from fe_contact.studies.style import Look, prefixed, readable
 from lumped.result.history import History
@@ -27,6 +26,7 @@ from lumped.result.score import Curve as Measured
 PANELS = 4.6  # height of the four panels with what is around them, in
 TITLE_WIDTH = 134  # characters
 LEAST_SHOWN = 1e-6  # of the peak: the lower end of the logarithmic panel
+LEGEND = 0.3  # in, above the panels
 MOST_TENSION = 0.6  # of the largest pressure: a viscous law's tension at the edge is singular, and cut there
 # One colour and one dash a candidate: the reference is a broad grey line below all of them.
 STYLES: dict[str, Look] = {
@@ -42,21 +42,16 @@ REFERENCE: Look = {"color": "#b8b8b8", "linewidth": 4.2, "solid_capstyle": "butt
 def plot_comparison(comparison: Comparison, where: Path) -> tuple[Path, Path]:
     """Write ``compare.svg`` and ``compare.png`` into the folder ``where``; their paths."""
     lines = list(verdicts(comparison))
-    with style.look():
-        above, below = style.heading_height(lines, TITLE_WIDTH) + 0.55, 0.65
-        height = above + PANELS + below
-        figure = Figure(figsize=(style.PAGE, height))
-        grid = figure.add_gridspec(2, 2, width_ratios=(1.25, 1.0), height_ratios=(1.15, 1.0), hspace=0.42, wspace=0.26)
-        grid.update(left=0.082, right=0.982, top=1 - above / height, bottom=below / height)
-        _force(figure.add_subplot(grid[0, 0]), comparison)
-        _distance(figure.add_subplot(grid[1, 0]), comparison)
-        _radius(figure.add_subplot(grid[0, 1]), comparison)
-        _pressure(figure.add_subplot(grid[1, 1]), comparison)
-        style.heading(figure, f"{comparison.reference.scene.name} against finite elements", lines, TITLE_WIDTH)
-        _legend(figure, comparison, 1 - (above - 0.3) / height)
-        text = caption(comparison.reference.scene).replace("\n", " ")
-        figure.text(0.011, 0.011, text, fontsize=6.0, color="#4d4d4d")
-        return style.save(figure, where, "compare")
+    scene = comparison.reference.scene
+    title, room = f"{scene.name} against finite elements", {"above": 0.55, "below": 0.65}
+    ratios = {"width_ratios": (1.25, 1.0), "height_ratios": (1.15, 1.0)}
+    with style.sheet(where, "compare", title, lines, PANELS, width=TITLE_WIDTH, **room) as sheet:
+        grid = sheet.grid(2, 2, 0.082, 0.982, hspace=0.42, wspace=0.26, **ratios)
+        for place, draw in (((0, 0), _force), ((1, 0), _distance), ((0, 1), _radius), ((1, 1), _pressure)):
+            draw(sheet.figure.add_subplot(grid[place]), comparison)
+        _legend(sheet.figure, comparison, sheet.top + LEGEND / sheet.figure.get_figheight())
+        style.footnote(sheet.figure, caption(scene))
+    return sheet.paths
 
 
 def _candidates(comparison: Comparison) -> Iterator[tuple[History | Measured, Look]]:
@@ -84,8 +79,8 @@ def _legend(figure: Figure, comparison: Comparison, height: float) -> None:
 
 def _force(axes: Axes, comparison: Comparison) -> None:
     history = comparison.reference.history
-    second, unit, span = _time_axis(axes, comparison)
-    newton, force_unit = prefixed(history.force.max(), "N")
+    second, span = _time_axis(axes, comparison)
+    newton, unit = prefixed(history.force.max(), "N")
     axes.plot(second * history.time, newton * history.force, **REFERENCE)
     for curve, line in _candidates(comparison):
         axes.plot(second * curve.time, newton * curve.force, **line)
@@ -97,12 +92,11 @@ def _force(axes: Axes, comparison: Comparison) -> None:
         alpha=0.45,
         linewidth=0.0,
     )
-    _mark_depth(axes, comparison, second)
     turn = comparison.told.deepest
     side, shift = ("left", 3.0) if turn < 0.6 * span else ("right", -3.0)
     axes.annotate("maximum depth", (second * turn, 0.0), (shift, 3.0), textcoords="offset points", ha=side,
                   fontsize=6.0, color="#666666")  # fmt: skip
-    axes.set(xlabel=f"time, {unit}", ylabel=f"force, {force_unit}")
+    axes.set(ylabel=f"force, {unit}")
     axes.set_ylim(bottom=0.0)
     style.label(axes, "a", "contact force")
 
@@ -110,7 +104,7 @@ def _force(axes: Axes, comparison: Comparison) -> None:
 def _distance(axes: Axes, comparison: Comparison) -> None:
     """|force - reference| over the peak, logarithmic, so that the error bar can be seen."""
     told = comparison.told
-    second, unit, span = _time_axis(axes, comparison)
+    second, span = _time_axis(axes, comparison)
     times = np.linspace(0.0, span, 1200)
     inside = times <= told.duration
     bar = np.where(inside, told.force_error(np.minimum(times, told.duration)), 0.0) / told.peak
@@ -120,21 +114,18 @@ def _distance(axes: Axes, comparison: Comparison) -> None:
         distance = np.abs(candidate.force_at(times) - told.force(times)) / told.peak
         ended = times > max(told.duration, float(candidate.time[-1]))
         axes.plot(second * times, np.where(ended, np.nan, np.maximum(distance, 0.5 * LEAST_SHOWN)), **line)
-    _mark_depth(axes, comparison, second)
     axes.set(yscale="log", ylabel="share of the peak", ylim=(LEAST_SHOWN, 2.0))
-    axes.set_xlabel(f"time, {unit}")
     style.label(axes, "c", "distance from the reference's force")
 
 
 def _radius(axes: Axes, comparison: Comparison) -> None:
     history = comparison.reference.history
-    second, unit, _ = _time_axis(axes, comparison)
-    metre, length_unit = prefixed(history.contact_radius.max(), "m")
+    second, _ = _time_axis(axes, comparison)
+    metre, unit = prefixed(history.contact_radius.max(), "m")
     axes.plot(second * history.time, metre * history.contact_radius, **REFERENCE)
     for name, law in comparison.laws.items():
         axes.plot(second * law.history.time, metre * law.history.contact_radius, **line_of(name))
-    _mark_depth(axes, comparison, second)
-    axes.set(xlabel=f"time, {unit}", ylabel=f"radius, {length_unit}")
+    axes.set(ylabel=f"radius, {unit}")
     axes.set_ylim(bottom=0.0)
     style.label(axes, "b", "contact radius")
 
@@ -177,15 +168,12 @@ def _without_pressure(solved: Solved | None) -> str:
     return "no rebound before the end of the history" if told else "under a flat end: that of the indentation"
 
 
-def _time_axis(axes: Axes, comparison: Comparison) -> tuple[float, str, float]:
-    """Factor and unit of time, and the latest end of any history, s."""
+def _time_axis(axes: Axes, comparison: Comparison) -> tuple[float, float]:
+    """Up to the latest end of any history, a line at the reference's maximum depth; factor of time, that end, s."""
     histories = [comparison.reference.history, *(law.history for law in comparison.laws.values())]
     span = max(float(history.time[-1]) for history in histories)
     factor, unit = prefixed(span, "s")
-    axes.set_xlim(0.0, 1.01 * factor * span)
-    return factor, unit, span
-
-
-def _mark_depth(axes: Axes, comparison: Comparison, second: float) -> None:
-    """A thin line at the reference's maximum depth."""
-    axes.axvline(second * comparison.told.deepest, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
+    axes.set(xlabel=f"time, {unit}", xlim=(0.0, 1.01 * factor * span))
+    deepest = factor * comparison.told.deepest
+    axes.axvline(deepest, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
+    return factor, span

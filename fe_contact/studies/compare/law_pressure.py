@@ -25,7 +25,7 @@ from lumped.scene.scene import Answered
 from lumped.targets import HalfSpace
 
 FOLLOWING, EXACT = ("hertz", "correspondence"), ("ting", "mdr")
-PATH_POINTS = 400
+PATH_POINTS = 400  # work: rows of the history along which a law's pressure is followed, at most
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,12 +1,15 @@
 """Lumped laws and a measured curve against the finite-element reference: scores, errors and error bars.
 
-A load curve by slow indentation, for the laws, where the target has none in closed form.
+A load curve by slow indentation, for the laws, where the target has none in closed form. The verdict in words,
+computed: what a law holds and where it errs by more than the error bars leave open. A comparison as files: a history a
+law and its scores in CSV, verdict and errors in JSON.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -14,9 +17,16 @@ from fe_contact.budget.scales import has_curve
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.reference import Solved
-from fe_contact.studies.compare.deviations import force_bars, force_errors, pressure_error, radius_error
-from fe_contact.studies.compare.nested_areas import NestedAreas, nested_areas
-from fe_contact.studies.compare.told import Told
+from fe_contact.studies.compare.deviations import (
+    NestedAreas,
+    Told,
+    force_bars,
+    force_errors,
+    nested_areas,
+    pressure_error,
+    radius_error,
+)
+from fe_contact.studies.files import write_study
 from lumped import simulate
 from lumped.errors import FeContactError
 from lumped.laws import get
@@ -26,14 +36,23 @@ from lumped.result.score import Curve as Measured
 from lumped.result.score import score
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Answered, Scene
+from lumped.schema import Table
+from lumped.schema.json_file import plain
 
 DEFAULT_LAWS = ("hertz", "correspondence", "ting", "mdr")
 LAW_TOLERANCE = 1e-6  # of a law's own integration: far below any reference's bar
 QUANTITIES = (*RULED_RELATIVE, "peak_time", "restitution")
 DISTANCES = ("work", "loss", "shape", "peak_shift")  # of the two curves, without a bar
-DEPTHS = 16
+DEPTHS = 16  # of the slow indentation beside the impact
 SHALLOWEST, DEEPEST = 1e-2, 1.02  # over the depth of the impact
-TOLERANCE = 3e-4
+TOLERANCE = 3e-4  # of that indentation
+WITHIN = "within the reference's error bar"
+DECISIVE = ("history", "held_until_max_depth", "peak_force", "peak_depth", "duration", "restitution")
+SCHEMA = "fe-contact/compare/1"
+SCORES = (
+    "peak_force", "peak_time", "peak_depth", "duration", "restitution", "impulse", "work", "loss", "shape",
+    "peak_shift", "contact_radius_rebound", "pressure_rebound", "held_until_max_depth",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -157,3 +176,105 @@ def known(scene: Scene, depth: float) -> tuple[Scene, float]:
         asked, tuple(float(force) for force in forces), tuple(float(radius) for radius in pressed.contact_radius)
     )
     return Answered.by(scene, curve), float(np.max(pressed.force_error / pressed.force))
+
+
+def verdicts(comparison: Comparison) -> tuple[str, ...]:
+    """One line a candidate, those of equal verdict together; the areas; then the laws that gave no answer."""
+    sentences: dict[str, list[str]] = {}
+    for judgement in comparison.judgements:
+        sentences.setdefault(_sentence(comparison, judgement), []).append(judgement.name)
+    lines = [f"{', '.join(names)}: {sentence}" for sentence, names in sentences.items()]
+    lines += [] if comparison.nested is None else [_nested(comparison.nested)]
+    return (*lines, *(f"{name}: no answer: {reason}" for name, reason in comparison.refused.items()))
+
+
+def _nested(areas: NestedAreas) -> str:
+    """Whether Ting's solution may be asked of this contact."""
+    says = "nest as Ting supposes" if areas.holds else "do not nest as Ting supposes"
+    return f"areas of contact {says}: paired radii differ by {percent(areas.deviation)}, bar {percent(areas.bar)}"
+
+
+def _sentence(comparison: Comparison, judgement: Judgement) -> str:
+    if not any(judgement.exceeds(name) for name in DECISIVE) and not _only_one_separates(comparison, judgement):
+        return WITHIN
+    parts = [_approach(judgement)]
+    parts += _signed(judgement, "peak_force", "peak force {} too low", "peak force {} too high")
+    parts += [_end(comparison, judgement)]
+    error = judgement.errors["restitution"]
+    if error is not None and judgement.exceeds("restitution"):
+        parts.append(f"restitution {_digits(abs(error))} too {'low' if error < 0 else 'high'}")
+    return ", ".join(part for part in parts if part)
+
+
+def _approach(judgement: Judgement) -> str:
+    share = percent(judgement.errors["held_until_max_depth"] or 0.0)
+    if judgement.exceeds("held_until_max_depth"):
+        return f"errs by up to {share} of the peak before maximum depth"
+    return f"holds until maximum depth ({share} of the peak)"
+
+
+def _end(comparison: Comparison, judgement: Judgement) -> str:
+    if _only_one_separates(comparison, judgement):
+        return "does not separate" if comparison.reference.separated else "separates where the reference does not"
+    signed = _signed(judgement, "duration", "ends {} too early", "ends {} too late")
+    return signed[0] if signed else "ends on time" if judgement.errors["duration"] is not None else ""
+
+
+def _only_one_separates(comparison: Comparison, judgement: Judgement) -> bool:
+    law = comparison.laws.get(judgement.name)
+    return law is not None and law.separated != comparison.reference.separated
+
+
+def _signed(judgement: Judgement, name: str, low: str, high: str) -> list[str]:
+    """The phrase for an error beyond its bar, none otherwise."""
+    error = judgement.errors[name]
+    if error is None or not judgement.exceeds(name):
+        return []
+    return [(low if error < 0 else high).format(percent(abs(error)))]
+
+
+def percent(share: float) -> str:
+    """A share in per cent, two significant digits."""
+    return f"{_digits(100 * share)} %"
+
+
+def _digits(value: float) -> str:
+    """Two significant digits, never in exponential notation for what a reader meets."""
+    return f"{value:.2g}" if 1e-4 <= value < 100 or value == 0 else f"{value:.0f}" if value >= 100 else f"{value:.0e}"
+
+
+def write_comparison(comparison: Comparison, where: Path) -> None:
+    """Write every history, ``scores.csv`` and ``compare.json`` into a folder."""
+    comparison.reference.write_files(where)
+    for name, law in comparison.laws.items():
+        law.history.write_csv(where / f"{name}-history.csv")
+    nested = comparison.nested and comparison.nested.holds  # of the reference: the same in every line
+    scores = [
+        {"law": one.name, "score_percent": one.score_percent}
+        | {f"{name}_error": one.errors[name] for name in SCORES}
+        | {"nested_areas": nested}
+        for one in comparison.judgements
+    ]
+    write_study(where, "compare", comparison_content(comparison), {"scores": scores})
+
+
+def comparison_content(comparison: Comparison) -> Table:
+    """The content of ``compare.json``: verdict, errors, and what the error bars leave open of each."""
+    reference = comparison.reference
+    content: Table = plain(
+        {
+            "schema": SCHEMA,
+            "scene": reference.scene.name,
+            "tolerance": reference.tolerance,
+            "converged": reference.converged,
+            "verdict": verdicts(comparison),
+            "reference": {name: vars(quantity) for name, quantity in reference.quantities.items()},
+            "candidates": {
+                j.name: {"score_percent": j.score_percent, "errors": j.errors, "bars": j.bars}
+                for j in comparison.judgements
+            },
+            "nested_areas": comparison.nested and vars(comparison.nested) | {"holds": comparison.nested.holds},
+            "refused": comparison.refused,
+        }
+    )
+    return content

@@ -1,4 +1,4 @@
-"""Where methods break, and why the defaults do not: maps over their settings, one study a file.
+"""Where methods break, and why the defaults do not: maps over their settings; a file a family of studies.
 
-A member is a :class:`~fe_contact.studies.stability.base.MethodStudy`.
+A member is a table of :class:`~fe_contact.studies.stability.base.MethodStudy` by the names of the files they write.
 """

@@ -16,13 +16,13 @@ from matplotlib.figure import Figure
 
 from fe_contact.settings import Given
 from fe_contact.studies import style
-from fe_contact.studies.stability.base import STUDIES, Chart, Measure, Row
+from fe_contact.studies.stability.base import Chart, Measure, Row, studies
 
 CELL, LETTER = 0.16, 0.062  # height of a row, width of a letter of its name, in
 TALLEST = 9.0  # panels that are taller together stand beside each other, in
 BESIDE, LINE = 0.12, 0.13  # between them; height of a line of their titles, in
 DECADES = 2.0  # either side of the limit that the colours span
-TITLE_WIDTH = 132
+TITLE_WIDTH = 132  # look: characters
 FEW = 4  # columns, in whose cells there is room for numbers
 NOT_ASKED = "0.9"
 LINES = [
@@ -36,7 +36,7 @@ def plot_stability(rows: Sequence[Row], where: Path) -> list[Path]:
     found = list[Path]()
     for study in dict.fromkeys(row["study"] for row in rows):
         own = [row for row in rows if row["study"] == study]
-        member = STUDIES.get(study)
+        member = studies()[study]
         with style.look():
             figure = _map(own, member.title, member.chart)
             found += style.save(figure, where, study)

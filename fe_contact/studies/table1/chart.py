@@ -7,11 +7,9 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from fe_contact.studies import style
-from fe_contact.studies.table1.datum import DEPTH
-from fe_contact.studies.table1.reach import LIMIT
+from fe_contact.studies.table1.limits import DEPTH, LIMIT
 from fe_contact.studies.table1.study import RATIOS, Trial, bodies
 from fe_contact.studies.table1.verdict import verdict
 from lumped.result.result import Quantity
@@ -26,22 +24,18 @@ SUPPORTS = {
     "free": style.GREEN,
     "held": style.PURPLE,
 }
-DASHED = (0, (3, 1.6))
-TABLE_ALPHA = 1.0
+DASHED = (0, (3, 1.6))  # look: points drawn and left out
+TABLE_ALPHA = 1.0  # physics: the exponent as printed in the table
 
 
 def plot_table1(trials: Sequence[Trial], where: Path) -> tuple[Path, Path]:
     """Write ``table1.svg`` and ``table1.png`` into the folder ``where``; their paths."""
     judged = [(trial.row, verdict(trial)) for trial in trials]
     lines = [f"{row.number}  {row.case}: {one.word}: {one.sentence}" for row, one in judged]
-    with style.look():
-        above, below = style.heading_height(lines, TITLE_WIDTH) + 0.35, 0.45
-        height = above + 3 * PANEL + below
-        figure = Figure(figsize=(style.PAGE, height))
-        grid = figure.add_gridspec(3, 2, wspace=0.24, hspace=0.42)
-        grid.update(left=0.075, right=0.985, top=1 - above / height, bottom=below / height)
-        panels = [figure.add_subplot(grid[place // 2, place % 2]) for place in range(4)]
-        panels.append(figure.add_subplot(grid[2, :]))
+    with style.sheet(where, "table1", "Table 1 on trial", lines, 3 * PANEL, width=TITLE_WIDTH) as sheet:
+        grid = sheet.grid(3, 2, 0.075, 0.985, wspace=0.24, hspace=0.42)
+        places = [grid[place // 2, place % 2] for place in range(4)]
+        panels = [sheet.figure.add_subplot(place) for place in (*places, grid[2, :])]
         _moduli(panels[0], trials)
         _departures(panels[1], trials)
         _datum(panels[2], panels[3], trials)
@@ -55,8 +49,7 @@ def plot_table1(trials: Sequence[Trial], where: Path) -> tuple[Path, Path]:
         )
         for axes, letter, title in zip(panels, "abcde", titles, strict=True):
             style.label(axes, letter, title)
-        style.heading(figure, "Table 1 on trial", lines, TITLE_WIDTH)
-        return style.save(figure, where, "table1")
+    return sheet.paths
 
 
 def _look(trial: Trial) -> tuple[str, str]:

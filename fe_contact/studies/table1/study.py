@@ -1,11 +1,14 @@
 """Table 1 on trial: D, E* and alpha of every row, identified from slow indentation and from impact by finite elements.
 
 At nu = 0 every modulus of the table is Young's: the force there tells D and alpha, and forces at other Poisson's
-ratios over it tell E*. Line contact tells its E* by the slope of its logarithm.
+ratios over it tell E*. Line contact tells its E* by the slope of its logarithm. From impacts they are read off the
+loading branch: while the striker comes in, force and depth are those of a slow indentation at every instant, each with
+the bar of its history. No force enters there that a slow indentation found.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -14,29 +17,49 @@ from typing import Any
 
 import numpy as np
 
+from fe_contact.assembly.forms import Array
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
+from fe_contact.reference import solve
 from fe_contact.studies import journal
-from fe_contact.studies.table1.blocks import Block, blocks
-from fe_contact.studies.table1.datum import Place, places
-from fe_contact.studies.table1.impact import FromImpact, line_impacts, power_law_impacts
-from fe_contact.studies.table1.reach import Reach, reach
+from fe_contact.studies.table1.limits import CHORD, DEPTH, Block, Place, Reach, blocks, places, reach
 from lumped.errors import NotReached
 from lumped.indentation import Indentation, power_law
 from lumped.paper.table1 import ROWS, Elastic, TableRow
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
+from lumped.scene.scene import Scene
+from lumped.targets import Target
+from lumped.targets.cylinder import CylinderTarget
+from lumped.targets.layer import Layer
 
-RATIOS = (0.0, 0.23, 0.45)
+RATIOS = (0.0, 0.23, 0.45)  # Poisson's ratios
 YOUNG = 1e9  # Pa
 SHALLOW = tuple(float(share) for share in np.geomspace(1e-5, 1e-3, 5))  # depths over the row's length: they identify
 DEEP = tuple(float(share) for share in np.geomspace(2e-3, 0.5, 16))  # they tell how far the power law holds
 WHOLE = tuple(float(share) for share in np.geomspace(1e-4, 0.1, 7))  # the same for bodies of their true size
 LINE = (1e-5, 1e-4)  # line contact has no power law to look for
-TOLERANCE = 3e-4
+TOLERANCE = 3e-4  # of the indentations of power laws
 LINE_TOLERANCE = 1e-4  # the slope of a logarithm is a difference
-WORKERS = 2
+# of impacts
+IMPACT_DEPTH = 1e-4  # greatest depth over the row's length
+SHARES = tuple(float(share) for share in np.geomspace(0.2, 0.95, 9))  # of the greatest depth, at which forces are read
+ENDS = (0.1, 0.95)  # the same where the slope of a logarithm is wanted
+DEEPER = 1.3  # greatest depth over the one at which line contact is tried, if it were as stiff as printed
+IMPACT_TOLERANCE = 1e-3  # of the certified impacts
+MASS = 1.0  # kg: the velocity follows from it
+WORKERS = 2  # work: default processes side by side
 KEPT = "table1.jsonl"
+
+
+@dataclass(frozen=True)
+class FromImpact:
+    """``alpha`` and ``factor`` D, m^(2-alpha), at nu = 0, or a ``place`` of line contact; ``moduli`` E*, Pa, by nu."""
+
+    moduli: Mapping[float, Quantity]
+    alpha: Quantity | None = None
+    factor: Quantity | None = None
+    place: Place | None = None
 
 
 @dataclass(frozen=True)
@@ -109,7 +132,10 @@ def _power_law(row: TableRow) -> Trial:
 
 def _line_contact(row: TableRow) -> Trial:
     curves = {nu: _pressed(row, row.scene(*bodies(row, nu)), LINE, LINE_TOLERANCE) for nu in RATIOS}
-    moduli = {nu: logarithms_modulus(row, curve) for nu, curve in curves.items()}
+    moduli = {
+        nu: logarithms_modulus(row, curve.depth, curve.force, curve.force_error / curve.force)
+        for nu, curve in curves.items()
+    }
     struck = line_impacts(row, {nu: bodies(row, nu) for nu in RATIOS}, RATIOS[1])
     found = () if struck.place is None else (struck.place,)
     return Trial(row, moduli=moduli, datum=(*places(row, *bodies(row, RATIOS[1])), *found), impact=struck)
@@ -139,13 +165,102 @@ def identified_moduli(row: TableRow, curves: Mapping[float, Indentation]) -> dic
     return found
 
 
-def logarithms_modulus(row: TableRow, curve: Indentation) -> Quantity:
-    """E*, Pa: b^2 = 4 R F/(pi E* l), so that from one small contact to another depth/F falls by ln F/(pi E* l).
+def logarithms_modulus(row: TableRow, depth: Array, force: Array, relative: Array) -> Quantity:
+    """E*, Pa: b^2 = 4 R F/(pi E* l), so that from the first contact to the last depth/F falls by ln F/(pi E* l).
 
-    Where bodies end and where they are held adds the same to both.
+    Where bodies end and where they are held adds the same to both. `relative`: bars of the forces; (n,) each.
     """
-    length = row.factor / (0.25 * np.pi)
-    compliance, relative = curve.depth / curve.force, curve.force_error / curve.force
-    fall, growth = float(compliance[0] - compliance[1]), float(np.log(curve.force[1] / curve.force[0]))
-    value = growth / (np.pi * length * fall)
+    length = row.factor / (0.25 * math.pi)
+    ends = [0, -1]
+    compliance, relative = (depth / force)[ends], relative[ends]
+    fall, growth = float(compliance[0] - compliance[1]), float(np.log(force[-1] / force[0]))
+    value = growth / (math.pi * length * fall)
     return Quantity(value, value * float(relative.sum() / growth + compliance @ relative / fall), "Pa")
+
+
+@dataclass(frozen=True, eq=False)
+class Loading:
+    """Depth, m, force, N, and what both may err by together, relative to the force; (n,) each."""
+
+    depth: Array
+    force: Array
+    relative: Array
+
+
+def power_law_impacts(row: TableRow, bodies: Mapping[float, tuple[Elastic, ...]]) -> FromImpact:
+    """Of a row with one D; ``bodies`` by Poisson's ratio, nu = 0 among them. Raises NotReached."""
+    curves = {
+        nu: loading(row, row.scene(*pressed), IMPACT_DEPTH * row.length, SHARES, *pressed)
+        for nu, pressed in bodies.items()
+    }
+    base, known = curves[0.0], row.modulus(*bodies[0.0])
+    law = power_law(base.depth, base.force / known, base.relative, row.alpha)
+    moduli = {nu: _modulus(row, known, base, curve) for nu, curve in curves.items()}
+    moduli[0.0] = Quantity(known, 0.0, "Pa")
+    return FromImpact(moduli, law["alpha"], law["D_at_alpha"])
+
+
+def line_impacts(row: TableRow, bodies: Mapping[float, tuple[Elastic, ...]], nu: float) -> FromImpact:
+    """Of line contact: E* by the slope of its logarithm; D at one depth for one nu, with the row's own support."""
+    moduli = {}
+    for ratio, pressed in bodies.items():
+        curve = loading(row, row.scene(*pressed), IMPACT_DEPTH * row.length, ENDS, *pressed)
+        moduli[ratio] = logarithms_modulus(row, curve.depth, curve.force, curve.relative)
+    return FromImpact(moduli, place=_place(row, bodies[nu]))
+
+
+def _place(row: TableRow, bodies: tuple[Elastic, ...]) -> Place:
+    """D/l and the exponent around one depth."""
+    scene, modulus = row.scene(*bodies), row.modulus(*bodies)
+    depths = tuple(factor * DEPTH * row.length for factor in CHORD)
+    curve = loading(row, scene, DEEPER * DEPTH * row.length, depths, *bodies, shared=False)
+    alpha = power_law(curve.depth, curve.force / modulus, curve.relative, row.alpha)["alpha"]
+    length = row.factor / (0.25 * math.pi)
+    factor = float(curve.force[1] / (modulus * curve.depth[1] * length))
+    found = Quantity(factor, factor * float(curve.relative[1]), "1")
+    support, size = _support(scene.target)
+    return Place(support, size / row.length, "impact", found, alpha)
+
+
+def _support(target: Target) -> tuple[str, float]:
+    """What carries the contact, and its length, m."""
+    if isinstance(target, Layer):
+        return f"{target.base} layer", target.thickness
+    assert isinstance(target, CylinderTarget)
+    return target.support or "", target.radius
+
+
+def loading(
+    row: TableRow, slow: Indenter, deepest: float, wanted: tuple[float, ...], *bodies: Elastic, shared: bool = True
+) -> Loading:
+    """Forces on the way in, at depths ``wanted``, m, or ``shared`` with the greatest one; raises NotReached.
+
+    The velocity is that of a striker which the row as printed would stop at the ``deepest``, m.
+    """
+    work = row.factor * row.modulus(*bodies) * deepest ** (row.alpha + 1.0) / (row.alpha + 1.0)
+    scene = Scene(
+        slow.shape,
+        MASS,
+        math.sqrt(2.0 * work / MASS),
+        slow.material,
+        target=slow.target,
+        model=slow.model,
+        striker_material=slow.striker_material,
+        name=slow.name,
+    )
+    certified = solve(scene, {"tolerance": IMPACT_TOLERANCE}).certified
+    curve = certified.curve
+    turn = int(curve.dense.depth.argmax())
+    top = float(curve.dense.depth[turn])
+    depths = np.array(wanted) * (top if shared else 1.0)
+    times = np.interp(depths, curve.dense.depth[: turn + 1], curve.dense_time[: turn + 1])
+    here = curve.read(times)
+    error = row.alpha * certified.total("peak_depth") / here.depth
+    return Loading(here.depth, here.force, certified.force_error(times) / here.force + error)
+
+
+def _modulus(row: TableRow, known: float, base: Loading, curve: Loading) -> Quantity:
+    """E*, Pa: that at nu = 0 times the mean ratio of both forces over depth^alpha."""
+    ratio = curve.force / curve.depth**row.alpha / (base.force / base.depth**row.alpha)
+    value = known * float(np.exp(np.log(ratio).mean()))
+    return Quantity(value, value * float((curve.relative + base.relative).mean()), "Pa")

@@ -10,15 +10,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from fe_contact.studies.table1.blocks import WIDTHS, Block, within
-from fe_contact.studies.table1.datum import DEPTH
-from fe_contact.studies.table1.impact import FromImpact
-from fe_contact.studies.table1.reach import LIMIT
-from fe_contact.studies.table1.study import Trial, bodies
+from fe_contact.studies.files import Line, write_study
+from fe_contact.studies.table1.limits import DEPTH, LIMIT, WIDTHS, Block, within
+from fe_contact.studies.table1.study import FromImpact, Trial, bodies
 from lumped.result.result import Quantity
 from lumped.schema import Table
-from lumped.schema.csv_file import write_csv
-from lumped.schema.json_file import plain, write_json
 
 HOLDS, RANGE, WRONG = "holds", "holds within a range", "wrong, corrected"
 UNDECIDED, UNTRIED = "undecided", "not tried"
@@ -26,16 +22,11 @@ UNDECIDED, UNTRIED = "undecided", "not tried"
 ALPHA, FACTOR, MODULUS = 5e-4, 1e-3, 1e-3
 LINE = 0.25 * math.pi  # D over the length l, as printed in both rows of line contact
 SCHEMA = "fe-contact/table1/1"
-COLUMNS = (
-    "number", "row", "case", "D_printed_formula", "D_printed", "D", "D_error", "D_deviation", "alpha_printed", "alpha",
-    "alpha_error", "E_printed_formula", "E_corrected_formula", "nu", "E_printed_Pa", "E_Pa", "E_error_Pa",
-    "E_deviation", "depth_tried_from", "depth_tried_to", "holds_to_1_percent_up_to", "holds_up_to_error", "verdict",
-    "statement", "validity", "correction", "D_impact", "D_impact_error", "alpha_impact", "alpha_impact_error",
-    "E_impact_Pa", "E_impact_error_Pa",
-)  # fmt: skip
-DATUM_COLUMNS = ("number", "row", "support", "length_over_radius", "method", "D_over_l", "D_over_l_error", "alpha",
-                 "alpha_error", "depth_over_radius_with_printed_D")  # fmt: skip
-BONDED_COLUMNS = ("nu", "radius_over_thickness", "modulus_over_young", "modulus_over_young_error")
+HEADERS = {  # of tables that may have no line
+    "table1-datum": ("number", "row", "support", "length_over_radius", "method", "D_over_l", "D_over_l_error", "alpha",
+                     "alpha_error", "depth_over_radius_with_printed_D"),
+    "table1-bonded": ("nu", "radius_over_thickness", "modulus_over_young", "modulus_over_young_error"),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -160,54 +151,72 @@ def _value(quantity: Quantity) -> float:
 
 def write_table1(trials: Sequence[Trial], where: Path) -> Table:
     """Write ``table1.csv``, ``-datum.csv``, ``-bonded.csv`` and ``table1.json`` into a folder; the latter's content."""
-    where.mkdir(parents=True, exist_ok=True)
-    write_csv(where / "table1.csv", COLUMNS, [_line(trial) for trial in trials])
-    stuck = {block: None for trial in trials for block in trial.bonded}
-    write_csv(where / "table1-bonded.csv", BONDED_COLUMNS, [_block(block) for block in stuck])
-    write_csv(where / "table1-datum.csv", DATUM_COLUMNS, [line for trial in trials for line in _data(trial)])
-    content: Table = plain({"schema": SCHEMA, "rows": [_described(trial) for trial in trials]})
-    write_json(where / "table1.json", content)
-    return content
+    tables = {
+        "table1": [_line(trial) for trial in trials],
+        "table1-bonded": [_block(one) for one in dict.fromkeys(one for trial in trials for one in trial.bonded)],
+        "table1-datum": [line for trial in trials for line in _data(trial)],
+    }
+    content = {"schema": SCHEMA, "rows": [_described(trial) for trial in trials]}
+    return write_study(where, "table1", content, tables, HEADERS)
 
 
-def _line(trial: Trial) -> list[object]:
+def _line(trial: Trial) -> Line:
     """One row of table1.csv; E* at the Poisson's ratio where it lies farthest from the printed one."""
-    row, printed, judged = trial.row, deviations(trial), verdict(trial)
+    row, printed, judged, reach = trial.row, deviations(trial), verdict(trial), trial.reach
     nu = max(trial.moduli, key=lambda one: _off(trial, one), default=None)
-    known = None if nu is None else row.printed_modulus(*bodies(row, nu))
-    reach = trial.reach
-    return [
-        row.number, row.name, row.case,
-        row.printed[0], row.factor, *_pair(trial.factor), _known(printed, "D"),
-        row.alpha, *_pair(trial.alpha),
-        row.printed[1], row.corrected[1], nu, known, *_pair(None if nu is None else trial.moduli[nu]),
-        _known(printed, "E*"),
-        *((None, None, None, None) if reach is None else (reach.first, reach.last, *_pair(reach.held))),
-        judged.word, judged.sentence, row.validity, row.correction or None, *_struck(trial, nu),
-    ]  # fmt: skip
+    struck = trial.impact or FromImpact({})
+    return {
+        "number": row.number,
+        "row": row.name,
+        "case": row.case,
+        "D_printed_formula": row.printed[0],
+        "D_printed": row.factor,
+        **_cells(trial.factor, "D", "D_error"),
+        "D_deviation": _known(printed, "D"),
+        "alpha_printed": row.alpha,
+        **_cells(trial.alpha, "alpha", "alpha_error"),
+        "E_printed_formula": row.printed[1],
+        "E_corrected_formula": row.corrected[1],
+        "nu": nu,
+        "E_printed_Pa": None if nu is None else row.printed_modulus(*bodies(row, nu)),
+        **_cells(None if nu is None else trial.moduli[nu], "E_Pa", "E_error_Pa"),
+        "E_deviation": _known(printed, "E*"),
+        "depth_tried_from": reach and reach.first,
+        "depth_tried_to": reach and reach.last,
+        **_cells(None if reach is None else reach.held, "holds_to_1_percent_up_to", "holds_up_to_error"),
+        "verdict": judged.word,
+        "statement": judged.sentence,
+        "validity": row.validity,
+        "correction": row.correction or None,
+        **_cells(struck.factor, "D_impact", "D_impact_error"),
+        **_cells(struck.alpha, "alpha_impact", "alpha_impact_error"),
+        **_cells(None if nu is None else struck.moduli.get(nu), "E_impact_Pa", "E_impact_error_Pa"),
+    }
 
 
-def _struck(trial: Trial, nu: float | None) -> tuple[float | None, ...]:
-    """D, alpha and E* at a Poisson's ratio from impacts, each with its bar."""
-    found = trial.impact
-    if found is None:
-        return (None,) * 6
-    return (*_pair(found.factor), *_pair(found.alpha), *_pair(None if nu is None else found.moduli[nu]))
-
-
-def _data(trial: Trial) -> list[list[object]]:
+def _data(trial: Trial) -> list[Line]:
     """Its rows of table1-datum.csv."""
     return [
-        [trial.row.number, trial.row.name, place.support, place.length, place.method, *_pair(place.factor),
-         *_pair(place.alpha), place.once]
+        {
+            "number": trial.row.number,
+            "row": trial.row.name,
+            "support": place.support,
+            "length_over_radius": place.length,
+            "method": place.method,
+            **_cells(place.factor, "D_over_l", "D_over_l_error"),
+            **_cells(place.alpha, "alpha", "alpha_error"),
+            "depth_over_radius_with_printed_D": place.once,
+        }
         for place in trial.datum
-    ]  # fmt: skip
+    ]
 
 
-def _block(block: Block) -> list[float]:
+def _block(block: Block) -> Line:
     """One row of table1-bonded.csv."""
     young, modulus = block.body.young, block.modulus
-    return [block.body.nu, block.width, (modulus.value or 0.0) / young, (modulus.error or 0.0) / young]
+    share = Quantity((modulus.value or 0.0) / young, (modulus.error or 0.0) / young, "1")
+    found = _cells(share, "modulus_over_young", "modulus_over_young_error")
+    return {"nu": block.body.nu, "radius_over_thickness": block.width, **found}
 
 
 def _described(trial: Trial) -> Table:
@@ -265,9 +274,49 @@ def _off(trial: Trial, nu: float) -> float:
     return abs((trial.moduli[nu].value or 0.0) / known - 1.0)
 
 
-def _pair(quantity: Quantity | None) -> tuple[float | None, float | None]:
-    return (None, None) if quantity is None else (quantity.value, quantity.error)
+def _cells(quantity: Quantity | None, value: str, error: str) -> Line:
+    """Its value and its bar under the names of their columns."""
+    return {value: quantity and quantity.value, error: quantity and quantity.error}
 
 
 def _known(found: Mapping[str, Deviation], name: str) -> float | None:
     return found[name].value if name in found else None
+
+
+def told(trials: Sequence[Trial]) -> list[str]:
+    """Of every row its verdict, then its numbers."""
+    return [line for trial in trials for line in _said(trial)]
+
+
+def undecided(trials: Sequence[Trial]) -> str:
+    """Which rows bars leave undecided; empty where they leave none."""
+    names = [trial.row.name for trial in trials if verdict(trial).word == UNDECIDED]
+    return f"undecided: {', '.join(names)}" if names else ""
+
+
+def _said(trial: Trial) -> list[str]:
+    """A row: its verdict, then its numbers."""
+    row, judged = trial.row, verdict(trial)
+    lines = [f"{row.number} {row.case}: {judged.word}: {judged.sentence}"]
+    if trial.alpha is not None and trial.factor is not None:
+        alpha, factor = trial.alpha, trial.factor
+        lines.append(f"    alpha {alpha.value:.6g} +- {alpha.error:.1e}, printed {row.alpha:g}")
+        lines.append(f"    D {factor.value:.6g} +- {factor.error:.1e} {factor.unit}, printed {row.factor:.6g}")
+    if trial.moduli:
+        nu, found = max(trial.moduli.items())
+        lines.append(f"    E* {found.value:.6g} +- {found.error:.1e} Pa at nu = {nu:g}, printed {row.printed[1]}")
+    return [*lines, *_struck(trial)]
+
+
+def _struck(trial: Trial) -> list[str]:
+    """What its impacts say."""
+    if trial.impact is None:
+        return []
+    found = trial.impact
+    said = [] if found.alpha is None or found.factor is None else [
+        f"alpha {found.alpha.value:.6g} +- {found.alpha.error:.1e}",
+        f"D {found.factor.value:.6g} +- {found.factor.error:.1e} {found.factor.unit}",
+    ]  # fmt: skip
+    nu, modulus = max(found.moduli.items())
+    said.append(f"E* {modulus.value:.6g} +- {modulus.error:.1e} Pa at nu = {nu:g}")
+    return [f"    from impact: {', '.join(said)}"]

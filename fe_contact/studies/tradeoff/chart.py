@@ -12,14 +12,13 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from fe_contact.studies import style
 from fe_contact.studies.history_chart import caption
 from fe_contact.studies.style import Look
-from fe_contact.studies.tradeoff.front import Measure, finite_elements, front, known_to, verdict
 from fe_contact.studies.tradeoff.point import Point
+from fe_contact.studies.tradeoff.study import Measure, finite_elements, front, known_to, verdict
 from lumped.scene.scene import Scene
 
 PANELS = 3.9  # height of the panels, in
@@ -43,23 +42,18 @@ def plot_tradeoff(scene: Scene, points: Sequence[Point], where: Path) -> tuple[P
     """Write ``tradeoff.svg`` and ``tradeoff.png`` into the folder ``where``; their paths."""
     lines, signs = list(verdict(points)), Signs.of(points)
     legend = signs.legend(points)
-    with style.look():
-        above = style.heading_height(lines, TITLE_WIDTH) + 0.3
-        below = 0.61 + ROW * -(-len(legend) // COLUMNS)
-        height = above + PANELS + below
-        figure = Figure(figsize=(style.PAGE, height))
-        grid = figure.add_gridspec(1, 2, wspace=0.24, width_ratios=(1.3, 1.0))
-        grid.update(left=0.082, right=0.985, top=1 - above / height, bottom=below / height)
-        left, right = figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1])
+    title, room = f"What accuracy costs: {scene.name}", {"above": 0.3, "below": 0.61 + ROW * -(-len(legend) // COLUMNS)}
+    with style.sheet(where, "tradeoff", title, lines, PANELS, width=TITLE_WIDTH, **room) as sheet:
+        left, right = sheet.panels(1, 2, 0.082, 0.985, wspace=0.24, width_ratios=(1.3, 1.0))
         _every_method(left, points, signs)
         _finite_elements(right, points, signs, lambda point: point.work["operations"])
         right.set(xlabel="counted work, operations", ylabel="error")
         style.label(right, "b", "finite elements: error over counted work")
-        figure.legend(handles=legend, loc="lower left", bbox_to_anchor=(0.075, 0.24 / height), ncols=COLUMNS,
-                      columnspacing=1.6, handletextpad=0.5, labelspacing=0.55, borderaxespad=0.0)  # fmt: skip
-        style.heading(figure, f"What accuracy costs: {scene.name}", lines, TITLE_WIDTH)
-        figure.text(0.011, 0.011, caption(scene).replace("\n", " "), fontsize=6.0, color="#4d4d4d")
-        return style.save(figure, where, "tradeoff")
+        place = 0.075, 0.24 / sheet.figure.get_figheight()
+        sheet.figure.legend(handles=legend, loc="lower left", bbox_to_anchor=place, ncols=COLUMNS, columnspacing=1.6,
+                            handletextpad=0.5, labelspacing=0.55, borderaxespad=0.0)  # fmt: skip
+        style.footnote(sheet.figure, caption(scene))
+    return sheet.paths
 
 
 def _every_method(axes: Axes, points: Sequence[Point], signs: Signs) -> None:

@@ -1,21 +1,19 @@
-"""One point of a trade-off: a method with its settings, what it costs and by how much it errs."""
+"""One point of a trade-off: a method with its settings, what it costs and by how much it errs, and from what truth."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TypeVar
 
 import numpy as np
 
+from fe_contact.assembly.forms import Array
 from fe_contact.settings import Given
 from lumped.result.result import Result
+from lumped.result.score import distance
 
 MEASURED = ("peak_force", "duration", "restitution")
 REFERENCE = "reference"  # the method of the point that errors are measured from, where it has a bar of its own
-
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -67,11 +65,63 @@ def largest_bar(result: Result) -> float:
     return max(bars)
 
 
-def timed(run: Callable[[], T], repeats: int) -> tuple[T, float]:
-    """What a call gives, and the least processor time it took, s."""
-    spent = []
-    for _ in range(repeats):
-        start = time.process_time()
-        found = run()
-        spent.append(time.process_time() - start)
-    return found, min(spent)
+NONE: Array = np.zeros(0)
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What a run gives: its settings, quantities by name, the largest of their bars, counted work, and the force.
+
+    ``force``, N, at ``time``, s, (n,) each and zero outside; empty where there is no history.
+    """
+
+    settings: Given
+    values: Mapping[str, float | None]
+    bar: float | None
+    work: Mapping[str, float]
+    time: Array = field(default_factory=NONE.copy)
+    force: Array = field(default_factory=NONE.copy)
+
+    @classmethod
+    def of(cls, result: Result, **counted: float) -> Answer:
+        """Of an impact, and what else was counted."""
+        work, history = {**result.work, **counted}, result.history
+        return cls(result.numerics, values_of(result), largest_bar(result), work, history.time, history.force)
+
+    def force_at(self, time: Array) -> Array:
+        """Force at other times, N: linear between the rows, zero outside them."""
+        return np.asarray(np.interp(time, self.time, self.force, left=0.0, right=0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """Quantities by name, the force, N, at times (n,), s, linear between ``knots`` (k,), s; ``bar``, how far it is off.
+
+    ``bar`` is the largest of the relative ones, as in :class:`Point`. A ``smooth`` force is compared at the rows of
+    what is judged, any other between all knots, at which it may jump.
+    """
+
+    values: Mapping[str, float | None]
+    knots: Array
+    force_at: Callable[[Array], Array]
+    bar: float = 0.0
+    smooth: bool = False
+
+    @classmethod
+    def of(cls, answer: Answer, smooth: bool = False) -> Truth:
+        """What a run says, its bars the truth's own."""
+        return cls(answer.values, answer.time, answer.force_at, answer.bar or 0.0, smooth)
+
+    def errors(self, answer: Answer) -> dict[str, float]:
+        """Of the measured quantities that both define, and of the history where there is one."""
+        found = errors_of(self.values, answer.values)
+        return found | {"history": self._distance(answer)} if answer.time.size else found
+
+    def _distance(self, answer: Answer) -> float:
+        """Norm of the force's error over the norm of the force."""
+        if not self.smooth:
+            return distance(self.force_at, answer.force_at, np.union1d(answer.time, self.knots))
+        times = np.concatenate([answer.time, self.knots[self.knots > answer.time[-1]]])
+        known = self.force_at(times)
+        squares = np.trapezoid((answer.force_at(times) - known) ** 2, times)
+        return float(np.sqrt(squares / np.trapezoid(known**2, times)))

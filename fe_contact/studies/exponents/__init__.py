@@ -1,1 +1,0 @@
-"""How geometry sets the exponent: study, check, files, chart."""

@@ -1,0 +1,42 @@
+"""What every study leaves: tables in CSV, and a record in JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from lumped.schema import Table
+from lumped.schema.csv_file import write_csv
+from lumped.schema.json_file import plain, write_json
+
+Line = Mapping[str, object]  # cells by their columns
+
+
+def write_study(
+    where: Path,
+    record: str,
+    content: Mapping[str, object],
+    tables: Mapping[str, Sequence[Line]],
+    headers: Mapping[str, Iterable[str]] | None = None,
+) -> Table:
+    """Write every table as ``<name>.csv``, and ``<record>.json``, into a folder, made when it is not there.
+
+    A table's header is what its lines hold, in their order, after what `headers` names, lines or none. Returns the
+    content of the record, plain.
+    """
+    where.mkdir(parents=True, exist_ok=True)
+    for name, lines in tables.items():
+        header = list(dict.fromkeys([*(headers or {}).get(name, ()), *(key for line in lines for key in line)]))
+        write_csv(where / f"{name}.csv", header, [[line.get(key) for key in header] for line in lines])
+    written: Table = plain(content)
+    write_json(where / f"{record}.json", written)
+    return written
+
+
+def lines_of(columns: Mapping[str, object]) -> list[Line]:
+    """A line for every place of the arrays among the columns, shape (n,); anything else stands in all of them."""
+    length = max(column.size for column in columns.values() if isinstance(column, np.ndarray))
+    filled = [one.tolist() if isinstance(one, np.ndarray) else [one] * length for one in columns.values()]
+    return [dict(zip(columns, line, strict=True)) for line in zip(*filled, strict=True)]

@@ -1,1 +1,0 @@
-"""A fitted law: its chart."""

@@ -1,0 +1,187 @@
+"""The paper's figures again: Fig. 6, 7 and 8 with the exact law beside the clipped, Fig. 10's cut.
+
+Fig. 15 as numbers: the dent that is left when the ball parts, and what a second impact finds of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from fe_contact.studies import style
+from fe_contact.studies.style import Look
+from lumped.paper.claims import GridRow, PaperStudy
+from lumped.paper.concrete_impacts import cut_at_measured_peak, proposed
+from lumped.paper.given import Examples, Steel
+from lumped.paper.steel_impacts import DentedSurface, R1_of_peak, damped_of_peak, elastic_of_peak, hertz, solid
+from lumped.paper.value import MICRO
+from lumped.result.result import Result
+
+TITLE_WIDTH = 130  # characters
+POINTS = 401  # of a curve
+HEIGHT_6, HEIGHT_GRID, HEIGHT_10, HEIGHT_15 = 3.7, 5.4, 2.9, 3.3  # in
+THIN: Look = {"linewidth": 0.6, "alpha": 0.75}  # look
+BROAD: Look = {"linewidth": 3.2, "alpha": 0.6}  # look
+DASHED: Look = {"linestyle": (0, (3, 1.6)), "linewidth": 0.8}  # look
+TIMES, PAUSES = 241, 16  # of the curves of Fig. 15
+# Times in units of R2: how long the surface is shown, and the shortest and longest pause.
+SHOWN, SHORTEST, LONGEST = 4.0, 1e-2, 1e1
+LAW_KEY = (
+    Line2D([], [], color=style.GREY, label="correspondence, cut at zero force"),
+    Line2D([], [], color=style.GREY, label="exact (Ting)", **DASHED),
+)
+MEMORY_KEY = (
+    Line2D([], [], color=style.GREY, label="surface"),
+    Line2D([], [], color=style.GREY, label="ball after parting", **DASHED),
+)
+
+
+def plot_paper(study: PaperStudy, where: Path) -> tuple[Path, ...]:
+    """Write ``fig6``, ``fig7``, ``fig8``, ``fig10`` and ``fig15`` as SVG and PNG into ``where``; their paths."""
+    with style.look():
+        grids = (*_grid(study, 7, where), *_grid(study, 8, where))
+        rest = (*_fig10(study, where), *_fig15(study.examples, where))
+        return (*_fig6(study, where), *grids, *rest)
+
+
+def _fig6(study: PaperStudy, where: Path) -> tuple[Path, Path]:
+    steel = study.examples.steel
+    figure = Figure(figsize=(style.PAGE, HEIGHT_6))
+    axes = figure.add_axes((0.075, 0.13, 0.6, 0.68))
+    for name, result, look in _curves_6(steel):
+        _plot(axes, result, label=name, **look)
+    axes.axhline(steel.measured_peak, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 1.5)))
+    axes.set(xlabel="time, µs", ylabel="force, N", xlim=(0.0, None), ylim=(0.0, 1.08 * steel.measured_peak))
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), labelspacing=0.7)
+    lines = [f"Dotted: the measured peak, {steel.measured_peak:g} N. The e of Kelvin and Jankowski is not printed."]
+    style.heading(figure, "Fig. 6 drawn again: the steel ball", lines, TITLE_WIDTH)
+    return style.save(figure, where, "fig6")
+
+
+def _curves_6(steel: Steel) -> list[tuple[str, Result, Look]]:
+    """Name, impact and look of every curve, those of one family named once."""
+    R1, peak = R1_of_peak(steel).value, steel.measured_peak
+    curves: list[tuple[str, Result, Look]] = [
+        (f"proposed, R1 = {steel.R1:g} as printed", solid(steel, steel.R1, steel.R2), {"color": style.VERMILION}),
+        ("nonlinear elastic, theoretical", hertz(steel, steel.contact_modulus), {"color": style.PURPLE}),
+        ("nonlinear elastic, equal peak", elastic_of_peak(steel, "hertz", peak), {"color": style.SKY, **BROAD}),
+        (f"proposed, R1 = {R1:.3f}, equal peak", solid(steel, R1, steel.R2), {"color": style.VERMILION, **DASHED}),
+        ("linear spring, equal peak", elastic_of_peak(steel, "linear_spring", peak), {"color": style.GREY}),
+    ]
+    for law, colour in (("kelvin", style.ORANGE), ("jankowski", style.GREEN)):
+        ends = f"e = {steel.restitutions[0]:g} to {steel.restitutions[-1]:g}"
+        for i, e in enumerate(steel.restitutions):
+            name = "_" if i else f"{law.capitalize()}, equal peak, {ends}"
+            curves.append((name, damped_of_peak(steel, law, e), {"color": colour, **THIN}))
+    return curves
+
+
+def _grid(study: PaperStudy, number: int, where: Path) -> tuple[Path, Path]:
+    rows = [row for row in study.grid if row.figure == number]
+    figure = Figure(figsize=(style.PAGE, HEIGHT_GRID))
+    panels = figure.subplots(2, 2, sharex=True, sharey=number == 8).ravel()
+    figure.subplots_adjust(0.07, 0.125, 0.985, 0.845, hspace=0.26, wspace=0.16)
+    held, varied = ("R2", "R1") if number == 7 else ("R1", "R2")
+    for i, axes in enumerate(panels):
+        _panel(axes, [row for row in rows if row.panel == i], varied)
+        style.label(axes, "abcd"[i], f"{held} = {_named(rows, i, held)}")
+    panels[0].set_xlim(0.0, 1.03 * MICRO * max(row.exact.history.time[-1] for row in rows))
+    for axes in panels[2:]:
+        axes.set_xlabel("time, µs")
+    for axes in panels[::2]:
+        axes.set_ylabel("force, N")
+    figure.legend(handles=LAW_KEY, loc="lower center", ncols=2)
+    lines = ["The law of the paper, and what it approximates in the rebound; until the deepest instant they are one."]
+    style.heading(figure, f"Fig. {number} drawn again: the steel ball, {varied} varied", lines, TITLE_WIDTH)
+    return style.save(figure, where, f"fig{number}")
+
+
+def _panel(axes: Axes, rows: Sequence[GridRow], varied: str) -> None:
+    for row, colour in zip(rows, style.CYCLE, strict=False):
+        _plot(axes, row.clipped, color=colour, label=f"{varied} = {_value(row, varied)}")
+        _plot(axes, row.exact, color=colour, **DASHED)
+    axes.set_ylim(0.0, None)
+    axes.legend(loc="upper right", borderaxespad=0.1, labelspacing=0.3)
+
+
+def _plot(axes: Axes, result: Result, **look: Any) -> None:
+    history = result.history.resampled(np.linspace(0.0, result.history.time[-1], POINTS))
+    axes.plot(MICRO * history.time, history.force, **look)
+
+
+def _named(rows: Sequence[GridRow], panel: int, held: str) -> str:
+    return _value(next(row for row in rows if row.panel == panel), held)
+
+
+def _value(row: GridRow, name: str) -> str:
+    return f"{row.R1:g}" if name == "R1" else style.readable(row.R2, "s", 3)
+
+
+def _fig10(study: PaperStudy, where: Path) -> tuple[Path, Path]:
+    """Forces and times over those of the uncut impact at the higher velocity: the assumed radius drops out."""
+    concrete = study.examples.concrete
+    slow, fast = min(concrete.velocities), max(concrete.velocities)
+    whole, cut = proposed(concrete, min(concrete.radii), fast).history, cut_at_measured_peak(concrete)
+    first = proposed(concrete, min(concrete.radii), slow).history
+    figure = Figure(figsize=(style.COLUMN, HEIGHT_10))
+    axes = figure.add_axes((0.13, 0.15, 0.83, 0.6))
+    for curve, name, look in (
+        (whole, f"proposed, {fast:g} m/s", {"color": style.VERMILION}),
+        (first, f"proposed, {slow:g} m/s", {"color": style.BLUE}),
+        (cut.curve, f"{fast:g} m/s, cut", {"color": style.BLACK, **DASHED}),
+    ):
+        axes.plot(curve.time / whole.time[-1], curve.force / whole.force.max(), label=name, **look)
+    axes.set(xlabel="time / contact time", ylabel="force / peak", xlim=(0.0, None), ylim=(0.0, 1.05))
+    axes.legend(loc="upper right")
+    lines = ["Cut at the measured peak until the impulse is the uncut one:", "the striker then loses no velocity."]
+    style.heading(figure, "Fig. 10 drawn again: concrete", lines, TITLE_WIDTH // 2)
+    return style.save(figure, where, "fig10")
+
+
+def _fig15(examples: Examples, where: Path) -> tuple[Path, Path]:
+    """Raises TooManySteps."""
+    dents = _dented(examples)
+    figure = Figure(figsize=(style.PAGE, HEIGHT_15))
+    left, right = figure.subplots(1, 2)
+    figure.subplots_adjust(0.07, 0.14, 0.985, 0.74, wspace=0.2)
+    for dent, colour in zip(dents, style.CYCLE, strict=False):
+        _recovery(left, dent, colour)
+        _second(right, dent, colour)
+    R2 = style.readable(dents[0].R2, "s", 3)
+    left.set(xlabel="time, µs", ylabel="depth / greatest depth", xlim=(0.0, None), ylim=(0.0, 1.05))
+    left.legend(handles=MEMORY_KEY, loc="upper right")
+    right.set(xlabel="pause between two impacts / R2", ylabel="peak of the second / first", xscale="log")
+    right.legend(loc="upper right")
+    style.label(left, "a", "the surface comes back after the ball has gone")
+    style.label(right, "b", "an equal impact on what is left of the dent")
+    lines = [f"Steel ball, R2 = {R2}: out of contact the load depth^1.5 of the surface falls as exp(-t/R2)."]
+    style.heading(figure, "Fig. 15 as numbers: memory between contacts", lines, TITLE_WIDTH)
+    return style.save(figure, where, "fig15")
+
+
+def _dented(examples: Examples) -> list[DentedSurface]:
+    """The curves of the panel of Fig. 7 whose R2 is nearest to the contact time: there the dent is deepest."""
+    steel, grids = examples.steel, examples.grids
+    contact = DentedSurface(steel, min(grids.fig7_R1), min(grids.fig7_R2)).parting
+    nearest = min(grids.fig7_R2, key=lambda R2: abs(np.log(R2 / contact)))
+    return [DentedSurface(steel, R1, nearest) for R1 in grids.fig7_R1]
+
+
+def _recovery(axes: Axes, dent: DentedSurface, colour: str) -> None:
+    times = np.linspace(0.0, dent.parting + SHOWN * dent.R2, TIMES)
+    away = np.linspace(dent.parting, times[-1], TIMES)
+    deepest, ball = dent.first.peak_depth, dent.ball(away)
+    axes.plot(MICRO * times, dent.surface(times) / deepest, color=colour)
+    axes.plot(MICRO * away[ball > 0.0], ball[ball > 0.0] / deepest, color=colour, **DASHED)
+
+
+def _second(axes: Axes, dent: DentedSurface, colour: str) -> None:
+    pauses = np.geomspace(SHORTEST, LONGEST, PAUSES)
+    peaks = [dent.second(pause * dent.R2).peak_force / dent.first.peak_force for pause in pauses]
+    axes.plot(pauses, peaks, color=colour, label=f"R1 = {dent.R1:g}")

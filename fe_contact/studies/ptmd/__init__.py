@@ -1,1 +1,0 @@
-"""The pounding tuned mass damper: files, chart."""

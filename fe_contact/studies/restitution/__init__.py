@@ -1,1 +1,0 @@
-"""Restitution asked for against obtained: table, files, chart."""

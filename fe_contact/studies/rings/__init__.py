@@ -1,1 +1,0 @@
-"""Rings of polymer: study, verdict, files, chart."""
