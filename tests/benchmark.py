@@ -41,9 +41,9 @@ LAW_TOLERANCE, LAW_REPEATS = 1e-5, 15
 # One impact with waves in a process of its own: 400 implicit steps of some 3000 unknowns.
 WAVES = """
 from lumped import Scene
-from fe_contact.waves.half_space_body import moving
+from fe_contact.waves.targets.half_space import moving
 from fe_contact.waves.impact import motion
-from fe_contact.waves.plan import plan
+from fe_contact.waves.targets.half_space import plan
 scene = Scene.load("steel-ball-waves")
 numerics = plan(scene, {"steps": 400, "elements_per_contact": 4.0}).numerics
 body = moving(scene, numerics)

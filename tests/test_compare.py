@@ -15,11 +15,9 @@ from fe_contact.cli import main
 from fe_contact.commands.compare import law_names
 from fe_contact.reference import Solved, result_of, solve
 from fe_contact.studies.compare.chart import plot_comparison
-from fe_contact.studies.compare.deviations import rebound_steps
+from fe_contact.studies.compare.deviations import Told, rebound_steps
 from fe_contact.studies.compare.law_pressure import LawPressure
-from fe_contact.studies.compare.study import DEFAULT_LAWS, Comparison, Judgement, compare
-from fe_contact.studies.compare.told import Told
-from fe_contact.studies.compare.verdict import WITHIN, verdicts
+from fe_contact.studies.compare.study import DEFAULT_LAWS, WITHIN, Comparison, Judgement, compare, verdicts
 from lumped import laws, simulate
 from lumped.errors import BadInput
 from lumped.result.result import Result

@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from fe_contact.cli import main
-from fe_contact.fields import check_fields
+from fe_contact.fields import check_fields, felt
 from fe_contact.reference import result_of, solve
-from fe_contact.results.surface_pressure import felt
 from fe_contact.studies.compare.deviations import pressure_error, rebound_steps, surface_radii
-from fe_contact.studies.compare.verdict import WITHIN
+from fe_contact.studies.compare.study import WITHIN
 from fe_contact.studies.history_chart import plot_history
 from lumped import Scene, laws, simulate
 from lumped.errors import BadInput

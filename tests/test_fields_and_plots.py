@@ -17,9 +17,17 @@ import meshes
 from fe_contact.assembly.forms import isotropic
 from fe_contact.assembly.operators import ELEMENTS
 from fe_contact.cli import main
-from fe_contact.fields import STRESSES, check_fields, fields_at_peak, nodal_stress, subdivided, write_fields
+from fe_contact.fields import (
+    STRESSES,
+    check_fields,
+    felt,
+    fields_at_peak,
+    nodal_stress,
+    peak_step,
+    subdivided,
+    write_fields,
+)
 from fe_contact.reference import Solved, result_of, solve
-from fe_contact.results.surface_pressure import felt, peak_step
 from fe_contact.studies.history_chart import plot_history
 from fe_contact.studies.style import prefixed, with_error
 from lumped.errors import BadInput

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact.cli import main
-from fe_contact.studies.fit.chart import plot_fit
+from fe_contact.studies.fit_chart import plot_fit
 from lumped import History, Scene, fit, laws, simulate
 from lumped.result.score import normalized_error, read_curve
 

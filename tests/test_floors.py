@@ -128,7 +128,7 @@ ROOMS = {  # lowest first
     ),
     "fe_contact": (
         "errors settings progress threads assembly contact schemes dynamics bodies steppers march targets budget "
-        "indentation results fields waves reference methods studies commands cli __main__ __init__"
+        "indentation fields recovery waves reference methods studies commands cli __main__ __init__"
     ),
 }
 FILES_AT_A_ROOT = 14
@@ -226,6 +226,15 @@ def test_every_folder_of_source_is_a_package() -> None:
     assert not bare
 
 
+def test_what_mutants_are_drawn_from_and_what_does_no_harm_is_there() -> None:
+    script = runpy.run_path(str(ROOT / "tests" / "mutants.py"))
+    texts = {name(path): path.read_text(encoding="utf-8") for path in sources(*PACKAGES)}
+    assert not [pattern for pattern in script["CORE"] if not matching(texts, pattern)]
+    for pattern, scope, _ in script["HARMLESS"]:
+        last = scope.partition(",")[0].rpartition(".")[2]
+        assert any(last in texts[file] for file in matching(texts, pattern)), (pattern, scope)
+
+
 ERROR_PATH = ("certify", "change")
 
 
@@ -266,3 +275,39 @@ def test_joints_are_typed() -> None:
     assert not used["hasattr"]
     assert not used["ModuleType"]
     assert used["Any"] <= MOST_ANY
+
+
+def only_numbers(value: ast.expr | None) -> bool:
+    """A number, or a tuple, list or dict of nothing else."""
+    if isinstance(value, ast.UnaryOp):
+        return only_numbers(value.operand)
+    if isinstance(value, ast.BinOp):
+        return only_numbers(value.left) and only_numbers(value.right)
+    if isinstance(value, ast.Tuple | ast.List | ast.Dict):
+        inside = value.values if isinstance(value, ast.Dict) else value.elts
+        return bool(inside) and all(map(only_numbers, inside))
+    return isinstance(value, ast.Constant) and type(value.value) in (int, float)
+
+
+def constants(path: Path) -> Iterator[ast.Assign | ast.AnnAssign]:
+    """Where upper-case names of a module are given numbers."""
+    for node in tree(path).body:
+        if isinstance(node, ast.Assign | ast.AnnAssign) and only_numbers(node.value):
+            target = node.targets[0] if isinstance(node, ast.Assign) else node.target
+            names = target.elts if isinstance(target, ast.Tuple) else [target]
+            if all(isinstance(name, ast.Name) and name.id.isupper() for name in names):
+                yield node
+
+
+def test_every_constant_says_what_it_is() -> None:
+    """A comment on its lines or on the line before: its unit, and whether it is physics, safety, rounding or work."""
+    silent, count = list[str](), 0
+    for path in sources(*PACKAGES):
+        lines = path.read_text(encoding="utf-8").splitlines()
+        for node in constants(path):
+            count += 1
+            own = lines[node.lineno - 1 : node.end_lineno]
+            if not any("#" in line for line in own) and not lines[node.lineno - 2].startswith("#"):
+                silent.append(f"{path.relative_to(ROOT)}:{node.lineno}: {own[0]}")
+    assert count > 100
+    assert silent == []

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from fe_contact.cli import main
-from lumped.paper import Examples, assumptions, claims, misprints, recompute
+from lumped.paper import Examples, claims, recompute
 from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNKNOWN, VERDICTS
 from lumped.result import model_ledger as yielding
 
@@ -56,8 +56,8 @@ def test_every_claim_has_its_line_and_its_row(written: tuple[Path, str]) -> None
         assert table[claim.id]["verdict"] in lines[claim.id]
         assert claim.printed in lines[claim.id]
     assert list(table) == [claim.id for claim in claims.load()]
-    assert len(rows(where / "assumptions.csv")) == len(assumptions.load())
-    assert len(rows(where / "misprints.csv")) == len(misprints.load())
+    assert len(rows(where / "assumptions.csv")) == len(claims.assumptions())
+    assert len(rows(where / "misprints.csv")) == len(claims.misprints())
 
 
 def test_the_counts_are_those_of_the_rows(written: tuple[Path, str]) -> None:
@@ -139,9 +139,9 @@ def test_run_and_paper_judge_one_sphere_by_one_ruler(
     assert main(["run", scene, *options, *given]) in (0, 3)
     ledger = json.loads((tmp_path / "result.json").read_text(encoding="utf-8"))["model_ledger"]
     (entry,) = [one for one in ledger if one["effect"] == effect]
-    (judged,) = [one for one in assumptions.load() if one.id == assumption]
+    (judged,) = [one for one in claims.assumptions() if one.id == assumption]
     same = Examples.load({"steel.young": 9.94455e10})
-    values = [value.value for value in assumptions.judge(judged, same).values]
+    values = [value.value for value in claims.judge_assumption(judged, same).values]
     if entry["spread"]:
         assert values == pytest.approx([0.0, max(map(abs, entry["spread"]))], rel=1e-5)
     else:

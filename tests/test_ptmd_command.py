@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fe_contact.cli import main
-from fe_contact.studies.ptmd.chart import plot_study
+from fe_contact.studies.ptmd_chart import plot_study
 from lumped.errors import BadInput
 from lumped.ptmd import Memory, free_vibration
 from lumped.ptmd import study as studies

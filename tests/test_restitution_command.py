@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from fe_contact.cli import main
-from fe_contact.studies.restitution.chart import plot_restitution
-from fe_contact.studies.restitution.table import EXITS, RestitutionLine, formulas, table, write_restitution
+from fe_contact.studies.restitution import EXITS, RestitutionLine, formulas, table, write_restitution
+from fe_contact.studies.restitution_chart import plot_restitution
 from lumped import restitution
 
 ASKED = (0.1, 0.5, 0.9)
@@ -69,7 +69,7 @@ def test_the_command_says_a_line_each(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setattr("fe_contact.studies.restitution.table.table", lambda: lines)
+    monkeypatch.setattr("fe_contact.studies.restitution.table", lambda: lines)
     assert main(["restitution", "--out", str(tmp_path / "out"), "--quiet"]) == 0
     said = capsys.readouterr().out.splitlines()
     assert len(said) == len(lines) + 1

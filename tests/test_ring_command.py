@@ -11,12 +11,20 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fe_contact.studies.rings.impact import JUDGED, RingStruck, _struck
-from fe_contact.studies.rings.study import RingCurve, cases, local_exponent, rings
-from fe_contact.studies.rings.verdict import verdict, write_rings
+from fe_contact.studies.rings import (
+    JUDGED,
+    RingCurve,
+    RingStruck,
+    _struck,
+    cases,
+    local_exponent,
+    rings,
+    verdict,
+    write_rings,
+)
 from lumped import laws, simulate
-from lumped.paper.examples.given import Examples
-from lumped.paper.examples.ring_impact import stiffness
+from lumped.paper.given import Examples
+from lumped.paper.ring_impacts import stiffness
 
 CASES = {case.name: case for case in cases()}
 

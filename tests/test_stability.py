@@ -17,9 +17,9 @@ from fe_contact.cli import main
 from fe_contact.dynamics.mass.base import MASSES
 from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.errors import MotionUnbounded
-from fe_contact.studies.stability import explicit_limit, table
-from fe_contact.studies.stability._bar import BAR, DEFAULT, bounced, measured
-from fe_contact.studies.stability.base import STUDIES, row
+from fe_contact.studies.stability import bars
+from fe_contact.studies.stability.bars import BAR, DEFAULT, bounced, measured
+from fe_contact.studies.stability.base import row, studies
 from fe_contact.waves.targets import _block as falling_block
 from lumped import Scene
 
@@ -124,7 +124,7 @@ def test_a_penalty_lets_in_what_its_stiffness_says_and_the_default_nothing(defau
 def test_two_over_omega_max_is_the_limit_of_a_linear_bar(mass: str) -> None:
     """A bar pressed on for good, its contact always closed, is stable below it and not beyond."""
     elements, penalty = 10, 10.0
-    limit = explicit_limit.linear_limit(mass, penalty, elements)
+    limit = bars.linear_limit(mass, penalty, elements)
     body = falling(BAR, elements, MASSES.get(mass), 0.0)
     case = {**DEFAULT, "scheme": "central_difference", "mass": mass, "tip": 1.0, "enforcement": "penalty"}
     case["penalty"] = penalty
@@ -141,10 +141,10 @@ def test_two_over_omega_max_is_the_limit_of_a_linear_bar(mass: str) -> None:
 
 def test_the_linear_limit_is_not_safe_for_contact_that_opens_and_closes() -> None:
     """Central difference with a penalty on a surface with mass gains energy at 0.9 of it, and hardly any at 0.3."""
-    shares = {share: explicit_limit.measure(_limit("lumped", 10.0, share))["gain"] for share in (0.3, 0.9)}
+    shares = {share: bars.limit_measure(_limit("lumped", 10.0, share))["gain"] for share in (0.3, 0.9)}
     assert shares[0.9] > 0.5
     assert shares[0.3] < 0.05
-    assert explicit_limit.measure(_limit("redistributed", 10.0, 0.9))["gain"] < 0.05
+    assert bars.limit_measure(_limit("redistributed", 10.0, 0.9))["gain"] < 0.05
 
 
 def _limit(mass: str, penalty: float, share: float) -> dict[str, Any]:
@@ -158,11 +158,10 @@ def test_a_step_beyond_the_limit_is_a_named_failure_and_no_number() -> None:
 
 
 def test_every_study_names_its_settings_and_measures() -> None:
-    for study in STUDIES.names:
-        module = STUDIES.get(study)
-        quick, full = module.cases(True), module.cases(False)
+    for study in studies().values():
+        quick, full = study.cases(True), study.cases(False)
         assert 0 < len(quick) < len(full)
-        assert {*module.chart.rows, *module.chart.columns} <= set(quick[0])
+        assert {*study.chart.rows, *study.chart.columns} <= set(quick[0])
         keys = [json.dumps(case, sort_keys=True) for case in full]
         assert len(set(keys)) == len(keys)
 
@@ -175,9 +174,9 @@ def few(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
     """Two small cases of the table alone: one that holds, one that fails."""
     small = {**USUAL, "elements": 10, "scheme": "central_difference"}
     cases = [small, {**small, "cfl": 2.0}]
-    for study in STUDIES.names:
-        fewer = replace(STUDIES.get(study), cases=lambda quick, own=study == "table": cases if own else [])
-        monkeypatch.setattr(f"{STUDIES.package}.{study}.MEMBER", fewer)
+    for name, study in studies().items():
+        fewer = replace(study, cases=lambda quick, own=name == "table": cases if own else [])
+        monkeypatch.setitem(studies(), name, fewer)
     monkeypatch.setattr("fe_contact.studies.stability._chart.plot_stability", lambda rows, where: [])
     return cases
 
@@ -207,5 +206,5 @@ def test_the_chart_shows_every_case(tmp_path: Path) -> None:
 
 
 def test_the_table_has_the_default_and_its_rivals() -> None:
-    assert tuple(DEFAULT[key] for key in table.KEYS) in table.ROWS
-    assert {row[0] for row in table.ROWS} == set(WAVE_SCHEMES.names)
+    assert tuple(DEFAULT[key] for key in bars.KEYS) in bars.ROWS
+    assert {row[0] for row in bars.ROWS} == set(WAVE_SCHEMES.names)

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from fe_contact.budget.plan import DEFAULTS
-from fe_contact.studies.stability import conditioning, far_radius, gap, locking, relaxation, tension
-from fe_contact.studies.stability._bar import DEFAULT, choices
+from fe_contact.studies.stability import bars, impacts, layers
+from fe_contact.studies.stability.bars import DEFAULT, choices
 from fe_contact.waves.plan import TRAVEL
 from lumped.materials.radiation import pulse_energy, shear_speed
 from lumped.restitution import kelvin
@@ -19,7 +19,7 @@ from lumped.restitution import kelvin
 
 
 def layer_error(order: int, nu: float, elements: float = 4.0) -> float:
-    return float(locking.measure({"order": order, "elements": elements, "nu": nu})["error"])
+    return float(layers.locking_measure({"order": order, "elements": elements, "nu": nu})["error"])
 
 
 def test_linear_triangles_lock_as_the_bulk_modulus_grows() -> None:
@@ -40,7 +40,7 @@ def test_the_default_does_not_lock(nu: float) -> None:
 
 
 def relaxed(scheme: str, steps: int, ratio: float) -> dict[str, Any]:
-    return relaxation.measure({"scheme": scheme, "steps": steps, "ratio": ratio})
+    return impacts.relaxation_measure({"scheme": scheme, "steps": steps, "ratio": ratio})
 
 
 def test_backward_euler_loses_restitution_at_every_relaxation_time() -> None:
@@ -63,7 +63,7 @@ def test_the_default_follows_every_relaxation_time() -> None:
 
 
 def pressed(enforcement: str, penalty: float) -> dict[str, Any]:
-    return conditioning.measure({"enforcement": enforcement, "penalty": penalty})
+    return layers.conditioning_measure({"enforcement": enforcement, "penalty": penalty})
 
 
 def test_a_penalty_is_too_soft_or_too_stiff_and_the_default_is_neither() -> None:
@@ -74,7 +74,7 @@ def test_a_penalty_is_too_soft_or_too_stiff_and_the_default_is_neither() -> None
     assert stiffer["bias"] < 3e-4  # what settles balances, however its pressure ripples
     assert stiffer["ripple"] > 10.0 * pressed("penalty", 1e5)["ripple"]
     drowned = pressed("penalty", 1e11)
-    assert drowned["unsettled"] == len(conditioning.DEPTHS)
+    assert drowned["unsettled"] == len(layers.DEPTHS)
     assert drowned["bias"] is None
     default = pressed(DEFAULTS["enforcement"], DEFAULTS["penalty"])
     assert default["bias"] < 3e-4
@@ -103,10 +103,10 @@ def test_contact_that_ends_with_the_depth_has_pulled(xi: float) -> None:
     force = np.exp(-xi * phase) * (
         2.0 * xi * np.cos(damped * phase) + (1 - 2 * xi**2) / damped * np.sin(damped * phase)
     )
-    pulled = tension.measure({"way": "depth", "xi": xi})
+    pulled = impacts.tension_measure({"way": "depth", "xi": xi})
     assert pulled["tension"] == pytest.approx(-force.min() / force.max(), rel=1e-3)
     assert pulled["restitution"] == pytest.approx(kelvin.restitution(xi, "depth") - kelvin.restitution(xi), rel=1e-6)
-    held = tension.measure({"way": tension.WAYS[0], "xi": xi})
+    held = impacts.tension_measure({"way": impacts.WAYS[0], "xi": xi})
     assert held["tension"] == 0.0
     assert abs(held["restitution"]) < 1e-3
 
@@ -115,14 +115,14 @@ def test_contact_that_ends_with_the_depth_has_pulled(xi: float) -> None:
 
 
 def fallen(way: dict[str, Any], height: float) -> dict[str, Any]:
-    case = {**way, "cfl": 1.0, "elements": 60, "periods": gap.PERIODS, "gap": height}
-    return gap.measure(case) | {"step": choices(case).step}
+    case = {**way, "cfl": 1.0, "elements": 60, "periods": bars.GAP_PERIODS, "gap": height}
+    return bars.gap_measure(case) | {"step": choices(case).step}
 
 
 @pytest.mark.parametrize("height", [0.004, 0.025, 0.05])
 def test_a_constraint_that_looks_ahead_presses_before_the_touch(height: float) -> None:
     """Its contact begins with the step in which it touches; the default's within a hundredth of a step of the touch."""
-    early = fallen(dict(gap.WAYS[0]), height)
+    early = fallen(dict(bars.GAP_WAYS[0]), height)
     touch = (math.sqrt(1.0 + 0.2 * height) - 1.0) / early["step"]  # 10 t + 5 t^2 = height
     assert early["touch"] == pytest.approx(-(touch % 1.0), abs=0.02)
     found = fallen(dict(DEFAULT), height)
@@ -144,21 +144,21 @@ def test_a_gap_of_rounding_is_none() -> None:
 
 def test_an_echo_within_the_contact_changes_what_is_lost() -> None:
     """A far end at a tenth of the travel, with dashpots or without; the plan's place needs no dashpot."""
-    near, bare = (far_radius.measure({"dashpots": d, "share": 0.1})["loss"] for d in (True, False))
+    near, bare = (impacts.far_radius_measure({"dashpots": d, "share": 0.1})["loss"] for d in (True, False))
     assert abs(near) > 0.1
     assert abs(bare) > 0.3
     for dashpots in (True, False):
-        held = far_radius.measure({"dashpots": dashpots, "share": TRAVEL})
+        held = impacts.far_radius_measure({"dashpots": dashpots, "share": TRAVEL})
         assert abs(held["loss"]) < 0.01
         assert abs(held["force"]) < 1e-3
 
 
 def test_what_is_lost_is_what_a_point_force_radiates() -> None:
     """A Hertz pulse of the same peak and duration on the half-space of Miller and Pursey, to first order."""
-    scene, _ = far_radius.settled()
-    found, material = far_radius.struck(far_radius.FAR, True), scene.geometry.material
+    scene, _ = impacts.settled()
+    found, material = impacts.impact(impacts.FAR, True), scene.geometry.material
     (start, end), peak = found.contacts[0], float(found.force.max())
     speed = shear_speed(material)
     assert speed is not None
     radiated = pulse_energy(material.nu, material.density or 0.0, speed, peak, end - start)
-    assert far_radius.lost(found) == pytest.approx(radiated / (0.5 * scene.mass * scene.velocity**2), rel=0.03)
+    assert impacts.lost(found) == pytest.approx(radiated / (0.5 * scene.mass * scene.velocity**2), rel=0.03)

@@ -14,15 +14,11 @@ import pytest
 from scipy.optimize import brentq
 
 from fe_contact.cli import main
-from fe_contact.studies.table1 import blocks as blocks_module
-from fe_contact.studies.table1 import datum
-from fe_contact.studies.table1.blocks import Block, within
+from fe_contact.studies.table1 import limits
 from fe_contact.studies.table1.chart import plot_table1
-from fe_contact.studies.table1.datum import DEPTH, Place, curve
-from fe_contact.studies.table1.reach import LIMIT, Reach
+from fe_contact.studies.table1.limits import DEPTH, LIMIT, Block, Place, Reach, curve, within
 from fe_contact.studies.table1.study import RATIOS, Trial, bodies, table1
 from fe_contact.studies.table1.verdict import (
-    COLUMNS,
     HOLDS,
     RANGE,
     UNDECIDED,
@@ -36,6 +32,13 @@ from lumped.load_curves import Hertz, SneddonSphere
 from lumped.paper.table1 import ROWS, Elastic, TableRow
 from lumped.result.result import Quantity
 
+COLUMNS = (
+    "number", "row", "case", "D_printed_formula", "D_printed", "D", "D_error", "D_deviation", "alpha_printed", "alpha",
+    "alpha_error", "E_printed_formula", "E_corrected_formula", "nu", "E_printed_Pa", "E_Pa", "E_error_Pa",
+    "E_deviation", "depth_tried_from", "depth_tried_to", "holds_to_1_percent_up_to", "holds_up_to_error", "verdict",
+    "statement", "validity", "correction", "D_impact", "D_impact_error", "alpha_impact", "alpha_impact_error",
+    "E_impact_Pa", "E_impact_error_Pa",
+)  # fmt: skip
 ROUNDING = 1e-9
 
 
@@ -43,8 +46,8 @@ ROUNDING = 1e-9
 def trials(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Trial]]:
     """Every row, line contact at few places."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(datum, "CHECKED", {"datum": (3.0,), "bonded layer": (0.3,)})
-        patch.setattr(datum, "HELD", {"free": (2.0, 20.0), "held": (2.0,)})
+        patch.setattr(limits, "CHECKED", {"datum": (3.0,), "bonded layer": (0.3,)})
+        patch.setattr(limits, "HELD", {"free": (2.0, 20.0), "held": (2.0,)})
         yield {one.row.name: one for one in table1(tmp_path_factory.mktemp("table1"), jobs=1)}
 
 
@@ -156,7 +159,7 @@ def test_the_printed_d_of_line_contact_is_met_at_one_depth() -> None:
     """Against 4d of the audit: a bonded layer, nu = 0.3 and 0.45, meets pi/4 at R depth/h^2 = 0.075 and 0.042."""
     for nu, number in ((0.3, 0.075), (0.45, 0.042)):
         line = curve("bonded layer", 1e-2, nu)
-        once = datum._once(line)
+        once = limits._once(line)
         assert once is not None
         assert once / 1e-4 == pytest.approx(number, abs=0.001)
 
@@ -186,7 +189,7 @@ def test_bonded_blocks_go_from_young_to_confined(trials: Mapping[str, Trial]) ->
 def test_a_bonded_block_of_rubber_stiffens_with_its_shape_factor_squared() -> None:
     """Thin, nu -> 1/2: E (1 + 2 S^2), S = radius/(2 thickness), within some per cent (Gent and Lindley 1959)."""
     body = Elastic(1.0, 0.4999)
-    block = blocks_module._pressed(body, 5.0)
+    block = limits._block(body, 5.0)
     assert value(block.modulus) == pytest.approx(1.0 + 2.0 * 2.5**2, rel=0.08)
 
 

@@ -14,12 +14,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fe_contact.cli import main
-from fe_contact.studies.tradeoff import study as study
+from fe_contact.studies.tradeoff import bodies, study
+from fe_contact.studies.tradeoff.bodies import LAW_TOLERANCES, ROW_ELEMENTS, still_variations
 from fe_contact.studies.tradeoff.chart import plot_tradeoff
-from fe_contact.studies.tradeoff.design import MARKED, defaults, variations
-from fe_contact.studies.tradeoff.front import NEAR, excess, finite_elements, front, verdict
 from fe_contact.studies.tradeoff.point import Point
-from fe_contact.studies.tradeoff.study import LAW_TOLERANCES, ROW_ELEMENTS, tradeoff
+from fe_contact.studies.tradeoff.study import (
+    MARKED,
+    NEAR,
+    defaults,
+    excess,
+    finite_elements,
+    front,
+    tradeoff,
+    varied,
+    verdict,
+)
 from fe_contact.targets import half_space
 from lumped.scene.scene import Scene
 
@@ -28,12 +37,12 @@ def point(cpu: float, error: float, bar: float = 1e-9, default_for: float | None
     return Point("fe", {}, cpu, {"peak_force": error}, bar, default_for=default_for)
 
 
-def none_varied(*_: object) -> tuple[()]:
+def nothing(*_: object) -> tuple[()]:
     return ()
 
 
-def no_laws(*_: object) -> dict[str, object]:
-    return {}
+NOTHING_VARIED = replace(bodies.STILL, variations=lambda base, quick: iter(()))
+DEFAULTS_ALONE = replace(NOTHING_VARIED, lumped=nothing)
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +54,7 @@ def scene() -> Scene:
 def points(scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> tuple[Point, ...]:
     """The defaults, the exact laws and the models."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(study, "variations", none_varied)
+        patch.setattr(bodies, "STILL", NOTHING_VARIED)
         return tradeoff(scene, {}, True, tmp_path_factory.mktemp("tradeoff"), lambda message: None)
 
 
@@ -89,15 +98,15 @@ def test_the_design_tries_each_setting_once_and_keeps_what_is_given(scene: Scene
     given_settings = {"order": 3, "penalty": 500.0}
     planned = defaults(scene, given_settings)
     assert set(planned) == set(MARKED)
-    varied = variations(planned[1e-3], given_settings, quick)
-    assert len(set(varied)) == len(varied)
-    assert {(n.order, n.penalty) for n in varied} == {(3, 500.0)}
-    assert {n.contact_time for n in varied} == {planned[1e-3].contact_time}
+    chosen = varied(planned[1e-3], given_settings, still_variations(planned[1e-3], quick))
+    assert len(set(chosen)) == len(chosen)
+    assert {(n.order, n.penalty) for n in chosen} == {(3, 500.0)}
+    assert {n.contact_time for n in chosen} == {planned[1e-3].contact_time}
 
 
 def test_the_full_design_holds_the_quick_one_in_kind(scene: Scene) -> None:
     base = defaults(scene, {})[1e-3]
-    quick, full = (variations(base, {}, quick) for quick in (True, False))
+    quick, full = (varied(base, {}, still_variations(base, quick)) for quick in (True, False))
     assert 10 <= len(quick) <= 20 < 50 <= len(full) <= 70
     for key in ("order", "elements_per_contact", "steps", "enforcement", "penalty"):
         assert len({getattr(n, key) for n in quick}) > 1
@@ -123,11 +132,10 @@ def test_every_point_builds_its_operators_again(scene: Scene, tmp_path: Path, mo
 
     original = half_space.surface_operator
     monkeypatch.setattr(half_space, "surface_operator", counted)
-    monkeypatch.setattr(study, "variations", none_varied)
-    monkeypatch.setattr(study, "_laws", no_laws)
+    monkeypatch.setattr(bodies, "STILL", DEFAULTS_ALONE)
+    monkeypatch.setattr(study, "BRIEF", np.inf)
     found = finite_elements(tradeoff(scene, {}, True, tmp_path, lambda message: None))
-    warm_up = found[0].work["factorizations"]
-    assert len(built) == warm_up + study.ROUNDS * sum(p.work["factorizations"] for p in found)
+    assert len(built) == study.REPEATS * sum(p.work["factorizations"] for p in found)
 
 
 def test_the_row_of_springs_converges_with_order_two(points: tuple[Point, ...]) -> None:
@@ -140,8 +148,8 @@ def test_exact_laws_keep_their_bars_and_models_do_not_converge(points: tuple[Poi
     for name in ("mdr", "ting"):
         own = [p for p in points if p.method == name]
         assert [p.settings["tolerance"] for p in own] == list(LAW_TOLERANCES[::2])
-        assert all(p.error <= (p.bar or 0.0) + study.EXACT_TOLERANCE for p in own)
-    models = {p.method: p.error for p in points if p.method in study.MODELS}
+        assert all(p.error <= (p.bar or 0.0) + bodies.EXACT_TOLERANCE for p in own)
+    models = {p.method: p.error for p in points if p.method in bodies.MODELS}
     assert models["hertz"] > models["correspondence"] > 0.01
 
 
@@ -149,8 +157,7 @@ def test_exact_laws_keep_their_bars_and_models_do_not_converge(points: tuple[Poi
 def test_the_command_writes_table_and_chart(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(study, "variations", none_varied)
-    monkeypatch.setattr(study, "_laws", no_laws)
+    monkeypatch.setattr(bodies, "STILL", DEFAULTS_ALONE)
     assert main(["tradeoff", "polymer-sphere", "--quick", "--json", "--quiet", "--out", str(tmp_path)]) == 0
     printed = json.loads(capsys.readouterr().out)
     assert printed == json.loads((tmp_path / "tradeoff.json").read_text(encoding="utf-8"))

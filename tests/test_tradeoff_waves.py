@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,16 +13,13 @@ import pytest
 
 from fe_contact.cli import main
 from fe_contact.methods import simulate
-from fe_contact.results.distance import distance
 from fe_contact.settings import RANGES, WaveNumerics
-from fe_contact.studies.tradeoff import study_with_waves as study
+from fe_contact.studies.tradeoff import bodies, study
 from fe_contact.studies.tradeoff.chart import Signs, plot_tradeoff
-from fe_contact.studies.tradeoff.front import finite_elements, known_to, verdict
-from fe_contact.studies.tradeoff.point import REFERENCE, Point
-from fe_contact.studies.tradeoff.targets import _block as block
-from fe_contact.studies.tradeoff.targets import _meshed as meshed
-from fe_contact.studies.tradeoff.targets import _rod as rod
+from fe_contact.studies.tradeoff.point import REFERENCE, Answer, Point
+from fe_contact.studies.tradeoff.study import finite_elements, known_to, verdict
 from fe_contact.waves.targets.base import WAVES
+from lumped.result.score import distance
 from lumped.scene.scene import Scene
 
 SCENES = (
@@ -50,7 +48,7 @@ def points(tmp_path_factory: pytest.TempPathFactory) -> tuple[Point, ...]:
 @pytest.mark.parametrize("quick", [True, False])
 def test_every_target_tries_settings_that_a_run_accepts(name: str, quick: bool) -> None:
     base, scene = planned(name), Scene.load(name)
-    chosen = study._chosen(base, {}, study.TRIED.get(scene.target.name).of(scene).variations(base, quick))
+    chosen = study.varied(base, {}, bodies.tried(scene).variations(base, quick))
     assert 5 <= len(chosen) == len(set(chosen))
     assert base not in chosen
     for numerics in chosen:
@@ -63,20 +61,20 @@ def test_every_target_tries_settings_that_a_run_accepts(name: str, quick: bool) 
 def test_what_is_given_stays() -> None:
     given = {"scheme": "staged", "mass": "spread"}
     base = planned("bar-impact", **given)
-    chosen = study._chosen(base, given, block.variations(base, quick=False))
-    assert {(n.scheme, n.mass) for n in chosen} == {("staged", "spread")}
+    chosen = study.varied(base, given, bodies.block_variations(base, quick=False))
+    assert {(n.scheme, n.as_dict()["mass"]) for n in chosen} == {("staged", "spread")}
 
 
 def test_the_exact_bar_is_the_rectangle_of_one_echo() -> None:
     """density c v for 2 L/c, all of which it gives back; none is known of a bar with a mass behind it."""
-    truth = block.exact(Scene.load("bar-impact"))
+    truth = bodies.block_exact(Scene.load("bar-impact"))
     assert truth is not None
     assert truth.values["peak_force"] == pytest.approx(300.0)
     assert truth.values["duration"] == pytest.approx(2 / 3)
     assert truth.values["restitution"] == pytest.approx(1.0)
     places = np.linspace(0.0, 0.66, 100)
     np.testing.assert_allclose(truth.force_at(places), 300.0)
-    assert block.exact(Scene.load("bar-impact", {"striker.mass": 5.0})) is None
+    assert bodies.block_exact(Scene.load("bar-impact", {"striker.mass": 5.0})) is None
 
 
 def test_the_distance_is_exact_for_rows_that_jump() -> None:
@@ -94,17 +92,17 @@ def test_the_distance_is_exact_for_rows_that_jump() -> None:
 def test_a_bouncing_bar_claims_its_history_whole() -> None:
     """Between its contacts the steps err by a time, so that the force errs by the root of it: also where it ends."""
     scene = Scene.load("bar")
-    truth = block.exact(scene)
+    truth = bodies.block_exact(scene)
     assert truth is not None
     for steps in (100, 200, 800):
         found = simulate(scene, "fe", {"tolerance": 0.1, "steps": steps})
-        assert truth.errors(found)["history"] <= (found.quantities["history_l2"].error or 0.0)
+        assert truth.errors(Answer.of(found))["history"] <= (found.quantities["history_l2"].error or 0.0)
 
 
 def test_exact_waves_are_known_of_elastic_rods_alone() -> None:
-    assert rod.exact(Scene.load("concrete-pole")) is not None
+    assert bodies.rod_exact(Scene.load("concrete-pole")) is not None
     lossy = {"law": "sls", "E0": 2e11, "R1": 0.5, "R2": 1e-4, "nu": 0.3, "density": 7850.0}
-    assert rod.exact(Scene.load("rod", {"target.material": lossy})) is None
+    assert bodies.rod_exact(Scene.load("rod", {"target.material": lossy})) is None
 
 
 @pytest.mark.tenth
@@ -146,7 +144,7 @@ def test_without_exact_waves_the_reference_is_finer_and_its_bar_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The half-space, coarse: no error within the reference's own bar can be held against a setting."""
-    monkeypatch.setattr(meshed, "variations", lambda base, quick: iter([{"steps": 40}]))
+    monkeypatch.setattr(bodies, "MESHED", replace(bodies.MESHED, variations=lambda base, quick: iter([{"steps": 40}])))
     pinned = {"steps": 80, "elements_per_contact": 4.0, "tolerance": 0.05}
     found = study.tradeoff(Scene.load("steel-ball-waves"), pinned, True, tmp_path, lambda message: None)
     reference = found[0]
@@ -162,7 +160,7 @@ def test_without_exact_waves_the_reference_is_finer_and_its_bar_is_told(
 def test_the_command_writes_table_and_chart(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(rod, "variations", lambda base, quick: iter([{"steps": 100}]))
+    monkeypatch.setattr(bodies, "ROD", replace(bodies.ROD, variations=lambda base, quick: iter([{"steps": 100}])))
     assert main(["tradeoff", "concrete-pole", "--json", "--quiet", "--out", str(tmp_path)]) == 0
     printed = json.loads(capsys.readouterr().out)
     assert printed == json.loads((tmp_path / "tradeoff.json").read_text(encoding="utf-8"))
@@ -180,4 +178,4 @@ def test_the_chart_tells_schemes_and_masses_apart(tmp_path: Path, points: tuple[
 
 
 def test_trade_offs_are_of_targets_with_waves() -> None:
-    assert set(study.TRIED.names) <= set(WAVES.names)
+    assert set(bodies.MOVING) <= set(WAVES.names)

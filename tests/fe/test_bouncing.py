@@ -152,6 +152,16 @@ def test_a_finer_run_is_within_both_bars(polymer: tuple[lumped.Scene, lumped.Res
     assert fine.contacts[1]["restitution_error"] < 0.5 * coarse.contacts[1]["restitution_error"]
 
 
+def test_the_history_of_several_contacts_is_no_distance_from_itself(
+    polymer: tuple[lumped.Scene, lumped.Result],
+) -> None:
+    _, found = polymer
+    assert found.quantities["history_l2"].value == 0.0
+    assert found.quantities["history_l2"].error
+    assert found.contacts[0]["velocity_error"] == 0.0, "it is what the scene says"
+    assert all(contact["velocity_error"] for contact in found.contacts[1:])
+
+
 def test_later_contacts_keep_the_schemes_order(polymer: tuple[lumped.Scene, lumped.Result]) -> None:
     scene, _ = polymer
     numerics = plan(scene, {"tolerance": 1e-3}).numerics

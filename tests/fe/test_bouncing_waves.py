@@ -18,11 +18,10 @@ from fe_contact.march.flight import Grounded
 from fe_contact.march.impacts import follow
 from fe_contact.methods import simulate
 from fe_contact.steppers.march import Strike
-from fe_contact.waves.bounces import WaveBouncer
 from fe_contact.waves.certify import WaveRun
-from fe_contact.waves.half_space_body import moving
-from fe_contact.waves.impact import motion, record
+from fe_contact.waves.impact import WaveBouncer, motion, record
 from fe_contact.waves.targets import half_space
+from fe_contact.waves.targets.half_space import moving
 from lumped import BadInput, Scene
 from lumped.load_curves.hertz import hertz_impact
 

@@ -14,9 +14,8 @@ from skfem import Basis
 
 import fe_contact
 import meshes
-from fe_contact.assembly.elastic_body import ElasticBody, moduli
 from fe_contact.assembly.forms import elastic, stiffness
-from fe_contact.assembly.operators import ELEMENTS
+from fe_contact.assembly.operators import ELEMENTS, ElasticBody, moduli
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.bulk_memory import BulkBody, BulkMemory, Moduli
 from fe_contact.bodies.modes import modes, poisson

@@ -162,3 +162,13 @@ def test_nearly_all_impacts_converge(campaign: tuple[float, list[Outcome]]) -> N
     assert share >= 0.95, [o.name for o in outcomes if not o.converged]
     honest = all((max(o.bar[name] for name in RULED) <= tolerance * (1 + 1e-12)) == o.converged for o in outcomes)
     assert honest, "converged must say that every ruled bar is within the tolerance"
+
+
+def test_rows_of_a_fine_history_lie_as_close_as_straight_lines_ask() -> None:
+    """Between exact forces at its rows: a tenth of the tolerance."""
+    scene, tolerance = lumped.Scene.load("polymer-sphere"), 3e-5
+    time = fe_contact.run(scene, tolerance).history.time
+    exact = lumped.simulate(lumped.laws.ting.of(scene), scene, 1e-9).history
+    middle = 0.5 * (exact.force_at(time[1:]) + exact.force_at(time[:-1]))
+    missed = np.abs(middle - exact.force_at(0.5 * (time[1:] + time[:-1])))
+    assert missed.max() < 0.11 * tolerance * exact.force.max()

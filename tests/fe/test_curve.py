@@ -7,9 +7,12 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from fe_contact.budget.curve import seen_from_both_sides
+from fe_contact.budget.change import calmest
+from fe_contact.budget.curve import Curve, seen_from_both_sides
 from fe_contact.budget.local_polynomial import PLACES, LocalPolynomials, fitted_peak, peak
 from fe_contact.march.impact import STEPS_ALLOWED, share_of_rest, step_length, time_left
+from fe_contact.steppers.march import Strike
+from lumped import Scene
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -26,6 +29,30 @@ def test_local_polynomials_give_back_quintics_and_their_slopes(seed: int) -> Non
     size = max(np.abs(p(nodes)).max() for p in quintics) + 1.0
     np.testing.assert_allclose(value, [p(places) for p in quintics], atol=1e-8 * size)
     np.testing.assert_allclose(slope, [p.deriv()(places) for p in quintics], atol=1e-6 * size)
+
+
+def bump(steps: int, jitter: float) -> Curve:
+    """A force (1 - cos 2 pi t) of one second, its impulse off by turns."""
+    x = np.linspace(0.0, 1.0, steps + 1)
+    time = x**2
+    impulse = time - np.sin(2 * np.pi * time) / (2 * np.pi) + jitter * (-1.0) ** np.arange(steps + 1) * (time > 0.0)
+    mean = np.concatenate([[0.0], impulse[1:] / time[1:]])
+    strike = Strike.of(Scene.load("polymer-layer"))
+    return Curve(strike, 1.0, True, x, mean, time, np.array([0.0, 1.0]), np.ones(2), 0.0, {})
+
+
+def test_a_force_that_jitters_from_step_to_step_is_read_through_fewer() -> None:
+    """Every other step leaves out what is off by turns: the force is right again, to what rows so far apart tell."""
+    calm, true = calmest(bump(256, 1e-6)), bump(256, 0.0)
+    time = np.linspace(0.1, 0.9, 50)
+    off = np.abs(bump(256, 1e-6).force(time) - true.force(time)).max()
+    assert len(calm.x) < 257
+    assert np.abs(calm.force(time) - true.force(time)).max() < 0.2 * off
+
+
+@pytest.mark.parametrize("steps", [40, 80, 256])
+def test_a_smooth_force_keeps_its_steps(steps: int) -> None:
+    assert len(calmest(bump(steps, 0.0)).x) == steps + 1
 
 
 @pytest.mark.parametrize("place", [0.07, 0.31, 0.5, 0.64, 0.93])

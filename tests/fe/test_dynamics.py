@@ -16,12 +16,12 @@ from scipy.linalg import eigh, expm
 from fe_contact.assembly.interior import factorized
 from fe_contact.bodies.bar import Bar, falling
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
-from fe_contact.dynamics import explicit, implicit
+from fe_contact.dynamics import stepping
 from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
 from fe_contact.dynamics.march import Choices, Motion, march, safe_step
 from fe_contact.dynamics.mass.base import MASSES
-from fe_contact.dynamics.pressed import Enforced
 from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
+from fe_contact.dynamics.stepping import Enforced
 from fe_contact.errors import MotionUnbounded
 from lumped.errors import BadInput
 from lumped.materials import Relaxation
@@ -315,8 +315,7 @@ def test_a_striker_is_one_more_degree_of_freedom() -> None:
 
 def test_one_factorisation_serves_a_whole_march(monkeypatch: pytest.MonkeyPatch) -> None:
     calls = []
-    for module in (implicit, explicit):
-        monkeypatch.setattr(module, "factorized", lambda matrix: calls.append(matrix.shape) or factorized(matrix))
+    monkeypatch.setattr(stepping, "factorized", lambda matrix: calls.append(matrix.shape) or factorized(matrix))
     body = falling(Bar(1.0, 1.0, 1.0, Relaxation(1.0)), 10, MASSES.get("redistributed"), gravity=0.0)
     for name, wanted in (("trapezoidal", [(11, 11)]), ("central_difference", [(10, 10), (1, 1)])):
         calls.clear()

@@ -10,9 +10,8 @@ import pytest
 from skfem import Basis, ElementTriP4, FacetBasis
 
 import meshes
-from fe_contact.assembly.far_field import boussinesq, robin
+from fe_contact.assembly.far_field import boussinesq, flamant, robin
 from fe_contact.assembly.forms import isotropic
-from fe_contact.assembly.half_plane import flamant
 from fe_contact.budget.certify import certify
 from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs

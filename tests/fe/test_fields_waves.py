@@ -9,12 +9,12 @@ import meshio
 import numpy as np
 import pytest
 
-from fe_contact.assembly.absorbing import wave_speeds
+from fe_contact.assembly.far_field import wave_speeds
 from fe_contact.cli import main
 from fe_contact.fields import STRESSES, Fields
 from fe_contact.settings import WaveNumerics
-from fe_contact.waves.fields import fields_at
 from fe_contact.waves.targets import half_space
+from fe_contact.waves.targets.half_space import fields_at
 from lumped import Scene
 
 QUICK = {"elements_per_contact": 6.0, "steps": 120}

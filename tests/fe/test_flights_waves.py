@@ -11,12 +11,11 @@ from scipy.optimize import brentq
 
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics import ledger
-from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
+from fe_contact.dynamics.body import BodyState, BodyWithMass, Part, Pressing, internal, undeformed
 from fe_contact.dynamics.march import Choices, Moment
-from fe_contact.dynamics.pressed import Enforced
 from fe_contact.dynamics.schemes import generalised_alpha
-from fe_contact.dynamics.state import BodyState, internal, undeformed
-from fe_contact.waves.bounces import Flights
+from fe_contact.dynamics.stepping import Enforced
+from fe_contact.waves.impact import Flights
 from lumped.materials import Relaxation
 
 penalty = ENFORCEMENTS.get("penalty")

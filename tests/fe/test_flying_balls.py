@@ -18,8 +18,6 @@ from fe_contact.dynamics.march import Motion, march
 from fe_contact.methods import simulate
 from fe_contact.settings import RANGES, WaveNumerics
 from fe_contact.steppers.march import Strike
-from fe_contact.waves import half_space_body
-from fe_contact.waves.flying_ball import on_ball, on_half_space, on_plane
 from fe_contact.waves.impact import choices_of, energies, motion, record
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.targets import half_space, plane, sphere
@@ -33,9 +31,9 @@ PLANE: dict[str, Any] = {"shape": "plane"}
 HALF_SPACE: dict[str, Any] = {"shape": "half_space", "material": STEEL}
 WHOLE = ("peak_force", "peak_depth", "duration", "impulse", "restitution")
 MOVING: dict[str, tuple[ModuleType, Callable[..., Moving]]] = {
-    "plane": (plane, on_plane),
-    "half_space": (half_space, on_half_space),
-    "sphere": (sphere, on_ball),
+    "plane": (plane, plane.moving),
+    "half_space": (half_space, half_space.under_ball),
+    "sphere": (sphere, sphere.moving),
 }
 MODES = 40  # of the ball, from its lowest on
 
@@ -228,7 +226,7 @@ def test_a_much_stiffer_ball_is_a_rigid_one() -> None:
     rigid = replace(soft, striker_material=None)
     yielding = curve_of(soft)
     numerics = half_space.plan(rigid, {}).numerics
-    moving = half_space_body.moving(rigid, numerics)
+    moving = half_space.moving(rigid, numerics)
     known = Curve.of(record(moving, motion(moving, rigid, numerics), rigid), Strike.of(rigid))
     for name in WHOLE:
         assert yielding.quantities[name] == pytest.approx(known.quantities[name], rel=5e-4), name

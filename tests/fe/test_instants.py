@@ -16,7 +16,7 @@ import lumped
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import plan
 from fe_contact.march.impact import march
-from fe_contact.steppers import instants
+from fe_contact.steppers import scaled_surface
 from fe_contact.steppers.march import March, Snapshot, Strike
 from fe_contact.studies.compare import law_pressure
 from fe_contact.studies.compare.law_pressure import LawPressure
@@ -132,7 +132,7 @@ def test_what_a_straight_line_misses_is_what_ripples(monkeypatch: pytest.MonkeyP
     stiff = {"law": "prony", "E_inf": 1e6, "E": [5e6], "tau": [6e-4], "nu": 0.3}
     found = marched(lumped.Scene.load("polymer-sphere", {"target.material": stiff}), 1e-3).march
     smooth = max(map(ripple, found.snapshots[2:]))
-    monkeypatch.setattr(instants, "_missed", lambda stepper, before, step, edge: 0.0)
+    monkeypatch.setattr(scaled_surface, "_missed", lambda stepper, before, step, edge: 0.0)
     rough = max(map(ripple, replace(found).snapshots[2:]))
     assert smooth < SMOOTH
     assert rough > 4 * smooth

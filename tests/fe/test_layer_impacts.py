@@ -9,7 +9,14 @@ import numpy as np
 import pytest
 
 import fe_contact
+from fe_contact.budget import runs
+from fe_contact.budget.plan import plan
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
+from fe_contact.contact.problem import ContactProblem
+from fe_contact.march.impact import march
 from fe_contact.steppers.march import Strike
+from fe_contact.steppers.struck import WIDTH, FixedStepper
+from fe_contact.targets.base import struck
 from lumped import BadInput, Material, Model, Relaxation, Result, Scene, Sphere, laws, simulate
 from lumped.result.score import normalized_error
 from lumped.shapes.cone import Cone
@@ -129,3 +136,39 @@ def test_what_finer_settings_fail_to_better_stands_with_its_bars() -> None:
     for name in ("peak_force", "peak_depth"):
         value, true = found.quantities[name], truth.quantities[name]
         assert abs(value.value - true.value) <= value.error + true.error
+
+
+def test_a_step_into_a_ring_ends_with_the_force_of_the_depth_it_ends_at() -> None:
+    """Pressed to that depth without any motion: the overlaps of a hollow surface do not grow alike with the depth."""
+    scene = replace(Scene.load("rod-in-ring"), velocity=0.3)
+    numerics = plan(scene, {}).numerics
+    stepper = struck(scene.geometry, numerics).stepper(Strike.of(scene), numerics, ())
+    assert isinstance(stepper, FixedStepper)
+    step = stepper.step(stepper.touch(), (), 0.25 * numerics.contact_time)
+    offer = stepper.body.offer(stepper.touch().memory.body, step.length)
+    overlap = offer.now * stepper.contact.overlap(step.state.depth) + offer.past
+    pressed = ContactProblem(offer.surface, overlap, numerics.penalty / WIDTH)
+    still = ENFORCEMENTS.get(numerics.enforcement).enforce(pressed, step.solution.sets[0])
+    force = stepper.surface.operator.force(stepper.scale, still.pressure)
+    assert force == pytest.approx(step.force, rel=1e-9)
+
+
+def test_pressure_is_told_for_an_instant_within_its_step() -> None:
+    scene = Scene.load("polymer-layer")
+    numerics = plan(scene, {"steps": 48}).numerics
+    found = march(Strike.of(scene), struck(scene.geometry, numerics), numerics)
+    told = np.array([snapshot.time for snapshot in found.snapshots])
+    assert (told >= found.time[: len(told)]).all()
+    assert (told <= found.time[1 : len(told) + 1]).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "calmed"), [("polymer-layer", True), ("polymer-sphere", False), ("steel-ball", False)]
+)
+def test_only_a_viscous_force_on_a_mesh_that_stays_is_read_through_fewer_steps(
+    name: str, calmed: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = list[int]()
+    monkeypatch.setattr(runs, "calmest", lambda curve: asked.append(len(curve.x)) or curve)
+    fe_contact.run(Scene.load(name), 0.1)
+    assert bool(asked) == calmed

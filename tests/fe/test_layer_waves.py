@@ -10,23 +10,22 @@ import numpy as np
 import pytest
 from scipy.sparse import linalg
 
-from fe_contact.assembly.elastic_body import moduli
 from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import moduli
 from fe_contact.budget.curve import Curve
 from fe_contact.cli import main
 from fe_contact.dynamics.march import Motion
 from fe_contact.methods import simulate
 from fe_contact.steppers.march import March, Strike
-from fe_contact.waves import half_space_body, layer_body
 from fe_contact.waves.impact import motion, record
-from fe_contact.waves.targets import layer
+from fe_contact.waves.targets import half_space, layer
 from fe_contact.waves.targets.base import WAVES
 from lumped import BadInput, Scene, laws
 from lumped.load_curves.hertz import hertz_impact
 from lumped.targets.layer import Layer, moving_share
 
 RULED = ("peak_force", "duration", "restitution", "peak_depth", "impulse")
-MOVING = {"half_space": half_space_body.moving, "layer": layer_body.moving}
+MOVING = {"half_space": half_space.moving, "layer": layer.moving}
 
 
 def marched(scene: Scene, **given: Any) -> tuple[March, Curve, Motion]:
@@ -200,13 +199,13 @@ def test_the_moving_mass_is_that_of_the_field_at_rest(base: str) -> None:
     for nu, breadth in ((0.3, 0.3), (0.45, 1.0), (0.49, 3.0), (0.3, 10.0)):
         far = max(1.0 + 8.0 / breadth, 4.0)
         sizes = (4.0, 1.0, 1.0 / breadth, far)
-        unit = layer_body.unit_layer(sizes, 2, base == "bonded", False, "consistent")
+        unit = layer.unit_layer(sizes, 2, base == "bonded", False, "consistent")
         bulk, shear = moduli(nu)
-        stiffness = (bulk * unit.volume + shear * unit.shape).tocsc()
-        surface = unit.push.tocoo().row[:-1]
+        stiffness = (bulk * unit.stiffness[0] + shear * unit.stiffness[1]).tocsc()
+        surface = unit.pushed(unit.zone[2].shape[1]).tocoo().row
         pressed = surface[unit.basis.doflocs[0, unit.free[surface] // 2] <= 1.0 + 1e-9]
         others = np.setdiff1d(np.arange(len(unit.free)), pressed)
-        field = np.zeros(len(unit.free) + 1)
+        field = np.zeros(len(unit.free))
         field[pressed] = -1.0
         field[others] = linalg.spsolve(stiffness[others][:, others], -(stiffness[others] @ field))
         share = float(field @ (unit.mass @ field)) * breadth / math.pi

@@ -12,9 +12,9 @@ import pytest
 from fe_contact.budget.curve import Curve
 from fe_contact.methods import simulate
 from fe_contact.steppers.march import Strike
-from fe_contact.waves.half_space_body import moving
 from fe_contact.waves.impact import motion, record
 from fe_contact.waves.targets import half_space
+from fe_contact.waves.targets.half_space import moving
 from lumped import Result, Scene, laws
 
 LIGHT = 1e-4  # mass of the body over that of the striker

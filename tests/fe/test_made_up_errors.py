@@ -15,6 +15,7 @@ from fe_contact.budget.budget import CAUSES, Budget, Causes
 from fe_contact.budget.certify import _rows, _time_steps, trust
 from fe_contact.budget.change import SAFETY, Change
 from fe_contact.budget.curve import Curve, extrapolated
+from fe_contact.budget.several import _error
 from fe_contact.budget.softening import Softening
 from fe_contact.settings import Numerics
 from fe_contact.steppers.march import Strike
@@ -262,6 +263,28 @@ def test_what_branches_faster_than_a_step_carry_is_taken_from_the_trusted_order(
     found = trust((fine, half, quarter), 2, (1.0 / STEPS, 1.0 / STEPS), flat=False)
     assert found.orders["force"] == pytest.approx(3.0 - share)
     assert found.orders["impulse"] == pytest.approx(2.0 - share)
+
+
+@pytest.mark.parametrize(("flat", "shown", "force"), [(False, 4.0, 2.0), (False, 1.2, 1.0), (True, 4.0, 1.0)])
+def test_a_branch_as_long_as_a_step_leaves_extrapolation_no_order(flat: bool, shown: float, force: float) -> None:
+    """What three lengths of step ``shown`` beside it: the scheme's order, which adds up to itself, or next to none."""
+    strike = replace(STRIKE, relaxation=Relaxation(1.0, (0.1,), (1.0 / STEPS,)))
+    off = (1e-4, shown * 1e-4, shown**2 * 1e-4)
+    fine, half, quarter = (
+        replace(made_up(STEPS // 2**number, lambda s, e=error: e * s * (1.5 + np.cos(2.0 * s))), strike=strike)
+        for number, error in enumerate(off)
+    )
+    found = trust((fine, half, quarter), 2, (1.0 / STEPS, 1.0 / STEPS), flat)
+    assert found.orders["force"] == force
+    assert found.orders["impulse"] == found.orders["restitution"] == (2.0 if shown == 4.0 else 1.0)
+    assert 0.0 < found.kept < 0.01, "a tenth of the modulus for a step of the contact's"
+
+
+def test_what_a_setting_moves_a_later_touch_by_counts_by_its_least_trusted_order() -> None:
+    later = replace(TRUTH, strike=replace(STRIKE, velocity=0.31))
+    moved = Change(TRUTH, later, 3.0, {"restitution": 2.0, "duration": 1.0})
+    assert _error(moved, lambda strike: strike.velocity) == pytest.approx(0.06)
+    assert _error(None, lambda strike: strike.velocity) == np.inf
 
 
 def test_the_band_of_a_force_that_is_cut_off_as_it_rises_holds_the_bar_of_its_peak() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from fe_contact.budget.curve import Curve
 from fe_contact.reference import Solved, solve
-from fe_contact.studies.compare.nested_areas import nested_areas
+from fe_contact.studies.compare.deviations import nested_areas
 from lumped import Material, Relaxation, Scene, Sphere
 from lumped.targets.layer import Layer
 

@@ -9,7 +9,7 @@ from scipy.integrate import quad
 from fe_contact.bodies.memory import step_law
 from fe_contact.bodies.pressing import contact_end
 from fe_contact.schemes.base import SCHEMES
-from fe_contact.steppers.fixed_stepping import just_open, opened
+from fe_contact.steppers.struck import just_open, opened
 from lumped.materials import Relaxation
 
 galerkin = SCHEMES.get("galerkin")

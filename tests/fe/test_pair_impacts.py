@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 import fe_contact
+from fe_contact.fields import felt, peak_step
 from fe_contact.reference import solve
-from fe_contact.results.surface_pressure import felt, peak_step
 from fe_contact.studies.compare.study import known
 from lumped import Material, Relaxation, Result, Scene, Sphere, laws, simulate
 from lumped.shapes.cylinder import Cylinder as Roller

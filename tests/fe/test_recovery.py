@@ -17,8 +17,8 @@ from scipy.interpolate import CubicHermiteSpline
 import fe_contact
 import lumped
 from fe_contact.cli import main
+from fe_contact.recovery import recovery_of
 from fe_contact.reference import solve
-from fe_contact.results.recovery import recovery_of
 from fe_contact.targets import half_space
 from lumped.laws import ting
 from lumped.materials import Relaxation

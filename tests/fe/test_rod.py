@@ -12,7 +12,7 @@ import pytest
 
 from fe_contact.cli import main
 from fe_contact.methods import simulate
-from fe_contact.studies.compare.verdict import WITHIN
+from fe_contact.studies.compare.study import WITHIN
 from fe_contact.waves.targets import rod
 from lumped import BadInput, Result, Scene, laws
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 import meshes
-from fe_contact.assembly.elastic_body import ElasticBody, axisymmetric
-from fe_contact.assembly.operators import basis_on
+from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.zone import held
 from fe_contact.methods import simulate

@@ -12,15 +12,14 @@ from scipy.sparse import linalg
 
 import meshes
 from fe_contact.assembly.forms import Array
+from fe_contact.budget.budget import SETTING
 from fe_contact.budget.plan import EARLY_PEAK
-from fe_contact.budget.refine import AIM, factors
+from fe_contact.budget.refine import AIM, factors, missing
 from fe_contact.steppers.march import March, Strike, Work
-from fe_contact.waves.certify import AT, ORDER, ROWS, WaveRuns, certify, curve_of, reading
-from fe_contact.waves.half_space_body import moving
-from fe_contact.waves.impact import graded
-from fe_contact.waves.plan import viscous_share
-from fe_contact.waves.refining import GROWTH
+from fe_contact.waves.certify import AT, GROWTH, ORDER, ROWS, WaveRuns, certify, curve_of, reading
+from fe_contact.waves.plan import graded, viscous_share
 from fe_contact.waves.targets import half_space
+from fe_contact.waves.targets.half_space import moving
 from lumped import Scene
 from lumped.materials import Relaxation
 
@@ -121,6 +120,16 @@ def test_what_could_not_be_varied_is_refined_as_far_as_there_is_room() -> None:
     shares = {cause: np.array([np.inf if cause == "mesh" else 0.1]) for cause in ORDER}
     chosen = factors(shares, GROWTH, MOST)
     assert chosen["mesh"] == pytest.approx(MOST["mesh"])
+
+
+def test_what_the_user_chose_is_not_refined() -> None:
+    numerics = half_space.plan(Scene.load("steel-ball-waves"), {}).numerics
+    shares = {cause: np.array([10.0]) for cause in ORDER}
+    for cause, key in SETTING.items():
+        finer = missing(shares, GROWTH, numerics, {key})
+        assert getattr(finer, key) == getattr(numerics, key)
+        assert all(getattr(finer, SETTING[one]) > getattr(numerics, SETTING[one]) for one in ORDER if one != cause)
+    assert missing(shares, GROWTH, numerics, set(SETTING.values())) == numerics
 
 
 def test_twice_the_steps_take_one_march_more() -> None:

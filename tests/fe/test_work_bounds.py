@@ -15,10 +15,11 @@ from fe_contact.budget.certify import certify
 from fe_contact.budget.runs import operations
 from fe_contact.dynamics import march
 from fe_contact.errors import BodyTooFine, TooManySteps, WavesTooDear
+from fe_contact.march import impact
 from fe_contact.march.flight import Grounded
 from fe_contact.methods import simulate
 from fe_contact.targets.base import struck
-from fe_contact.waves import cost, doubling
+from fe_contact.waves import line, plan
 from fe_contact.waves.certify import WaveRuns
 from fe_contact.waves.targets.base import WAVES
 from lumped import Scene
@@ -136,17 +137,17 @@ def test_the_cost_of_waves_is_known_before(name: str, monkeypatch: pytest.Monkey
         return found
 
     monkeypatch.setattr(WaveRuns, "follow", followed)
-    monkeypatch.setattr("fe_contact.waves.refining.Waves.rounds", 0)
+    monkeypatch.setattr("fe_contact.waves.certify.Waves.rounds", 0)
     scene = Scene.load(name)
     target = WAVES.get(scene.target.name)
     expected = target.cost(scene, target.plan(scene, COARSE).numerics)
     simulate(scene, "fe", COARSE)
-    share = expected.work / (expected.unknowns + cost.STEP) * expected.unknowns / spent[-1]
+    share = expected.work / (expected.unknowns + plan.STEP) * expected.unknowns / spent[-1]
     assert 0.5 < share < 2.0
 
 
 def test_waves_that_cost_too_much_are_refused_before_the_first_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cost, "MOST_WORK", 1e3)
+    monkeypatch.setattr(plan, "MOST_WORK", 1e3)
     monkeypatch.setattr(WaveRuns, "follow", lambda *_: pytest.fail("marched"))
     with pytest.raises(WavesTooDear, match=r"unknowns, \d+ steps: about .* s of one core .*cure: a larger tolerance"):
         simulate(Scene.load("polymer-sphere-waves"), "fe", COARSE)
@@ -156,11 +157,18 @@ def test_finer_waves_that_cost_too_much_leave_what_is_known(monkeypatch: pytest.
     scene, given = Scene.load("polymer-sphere-waves"), {"tolerance": 3e-3, "elements_per_contact": 2.0, "order": 1}
     target = WAVES.get(scene.target.name)
     first = target.cost(scene, target.plan(scene, given).numerics)
-    monkeypatch.setattr(cost, "MOST_WORK", 1.01 * first.work)
+    monkeypatch.setattr(plan, "MOST_WORK", 1.01 * first.work)
     found = simulate(scene, "fe", given)
     assert not found.converged
     assert found.numerics["steps"] == first.steps
     assert np.isfinite(found.quantities["peak_force"].error or np.nan)
+
+
+def test_a_first_contact_that_does_not_end_is_no_contact(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(impact, "STEPS_ALLOWED", 0.5)
+    scene = Scene.load("polymer-sphere", {"motion.impacts": 2, "model.gravity": 9.81})
+    with pytest.raises(TooManySteps, match="cure: "):
+        simulate(scene, "fe", {"steps": 40})
 
 
 def test_a_march_ends_after_so_much_work(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -170,7 +178,7 @@ def test_a_march_ends_after_so_much_work(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_lines_are_doubled_as_far_as_their_work_is_bearable(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(doubling, "MOST_WORK", 1.0)
+    monkeypatch.setattr(line, "MOST_WORK", 1.0)
     found, free = simulate(Scene.load("bar"), "fe", {}), WAVES.get("plane").plan(Scene.load("bar"), {})
     assert not found.converged
     assert found.numerics["steps"] == free.numerics.steps

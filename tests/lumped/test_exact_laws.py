@@ -18,9 +18,8 @@ from lumped.laws._assembly import Answer
 from lumped.result.history import End
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
-from lumped.solvers.mdr.march import coarse, problem_of
-from lumped.solvers.mdr.memory import fading
-from lumped.solvers.mdr.nest import Grid, Nest, limit, predicted_turn
+from lumped.solvers.mdr.nest import Grid, Nest, coarse, limit, predicted_turn, problem_of
+from lumped.solvers.mdr.row import fading
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from lumped import BadInput, Fit, History, NotReached, Scene, fit, laws, simulate
-from lumped.fit import certainty
+from lumped.fit import problem
 from lumped.result.score import Curve
 from lumped.scene.tables import LawChoice
 
@@ -252,7 +252,7 @@ def test_a_parameter_without_effect_has_no_interval() -> None:
 
 def test_parameters_that_do_the_same_have_no_interval() -> None:
     """Neither a number nor a warning of numpy may come from dividing by what is not told."""
-    inverse, told = certainty._inverse(np.ones((3, 2)), np.ones(2))
+    inverse, told = problem._inverse(np.ones((3, 2)), np.ones(2))
     assert not told
     assert np.isnan(inverse).all()
 

@@ -9,8 +9,7 @@ from scipy.linalg import expm
 
 from lumped import Relaxation, Sphere
 from lumped.solvers.point.bodies import State
-from lumped.solvers.point.memory.base import HereditaryLoad
-from lumped.solvers.point.memory.recovering import FreeSurface
+from lumped.solvers.point.memory import FreeSurface, HereditaryLoad
 
 Array = NDArray[np.float64]
 

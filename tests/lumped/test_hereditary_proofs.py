@@ -20,7 +20,7 @@ from lumped.errors import NotReached
 from lumped.laws import correspondence, ting
 from lumped.laws._hereditary import problem_of
 from lumped.laws.correspondence import Correspondence
-from lumped.numbers.interpolation import local, peak
+from lumped.numbers import local, peak
 from lumped.result.history import End
 from lumped.schema.files import data_folder
 from lumped.shapes import Shape

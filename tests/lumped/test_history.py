@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lumped import BadInput, History, Scene, laws, simulate
-from lumped.numbers.interpolation import highest, local, peak
+from lumped.numbers import highest, local, peak
 from lumped.result.history import COLUMNS, LEAST_ROWS, densified
 from lumped.result.result import UNITS
 

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from limits import compressible, incompressible
 from scipy.special import ellipe, ellipk, j0, j1
 
 from lumped.errors import BadInput, NotReached
@@ -21,8 +22,8 @@ from lumped.load_curves import (
     PunchCurve,
     SneddonSphere,
 )
-from lumped.load_curves.layer import DualEquation, compressible, deficit, incompressible
-from lumped.numbers.quadrature import gauss
+from lumped.load_curves.layer import DualEquation, deficit
+from lumped.numbers import gauss
 
 H = 0.002
 LAYERS = [PointLayer(H, 0.3), PointLayer(H, 0.5), PointLayer(H, 0.3, "sliding")]

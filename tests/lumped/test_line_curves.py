@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from limits import Johnson, Popov, compressible, hertz_pressure, incompressible
 from scipy.optimize import brentq
 
 from lumped.errors import BadInput, NotReached
 from lumped.load_curves import (
     CylinderProfile,
     HalfPlane,
-    Johnson,
     LineLayer,
     LoadCurve,
     ParabolaProfile,
     PointLayer,
-    Popov,
 )
-from lumped.load_curves.half_plane import hertz_pressure
-from lumped.load_curves.layer import compressible, deficit, incompressible
+from lumped.load_curves.layer import deficit
 from lumped.load_curves.plane_contact import collocation
-from lumped.numbers.quadrature import gauss
+from lumped.numbers import gauss
 
 R, DATUM = 0.006, 0.1
 CURVES: list[LoadCurve] = [

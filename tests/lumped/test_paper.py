@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import fields, is_dataclass, replace
 from decimal import Decimal
 from typing import Any
@@ -17,14 +18,13 @@ from scipy.optimize import minimize_scalar
 
 from lumped import Scene, laws, simulate
 from lumped.errors import BadInput, NotReached
-from lumped.paper import Claim, Examples, Value, assumptions, claims, misprints, recompute, rules
-from lumped.paper.assumptions import FAILS, HOLDS, OPEN, Assumption
-from lumped.paper.examples.concrete_impacts import plateau_cut, proposed
-from lumped.paper.examples.dented_surface import DentedSurface
-from lumped.paper.examples.given import Steel
-from lumped.paper.examples.ring_impact import impact
-from lumped.paper.examples.steel_impacts import R1_of_peak, damped_of_peak, elastic_of_peak, solid
+from lumped.paper import Claim, Examples, Value, claims, recompute, rules
+from lumped.paper.claims import FAILS, HOLDS, OPEN, Assumption
+from lumped.paper.concrete_impacts import plateau_cut, proposed
+from lumped.paper.given import Steel
+from lumped.paper.ring_impacts import impact
 from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNJUDGED, UNKNOWN, UNPRINTED, Rule, half_unit
+from lumped.paper.steel_impacts import DentedSurface, R1_of_peak, damped_of_peak, elastic_of_peak, solid
 from lumped.result.history import History
 from lumped.result.result import Result
 
@@ -187,11 +187,11 @@ def test_every_claim_of_the_audit_is_there() -> None:
 
 
 def test_every_misprint_of_the_audit_is_there() -> None:
-    assert [misprint.number for misprint in misprints.load()] == list(range(1, MISPRINTS + 1))
+    assert [misprint.number for misprint in claims.misprints()] == list(range(1, MISPRINTS + 1))
 
 
 def test_every_recomputation_is_used_and_every_used_one_is_there() -> None:
-    users: list[Any] = [*claims.load(), *misprints.load(), *assumptions.load()]
+    users: list[Any] = [*claims.load(), *claims.misprints(), *claims.assumptions()]
     used = {one.recompute for one in users} - {""}
     assert used == set(recompute.available())
 
@@ -302,6 +302,29 @@ def test_verdict_of_a_made_up_claim(
     assert Rule("made up", kind, "says", width).verdict(printed, [Value(*pair) for pair in values]) == verdict
 
 
+NUMBERS, SHARES = st.floats(0.1, 10.0), st.floats(0.0, 1e-4)
+
+
+@given(NUMBERS, SHARES, NUMBERS, SHARES, st.floats(-3.0, 3.0))
+def test_bars_go_through_arithmetic(a: float, of_a: float, b: float, of_b: float, power: float) -> None:
+    """To first order a bar holds what the ends of the bars give, and no more."""
+    one, other = Value(a, of_a * a), Value(b, of_b * b)
+    operations: list[Callable[[Any, Any], Any]] = [
+        lambda x, y: x + y, lambda x, y: x - y, lambda x, y: x * y, lambda x, y: x / y, lambda x, _: x**power,
+        lambda x, _: 2.0 - x, lambda x, _: 2.0 / x, lambda x, _: 2.0 + 3.0 * x,
+    ]  # fmt: skip
+    for operation in operations:
+        found = operation(one, other)
+        ends = [operation(x, y) for x in spanned(one) for y in spanned(other)]
+        assert found.value == operation(a, b)
+        farthest = max(abs(end - found.value) for end in ends)
+        assert found.error == pytest.approx(farthest, rel=2e-3, abs=1e-14)
+
+
+def spanned(value: Value) -> tuple[float, float]:
+    return value.value - value.error, value.value + value.error
+
+
 def test_deviation_is_the_largest_share() -> None:
     claim = Claim("X1", "", "", "N", "100; 10", Rule("about", "relative", "", 0.05), "", "", "")
     judged = claims.JudgedClaim(claim, (Value(101.0), Value(9.7)), AGREES)
@@ -332,7 +355,7 @@ def test_an_assumption_is_judged_over_its_whole_range(values: list[float], verdi
 
 
 def test_assumptions_of_the_examples(examples: Examples) -> None:
-    found = {one.id: assumptions.judge(one, examples).verdict for one in assumptions.load()}
+    found = {one.id: claims.judge_assumption(one, examples).verdict for one in claims.assumptions()}
     judged = {verdict: {name for name in found if found[name] == verdict} for verdict in (HOLDS, FAILS, OPEN)}
     assert judged[HOLDS] == {"steel.strain", "steel.inertia", "concrete.strain", "ring.inertia"}
     assert judged[OPEN] == {"ring.loss"}

@@ -20,13 +20,11 @@ from lumped import BadInput, Relaxation
 from lumped.materials.networks.sls import of_ratios
 from lumped.ptmd import Memory, Oscillator, PoundingDamper, PtmdResult, PtmdRing, Start, simulate
 from lumped.ptmd import exact as exact_route
-from lumped.ptmd.crossing import first_fall
-from lumped.ptmd.equations import Equations, Stages
+from lumped.ptmd.equations import Equations, SideStage, Stages
 from lumped.ptmd.exact import Flow, exponential
-from lumped.ptmd.free_vibration import most_rows
+from lumped.ptmd.free_vibration import ROUTES
 from lumped.ptmd.integrated import Rates
-from lumped.ptmd.phase import ROWS_PER_PERIOD
-from lumped.ptmd.surface import SideStage
+from lumped.ptmd.phase import ROWS_PER_PERIOD, first_fall
 
 POLE, DAMPER = Oscillator(20.0, 7248.9, 7.615), Oscillator(1.67, 592.9, 0.6312)
 SOLID = of_ratios(E0=0.6e6, R1=0.5, R2=0.01)
@@ -589,5 +587,5 @@ def test_bad_input_is_named(bad: Any, named: str) -> None:
 @pytest.mark.parametrize("route", ["exact", "integrated"])
 def test_a_motion_of_too_many_rows_is_refused_before_it_begins(route: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("lumped.ptmd.free_vibration.march", lambda *_: pytest.fail("marched"))
-    with pytest.raises(BadInput, match=rf"more than {most_rows(route)} rows; accepted: at most "):
+    with pytest.raises(BadInput, match=rf"more than {ROUTES[route][1]} rows; accepted: at most "):
         simulate(PLAIN, Start(0.05), 1e6, route=route)

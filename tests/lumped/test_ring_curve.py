@@ -11,7 +11,7 @@ from lumped.errors import BadInput, NotReached
 from lumped.load_curves import CylinderProfile, LineLayer, PointLayer, RodInRing
 from lumped.load_curves.plane_contact import collocation
 from lumped.load_curves.ring import compliances, hole, ring_compliance
-from lumped.numbers.quadrature import gauss
+from lumped.numbers import gauss
 
 RINGS = [
     RodInRing(0.006, 0.010, 0.003, 0.3),

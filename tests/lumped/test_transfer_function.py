@@ -16,7 +16,7 @@ from transfer_function import TransferFunction
 
 from lumped import BadInput, Relaxation, Scene, laws, simulate
 from lumped.materials.networks import fractional_zener, kelvin_voigt, operators, sls
-from lumped.numbers.interpolation import local
+from lumped.numbers import local
 
 Array = NDArray[np.float64]
 Build = Callable[..., Scene]
