@@ -33,7 +33,7 @@ with a coefficient of its own for every length of step. What a scheme of order o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, TypeVar
@@ -42,7 +42,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fe_contact.budget.budget import SETTING, Causes
-from fe_contact.budget.change import RIPPLED, SAFETY, TOP, UNORDERED, Change, factor
+from fe_contact.budget.change import SAFETY, UNORDERED, Change, factor
 from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.runs import Runs
 from fe_contact.budget.several import Judged, Several
@@ -61,7 +61,10 @@ LEAST_ORDER = {"penalty": 1, "far_field": 2}  # of convergence that is trusted w
 MESH_ORDER = {3: 1, 4: 2}  # by element order: the edge allows three in the force, locking takes from it
 WITNESS = 2  # times the order have the elements that tell of those which lock
 WITNESS_ELEMENTS = 4.0  # of them along the contact radius, at least
-MESH_ORDER_ANYWHERE = 1  # where the edge falls anywhere in an element: 1.6 is what is seen
+MESH_ORDER_ANYWHERE = 1.5  # where the edge falls anywhere in an element: the pressure has a root there
+# what a mesh that stays changes weighs so much there: its ripples hide in what is read once, and in what adds up
+ANYWHERE = {"peak_time": 2.0, "duration": 1.5}
+DAMPED_ANYWHERE = {"duration": 6.0, "restitution": 4.0, "impulse": 4.0}  # the same by a dashpot, whose force jitters
 TOP_ANYWHERE = 0.95  # share of the largest depth above which such changes count: their sign turns ever again
 # of the steps' change in the share that branches about as fast as a step carry, by quantity, and of the force
 KEPT = {"peak_depth": 0.4, "duration": 0.4, "impulse": 1.5, "restitution": 1.5}
@@ -119,13 +122,16 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
         return steps.value, held | {"time_step": (*steps.changes, *steps.jitter)}
     cheap = numerics.varied(steps=steps.cheap)
     meshed, pressed = (_judging(numerics, cheap, cause) for cause in ("mesh", "penalty"))
-    mesh, by_mesh = other_mesh(meshed) if surface.breathes else other_mesh(meshed, MESH_ORDER_ANYWHERE)
-    top, ripples = (TOP, {}) if surface.breathes else (TOP_ANYWHERE, {"duration": RIPPLED})
+    mesh, trusted = other_mesh(meshed) if surface.breathes else other_mesh(meshed, MESH_ORDER_ANYWHERE)
+    by_mesh = partial(_change, curve(meshed), curve(mesh), trusted)
+    if not surface.breathes:
+        damped = DAMPED_ANYWHERE if steps.value.strike.relaxation.viscosity > 0.0 else {}
+        by_mesh = partial(by_mesh, weights=ANYWHERE | damped, unresolved=np.inf, top=TOP_ANYWHERE)
     penalty, stiffer = other_setting(pressed, "penalty")
     swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long
     by_steps = swings or steps.jitter_falls
     changes: dict[str, Causes] = {
-        "mesh": (_change(curve(meshed), curve(mesh), by_mesh, top, ripples), *(() if by_steps else steps.jitter)),
+        "mesh": (by_mesh(), *(() if by_steps else steps.jitter)),
         "penalty": (_change(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
         "time_step": (*steps.changes, *(steps.jitter if by_steps else ())),
         "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
@@ -256,15 +262,9 @@ def _end_alike(*curves: Curve) -> bool:
     return len({curve.separated for curve in curves}) == 1 and max(durations) <= MOST_APART * min(durations)
 
 
-def _change(
-    first: Curve | None,
-    second: Curve | None,
-    trusted: float,
-    top: float = TOP,
-    weights: Mapping[str, float] | None = None,
-) -> Change | None:
-    """Change between settings, ``trusted`` so many times as the error of the first."""
-    return None if first is None or second is None else Change(first, second, trusted, weights or {}, top=top)
+def _change(first: Curve | None, second: Curve | None, trusted: float, **more: Any) -> Change | None:
+    """Change between settings, ``trusted`` so many times as the error of the first; ``more``: as a change takes it."""
+    return None if first is None or second is None else Change(first, second, trusted, **more)
 
 
 def other_setting(numerics: AnyNumerics, key: str, least: float | None = None) -> tuple[AnyNumerics, bool]:

@@ -15,7 +15,7 @@ from fe_contact.budget.local_polynomial import BETWEEN, NEAREST_QUARTIC, PLACES
 
 TOP = 0.998  # of the largest depth or force, above which it is near: further away what comes later counts as an error
 STEEPER = 2.0  # times the chord there, that the slope of a change under a flat end may have
-RIPPLED = 1.5  # times its nearest quartic there, and its end, that a change which ripples on a mesh may have
+RIPPLED = 1.5  # times its nearest quartic there that a change which ripples on a mesh may have
 SMOOTHING = 0.07  # share of the contact over which a pointwise change counts as the error of its neighbours
 FIRST_ORDER = 1.25  # factor where order one is all that shows
 SAFETY = 1.25  # of a grid convergence index by three runs, doi:10.1115/1.2910291

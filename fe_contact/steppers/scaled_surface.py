@@ -50,7 +50,8 @@ from lumped.numbers import gauss
 
 LEAST_KEPT = 0.05  # share of its area that a contact is expected to keep over a step
 PATIENCE = 8  # rescalings after which the window widens by half each time: the edge may jitter in the last tail
-MEMORY_POINTS = 1000  # radii at which the surface's past is remembered
+MEMORY_POINTS = 1000  # radii at which the surface's past is remembered, at least
+POINTS_A_STEP = 8  # of them: every step reads between them, and what that errs by adds up under a dashpot
 MEMORY_REACH = 1.25  # memory extends to this multiple of the expected contact radius
 COARSE = np.geomspace(1e-6, 1.0, 200)  # where, in units of the memory's reach, the first contact is looked for
 CLOSING = 1.5  # power of the time left with which the gap closes before an edge
@@ -79,7 +80,7 @@ class Stepper(OfSurface):
         self.strike, self.surface, self.numerics = strike, surface, numerics
         self.scheme = SCHEMES.get(numerics.scheme)
         self.enforcement = ENFORCEMENTS.get(numerics.enforcement)
-        self.radii = graded(MEMORY_REACH * numerics.contact_radius, MEMORY_POINTS)
+        self.radii = graded(MEMORY_REACH * numerics.contact_radius, max(MEMORY_POINTS, POINTS_A_STEP * numerics.steps))
         self.heights = strike.height(self.radii)
         self.areas = area_weights(self.radii)
         self.expected = expected
