@@ -63,8 +63,9 @@ WITNESS = 2  # times the order have the elements that tell of those which lock
 WITNESS_ELEMENTS = 4.0  # of them along the contact radius, at least
 MESH_ORDER_ANYWHERE = 1.5  # where the edge falls anywhere in an element: the pressure has a root there
 # what a mesh that stays changes weighs so much there: its ripples hide in what is read once, and in what adds up
-ANYWHERE = {"peak_time": 2.0, "duration": 1.5}
-DAMPED_ANYWHERE = {"duration": 6.0, "restitution": 4.0, "impulse": 4.0}  # the same by a dashpot, whose force jitters
+ANYWHERE = {"peak_time": 2.0, "peak_depth": 3.0, "duration": 1.5}
+# the same by a dashpot, whose force jitters, and the share of the contact from which it does so for what adds up
+DAMPED_ANYWHERE, DAMPED_SINCE = {"duration": 8.0, "restitution": 3.0, "impulse": 3.0}, 0.5
 TOP_ANYWHERE = 0.95  # share of the largest depth above which such changes count: their sign turns ever again
 # of the steps' change in the share that branches about as fast as a step carry, by quantity, and of the force
 KEPT = {"peak_depth": 0.4, "duration": 0.4, "impulse": 1.5, "restitution": 1.5}
@@ -122,11 +123,15 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
         return steps.value, held | {"time_step": (*steps.changes, *steps.jitter)}
     cheap = numerics.varied(steps=steps.cheap)
     meshed, pressed = (_judging(numerics, cheap, cause) for cause in ("mesh", "penalty"))
+    damped = not surface.breathes and steps.value.strike.relaxation.viscosity > 0.0
+    if damped:  # few steps hide what the edge does as it crosses an element
+        meshed = numerics
     mesh, trusted = other_mesh(meshed) if surface.breathes else other_mesh(meshed, MESH_ORDER_ANYWHERE)
     by_mesh = partial(_change, curve(meshed), curve(mesh), trusted)
     if not surface.breathes:
-        damped = DAMPED_ANYWHERE if steps.value.strike.relaxation.viscosity > 0.0 else {}
-        by_mesh = partial(by_mesh, weights=ANYWHERE | damped, unresolved=np.inf, top=TOP_ANYWHERE)
+        by_mesh = partial(by_mesh, weights=ANYWHERE, unresolved=np.inf, top=TOP_ANYWHERE)
+        if damped:
+            by_mesh = partial(by_mesh, weights=ANYWHERE | DAMPED_ANYWHERE, since=DAMPED_SINCE)
     penalty, stiffer = other_setting(pressed, "penalty")
     swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long
     by_steps = swings or steps.jitter_falls

@@ -14,12 +14,14 @@ from fe_contact.budget.curve import Curve, Reading
 from fe_contact.budget.local_polynomial import BETWEEN, NEAREST_QUARTIC, PLACES
 
 TOP = 0.998  # of the largest depth or force, above which it is near: further away what comes later counts as an error
+LATE = 0.75  # share of the contact from which path and speed count for those at separation
 STEEPER = 2.0  # times the chord there, that the slope of a change under a flat end may have
 RIPPLED = 1.5  # times its nearest quartic there that a change which ripples on a mesh may have
 SMOOTHING = 0.07  # share of the contact over which a pointwise change counts as the error of its neighbours
 FIRST_ORDER = 1.25  # factor where order one is all that shows
 SAFETY = 1.25  # of a grid convergence index by three runs, doi:10.1115/1.2910291
 FEWEST = 24  # steps that a curve keeps: a kink and both ends want as many
+AT_TOUCH = 3.0  # factor in the first step: a dashpot's force begins as the root of time, which leaves order 1/2
 UNORDERED = 2.5  # factor where no order shows: the finer of two runs errs by less than twice their distance
 
 
@@ -46,6 +48,7 @@ class Change:
     weights: Mapping[str, float] = field(default_factory=dict)
     unresolved: float | None = None
     top: float = TOP
+    since: float = LATE
 
     @cached_property
     def errors(self) -> dict[str, float]:
@@ -60,7 +63,7 @@ class Change:
             "peak_force": self._peak_force,
             "peak_time": self._peak_time,
             "peak_depth": float(depth[first.dense.depth > self.top * first.dense.depth.max()].max()),
-            "duration": float(depth[first.late :].max()) / speed if speed > 0.0 else np.inf,
+            "duration": float(depth[self.late :].max()) / speed if speed > 0.0 else np.inf,
             "impulse": self.impulse,
             "restitution": self.velocity / first.strike.velocity,
         }
@@ -86,7 +89,7 @@ class Change:
     def force(self, time: Array) -> Array:
         """Error of the force at times, N: the largest change in the neighbourhood of each.
 
-        While no order shows the whole change counts, and twice that within the first step of all; where the path turns,
+        While no order shows the whole change counts, and more within the first step of all; where the path turns,
         and with it, of a viscous contact, the force's slope at once, the order is one. What steps err by there and at
         touch, motion carries along: forces of viscous contacts have the velocity's order. What is cut off may peak in
         its last step, which no later one evens out.
@@ -100,7 +103,7 @@ class Change:
         whole = ~resolved | self._about_turn(time)
         carried = 1.0 if self.second.strike.relaxation.is_elastic else self.weights.get("restitution", 1.0)
         factor = np.where(whole, max(carried * self.factor, FIRST_ORDER), carried * self.factor)
-        factor[time <= self.first.duration * self.first.x[1] ** 2] = max(self.factor, UNORDERED)
+        factor[time <= self.first.duration * self.first.x[1] ** 2] = max(self.factor, AT_TOUCH)
         if not self.first.separated:
             factor[time >= self.second.last_step] *= self.weights.get("peak_force", 1.0)
         return np.asarray(factor * np.interp(time, places, around))
@@ -119,6 +122,11 @@ class Change:
     def radius(self, time: Array) -> Array:
         """How much the contact radius changes at times, m."""
         return self.first.radius_at(time) - self.second.radius_at(time)
+
+    @cached_property
+    def late(self) -> int:
+        """The first of the dense times at which path and speed count for those at the end."""
+        return int(np.searchsorted(self.first.shares, self.since))
 
     @property
     def _pointwise(self) -> tuple[Array, Array]:
@@ -139,13 +147,13 @@ class Change:
     def signed_velocity(self) -> float:
         """The same with its sign."""
         second = self.second.velocity(self.second.duration * self.first.shares, self._alike.impulse)
-        late = (self.first.dense_velocity - second)[self.first.late :]
+        late = (self.first.dense_velocity - second)[self.late :]
         return float(late[np.abs(late).argmax()])
 
     @cached_property
     def impulse(self) -> float:
         """The same of the impulse, N s."""
-        return float(np.abs(self.first.dense.impulse - self._alike.impulse)[self.first.late :].max())
+        return float(np.abs(self.first.dense.impulse - self._alike.impulse)[self.late :].max())
 
     @cached_property
     def history(self) -> float:

@@ -30,7 +30,6 @@ PEAK_SHARE = 0.98  # of its peak above which a force is near it
 HALF_AS_HIGH = 0.25  # of the error of a peak's place, of fourth order in the width, is left where a fit is half as high
 SHARES = np.linspace(0.0, 1.0, 601)  # of the contact, equally spaced
 EARLIEST = 4  # rows after touch that tell whether steps or shares are more crowded there
-LATE = 0.75  # of the contact: from here on path and speed count for those at separation
 DENSE = SHARES**2 * (3 - 2 * SHARES)  # shares of the contact, crowded at its ends, for peaks and norms
 INSIDE = np.arange(1, 8)[:, None] / 8  # places put into every interval
 
@@ -134,11 +133,6 @@ class Curve:
         count = len(self.x)
         places = np.linspace(0.0, count - 1.0, max(len(DENSE), 2 * count - 1))
         return np.asarray(np.interp(places, np.arange(count), self.x) ** 2)
-
-    @cached_property
-    def late(self) -> int:
-        """The first of :attr:`dense_time` at which path and speed count for those at the end."""
-        return int(np.searchsorted(self.shares, LATE))
 
     @cached_property
     def dense_time(self) -> Array:

@@ -184,7 +184,7 @@ class Moved(Change):
 
     def _late(self, curve: Curve) -> tuple[Array, Array]:
         """Impulse, N s, and velocity, m/s; what has separated presses no more."""
-        time = np.minimum(self.first.dense_time[self.first.late :], curve.duration)
+        time = np.minimum(self.first.dense_time[self.late :], curve.duration)
         impulse = curve.read(time).impulse
         return impulse, curve.velocity(time, impulse)
 
