@@ -64,8 +64,8 @@ WITNESS_ELEMENTS = 4.0  # of them along the contact radius, at least
 MESH_ORDER_ANYWHERE = 1.5  # where the edge falls anywhere in an element: the pressure has a root there
 # what a mesh that stays changes weighs so much there: its ripples hide in what is read once, and in what adds up
 ANYWHERE = {"peak_time": 2.0, "peak_depth": 3.0, "duration": 1.5}
-# the same by a dashpot, whose force jitters, and the share of the contact from which it does so for what adds up
-DAMPED_ANYWHERE, DAMPED_SINCE = {"duration": 8.0, "restitution": 3.0, "impulse": 3.0}, 0.5
+DAMPED_ANYWHERE = {"duration": 8.0, "restitution": 3.0, "impulse": 3.0}  # the same by a dashpot, whose force jitters
+DAMPED_SINCE = 0.5  # share of the contact from which path and speed count there: the end alone may agree by chance
 TOP_ANYWHERE = 0.95  # share of the largest depth above which such changes count: their sign turns ever again
 # of the steps' change in the share that branches about as fast as a step carry, by quantity, and of the force
 KEPT = {"peak_depth": 0.4, "duration": 0.4, "impulse": 1.5, "restitution": 1.5}

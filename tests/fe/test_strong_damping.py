@@ -14,7 +14,10 @@ import pytest
 import fe_contact
 import lumped
 from fe_contact.budget.plan import plan
-from lumped.laws import mdr
+from fe_contact.march.impact import march
+from fe_contact.steppers.march import Strike
+from fe_contact.targets.base import struck
+from lumped.laws import mdr, ting
 from lumped.result.result import RULED_RELATIVE
 
 IMPACTS = 24
@@ -56,6 +59,41 @@ def test_the_bars_cover_and_few_marches_do(exact: list[lumped.Result], tolerance
             error = abs(quantity.value - wanted)
             assert error <= quantity.error, f"{answer.scene.name}: {name} is not covered"
             assert error <= tolerance * (1.0 if name == "restitution" else abs(wanted))
+
+
+def test_what_is_read_between_radii_remembered_does_not_add_up_over_more_steps() -> None:
+    """Of a dashpot every step asks the surface for its past: the duration's error falls with the steps squared."""
+    striker = {"shape": "cone", "angle": 11.5, "mass": 0.05, "velocity": 0.0093}
+    material = {"law": "kelvin_voigt", "E": 5.3e6, "eta": 3.0e4, "nu": -0.77}
+    target = {"shape": "half_space", "material": material}
+    scene = lumped.Scene.from_dict({"name": "damped-cone", "striker": striker, "target": target})
+    exact = lumped.simulate(ting.of(scene), scene, REFERENCE_TOLERANCE).quantities
+    duration, peak_time = exact["duration"].value, exact["peak_time"].value
+    assert duration
+    assert peak_time
+    place = {"contact_time": duration, "peak_share": peak_time / duration, "elements_per_contact": 6.0}
+    numerics = plan(scene, place | {"penalty": 4000.0, "far_radius": 40.0}).numerics
+    errors = []
+    for steps in (240, 480, 960):
+        few = numerics.varied(steps=steps)
+        found = march(Strike.of(scene), struck(scene.geometry, few), few)
+        errors.append(abs(float(found.time[-1]) / duration - 1.0))
+    assert errors[0] > 2.5 * errors[1]
+    assert errors[1] > 2.5 * errors[2]
+
+
+@pytest.mark.tenth
+def test_few_steps_do_not_hide_what_the_mesh_of_a_damped_ring_changes(
+    uncovered: Callable[..., dict[str, float]],
+) -> None:
+    """A quarter of these steps changes the duration by a thirtieth of what all of them do, from mesh to mesh."""
+    striker = {"shape": "cylinder", "radius": 0.006, "length": 0.03, "mass": 0.05, "velocity": 0.09207423852245143}
+    material = {"law": "kelvin_voigt", "E": 6e5, "eta": 1108.4770341543338, "nu": 0.2995692410028187}
+    target = {"shape": "ring", "inner_radius": 0.008019482408463181, "thickness": 0.0036194610319519437}
+    keys = {"name": "damped-ring", "striker": striker, "target": target | {"material": material}}
+    scene = lumped.Scene.from_dict(keys)
+    found = fe_contact.run(scene, 0.05, numerics={"elements_per_contact": 4.5, "steps": 288})
+    assert not uncovered(found, lumped.simulate(ting.of(scene), scene, REFERENCE_TOLERANCE))
 
 
 def roller(number: int) -> lumped.Scene:
