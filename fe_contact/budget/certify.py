@@ -2,9 +2,9 @@
 
 Time steps in the ratio 1 : 2 : 4 give a value (extrapolated from the two finest) and its change from the pair before.
 Mesh and penalty are varied on the coarsest of them, where a march is cheapest: what they change hardly depends on the
-step, unless they are coarse themselves. The far field of an elastic body on a mesh that breathes with the contact takes
-no march, unless further contacts follow, each of which is judged like the first from the same runs. A change between
-settings in the ratio 1 : 2 bounds the error by
+step, unless they are coarse themselves, or a dashpot jitters on a mesh that stays. The far field of an elastic body on
+a mesh that breathes with the contact takes no march, unless further contacts follow, each of which is judged like the
+first from the same runs. A change between settings in the ratio 1 : 2 bounds the error by
 
     SAFETY / (2^order - 1) x change ,
 
