@@ -122,21 +122,13 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
         held = _by_stiffness(runs, steps.value, surface, numerics)
         return steps.value, held | {"time_step": (*steps.changes, *steps.jitter)}
     cheap = numerics.varied(steps=steps.cheap)
-    meshed, pressed = (_judging(numerics, cheap, cause) for cause in ("mesh", "penalty"))
-    damped = not surface.breathes and steps.value.strike.relaxation.viscosity > 0.0
-    if damped:  # few steps hide what the edge does as it crosses an element
-        meshed = numerics
-    mesh, trusted = other_mesh(meshed) if surface.breathes else other_mesh(meshed, MESH_ORDER_ANYWHERE)
-    by_mesh = partial(_change, curve(meshed), curve(mesh), trusted)
-    if not surface.breathes:
-        by_mesh = partial(by_mesh, weights=ANYWHERE, unresolved=np.inf, top=TOP_ANYWHERE)
-        if damped:
-            by_mesh = partial(by_mesh, weights=ANYWHERE | DAMPED_ANYWHERE, since=DAMPED_SINCE)
+    mesh, by_mesh = _by_mesh(curve, numerics, cheap, surface.breathes, steps.value.strike.relaxation.viscosity > 0.0)
+    pressed = _judging(numerics, cheap, "penalty")
     penalty, stiffer = other_setting(pressed, "penalty")
     swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long
     by_steps = swings or steps.jitter_falls
     changes: dict[str, Causes] = {
-        "mesh": (by_mesh(), *(() if by_steps else steps.jitter)),
+        "mesh": (by_mesh, *(() if by_steps else steps.jitter)),
         "penalty": (_change(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
         "time_step": (*steps.changes, *(steps.jitter if by_steps else ())),
         "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
@@ -144,15 +136,31 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
     return steps.value, changes
 
 
-def _judging(numerics: Numerics, cheap: Numerics, cause: str) -> Numerics:
+def _by_mesh(
+    curve: Callable[[Numerics], Curve | None], numerics: Numerics, cheap: Numerics, breathes: bool, viscous: bool
+) -> tuple[Numerics, Change | None]:
+    """Settings of another mesh, and what it changes: where a mesh stays, that ripples."""
+    damped = viscous and not breathes
+    meshed = _judging(numerics, cheap, "mesh", damped)
+    mesh, trusted = other_mesh(meshed) if breathes else other_mesh(meshed, MESH_ORDER_ANYWHERE)
+    change = partial(_change, curve(meshed), curve(mesh), trusted)
+    if breathes:
+        return mesh, change()
+    if damped:
+        change = partial(change, since=DAMPED_SINCE)
+    weights = ANYWHERE | (DAMPED_ANYWHERE if damped else {})
+    return mesh, change(weights=weights, unresolved=np.inf, top=TOP_ANYWHERE)
+
+
+def _judging(numerics: Numerics, cheap: Numerics, cause: str, damped: bool = False) -> Numerics:
     """Settings of which one is varied: with few steps, but where its half would tell nothing with all of them.
 
     A soft penalty is the softer the shorter the step, in which a dashpot is stiff; what a coarse mesh changes, few
-    steps may hide.
+    steps may hide, and what any mesh does that stays, if its contact is ``damped``.
     """
     key = SETTING[cause]
     coarse = getattr(numerics, key) < LEAST_HALVED_SETTING[key]
-    return numerics.varied(steps=max(numerics.steps, cheap.steps)) if coarse else cheap
+    return numerics.varied(steps=max(numerics.steps, cheap.steps)) if coarse or damped else cheap
 
 
 def _by_stiffness(runs: Runs, value: Curve, end: FlatEnd, numerics: Numerics) -> dict[str, Causes]:
