@@ -16,9 +16,9 @@ import numpy as np
 from fe_contact.assembly.forms import Array, check_compressible
 from fe_contact.bodies.pressing import Still
 from fe_contact.budget.certify import LEAST_ORDER, other_mesh, other_setting
-from fe_contact.budget.change import factor
 from fe_contact.budget.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, RIM_PENALTY
 from fe_contact.budget.refine import Finer, dominant, refine
+from fe_contact.budget.variation import factor
 from fe_contact.errors import says_which_key
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import Given, Numerics, check_kind

@@ -12,9 +12,9 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import Budget
-from fe_contact.budget.change import Change
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.softening import Softening
+from fe_contact.budget.variation import Variation
 from fe_contact.schemes import galerkin
 from lumped.materials import Recovery
 from lumped.result.result import IndentationLeft
@@ -69,7 +69,7 @@ def _after(curve: Curve, path: Array) -> Recovery:
     return Recovery.of(relaxation, float(path[-1]), taken @ np.diff(path))
 
 
-def _error(change: Change | Softening | None, time: Array) -> Array:
+def _error(change: Variation | Softening | None, time: Array) -> Array:
     """Error by one change at times since separation (n,), s, m.
 
     Of two recoveries the difference may be none by chance, what the path's change leaves with its sign taken away not.

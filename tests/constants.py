@@ -34,9 +34,9 @@ class Constant(NamedTuple):
 
 
 CERTIFY = "fe_contact.budget.certify"
-CHANGE, CURVE, IMPACT = "fe_contact.budget.change", "fe_contact.budget.curve", "fe_contact.march.impact"
+VARIATION, CURVE, IMPACT = "fe_contact.budget.variation", "fe_contact.budget.curve", "fe_contact.march.impact"
 TABLE = (
-    Constant(CHANGE, "SAFETY", DERIVED, "Roache's for three grids, doi:10.1115/1.2910291"),
+    Constant(VARIATION, "SAFETY", DERIVED, "Roache's for three grids, doi:10.1115/1.2910291"),
     Constant(CERTIFY, "LEAST_ORDER", DERIVED, "a penalty errs as its inverse, a far field as the inverse square"),
     Constant(
         CERTIFY,
@@ -61,20 +61,20 @@ TABLE = (
     Constant(CERTIFY, "MOST_APART", MEASURED, "durations that tell of one and the same end", 1e9),
     Constant(CERTIFY, "ROUNDING", MEASURED, "of a solve of nearly incompressible bodies", 0.0),
     Constant(CERTIFY, "MARCHES", WORK, "what a budget costs"),
-    Constant(CHANGE, "FIRST_ORDER", DERIVED, "SAFETY over 2^1 - 1"),
-    Constant(CHANGE, "UNORDERED", DERIVED, "SAFETY times two: an order of 0.6 is supposed", 1.25),
-    Constant(CHANGE, "AT_TOUCH", DERIVED, "SAFETY over 2^(1/2) - 1"),
-    Constant(CHANGE, "TOP", MEASURED, "depth and time of a peak are judged by all above this share", 1.0),
-    Constant(CHANGE, "STEEPER", MEASURED, "slope of a change over its chord, at a peak under a flat end", 0.5),
+    Constant(VARIATION, "FIRST_ORDER", DERIVED, "SAFETY over 2^1 - 1"),
+    Constant(VARIATION, "UNORDERED", DERIVED, "SAFETY times two: an order of 0.6 is supposed", 1.25),
+    Constant(VARIATION, "AT_TOUCH", DERIVED, "SAFETY over 2^(1/2) - 1"),
+    Constant(VARIATION, "TOP", MEASURED, "depth and time of a peak are judged by all above this share", 1.0),
+    Constant(VARIATION, "STEEPER", MEASURED, "slope of a change over its chord, at a peak under a flat end", 0.5),
     Constant(
-        CHANGE,
+        VARIATION,
         "RIPPLED",
         MEASURED,
         "slope or size of a rippling change over its quartic's at a peak",
         0.5,
     ),
-    Constant(CHANGE, "FEWEST", WORK, "steps that the curve of a jittering force keeps"),
-    Constant(CHANGE, "SMOOTHING", MEASURED, "a change that crosses zero is that of its neighbours", 0.0),
+    Constant(VARIATION, "FEWEST", WORK, "steps that the curve of a jittering force keeps"),
+    Constant(VARIATION, "SMOOTHING", MEASURED, "a change that crosses zero is that of its neighbours", 0.0),
     Constant(CERTIFY, "AS_EXPECTED", MEASURED, "ratio of changes over the expected one that shows the order", (0, 1e9)),
     Constant(CERTIFY, "ABOUT", MEASURED, "the same that shows it about", (0.0, 1e9)),
     Constant(CERTIFY, "ASYMPTOTIC", MEASURED, "error of the duration with the fewest steps where orders count", 1e9),
@@ -88,7 +88,7 @@ TABLE = (
     ),
     Constant(CURVE, "PEAK_SHARE", MEASURED, "a peak is judged by all forces above this share", 1.0),
     Constant(CURVE, "HALF_AS_HIGH", DERIVED, "a quartic places a peak to the fourth order of the width that it fits"),
-    Constant(CHANGE, "LATE", MEASURED, "path and speed from here on count for those at the end", 1.0),
+    Constant(VARIATION, "LATE", MEASURED, "path and speed from here on count for those at the end", 1.0),
     Constant(CURVE, "EARLIEST", WORK, "rows that tell where a curve is read"),
     Constant(IMPACT, "PREDICTIONS", MEASURED, "their spread is that of the end", 1),
     Constant(IMPACT, "NOISE", MEASURED, "share of the peak below which contact may be lost in the mesh"),

@@ -235,7 +235,7 @@ def test_what_mutants_are_drawn_from_and_what_does_no_harm_is_there() -> None:
         assert any(last in texts[file] for file in matching(texts, pattern)), (pattern, scope)
 
 
-ERROR_PATH = ("certify", "change")
+ERROR_PATH = ("certify", "variation")
 
 
 def test_the_manual_tells_every_constant_on_the_way_to_a_bar_as_the_code_has_it() -> None:

@@ -50,7 +50,7 @@ class Store:
 _BODIES = Store(BODIES)
 
 
-class kept(Generic[_Arguments, _Answer]):  # noqa: N801 - a decorator, written like functools.cache
+class cached(Generic[_Arguments, _Answer]):  # noqa: N801 - a decorator, written like functools.cache
     """A function of hashable arguments that answers anew only what it was not asked lately."""
 
     def __init__(self, make: Callable[_Arguments, _Answer]) -> None:

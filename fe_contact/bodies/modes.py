@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.linalg import eigh
 
-from fe_contact.assembly.cache import kept
+from fe_contact.assembly.cache import cached
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, moduli
 
@@ -85,7 +85,7 @@ class Modes:
         return _symmetric(np.asarray(np.linalg.inv(self.compliance(*moduli(poisson(ratio))))))
 
 
-@kept
+@cached
 def modes(body: ElasticBody, lowest: float, highest: float) -> Modes:
     """Of a body whose ratio of shear to bulk modulus, G/K > 0, stays within an interval."""
     operators = [body.operator(poisson(ratio), factors=True) for ratio in _ratios(lowest, highest)]

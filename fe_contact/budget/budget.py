@@ -13,9 +13,9 @@ from typing import Protocol
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.change import SAFETY, Change
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.softening import Softening
+from fe_contact.budget.variation import SAFETY, Variation
 from fe_contact.march.flight import Grounded
 from fe_contact.settings import Numerics
 from fe_contact.steppers.march import March, Work
@@ -28,7 +28,7 @@ OUTSIDE = ("in", "out")  # terms of the energy account by the motion of the stri
 LOST = ("contact", "numerical", "residual")  # terms that are zero but for numerical errors
 ROWS_SHARE = 0.1  # of the tolerance that a line between two rows may err
 
-Causes = tuple[Change | Softening | None, ...]  # what one setting changes, None: unknown
+Causes = tuple[Variation | Softening | None, ...]  # what one setting changes, None: unknown
 Contacts = tuple[Mapping[str, float | None], ...]
 
 
@@ -211,7 +211,7 @@ class Budget:
         return np.asarray(np.sum([fading, *known], axis=0))
 
 
-def _error(change: Change | Softening | None, name: str) -> float:
+def _error(change: Variation | Softening | None, name: str) -> float:
     """Error of a quantity by one change; infinite where the variation failed."""
     return np.inf if change is None else change.errors[name]
 

@@ -3,7 +3,7 @@
 Time steps in the ratio 1 : 2 : 4 give a value (extrapolated from the two finest) and its change from the pair before.
 Mesh and penalty are varied on the coarsest of them, where a march is cheapest: what they change hardly depends on the
 step, unless they are coarse themselves, or a dashpot jitters on a mesh that stays. The far field of an elastic body on
-a mesh that breathes with the contact takes no march, unless further contacts follow, each of which is judged like the
+a mesh that follows the contact takes no march, unless further contacts follow, each of which is judged like the
 first from the same runs. A change between settings in the ratio 1 : 2 bounds the error by
 
     SAFETY / (2^order - 1) x change ,
@@ -42,11 +42,11 @@ import numpy as np
 import numpy.typing as npt
 
 from fe_contact.budget.budget import SETTING, Causes
-from fe_contact.budget.change import SAFETY, UNORDERED, Change, factor
 from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.runs import Runs
 from fe_contact.budget.several import Judged, Several
 from fe_contact.budget.softening import Softening, compliance_change
+from fe_contact.budget.variation import SAFETY, UNORDERED, Variation, factor
 from fe_contact.progress import Count, Progress, silent
 from fe_contact.schemes.base import SCHEMES
 from fe_contact.settings import Numerics
@@ -122,14 +122,16 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
         held = _by_stiffness(runs, steps.value, surface, numerics)
         return steps.value, held | {"time_step": (*steps.changes, *steps.jitter)}
     cheap = numerics.varied(steps=steps.cheap)
-    mesh, by_mesh = _by_mesh(curve, numerics, cheap, surface.breathes, steps.value.strike.relaxation.viscosity > 0.0)
+    mesh, by_mesh = _by_mesh(
+        curve, numerics, cheap, surface.follows_contact, steps.value.strike.relaxation.viscosity > 0.0
+    )
     pressed = _judging(numerics, cheap, "penalty")
     penalty, stiffer = other_setting(pressed, "penalty")
     swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long
     by_steps = swings or steps.jitter_falls
     changes: dict[str, Causes] = {
         "mesh": (by_mesh, *(() if by_steps else steps.jitter)),
-        "penalty": (_change(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
+        "penalty": (_variation(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
         "time_step": (*steps.changes, *(steps.jitter if by_steps else ())),
         "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
     }
@@ -137,14 +139,14 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
 
 
 def _by_mesh(
-    curve: Callable[[Numerics], Curve | None], numerics: Numerics, cheap: Numerics, breathes: bool, viscous: bool
-) -> tuple[Numerics, Change | None]:
+    curve: Callable[[Numerics], Curve | None], numerics: Numerics, cheap: Numerics, follows_contact: bool, viscous: bool
+) -> tuple[Numerics, Variation | None]:
     """Settings of another mesh, and what it changes: where a mesh stays, that ripples."""
-    damped = viscous and not breathes
+    damped = viscous and not follows_contact
     meshed = _judging(numerics, cheap, "mesh", damped)
-    mesh, trusted = other_mesh(meshed) if breathes else other_mesh(meshed, MESH_ORDER_ANYWHERE)
-    change = partial(_change, curve(meshed), curve(mesh), trusted)
-    if breathes:
+    mesh, trusted = other_mesh(meshed) if follows_contact else other_mesh(meshed, MESH_ORDER_ANYWHERE)
+    change = partial(_variation, curve(meshed), curve(mesh), trusted)
+    if follows_contact:
         return mesh, change()
     if damped:
         change = partial(change, since=DAMPED_SINCE)
@@ -180,8 +182,8 @@ def _by_stiffness(runs: Runs, value: Curve, end: FlatEnd, numerics: Numerics) ->
 
 def _far_field(
     runs: Runs, value: Curve, cheap: Numerics, mesh: Numerics, number: int, alone: bool
-) -> Change | Softening | None:
-    """By one press of either surface where an elastic one breathes with one contact; else by a march more, on the
+) -> Variation | Softening | None:
+    """By one press of either surface where an elastic one follows one contact; else by a march more, on the
     varied mesh: beside a small contact the far field changes what a surface remembers by more than it does the contact.
 
     Bodies that end have none.
@@ -189,8 +191,8 @@ def _far_field(
     order = LEAST_ORDER["far_field"]
     far, farther = other_setting(cheap, "far_radius")
     surface = runs.surface(cheap)
-    pressed = alone and surface.breathes and value.strike.relaxation.is_elastic and not farther
-    if pressed or not surface.breathes:
+    pressed = alone and surface.follows_contact and value.strike.relaxation.is_elastic and not farther
+    if pressed or not surface.follows_contact:
         other = runs.surface(far)
         if other is surface:
             return Softening(value, 0.0)
@@ -199,7 +201,7 @@ def _far_field(
             assert isinstance(other, Deformable)
             return Softening(value, factor(order, farther) * compliance_change(surface, other))
     before, after = runs.curve(number, mesh), runs.curve(number, mesh.varied(far_radius=far.far_radius))
-    return _change(before, after, factor(order, farther))
+    return _variation(before, after, factor(order, farther))
 
 
 @dataclass(frozen=True)
@@ -211,7 +213,7 @@ class _TimeSteps:
 
     value: Curve
     changes: Causes
-    jitter: tuple[Change, ...]
+    jitter: tuple[Variation, ...]
     cheap: int
     jitter_falls: bool = False
 
@@ -229,8 +231,8 @@ def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics, f
         if double is None or fourfold is None or not _end_alike(fourfold, double):
             return _TimeSteps(fine, (None,), (), 4 * numerics.steps)
         best, before = extrapolated(fourfold, double, order), extrapolated(double, fine, order)
-        jitter = Change(best, before, SAFETY)
-        return _TimeSteps(fine, (Change(fine, best, SAFETY),), (jitter,), 4 * numerics.steps, True)
+        jitter = Variation(best, before, SAFETY)
+        return _TimeSteps(fine, (Variation(fine, best, SAFETY),), (jitter,), 4 * numerics.steps, True)
     half = curve(numerics.varied(steps=numerics.steps // 2))
     quarter = curve(numerics.varied(steps=numerics.steps // 4))
     if half is None or quarter is None or not _end_alike(fine, half, quarter):
@@ -240,21 +242,21 @@ def _time_steps(curve: Callable[[Numerics], Curve | None], numerics: Numerics, f
     shortest = float(taken[0]) if flat else numerics.contact_time / numerics.steps
     trusted = trust((fine, half, quarter), order, (shortest, float(taken.max())), flat)
     if flat and trusted.orders["force"] == 1:  # steps as long as a relaxation show no order: the finest run stands
-        jitter = Change(fine, fine.thinned(), 1.0)
-        return _TimeSteps(fine, (Change(fine, half, UNORDERED),), (jitter,), numerics.steps // 4, True)
+        jitter = Variation(fine, fine.thinned(), 1.0)
+        return _TimeSteps(fine, (Variation(fine, half, UNORDERED),), (jitter,), numerics.steps // 4, True)
     least = SAFETY / (2 ** trusted.orders["force"] - 1)
     weights = {name: SAFETY / (2**one - 1) / least for name, one in trusted.orders.items()}
-    change = Change(value, before, least, weights, quarter.duration * float(quarter.x[UNSEEN]) ** 2)
+    change = Variation(value, before, least, weights, quarter.duration * float(quarter.x[UNSEEN]) ** 2)
     shares = {name: share / KEPT_OF_FORCE for name, share in KEPT.items()}
-    kept = Change(fine, half, KEPT_OF_FORCE * trusted.kept, shares)
-    jitter, finer, coarser = (Change(one, one.thinned(), 1.0) for one in (value, fine, half))  # its own is largest
+    kept = Variation(fine, half, KEPT_OF_FORCE * trusted.kept, shares)
+    jitter, finer, coarser = (Variation(one, one.thinned(), 1.0) for one in (value, fine, half))  # its own is largest
     jitter = replace(jitter, weights=_rows(jitter))
     falls = finer.history < FALLS * coarser.history
     changes = (change, kept) if trusted.kept else (change,)
     return _TimeSteps(value, changes, (jitter,), numerics.steps // 4, falls)
 
 
-def _rows(jitter: Change) -> dict[str, float]:
+def _rows(jitter: Variation) -> dict[str, float]:
     """What a change to every other row weighs, by peak: where nothing jitters it is what lies between the rows.
 
     A quarter of the rows shows that: in a force that jitters the change does not grow with their distance.
@@ -262,7 +264,7 @@ def _rows(jitter: Change) -> dict[str, float]:
     if not jitter.first.separated:  # at a cut-off no later step evens it out
         return {"peak_force": UNORDERED}
     half, ordered = jitter.second, 2**ROWS_ORDER
-    quarter = Change(half, half.thinned(), 1.0)
+    quarter = Variation(half, half.thinned(), 1.0)
     if quarter.history < ordered * jitter.history:
         return {}
     shown = [name for name in PEAKS if quarter.errors[name] >= ordered * jitter.errors[name]]
@@ -275,9 +277,9 @@ def _end_alike(*curves: Curve) -> bool:
     return len({curve.separated for curve in curves}) == 1 and max(durations) <= MOST_APART * min(durations)
 
 
-def _change(first: Curve | None, second: Curve | None, trusted: float, **more: Any) -> Change | None:
-    """Change between settings, ``trusted`` so many times as the error of the first; ``more``: as a change takes it."""
-    return None if first is None or second is None else Change(first, second, trusted, **more)
+def _variation(first: Curve | None, second: Curve | None, trusted: float, **more: Any) -> Variation | None:
+    """Between settings, ``trusted`` so many times as the error of the first; ``more``: as a variation takes it."""
+    return None if first is None or second is None else Variation(first, second, trusted, **more)
 
 
 def other_setting(numerics: AnyNumerics, key: str, least: float | None = None) -> tuple[AnyNumerics, bool]:
@@ -350,8 +352,8 @@ def _trusted_order(fine: Curve, half: Curve, quarter: Curve, order: int) -> int:
     The velocity is asked, since the force of a viscous contact may jitter by more than the steps change it. Where two
     orders cancel each other its changes may differ in sign.
     """
-    least = Change(fine, half, 1.0).signed_velocity or np.finfo(float).tiny
-    seen = Change(half, quarter, 1.0).signed_velocity / least
+    least = Variation(fine, half, 1.0).signed_velocity or np.finfo(float).tiny
+    seen = Variation(half, quarter, 1.0).signed_velocity / least
     share = seen / 2**order
     if AS_EXPECTED[0] <= share <= AS_EXPECTED[1]:
         return order + 1

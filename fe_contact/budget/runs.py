@@ -8,9 +8,9 @@ from typing import Generic, TypeVar
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import TotalWork
-from fe_contact.budget.change import calmest
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import share_of_peak
+from fe_contact.budget.variation import calmest
 from fe_contact.march.impact import march
 from fe_contact.march.impacts import Followed, SurfaceBouncer, follow
 from fe_contact.progress import Counted, uncounted
@@ -100,7 +100,7 @@ class Runs(AnyRuns[Numerics]):
         self._works += [one.work for one in marches]
         self._radii.setdefault(settings.steps, [one.radius for one in marches])
         curves = (Curve.of(contact.march, contact.strike) for contact in followed.contacts)
-        jitters = not (surface.breathes or isinstance(surface, FlatEnd) or self._strike.relaxation.is_elastic)
+        jitters = not (surface.follows_contact or isinstance(surface, FlatEnd) or self._strike.relaxation.is_elastic)
         self._curves[settings] = tuple(calmest(curve) if jitters else curve for curve in curves)
         return followed
 

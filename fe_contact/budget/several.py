@@ -16,9 +16,9 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, Causes, Contacts, TotalWork
-from fe_contact.budget.change import Change
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.softening import Softening
+from fe_contact.budget.variation import Variation
 from fe_contact.march.flight import Grounded
 from fe_contact.march.impacts import Followed
 from fe_contact.settings import Numerics
@@ -227,7 +227,7 @@ def _moved(budget: Budget, of: Callable[[Strike], float]) -> Shares:
     return {cause: sum(_error(change, of) for change in budget.changes[cause]) for cause in CAUSES}
 
 
-def _error(change: Change | Softening | None, of: Callable[[Strike], float]) -> float:
+def _error(change: Variation | Softening | None, of: Callable[[Strike], float]) -> float:
     """Of one change; infinite where the variation failed."""
     if change is None:
         return np.inf

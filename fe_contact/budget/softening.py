@@ -1,6 +1,6 @@
 """The error of a body that is a little too soft or too stiff everywhere alike, without a march.
 
-On a mesh that breathes with the contact the far field lifts or lowers the whole contact of an elastic body by the same
+On a mesh that follows the contact the far field lifts or lowers the whole contact of an elastic body by the same
 share of its displacement, whatever the instant. That is a modulus which errs by this share: on the same path the force
 errs by no more than it, hence so does the impulse, and with it speed and path.
 """

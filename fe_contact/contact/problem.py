@@ -8,7 +8,7 @@ displacement ``x`` and the striker's own retreat ``y`` minimise the strictly con
 
     pressure = penalty max(g - T x - y, 0) ,    y = yielding sum W pressure .
 
-Newton's step solves with the points now in contact. On a mesh that breathes with the contact these are the same
+Newton's step solves with the points now in contact. On a mesh that follows the contact these are the same
 few sets again and again, so that the answer to every set is kept and a step is one matrix-vector product. A
 line search on ``J`` makes it converge from anywhere; an exhausted budget is reported, never returned as a number.
 Where the set stands still the answer must still balance: a penalty beyond all digits, or a line search that ends in

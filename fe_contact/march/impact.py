@@ -43,8 +43,8 @@ def march(
 ) -> March:
     """Integrate from first touch to separation, or to ``strike.end_time``.
 
-    ``expected`` contact radii, m, of the first steps, known from a like march, spare a mesh that breathes the search
-    for its scale.
+    ``expected`` contact radii, m, of the first steps, known from a like march, spare a mesh that follows the contact
+    the search for its scale.
 
     Raises the named failures of :mod:`fe_contact.errors` where a step does not converge.
     """

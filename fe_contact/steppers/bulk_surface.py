@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from fe_contact.assembly.cache import kept
+from fe_contact.assembly.cache import cached
 from fe_contact.assembly.operators import ElasticBody, SurfaceOperator
 from fe_contact.bodies.bulk_memory import BulkBody, Moduli
 from fe_contact.bodies.memory import step_law
@@ -49,7 +49,7 @@ class BulkSurface(ByModes, Deformable):
 
     modes: Modes
     moduli: Moduli
-    breathes: bool = False
+    follows_contact: bool = False
     length: float | None = None
     rim: float | None = None
 
@@ -79,6 +79,6 @@ def relaxing(
     return _surface(body, moduli, Pace.of(numerics), length, rim)
 
 
-@kept
+@cached
 def _surface(body: ElasticBody, moduli: Moduli, pace: Pace, length: float | None, rim: float | None) -> BulkSurface:
     return BulkSurface(modes(body, *pace.ratios(moduli)), moduli, length=length, rim=rim)

@@ -43,7 +43,7 @@ class FlatEnd:
     radius: float
     degrees_of_freedom: int
     mesh_order: float
-    breathes: bool = False
+    follows_contact: bool = False
     recovers: bool = True
     factorizations: int = 1
     solves: int = 1

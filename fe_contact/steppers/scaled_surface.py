@@ -1,4 +1,4 @@
-"""A homogeneous half-space seen through its surface, on a mesh that breathes with the contact.
+"""A homogeneous half-space seen through its surface, on a mesh that follows the contact.
 
 The half-space has no length of its own: scaling the mesh by a contact radius ``a`` divides its compliance
 by ``a`` and changes nothing else. So one operator, made for radius one, serves every instant, and the
@@ -30,7 +30,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from fe_contact.assembly.cache import kept
+from fe_contact.assembly.cache import cached
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, SurfaceOperator
 from fe_contact.assembly.pressed_surface import PressedSurface
@@ -215,15 +215,15 @@ class Stepper(OfSurface):
 class ScaledSurface(Deformable):
     """Contact surface of the half-space; ``operator`` is condensed for contact radius 1 and E* = 1.
 
-    ``breathes``: whether the mesh follows the contact; where it stays, the same points seldom touch twice.
+    ``follows_contact``: whether the mesh follows the contact; where it stays, the same points seldom touch twice.
     """
 
     operator: SurfaceOperator
-    breathes: bool = True
+    follows_contact: bool = True
 
     def stepper(self, strike: Strike, numerics: Numerics, expected: Sequence[float] | Array) -> Stepping:
         """Steps on the mesh that follows the contact, or that stays."""
-        if self.breathes:
+        if self.follows_contact:
             return Stepper(strike, self, numerics, expected)
         return super().stepper(strike, numerics, expected)
 
@@ -235,11 +235,11 @@ class ScaledSurface(Deformable):
     def pressed(self) -> PressedSurface:
         """What contact knows of it: one object, since the answers to a surface are kept by its identity."""
         operator = self.operator
-        return PressedSurface(operator.stiffness, operator.trace, operator.weights, self.breathes)
+        return PressedSurface(operator.stiffness, operator.trace, operator.weights, self.follows_contact)
 
     def felt(self, snapshot: Snapshot) -> tuple[Array, Array]:
         """Where the mesh follows the contact, what the snapshot says: it has no roughness to be freed of."""
-        return (snapshot.radii, snapshot.pressure) if self.breathes else super().felt(snapshot)
+        return (snapshot.radii, snapshot.pressure) if self.follows_contact else super().felt(snapshot)
 
     def problem(self, overlap: Array, penalty: float, yielding: float | Array) -> ContactProblem:
         """Contact problem on the unit mesh.
@@ -283,10 +283,10 @@ class ScaledSurface(Deformable):
         return corners, np.stack([corners[:-1], 1 / np.diff(corners)]), members
 
 
-@kept
+@cached
 def on_mesh(body: ElasticBody, poisson: float) -> ScaledSurface:
     """A body with lengths of its own, condensed for this Poisson's ratio: its mesh stays while the contact grows."""
-    return ScaledSurface(body.operator(poisson), breathes=False)
+    return ScaledSurface(body.operator(poisson), follows_contact=False)
 
 
 def _at_instants(stepper: Stepper, steps: Sequence[Step]) -> tuple[Snapshot, ...]:

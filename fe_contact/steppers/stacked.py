@@ -132,7 +132,7 @@ class Stacked(Deformable):
     operator: SurfaceOperator
     sides: tuple[BodySide, ...]
     radius: float
-    breathes: bool = False
+    follows_contact: bool = False
 
     @property
     def recovers(self) -> bool:

@@ -36,14 +36,14 @@ from lumped.materials import Relaxation
 
 
 class Struck(Protocol):
-    """What is struck, with one setting of everything: ``breathes`` where its mesh follows the contact, ``recovers``
+    """What is struck, with one setting of everything: ``follows_contact`` where its mesh does so, ``recovers``
     where one surface alone remembers, so that what nothing presses is known at any time.
 
     ``factorizations`` and back-substitutions, ``solves``, that it took; unknowns of its meshes.
     """
 
     @property
-    def breathes(self) -> bool: ...
+    def follows_contact(self) -> bool: ...
 
     @property
     def recovers(self) -> bool: ...
@@ -73,7 +73,7 @@ class Deformable(Condensed):
     if TYPE_CHECKING:  # members have it as a field or as a property
 
         @property
-        def breathes(self) -> bool: ...
+        def follows_contact(self) -> bool: ...
 
     @property
     def rim(self) -> float | None:
@@ -130,7 +130,7 @@ class Remembered(NamedTuple):
 class FixedStepper:
     """Takes steps on one mesh: the contract of :class:`fe_contact.steppers.steps.Stepping`."""
 
-    shortest = 2e-4  # the trend bends more than on a mesh that breathes
+    shortest = 2e-4  # the trend bends more than on a mesh that follows the contact
     first_force = 0.0
 
     def __init__(self, strike: Strike, surface: Deformable, numerics: Numerics) -> None:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from skfem import Basis
 
 import meshes
-from fe_contact.assembly.cache import kept
+from fe_contact.assembly.cache import cached
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.interior import Floating
 from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, axisymmetric, basis_on, made, plane
@@ -86,7 +86,7 @@ def _ends(geometry: Geometry, numerics: Numerics) -> tuple[float, float]:
     return smallest_struck(geometry.shape) * largest, largest
 
 
-@kept
+@cached
 def _together(
     geometry: Geometry, ends: tuple[float, float], elements: float, order: int, pace: Pace | None = None
 ) -> Stacked:
@@ -128,12 +128,12 @@ def _bodies(geometry: Geometry) -> list[_Body]:
     return sorted(bodies, key=lambda body: body.radius)
 
 
-@kept
+@cached
 def _operator(body: ElasticBody, poisson: float) -> SurfaceOperator:
     return body.operator(poisson)
 
 
-@kept
+@cached
 def _meshed(elements: float, order: int, smallest: float, contact: float, support: bool, in_plane: bool) -> ElasticBody:
     """Of unit radius, points and ``contact`` in rad from the pole; ``support``: whether it is held."""
     mesh = made(meshes.cylinder if in_plane else meshes.sphere, elements, smallest, contact, order)

@@ -11,7 +11,7 @@ import numpy as np
 import scipy.sparse as sparse
 
 import meshes
-from fe_contact.assembly.cache import kept
+from fe_contact.assembly.cache import cached
 from fe_contact.assembly.forms import Array, Basis, Matrix
 from fe_contact.assembly.operators import basis_on, condensed, made, surface_operator, system_matrix
 from fe_contact.assembly.surface import flat, lagrange
@@ -48,7 +48,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     return ScaledStill(surface(indenter.material.nu, numerics), indenter, numerics)
 
 
-@kept
+@cached
 def _surface(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
     return ScaledSurface(surface_operator(made(meshes.half_space, elements, far_radius), order, poisson))
 
@@ -60,12 +60,12 @@ def under_rim(indenter: Indenter, radius: float, numerics: Numerics) -> Still:
     return FixedStill(surface, indenter, numerics, radius, radius, np.inf)
 
 
-@kept
+@cached
 def _rimmed(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
     """Condensed for unit radius."""
     basis = basis_on(made(meshes.layer_under_rim, elements, far_radius, far_radius), order)
     matrix, fixed = system_matrix(basis, poisson, ENDS), held(basis, along=("axis",), across=())
-    return ScaledSurface(condensed(basis, matrix, fixed, poisson, flat(basis)), breathes=False)
+    return ScaledSurface(condensed(basis, matrix, fixed, poisson, flat(basis)), follows_contact=False)
 
 
 def _plane_still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
@@ -87,7 +87,7 @@ def _plane_struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
     return _plane_surface(geometry.material.nu, elements, numerics.order, smallest_struck(geometry.shape), depth, size)
 
 
-@kept
+@cached
 def _plane_surface(
     poisson: float, elements: float, order: int, smallest: float, datum: float, size: float
 ) -> ScaledSurface:
@@ -95,7 +95,7 @@ def _plane_surface(
     basis = basis_on(made(meshes.layer, elements, smallest, size, size), order)
     matrix, fixed = system_matrix(basis, poisson, ENDS, plane=True), held(basis, along=("axis",), across=())
     operator = condensed(basis, matrix, fixed, poisson, flat(basis, 2), _upwards(basis, datum))
-    return ScaledSurface(operator, breathes=False)
+    return ScaledSurface(operator, follows_contact=False)
 
 
 def _upwards(basis: Basis, depth: float) -> Matrix:

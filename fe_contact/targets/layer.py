@@ -12,7 +12,7 @@ import scipy.sparse as sparse
 from skfem import FacetBasis, MeshTri
 
 import meshes
-from fe_contact.assembly.cache import kept
+from fe_contact.assembly.cache import cached
 from fe_contact.assembly.far_field import on_boundary
 from fe_contact.assembly.forms import Array, Basis, Matrix, elastic, plane_stiffness, stiffness
 from fe_contact.assembly.operators import ElasticBody, basis_on, made
@@ -63,7 +63,7 @@ def meshed(geometry: Geometry, numerics: Numerics) -> ElasticBody:
     return _body(sizes, numerics.order, target.base == "bonded", geometry.shape.plane)
 
 
-@kept
+@cached
 def _body(sizes: Sizes, order: int, bonded: bool, plane: bool) -> ElasticBody:
     """In units of the reference radius."""
     basis = basis_on(_mesh(*sizes), order)

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 import meshes
-from fe_contact.assembly.cache import kept
+from fe_contact.assembly.cache import cached
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made
 from fe_contact.assembly.surface import crown
@@ -83,19 +83,19 @@ def _sizes(geometry: Geometry, numerics: Numerics) -> tuple[ORing, Sizes]:
     return target, (elements, numerics.order, zone.smallest, zone.reference, mean_radius)
 
 
-@kept
+@cached
 def _struck(poisson: float, relaxation: Relaxation, target: ORing, sizes: Sizes) -> Stacked:
     operator = _body(*sizes).operator(poisson)
     return Stacked(operator, (BodySide(operator, relaxation, operator.trace, target.lead),), target.section_radius)
 
 
-@kept
+@cached
 def _relaxing(relaxation: Relaxation, moduli: Moduli, target: ORing, sizes: Sizes, pace: Pace) -> Stacked:
     side = BulkSide.of(_body(*sizes), moduli, pace, relaxation, target.lead)
     return Stacked(side.operator, (side,), target.section_radius)
 
 
-@kept
+@cached
 def _body(elements: float, order: int, smallest: float, contact: float, mean_radius: float) -> ElasticBody:
     """In units of the section's radius, points and ``contact`` in rad from its top."""
     basis = basis_on(made(meshes.o_ring, elements, smallest, contact, mean_radius, order), order)

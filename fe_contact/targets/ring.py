@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 import meshes
-from fe_contact.assembly.cache import kept
+from fe_contact.assembly.cache import cached
 from fe_contact.assembly.forms import Array, Matrix, elastic, polar_stiffness
 from fe_contact.assembly.operators import ElasticBody, basis_on, made
 from fe_contact.assembly.surface import flat
@@ -55,7 +55,7 @@ def meshed(geometry: Geometry, numerics: Numerics) -> ElasticBody:
     return _body(elements, numerics.order, smallest_struck(geometry.shape), thickness, angle)
 
 
-@kept
+@cached
 def _body(elements: float, order: int, smallest: float, thickness: float, angle: float) -> ElasticBody:
     """In units of the zone's arc length, which spans ``angle``, rad."""
     basis = basis_on(made(meshes.ring, elements, smallest, thickness, math.pi / angle), order)

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 import meshes
-from fe_contact.assembly.cache import kept
+from fe_contact.assembly.cache import cached
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made
 from fe_contact.assembly.surface import Surface, ring_area
@@ -65,7 +65,7 @@ def _sizes(target: Target, rim: float, numerics: Numerics) -> Sizes:
     return COARSER * numerics.elements_per_contact, numerics.order, inner, outer, end, target.base == "bonded"
 
 
-@kept
+@cached
 def _body(elements: float, order: int, inner: float, outer: float, rim: float, bonded: bool) -> ElasticBody:
     """Of unit height, loaded up to the rim alone."""
     basis = basis_on(made(meshes.washer, elements, inner, outer, rim, bonded), order)

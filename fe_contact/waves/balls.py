@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import meshes
-from fe_contact.assembly.cache import kept
+from fe_contact.assembly.cache import cached
 from fe_contact.assembly.forms import Array, check_compressible, isotropic, mass, stiffness
 from fe_contact.assembly.operators import basis_on, made
 from fe_contact.assembly.surface import crown, hats, trace_between
@@ -60,7 +60,7 @@ class Ball:
         return unit_ball(self.material.nu, elements, numerics.order, contact, numerics.mass)
 
 
-@kept
+@cached
 def unit_ball(poisson: float, elements: float, order: int, contact: float, masses: str) -> UnitBody:
     """Mesh and assemble for radius and contact modulus one; points by their angles from the pole.
 

@@ -28,12 +28,12 @@ import numpy.typing as npt
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import Causes, TotalWork, shares_of
 from fe_contact.budget.certify import other_mesh, other_setting
-from fe_contact.budget.change import SAFETY, Change, factor
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, Growth, missing
 from fe_contact.budget.runs import AnyRuns
 from fe_contact.budget.several import Judged, Several
+from fe_contact.budget.variation import SAFETY, Variation, factor
 from fe_contact.march.impacts import Followed, follow
 from fe_contact.progress import Count, Counted, Progress, uncounted
 from fe_contact.settings import Numerics, WaveNumerics
@@ -160,13 +160,13 @@ def _nodes(settings: WaveNumerics) -> float:
 
 def _changed(
     curve: Callable[[WaveNumerics], Curve | None], first: WaveNumerics, second: WaveNumerics, trusted: float
-) -> Change | None:
-    """Change between settings, ``trusted`` so many times as the error of the first; None where either failed."""
+) -> Variation | None:
+    """Variation between settings, ``trusted`` so many times as the error of the first; None where either failed."""
     one, other = curve(first), curve(second)
     return None if one is None or other is None else Moved(one, other, trusted)
 
 
-class Moved(Change):
+class Moved(Variation):
     """A change of the motion at equal times, not at equal shares of the contact.
 
     What chatters at the end of a contact moves the time at which it ends, and hardly the speed after it.
@@ -196,10 +196,10 @@ def curve_of(march: March, strike: Strike, numerics: Numerics, share: float = 1.
     return replace(curve.through(rows), mean_force=_smoothed(curve.x, curve.mean_force, rows))
 
 
-def reading(march: March, strike: Strike, numerics: Numerics) -> Change:
+def reading(march: March, strike: Strike, numerics: Numerics) -> Variation:
     """What these rows leave, as half of them tell."""
     fine, half = (curve_of(march, strike, numerics, share) for share in (1.0, 0.5))
-    return Change(fine, half, SAFETY / (2**TRUSTED - 1))
+    return Variation(fine, half, SAFETY / (2**TRUSTED - 1))
 
 
 def _rows(steps: int, numerics: Numerics, share: float) -> npt.NDArray[np.intp]:

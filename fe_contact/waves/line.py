@@ -16,10 +16,10 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import Contacts
-from fe_contact.budget.change import SAFETY
 from fe_contact.budget.curve import PEAK_SHARE
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer
+from fe_contact.budget.variation import SAFETY
 from fe_contact.progress import Progress
 from fe_contact.settings import Given, Numerics, WaveNumerics
 from fe_contact.waves.line_reading import DENT, DEPTH, FORCE, TIME, VELOCITY, RodReading

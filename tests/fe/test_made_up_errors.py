@@ -13,10 +13,10 @@ from scipy.special import beta, betainc
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, Causes
 from fe_contact.budget.certify import _rows, _time_steps, trust
-from fe_contact.budget.change import SAFETY, Change
 from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.several import _error
 from fe_contact.budget.softening import Softening
+from fe_contact.budget.variation import SAFETY, Variation
 from fe_contact.settings import Numerics
 from fe_contact.steppers.march import Strike
 from fe_contact.waves.certify import Moved
@@ -168,8 +168,8 @@ def wave(size: float, period: float, phase: float) -> Callable[[Array], Array]:
     return lambda share: size * np.cos(2.0 * np.pi * (share / period) + phase)
 
 
-@pytest.mark.parametrize("kind", [Change, Moved])
-def test_two_curves_that_cross_just_where_a_quantity_is_read_make_neither_of_them_right(kind: type[Change]) -> None:
+@pytest.mark.parametrize("kind", [Variation, Moved])
+def test_two_curves_that_cross_just_where_a_quantity_is_read_make_neither_of_them_right(kind: type[Variation]) -> None:
     """The second errs four times as much as the first, a little earlier or later: they cross, wherever that is."""
     rng = np.random.default_rng(6)
     missed = dict.fromkeys((*RULED, "peak_time"), 0)
@@ -212,7 +212,7 @@ def test_peaks_between_rows_lie_within_what_every_other_row_changes_however_litt
     rng, deepest, little = np.random.default_rng(9), 0.3**2 / (4.0 * 0.2945), 0
     for steps in rng.integers(16, 200, CASES):
         curve = made_up(int(steps), np.zeros_like, crowded=True)
-        jitter = Change(curve, curve.thinned(), 1.0)
+        jitter = Variation(curve, curve.thinned(), 1.0)
         weights = _rows(jitter)
         little += "peak_time" in weights
         errors, spread = replace(jitter, weights=weights).errors, curve.with_peak_spread().peak_spread
@@ -230,7 +230,7 @@ def test_rows_that_jitter_count_whole() -> None:
     for size in 10 ** rng.uniform(-5.0, -2.0, CASES):
         noise = size * rng.normal(size=STEPS + 1)
         curve = made_up(STEPS, lambda share, noise=noise: noise)
-        assert not _rows(Change(curve, curve.thinned(), 1.0)), size
+        assert not _rows(Variation(curve, curve.thinned(), 1.0)), size
 
 
 @pytest.mark.parametrize("fall", [1.5, 3.0, 6.0])
@@ -282,7 +282,7 @@ def test_a_branch_as_long_as_a_step_leaves_extrapolation_no_order(flat: bool, sh
 
 def test_what_a_setting_moves_a_later_touch_by_counts_by_its_least_trusted_order() -> None:
     later = replace(TRUTH, strike=replace(STRIKE, velocity=0.31))
-    moved = Change(TRUTH, later, 3.0, {"restitution": 2.0, "duration": 1.0})
+    moved = Variation(TRUTH, later, 3.0, {"restitution": 2.0, "duration": 1.0})
     assert _error(moved, lambda strike: strike.velocity) == pytest.approx(0.06)
     assert _error(None, lambda strike: strike.velocity) == np.inf
 
@@ -295,7 +295,7 @@ def test_the_band_of_a_force_that_is_cut_off_as_it_rises_holds_the_bar_of_its_pe
     mean = np.divide(impulse, share, out=np.zeros_like(share), where=share > 0.0)
     jittered = mean * (1.0 + 1e-4 * rng.normal(size=x.size))
     cut = replace(made_up(STEPS, np.zeros_like), separated=False, mean_force=jittered)
-    jitter = Change(cut, cut.thinned(), 1.0)
+    jitter = Variation(cut, cut.thinned(), 1.0)
     weighed = replace(jitter, weights=_rows(jitter))
     last = np.array([1.0])
     assert weighed.errors["peak_force"] > 2.0 * jitter.errors["peak_force"]
@@ -307,14 +307,14 @@ def test_the_bar_of_a_history_is_the_norm_of_what_changes_over_the_norm_of_the_f
     times = np.linspace(0.0, 1.0, 20001)
     force = fine.force(times)
     norms = [np.sqrt(np.trapezoid(values**2, times)) for values in (fine.force(times) - coarse.force(times), force)]
-    assert Change(fine, coarse, 0.5).errors["history_l2"] == pytest.approx(0.5 * norms[0] / norms[1], rel=1e-2)
+    assert Variation(fine, coarse, 0.5).errors["history_l2"] == pytest.approx(0.5 * norms[0] / norms[1], rel=1e-2)
 
 
 def test_a_run_that_does_not_part_tells_nothing_of_when_another_does() -> None:
     held = replace(TRUTH, separated=False)
-    for change in (Change(TRUTH, held, 1.0), Change(held, TRUTH, 1.0)):
+    for change in (Variation(TRUTH, held, 1.0), Variation(held, TRUTH, 1.0)):
         assert change.errors["duration"] == change.errors["restitution"] == np.inf
-    assert Change(held, held, 1.0).errors["duration"] == 0.0
+    assert Variation(held, held, 1.0).errors["duration"] == 0.0
 
 
 def test_a_body_softer_by_a_share_errs_by_that_share_of_all_work_that_its_force_does() -> None:

@@ -79,10 +79,10 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("cause", "power", "order", "breathes"), CASES)
+@pytest.mark.parametrize(("cause", "power", "order", "follows_contact"), CASES)
 @pytest.mark.parametrize("coarse", [False, True])
 def test_an_entry_covers_its_own_setting(
-    cause: str, power: float, order: int, breathes: bool, coarse: bool, settings: Numerics
+    cause: str, power: float, order: int, follows_contact: bool, coarse: bool, settings: Numerics
 ) -> None:
     """Of few elements, a soft penalty, a near boundary the finer neighbour tells, else the coarser one."""
     few = {"elements_per_contact": 1.5, "penalty": 10.0, "far_radius": 3.0}
@@ -90,12 +90,12 @@ def test_an_entry_covers_its_own_setting(
     answer = marched(cause, power, base)
     runs: Any = SimpleNamespace(
         curve=lambda number, given: Curve.of(answer(given), STRIKE),
-        surface=lambda given: SimpleNamespace(breathes=breathes),
+        surface=lambda given: SimpleNamespace(follows_contact=follows_contact),
     )
     curve, changes = certify._judged(runs, 0, base, alone=False)
     nothing: Any = None
     found, errors = Budget(curve, nothing, changes, nothing, nothing), off(curve)
-    weights = {} if breathes else certify.ANYWHERE
+    weights = {} if follows_contact else certify.ANYWHERE
     for name in QUANTITIES:
         assert errors[name] <= found.error(name, cause), name
         assert found.error(name, cause) < 3.0 * weights.get(name, 1.0) * errors[name], name

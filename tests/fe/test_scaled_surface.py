@@ -1,4 +1,4 @@
-"""Static indentation on the breathing mesh against Hertz and Sneddon: force, pressure, rates, penalty bias."""
+"""Slow indentation, its mesh following the contact, against Hertz and Sneddon: force, pressure, rates, penalty bias."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.change import Change
+from fe_contact.budget.variation import Variation
 from fe_contact.fields import felt, nearest_step
 from fe_contact.reference import Solved
 from fe_contact.studies.compare.law_pressure import LawPressure
@@ -238,5 +238,5 @@ def _unevenness(radius: Array) -> float:
 
 def _bar(solved: Solved, time: Array) -> float:
     """Error of a radius at some of these times by every cause, m."""
-    changes = [one for several in solved.certified.changes.values() for one in several if isinstance(one, Change)]
+    changes = [one for several in solved.certified.changes.values() for one in several if isinstance(one, Variation)]
     return float(sum(change.factor * np.abs(change.radius(time)).max() for change in changes))

@@ -34,7 +34,7 @@ def factor(order: float, finer: bool) -> float:
 
 
 @dataclass(frozen=True)
-class Change:
+class Variation:
     """Two curves that differ in one setting, and the factor that turns their difference into an error.
 
     ``weights``: what that factor is to be multiplied with for quantities that deserve less trust. ``unresolved``: time
@@ -241,7 +241,7 @@ def calmest(curve: Curve) -> Curve:
     """
     while len(curve.x) > 2 * FEWEST:
         thinner = curve.thinned()
-        if Change(thinner, thinner.thinned(), 1.0).history >= Change(curve, thinner, 1.0).history:
+        if Variation(thinner, thinner.thinned(), 1.0).history >= Variation(curve, thinner, 1.0).history:
             break
         curve = thinner
     return curve

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fe_contact.assembly.cache import BODIES, Store, kept
+from fe_contact.assembly.cache import BODIES, Store, cached
 
 
 class Thing:
@@ -58,12 +58,12 @@ def test_an_answer_larger_than_the_room_is_kept_alone() -> None:
 def test_functions_share_one_store_and_forget_their_own() -> None:
     made: list[str] = []
 
-    @kept
+    @cached
     def first(number: int, name: str = "") -> Thing:
         made.append(f"first {number}{name}")
         return Thing()
 
-    @kept
+    @cached
     def second(number: int) -> Thing:
         made.append(f"second {number}")
         return Thing()
