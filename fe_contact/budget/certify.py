@@ -142,27 +142,26 @@ def _by_mesh(
     curve: Callable[[Numerics], Curve | None], numerics: Numerics, cheap: Numerics, follows_contact: bool, viscous: bool
 ) -> tuple[Numerics, Variation | None]:
     """Settings of another mesh, and what it changes: where a mesh stays, that ripples."""
-    damped = viscous and not follows_contact
-    meshed = _judging(numerics, cheap, "mesh", damped)
+    meshed = _judging(numerics, cheap, "mesh", not follows_contact)
     mesh, trusted = other_mesh(meshed) if follows_contact else other_mesh(meshed, MESH_ORDER_ANYWHERE)
     change = partial(_variation, curve(meshed), curve(mesh), trusted)
     if follows_contact:
         return mesh, change()
-    if damped:
+    if viscous:
         change = partial(change, since=DAMPED_SINCE)
-    weights = ANYWHERE | (DAMPED_ANYWHERE if damped else {})
+    weights = ANYWHERE | (DAMPED_ANYWHERE if viscous else {})
     return mesh, change(weights=weights, unresolved=np.inf, top=TOP_ANYWHERE)
 
 
-def _judging(numerics: Numerics, cheap: Numerics, cause: str, damped: bool = False) -> Numerics:
+def _judging(numerics: Numerics, cheap: Numerics, cause: str, stays: bool = False) -> Numerics:
     """Settings of which one is varied: with few steps, but where its half would tell nothing with all of them.
 
     A soft penalty is the softer the shorter the step, in which a dashpot is stiff; what a coarse mesh changes, few
-    steps may hide, and what any mesh does that stays, if its contact is ``damped``.
+    steps may hide, and what any mesh does that ``stays``: an edge passes few of its nodes between them.
     """
     key = SETTING[cause]
     coarse = getattr(numerics, key) < LEAST_HALVED_SETTING[key]
-    return numerics.varied(steps=max(numerics.steps, cheap.steps)) if coarse or damped else cheap
+    return numerics.varied(steps=max(numerics.steps, cheap.steps)) if coarse or stays else cheap
 
 
 def _by_stiffness(runs: Runs, value: Curve, end: FlatEnd, numerics: Numerics) -> dict[str, Causes]:
