@@ -12,7 +12,8 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import beta
 
-from lumped import Model, Motion, Quantity, Scene, laws
+from lumped import Model, Motion, Quantity, Scene, laws, simulate
+from lumped.laws import _hereditary
 from lumped.result.result import UNITS, meets
 from lumped.scene.tables import LawChoice
 
@@ -188,3 +189,18 @@ def test_an_impulse_cut_off_is_known_to_rounding_and_no_better(uncovered: Callab
     )  # fmt: skip
     law = laws.get("kuwabara_kono").of(scene)
     assert not uncovered(law.simulate(scene, 0.1), law.simulate(scene, 1e-9))
+
+
+def test_a_law_that_meets_no_tolerance_ends_at_its_tightest(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_hereditary, "meets", lambda quantities, tolerance: False)
+    scene = Scene.load("polymer-sphere")
+    rtol = simulate(laws.ting.of(scene), scene, 1e-3).numerics["rtol"]
+    assert _hereditary.TIGHTEST <= rtol < _hereditary.TIGHTEST / _hereditary.NEXT
+
+
+def test_what_creeps_counts_no_energy_as_stored() -> None:
+    """What a memory of the load gives back is no potential of the depth: all that is not out is lost."""
+    scene = Scene.load("ball-bouncing")
+    energy = simulate(laws.correspondence.of(scene), scene, 1e-3).energy
+    assert energy["stored"] == 0.0
+    assert energy["in"] == pytest.approx(energy["out"] + energy["viscous"], rel=1e-9)

@@ -1,0 +1,83 @@
+"""Parts of the error budget alone: what is refined, the rows of a curve with waves, the touches of several impacts."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_contact.budget import several
+from fe_contact.budget.budget import CAUSES
+from fe_contact.budget.refine import Growth
+from fe_contact.budget.several import Row
+from fe_contact.settings import WaveNumerics
+from fe_contact.waves import certify
+from fe_contact.waves.certify import Waves
+from fe_contact.waves.plan import DEFAULTS
+
+SETTINGS: dict[str, Any] = {"tolerance": 3e-3, "steps": 200, "contact_radius": 1e-3, "contact_time": 1e-3}
+
+
+@pytest.fixture
+def numerics() -> WaveNumerics:
+    given = {"elements_per_contact": 4.0, "penalty": 100.0, "far_radius": 20.0, "peak_share": 0.5}
+    return WaveNumerics(**DEFAULTS | given | SETTINGS)
+
+
+@pytest.mark.parametrize(("order", "step"), [(1.0, 2.0), (2.0, 2.0), (1.0, 2**0.25)])
+def test_what_a_step_is_worth_is_what_it_takes_from_the_bar(order: float, step: float) -> None:
+    """A share of an error that falls as the setting to minus ``order``, over what the march then costs more."""
+    left = 0.3 * step**-order
+    assert Growth(order, step, most=4.0, work=0.5).worth(0.3) == pytest.approx((0.3 - left) / (0.5 * math.log(step)))
+
+
+def waves(numerics: WaveNumerics, pinned: tuple[str, ...] = ()) -> Waves:
+    nothing: Any = None
+    chosen: Any = SimpleNamespace(pinned=pinned, numerics=numerics)
+    return Waves(nothing, chosen, nothing, nothing, nothing)
+
+
+def judged(numerics: WaveNumerics, share: float, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """A contact each of whose causes takes such a ``share`` of the tolerance of every quantity."""
+    monkeypatch.setattr(certify, "shares_of", lambda one, cause: np.full(6, share))
+    monkeypatch.setattr(certify, "meets", lambda part, tolerance: 4 * share <= 1.0)
+    return SimpleNamespace(numerics=numerics, row=[None], parts=[None])
+
+
+def test_waves_are_refined_until_their_bars_meet_the_tolerance(
+    numerics: WaveNumerics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert waves(numerics).finer(judged(numerics, 0.4, monkeypatch)).settings not in (None, numerics)
+    assert waves(numerics).finer(judged(numerics, 0.1, monkeypatch)).settings is None
+
+
+def test_where_all_settings_are_kept_nothing_is_refined(
+    numerics: WaveNumerics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pinned = ("elements_per_contact", "penalty", "steps", "far_radius")
+    assert waves(numerics, pinned).finer(judged(numerics, 0.4, monkeypatch)).settings is None
+
+
+def test_rows_of_a_curve_with_waves_follow_the_tolerance(numerics: WaveNumerics) -> None:
+    """A polynomial of degree five between them: twice as many err by 2^-5. Fewer steps leave no fewer rows."""
+    many = replace(numerics, steps=20_000)
+    tight = replace(many, tolerance=many.tolerance / 2**5)
+    rows, more, of_half = (len(certify._rows(*one, 1.0)) for one in ((20_000, many), (20_000, tight), (10_000, many)))
+    assert more - 1 == pytest.approx(2 * (rows - 1), abs=1)
+    assert of_half == rows
+
+
+def test_a_touch_is_as_uncertain_as_contact_and_flight_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A flight lasts 2 v/g times the restitution."""
+    monkeypatch.setattr(several, "_moved", lambda budget, read: dict.fromkeys(CAUSES, 0.0))
+    errors = {"duration": 1e-5, "restitution": 1e-4}
+    strike = SimpleNamespace(velocity=3.0, gravity=9.81)
+    one = SimpleNamespace(curve=SimpleNamespace(strike=strike), error=lambda name, cause: errors[name])
+    row: Any = SimpleNamespace(budgets=[one, one, one])
+    starts = Row.starts.func(row)
+    for number, start in enumerate(starts):
+        assert start == pytest.approx(dict.fromkeys(CAUSES, number * (1e-5 + 2.0 * 3.0 / 9.81 * 1e-4)))
