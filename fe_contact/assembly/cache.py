@@ -67,8 +67,8 @@ class cached(Generic[_Arguments, _Answer]):  # noqa: N801 - a decorator, written
     """A function of hashable arguments that answers anew only what it was not asked lately."""
 
     def __init__(self, make: Callable[_Arguments, _Answer]) -> None:
+        update_wrapper(self, make)  # takes over what a decorator below has, so it comes first
         self._make = make
-        update_wrapper(self, make)
 
     def __call__(self, *arguments: _Arguments.args, **named: _Arguments.kwargs) -> _Answer:
         """The answer at hand, or a new one."""

@@ -54,8 +54,8 @@ class on_disk(Generic[_Arguments, _Answer]):  # noqa: N801 - a decorator, writte
     """
 
     def __init__(self, make: Callable[_Arguments, _Answer]) -> None:
-        self._make = make
         update_wrapper(self, make)
+        self._make = make
 
     def __call__(self, *arguments: _Arguments.args, **named: _Arguments.kwargs) -> _Answer:
         """The answer at hand, or a new one. Raises BadInput for a bound that is no number."""

@@ -152,7 +152,7 @@ def test_a_confined_column_creeps_with_the_modulus_of_the_pressure_wave() -> Non
 @pytest.mark.parametrize("name", BODIES)
 def test_work_is_stored_or_heat(name: str) -> None:
     """To rounding, whatever the step: displacement is linear and pressure constant over it."""
-    found = modes(BODIES[name](), 0.05, 5.0)
+    found = modes(BODIES[name], 0.05, 5.0)
     body = BulkBody(found, Moduli(replace(K, moduli=(0.3,), times=(0.1,)), G), galerkin, 1.0)
     points = found.operator.points
     _, work, memories = ramped(body, 7, 0.5, np.where(points < np.median(points), 1.0, 0.0))
