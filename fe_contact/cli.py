@@ -20,7 +20,7 @@ import tempfile
 import threading
 import traceback
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from functools import partial
 from pathlib import Path
 from types import FrameType
@@ -79,7 +79,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     args = parser().parse_args(arguments)
     try:
-        with _interruptible(), one_thread:
+        with _interruptible(), one_thread, _disk(args):
             code = COMMANDS.get(args.command).execute(args)
             sys.stdout.flush()
             return code
@@ -91,6 +91,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return DONE
     except Exception as failure:  # noqa: BLE001 - the one place: a traceback never reaches a user
         return _failed(failure, args)
+
+
+def _disk(args: argparse.Namespace) -> AbstractContextManager[None]:
+    """Known geometries are read from disk, and written, but with --no-cache."""
+    if not getattr(args, "no_cache", False):
+        return nullcontext()
+    from fe_contact.assembly.disk_cache import without_disk
+
+    return without_disk()
 
 
 def _memory_limit() -> float:

@@ -22,22 +22,21 @@ otherwise, see :mod:`fe_contact.steppers.scaled_surface`, and has no such roughn
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from skfem import Basis
 
-from fe_contact.assembly.forms import Array, Indices, isotropic
-from fe_contact.assembly.operators import SurfaceOperator
+from fe_contact.assembly.forms import Array, Basis, Indices, isotropic
+from fe_contact.assembly.operators import SurfaceOperator, WholeBody
 from fe_contact.bodies.pressing import BEYOND
 from fe_contact.budget.certify import Certified
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.settings import Numerics
 from fe_contact.steppers.march import Snapshot
 from fe_contact.steppers.scaled_surface import ScaledSurface
-from fe_contact.targets.base import struck
+from fe_contact.targets.base import TARGETS
 from lumped.errors import BadInput, Fault
 from lumped.scene.scene import Scene
 from lumped.targets import HalfSpace
@@ -109,36 +108,39 @@ def fields_at_peak(scene: Scene, certified: Certified) -> Fields:
     depth = float(np.interp(pressure.time, march.time, march.depth))
     length = scale(certified.surface.operator, march.snapshots[step])
     finer = certified.numerics.varied(elements_per_contact=FINER * certified.numerics.elements_per_contact)
-    surface = struck(scene.geometry, finer)
-    assert isinstance(surface, ScaledSurface)
-    operator = surface.operator
-    points = length * operator.basis.doflocs.T
+    meshed = TARGETS.get(scene.target.name).whole
+    assert meshed is not None
+    body = meshed(scene.geometry, finer)
+    surface = replace(certified.surface, operator=body.operator)
+    operator, points = body.operator, length * body.basis.doflocs.T
     touching = (points[:, 1] == 0.0) & (points[:, 0] <= pressure.contact_radius)
-    pressed = operator.solve(operator.trace.T @ (operator.weights * pressure.at(length * operator.points)))
+    pressed = body.solve(operator.trace.T @ (operator.weights * pressure.at(length * operator.points)))
     return Fields(
         time=pressure.time,
         depth=depth,
         contact_radius=pressure.contact_radius,
         points=points,
-        triangles=subdivided(operator.basis),
-        displacement=_indented(scene, surface, finer, depth, length).reshape(-1, 2),
-        stress=nodal_stress(operator.basis, pressed, isotropic(1 - operator.poisson**2, operator.poisson)),
+        triangles=subdivided(body.basis),
+        displacement=_indented(scene, surface, body, finer, depth, length).reshape(-1, 2),
+        stress=nodal_stress(body.basis, pressed, isotropic(1 - operator.poisson**2, operator.poisson)),
         pressure=np.where(touching, pressure.at(points[:, 0]), 0.0),
         contact=touching.astype(np.int64),
     )
 
 
-def _indented(scene: Scene, surface: ScaledSurface, numerics: Numerics, depth: float, length: float) -> Array:
+def _indented(
+    scene: Scene, surface: ScaledSurface, body: WholeBody, numerics: Numerics, depth: float, length: float
+) -> Array:
     """Displacement (2 N,), m, of the body of unit modulus indented to a depth, on the unit mesh scaled to ``length``.
 
     Until the contact begins to shrink, which is never before the force peaks, the surface has the shape of an
     elastic one at the same depth (Lee and Radok 1960, doi:10.1115/1.3644020).
     """
-    operator = surface.operator
+    operator = body.operator
     height = np.minimum(scene.profile.height(length * operator.points), BEYOND * length)
     enforcement = ENFORCEMENTS.get(numerics.enforcement)
     solution = enforcement.enforce(surface.problem(depth - height, numerics.penalty, 0.0), operator.points < 1.0)
-    return np.asarray(operator.solve(operator.trace.T @ (operator.weights * solution.pressure)))
+    return np.asarray(body.solve(operator.trace.T @ (operator.weights * solution.pressure)))
 
 
 def nodal_stress(basis: Basis, displacement: Array, law: Array) -> Array:
@@ -150,7 +152,9 @@ def nodal_stress(basis: Basis, displacement: Array, law: Array) -> Array:
     displacement : (2 N,), degree 2 k + c for node k and component c.
     law : stress over strain, (4, 4), see :func:`fe_contact.assembly.forms.isotropic`.
     """
-    at_nodes = Basis(basis.mesh, basis.elem, quadrature=(basis.elem.doflocs.T, np.ones(len(basis.elem.doflocs))))
+    from skfem import CellBasis  # late: a body that is known already needs none
+
+    at_nodes = CellBasis(basis.mesh, basis.elem, quadrature=(basis.elem.doflocs.T, np.ones(len(basis.elem.doflocs))))
     nodal = displacement.reshape(-1, 2)[basis.element_dofs]  # (local node, element, component)
     gradient = sum(
         np.einsum("ec,dep->ecdp", value, shape[0].grad) for value, shape in zip(nodal, at_nodes.basis, strict=True)

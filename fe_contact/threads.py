@@ -31,6 +31,11 @@ def _libraries() -> ThreadpoolController:
     return ThreadpoolController().select(user_api="blas")
 
 
+def blas() -> list[str]:
+    """Every BLAS at hand: its version, and the processor whose kernels it runs. They decide the last bits of a sum."""
+    return sorted(f"{one['internal_api']} {one['version']} {one.get('architecture')}" for one in _libraries().info())
+
+
 def _limit(threads: int | list[dict[str, Any]]) -> None:
     """Set one number, or what `info` found before, from whatever thread of the process.
 

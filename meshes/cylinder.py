@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from skfem import MeshTri2
+from typing import TYPE_CHECKING
 
 from meshes.sphere import sphere
+
+if TYPE_CHECKING:
+    from skfem import MeshTri2
 
 
 def cylinder(elements: float, smallest: float, contact: float, order: int) -> MeshTri2:

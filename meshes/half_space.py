@@ -6,11 +6,15 @@ scaled to whatever radius the contact has at an instant.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from skfem import MeshTri
 
 from meshes.errors import MeshError
-from meshes.triangles import Outline, beyond, checked, distance, elements_checked, filled, larger, smaller
+from meshes.triangles import Outline, beyond, checked, distance, elements_checked, filled, larger, smaller, tagged
+
+if TYPE_CHECKING:
+    from skfem import MeshTri
 
 EDGE_REFINEMENT = 24.0  # element size inside the contact over element size at its edge
 GROWTH = 2.0  # growth of the element size per unit distance, for one element per contact radius
@@ -82,11 +86,12 @@ def _quarter(size: str, node: float, far_radius: float) -> MeshTri:
     outline = Outline((0, -far_radius), (far_radius, 0), (0, 0, far_radius))
     points, triangles = filled(corners, [(0, 1), (1, 2), (2, 0, 3), (3, 0)], [(1, 2, 3, 4)], size, outline)
     points[np.abs(points) < 1e-12 * far_radius] = 0.0  # onto the axis and the surface exactly
-    mesh = MeshTri(points, triangles)
-    return mesh.with_boundaries(
+    return tagged(
+        points,
+        triangles,
         {
             "surface": lambda x: x[1] == 0.0,
             "axis": lambda x: x[0] == 0.0,
             "far": lambda x: (x[0] > 0.0) & (x[1] < 0.0),
-        }
+        },
     )

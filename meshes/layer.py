@@ -6,9 +6,12 @@ to the radius, and every contact circle is resolved alike.
 
 from __future__ import annotations
 
-from skfem import MeshTri
+from typing import TYPE_CHECKING
 
-from meshes.triangles import beyond, checked, distance, elements_checked, larger, polygon, smaller
+from meshes.triangles import beyond, checked, distance, elements_checked, larger, polygon, smaller, tagged
+
+if TYPE_CHECKING:
+    from skfem import MeshTri
 
 GROWTH = 4.0  # growth of the element size per unit distance from the contact, for one element along the radius
 LARGEST_GROWTH = 1.0  # steeper gradings leave gmsh too little room for well-shaped triangles
@@ -84,13 +87,15 @@ def _rectangle(size: str, node: float, thickness: float, width: float) -> MeshTr
     corners = [(0.0, 0.0), (node, 0.0), (side, 0.0), (side, -thickness), (0.0, -thickness)]
     nodes, triangles = polygon(corners, size)
     nodes[abs(nodes) < 1e-12 * side] = 0.0  # onto the axis and the surface exactly
-    return MeshTri(nodes, triangles).with_boundaries(
+    return tagged(
+        nodes,
+        triangles,
         {
             "surface": lambda x: x[1] == 0.0,
             "axis": lambda x: x[0] == 0.0,
             "base": lambda x: x[1] < -thickness * (1 - 1e-9),
             "side": lambda x: x[0] > side * (1 - 1e-9),
-        }
+        },
     )
 
 

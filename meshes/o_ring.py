@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from skfem import MeshTri, MeshTri2
+from typing import TYPE_CHECKING
 
 from meshes.sphere import rounded, sizes
-from meshes.triangles import Outline, checked, elements_checked, filled
+from meshes.triangles import Outline, checked, elements_checked, filled, tagged
+
+if TYPE_CHECKING:
+    from skfem import MeshTri2
 
 
 def o_ring(elements: float, smallest: float, contact: float, mean_radius: float, order: int) -> MeshTri2:
@@ -37,7 +40,5 @@ def o_ring(elements: float, smallest: float, contact: float, mean_radius: float,
     corners = [(-1, -1), (0, 0), (1, -1), (0, -1)]
     nodes, triangles = filled(corners, edges, halves, size, Outline((-1, -1), (1, 0), (0, -1, 1)))
     nodes[1, abs(nodes[1] + 1.0) < 1e-14] = -1.0  # onto the middle plane
-    section = MeshTri(nodes, triangles).with_boundaries(
-        {"surface": lambda x: x[1] > -1.0, "base": lambda x: x[1] == -1.0}
-    )
+    section = tagged(nodes, triangles, {"surface": lambda x: x[1] > -1.0, "base": lambda x: x[1] == -1.0})
     return rounded(section).translated((mean_radius, 0.0))

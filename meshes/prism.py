@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
-from skfem import MeshTri
 
 from meshes.triangles import checked, elements_checked
 from meshes.washer import rectangle
+
+if TYPE_CHECKING:
+    from skfem import MeshTri
 
 NEAR = 2.0  # shorter sides from face and side within which triangles are well shaped: what ends there decays as fast
 

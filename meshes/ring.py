@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from skfem import MeshTri
+from typing import TYPE_CHECKING
 
 from meshes.layer import ZONE, layer
+
+if TYPE_CHECKING:
+    from skfem import MeshTri
 
 
 def ring(elements_per_arc: float, smallest: float, thickness: float, half_circumference: float) -> MeshTri:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from skfem import MeshLine
 
 from meshes.errors import MeshError
+
+if TYPE_CHECKING:
+    from skfem import MeshLine
 
 MOST = 100_000  # work: elements along a rod
 
@@ -27,5 +31,7 @@ def rod(elements: int) -> MeshLine:
     """
     if not 1 <= elements <= MOST:
         raise MeshError(f"elements along the rod = {elements:g}: accepted 1 to {MOST}")
+    from skfem import MeshLine
+
     mesh = MeshLine(np.linspace(0.0, 1.0, elements + 1))
     return mesh.with_boundaries({"struck": lambda x: x[0] == 0.0, "end": lambda x: x[0] == 1.0})

@@ -5,10 +5,14 @@ Round sections have curved edges and are fine around the point where they are to
 
 from __future__ import annotations
 
-import numpy as np
-from skfem import MeshTri, MeshTri2
+from typing import TYPE_CHECKING
 
-from meshes.triangles import Outline, beyond, checked, distance, elements_checked, filled, larger, smaller
+import numpy as np
+
+from meshes.triangles import Outline, beyond, checked, distance, elements_checked, filled, larger, smaller, tagged
+
+if TYPE_CHECKING:
+    from skfem import MeshTri, MeshTri2
 
 # of elements of order one, of which one lies along the contact's half-width; those of another are so many times larger
 GROWTH = 1.25  # growth of the element size per unit distance from the contact
@@ -46,9 +50,7 @@ def sphere(elements: float, smallest: float, contact: float, order: int) -> Mesh
     nodes, triangles = filled(corners, edges, halves, size, Outline((0, -2), (1, 0), (0, -1, 1)))
     nodes[0, abs(nodes[0]) < 1e-14] = 0.0  # onto the axis exactly
     nodes[1, abs(nodes[1] + 1.0) < 1e-14] = -1.0  # onto the middle plane
-    return rounded(
-        MeshTri(nodes, triangles).with_boundaries({"surface": lambda x: x[0] > 0.0, "axis": lambda x: x[0] == 0.0})
-    )
+    return rounded(tagged(nodes, triangles, {"surface": lambda x: x[0] > 0.0, "axis": lambda x: x[0] == 0.0}))
 
 
 def sizes(elements: float, smallest: float, contact: float, order: int) -> str:
@@ -70,6 +72,8 @@ def sizes(elements: float, smallest: float, contact: float, order: int) -> str:
 
 def rounded(mesh: MeshTri) -> MeshTri2:
     """The same triangles with their edges on ``surface`` bent onto the circle."""
+    from skfem import MeshTri2
+
     bent = MeshTri2.from_mesh(mesh)
     places = bent.doflocs.copy()
     middles = mesh.p.shape[1] + mesh.boundaries["surface"]

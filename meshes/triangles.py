@@ -5,15 +5,18 @@ Element sizes are expressions over (x, y), in the words of gmsh.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from meshes.errors import MeshError, MeshTooFine, MeshTooLarge
 from meshes.session import session
+
+if TYPE_CHECKING:
+    from skfem import MeshTri
 
 Array = npt.NDArray[np.float64]
 
@@ -102,6 +105,13 @@ def polygon(corners: Sequence[tuple[float, float]], size: str) -> tuple[np.ndarr
     edges = [(start, (start + 1) % count) for start in range(count)]
     low, high = ((extreme(x for x, _ in corners), extreme(y for _, y in corners)) for extreme in (min, max))
     return filled(corners, edges, [tuple(range(1, count + 1))], size, Outline(low, high))
+
+
+def tagged(nodes: Array, triangles: np.ndarray, boundaries: Mapping[str, Callable[[Array], Any]]) -> MeshTri:
+    """The mesh of nodes (2, n) and triangles (3, m), ``boundaries`` by what holds at the middles of their facets."""
+    from skfem import MeshTri  # late: a body that is known already needs no mesh
+
+    return MeshTri(nodes, triangles).with_boundaries(dict(boundaries))
 
 
 def expected_nodes(size: str, outline: Outline, most: float) -> float:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
-from skfem import MeshTri
+from meshes.triangles import checked, distance, elements_checked, polygon, smaller, tagged
 
-from meshes.triangles import checked, distance, elements_checked, polygon, smaller
+if TYPE_CHECKING:
+    from skfem import MeshTri
 
 GRADING = 1.6  # growth of the element size per distance from a singular point, times elements
 FINEST = 1.6e-4  # element size at a singular point over the narrowest part, times elements squared
@@ -56,11 +58,13 @@ def rectangle(
     nodes, triangles = polygon(corners, size)
     nodes[abs(nodes) < 1e-12 * max(right, height)] = 0.0  # onto the axis and the surface exactly
     width = right - left
-    return MeshTri(nodes, triangles).with_boundaries(
+    return tagged(
+        nodes,
+        triangles,
         {
             "surface": lambda x: x[1] == 0.0,
             "base": lambda x: x[1] < -height * (1 - 1e-9),
             "inside": lambda x: x[0] < left + 1e-9 * width,
             "outside": lambda x: x[0] > right - 1e-9 * width,
-        }
+        },
     )

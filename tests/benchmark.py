@@ -2,7 +2,8 @@
 
     python tests/benchmark.py
 
-Every cold run is a process of its own with a velocity nobody used before, so that nothing can be remembered.
+Every cold run is a process of its own with a velocity nobody used before, and no run reads what is known on disk, so
+that nothing can be remembered.
 Process CPU (user and system) of the child; medians of five, the runs of all kinds interleaved.
 """
 
@@ -96,7 +97,7 @@ def cold() -> float:
     """Whole processes against bare imports, whose CPU seconds it returns."""
     found: dict[str, list[tuple[float, float]]] = {"imports": [], **{t: [] for t in TOLERANCES}}
     with tempfile.TemporaryDirectory() as folder:
-        run_once(TOLERANCES[0], folder)  # fills the disk cache
+        run_once(TOLERANCES[0], folder)  # so that the libraries' files are in memory
         for _ in range(REPEATS):
             found["imports"].append(child(["-c", IMPORTS]))
             for tolerance in TOLERANCES:
@@ -282,6 +283,7 @@ def study() -> None:
 
 
 if __name__ == "__main__":
+    os.environ["FE_CONTACT_CACHE"] = "off"
     imports = cold()
     indent_rows()
     commanded("table1", bound=TABLE1_BOUND)

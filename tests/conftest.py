@@ -11,6 +11,7 @@ import scipy.linalg  # noqa: F401 - brings its own BLAS
 from hypothesis import settings
 from threadpoolctl import threadpool_limits
 
+from fe_contact.assembly.disk_cache import without_disk
 from lumped import Result
 
 TENTH = 10
@@ -76,6 +77,13 @@ def campaign_size(request: pytest.FixtureRequest) -> Callable[..., int]:
 def one_blas_thread() -> Iterator[None]:
     """Tests also call what stands behind the front doors, and only these give BLAS one thread."""
     with threadpool_limits(1, user_api="blas"):
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def cold() -> Iterator[None]:
+    """Every test and every process that it starts computes for itself; those of the disk cache name a folder."""
+    with without_disk():
         yield
 
 

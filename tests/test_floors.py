@@ -28,7 +28,7 @@ ALLOWED = {"lumped": LUMPED, "meshes": MESHES, "fe_contact": FINITE_ELEMENTS}
 HEAVY = {"skfem", "gmsh", "matplotlib", "meshio", "scipy.integrate"}
 NOT_LOADED = {
     "lumped": HEAVY | {"meshes", "fe_contact"},
-    "meshes": {"lumped", "fe_contact", "gmsh", "matplotlib"},
+    "meshes": {"lumped", "fe_contact", "skfem", "gmsh", "matplotlib"},
     "fe_contact": {"gmsh", "matplotlib", "scipy.integrate"},
 }
 SERIALIZERS = {"pickle", "_pickle", "cloudpickle", "dill", "joblib", "marshal", "shelve"}

@@ -7,6 +7,7 @@ many of each, and a long session a gigabyte of bodies long gone.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
+from dataclasses import dataclass
 from functools import update_wrapper
 from threading import Lock
 from typing import Any, Generic, ParamSpec, TypeVar
@@ -50,17 +51,34 @@ class Store:
 _BODIES = Store(BODIES)
 
 
+@dataclass(frozen=True)
+class Recipe(Generic[_Answer]):
+    """What a function would answer to hashable arguments: two that ask alike are equal, before either is followed."""
+
+    make: Callable[..., _Answer]
+    arguments: tuple[Hashable, ...]
+
+    def follow(self) -> _Answer:
+        """The answer."""
+        return self.make(*self.arguments)
+
+
 class cached(Generic[_Arguments, _Answer]):  # noqa: N801 - a decorator, written like functools.cache
     """A function of hashable arguments that answers anew only what it was not asked lately."""
 
     def __init__(self, make: Callable[_Arguments, _Answer]) -> None:
+        update_wrapper(self, make)  # takes over what a decorator below has, so it comes first
         self._make = make
-        update_wrapper(self, make)
 
     def __call__(self, *arguments: _Arguments.args, **named: _Arguments.kwargs) -> _Answer:
         """The answer at hand, or a new one."""
         key = (self._make, *arguments, *named.items())
         return _BODIES.find(key, lambda: self._make(*arguments, **named))
+
+    def recipe(self, *arguments: _Arguments.args, **named: _Arguments.kwargs) -> Recipe[_Answer]:
+        """The question, to be asked where the answer is needed; by places alone."""
+        assert not named
+        return Recipe(self, arguments)
 
     def cache_clear(self) -> None:
         """Forget the answers of this function."""

@@ -8,37 +8,33 @@ Assembled and factorised once; a unit force on every surface degree of freedom g
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sparse
-from skfem import (
-    Basis,
-    ElementTriP1,
-    ElementTriP2,
-    ElementTriP3,
-    ElementTriP4,
-    FacetBasis,
-    MeshTri,
-)
 
+from fe_contact.assembly.cache import Recipe
+from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.far_field import plane_robin, robin
-from fe_contact.assembly.forms import Array, Indices, Matrix, elastic, isotropic, plane_stiffness, stiffness
+from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, elastic, isotropic, plane_stiffness, stiffness
 from fe_contact.assembly.interior import Floating, Interior, Solve
 from fe_contact.assembly.surface import Surface, flat, trace_between
 from fe_contact.errors import BodyTooFine
 from meshes.errors import MeshTooLarge
 
-ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
+if TYPE_CHECKING:
+    from skfem import Element, MeshTri
+
+ORDERS = (1, 2, 3, 4)  # of triangles
 MOST_UNKNOWNS = 200_000  # of one body: its factors take a gigabyte and half a minute
 SOLVED_AT_ONCE = 32  # right-hand sides: more of them leave the processor's cache
 
 
 @dataclass(frozen=True)
 class SurfaceOperator:
-    """A body seen through its surface, in units of contact radius and contact modulus.
+    """A body seen through its surface, in units of contact radius and contact modulus: all that an impact asks of it.
 
     ``nodes`` (n_s,) radii, or coordinates, of all surface nodes, sorted, ``order`` of them a facet plus one;
     ``stiffness`` (n, n) condensed normal stiffness of the n first nodes, those in the contact zone;
@@ -46,11 +42,9 @@ class SurfaceOperator:
     ``points``, ``weights`` (q,) quadrature of the contact zone, weights including 2 pi r; ``pull`` (q,) of them
     what counts for the force along the motion;
     ``trace`` (q, n) displacement at the points from that of the nodes;
-    ``solve`` maps nodal forces (n,) on the zone to the displacement of the whole mesh (2 N,), factorising anew unless
-    asked to keep its factors;
-    ``basis`` the scalar scikit-fem basis, ``poisson`` its Poisson's ratio; ``dimension`` as of :class:`Surface`;
+    ``poisson`` its Poisson's ratio; ``dimension`` as of :class:`Surface`;
     ``watched`` (n,) how far the place from which depth is measured comes up under unit nodal forces on the zone, None
-    where it is at rest.
+    where it is at rest; ``degrees_of_freedom``: unknowns of the finite-element system behind the surface.
     """
 
     nodes: Array
@@ -61,20 +55,10 @@ class SurfaceOperator:
     weights: Array
     pull: Array
     trace: Array
-    solve: Solve
-    basis: Basis
     poisson: float
     dimension: int
     watched: Array | None
-
-    @property
-    def degrees_of_freedom(self) -> int:
-        """Unknowns of the finite-element system behind the surface."""
-        return 2 * int(self.basis.N)
-
-    def without_factors(self) -> SurfaceOperator:
-        """The same, of a size to be kept."""
-        return replace(self, solve=self.solve.interior)
+    degrees_of_freedom: int
 
     def force(self, scale: float, pressure: Array) -> float:
         """Force along the motion of a unit-mesh pressure (q,) on the mesh scaled by ``scale``."""
@@ -120,6 +104,19 @@ class SurfaceOperator:
         return 0.0 if self.watched is None else np.asarray(self.trace @ self.watched)
 
 
+@dataclass(frozen=True, eq=False)
+class WholeBody:
+    """A condensed body with its inside: the ``operator`` of its surface and the scalar scikit-fem ``basis``.
+
+    ``solve`` maps nodal forces (n,) on the zone to the displacement of the whole mesh (2 N,), factorising anew unless
+    asked to keep its factors.
+    """
+
+    operator: SurfaceOperator
+    basis: Basis
+    solve: Solve
+
+
 def made(make: Callable[..., Any], *numbers: Any) -> Any:
     """The mesh that numbers make; raises BodyTooFine where it would be too large."""
     try:
@@ -128,15 +125,24 @@ def made(make: Callable[..., Any], *numbers: Any) -> Any:
         raise BodyTooFine(f"a mesh of more than {failure.most} nodes", "its size is estimated first") from failure
 
 
-def basis_on(mesh: Any, order: int) -> Any:
+def element(order: int) -> Element:
+    """The triangle of scikit-fem of an order, 1 to 4."""
+    import skfem  # late: a body that is known already needs none
+
+    return (skfem.ElementTriP1, skfem.ElementTriP2, skfem.ElementTriP3, skfem.ElementTriP4)[order - 1]()
+
+
+def basis_on(mesh: Any, order: int) -> Basis:
     """Scalar scikit-fem basis of an element order, 1 to 4; raises BodyTooFine for more unknowns than is bearable."""
+    from skfem import CellBasis
+
     unknowns = 2 * order**2 * int(mesh.nvertices)
     if unknowns > MOST_UNKNOWNS:
         raise BodyTooFine(f"a body of {unknowns} unknowns", f"accepted up to {MOST_UNKNOWNS}")
-    return Basis(mesh, ELEMENTS[order](), intorder=2 * order)
+    return CellBasis(mesh, element(order), intorder=2 * order)
 
 
-def surface_operator(mesh: MeshTri, order: int, poisson: float) -> SurfaceOperator:
+def surface_operator(mesh: MeshTri, order: int, poisson: float) -> WholeBody:
     """Assemble, factorise once and condense the half-space on ``mesh`` to its contact zone.
 
     Parameters
@@ -161,7 +167,7 @@ def condensed(
     watch: Matrix = None,
     floating: Floating | None = None,
     factors: bool = False,
-) -> SurfaceOperator:
+) -> WholeBody:
     """Factorise the stiffness of a body once and condense it to its contact zone.
 
     Parameters
@@ -185,7 +191,7 @@ def condensed(
     response, watched = _influence(displacement, normal, watch, loaded)
     compliance = response[:loaded]
     condensed = np.linalg.inv((compliance + compliance.T) / 2)
-    return SurfaceOperator(
+    operator = SurfaceOperator(
         nodes=surface.coordinate,
         order=order,
         stiffness=(condensed + condensed.T) / 2,
@@ -194,12 +200,12 @@ def condensed(
         weights=weights,
         pull=weights * surface.motion(points),
         trace=trace,
-        solve=displacement if factors else interior,
-        basis=basis,
         poisson=poisson,
         dimension=surface.dimension,
         watched=watched,
+        degrees_of_freedom=2 * int(basis.N),
     )
+    return WholeBody(operator, basis, displacement if factors else interior)
 
 
 def _influence(displacement: Solve, normal: Matrix, watch: Matrix, loaded: int) -> tuple[Array, Array | None]:
@@ -224,6 +230,8 @@ def system_matrix(basis: Basis, poisson: float, ends: tuple[str, ...] = ("far",)
 
     ``ends``: boundaries beyond which the half-space goes on, or, in plane strain, the half-plane.
     """
+    from skfem import FacetBasis
+
     facets = np.concatenate([basis.mesh.boundaries[name] for name in ends])
     outside = FacetBasis(basis.mesh, basis.elem, facets=facets, intorder=2 * basis.elem.maxdeg + 4)
     law = isotropic(1 - poisson**2, poisson)
@@ -246,10 +254,16 @@ class ElasticBody:
     surface: Surface
     floating: Floating | None = None
 
-    def operator(self, poisson: float, factors: bool = False) -> SurfaceOperator:
-        """What the contact surface knows of it with this Poisson's ratio, for E* = 1; see :func:`condensed`."""
+    def condensed(self, poisson: float, factors: bool = False) -> WholeBody:
+        """With this Poisson's ratio, for E* = 1; see :func:`condensed`."""
         matrix = self.stiffness(*moduli(poisson)).tocsc()
         return condensed(self.basis, matrix, self.fixed, poisson, self.surface, floating=self.floating, factors=factors)
+
+
+@on_disk
+def operator_of(body: Recipe[ElasticBody], poisson: float) -> SurfaceOperator:
+    """What the contact surface knows of a body with this Poisson's ratio, for E* = 1."""
+    return body.follow().condensed(poisson).operator
 
 
 def axisymmetric(basis: Basis, bulk: float, shear: float) -> Matrix:

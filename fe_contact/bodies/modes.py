@@ -20,9 +20,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.linalg import eigh
 
-from fe_contact.assembly.cache import cached
+from fe_contact.assembly.cache import Recipe, cached
+from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, moduli
+from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, WholeBody, moduli
 
 FEWEST, PER_E_FOLD = 3, 0.5  # ratios, at least and for every factor e of the interval: errors of some 1e-7
 LEAST_HALF_WIDTH = 0.3  # of the interval's logarithm: closer ratios would cancel
@@ -36,7 +37,7 @@ class Modes:
     """Surface displacement ``shape`` (n, m) of m motions; ``volume``, ``shear`` (m,) their stiffness per modulus.
 
     ``operator``: the elastic body's at one Poisson's ratio of the interval; ``ratios``: how many were factorised;
-    ``interval`` of the ratios G/K that the motions were made for.
+    ``interval`` (2,) of the ratios G/K that the motions were made for.
     """
 
     shape: Array
@@ -44,7 +45,7 @@ class Modes:
     shear: Array
     operator: SurfaceOperator
     ratios: int
-    interval: tuple[float, float]
+    interval: Array
 
     @property
     def solves(self) -> int:
@@ -86,17 +87,20 @@ class Modes:
 
 
 @cached
-def modes(body: ElasticBody, lowest: float, highest: float) -> Modes:
+@on_disk
+def modes(body: Recipe[ElasticBody], lowest: float, highest: float) -> Modes:
     """Of a body whose ratio of shear to bulk modulus, G/K > 0, stays within an interval."""
-    operators = [body.operator(poisson(ratio), factors=True) for ratio in _ratios(lowest, highest)]
-    middle = operators[len(operators) // 2].without_factors()
+    elastic = body.follow()
+    bodies = [elastic.condensed(poisson(ratio), factors=True) for ratio in _ratios(lowest, highest)]
+    operators = [one.operator for one in bodies]
+    middle = operators[len(operators) // 2]
     bulk, shear = moduli(middle.poisson)
-    volume_work, shear_work = _projected(body, operators)
+    volume_work, shear_work = _projected(elastic, bodies)
     free = _independent(bulk * volume_work + shear * shear_work)
     share, turned = eigh(free.T @ (shear * shear_work) @ free)
     share = np.clip(share, 0.0, 1.0)  # of the stiffness at the middle ratio
     shape = np.hstack([_compliance(operator) for operator in operators]) @ (free @ turned)
-    interval = (min(lowest, STIFFEST), min(highest, STIFFEST))
+    interval = np.minimum([lowest, highest], STIFFEST)
     return Modes(shape, (1.0 - share) / bulk, share / shear, middle, len(operators), interval)
 
 
@@ -114,14 +118,15 @@ def _ratios(lowest: float, highest: float) -> Array:
     return np.asarray(np.exp(ends.mean() + half * places))
 
 
-def _projected(body: ElasticBody, operators: Sequence[SurfaceOperator]) -> tuple[Array, Array]:
+def _projected(body: ElasticBody, bodies: Sequence[WholeBody]) -> tuple[Array, Array]:
     """Work on one another, of unit bulk and of unit shear modulus, of the motions under unit nodal forces."""
     shear_stiffness = body.stiffness(0.0, 1.0).tocsr()
+    operators = [one.operator for one in bodies]
     n, count = len(operators[0].stiffness), len(operators)
     volume, shear = (np.empty((count, n, count, n)) for _ in range(2))
     for i, first in enumerate(operators):
         bulk_i, shear_i = moduli(first.poisson)
-        moved = first.solve(np.eye(n))
+        moved = bodies[i].solve(np.eye(n))
         shear[i, :, i] = _symmetric(moved.T @ (shear_stiffness @ moved))
         volume[i, :, i] = (_compliance(first) - shear_i * shear[i, :, i]) / bulk_i
         for j, second in enumerate(operators[:i]):

@@ -57,11 +57,13 @@ def override(says: str = SETTINGS) -> methodcaller:
 
 
 JSON = option("--json", action="store_true", help="machine-readable result on stdout")
+NO_CACHE = option("--no-cache", action="store_true", help="mesh and condense anew, whatever is known on disk")
 OUTPUT = (
     option("--out", type=Path, metavar="DIR", help="folder for the results"),
     JSON,
     option("--quiet", action="store_true", help="no progress on stderr"),
     option("--log", metavar="FILE", help="write progress into a file, line by line"),
+    NO_CACHE,
 )
 SCENE = (
     option("scene", help="scene file (TOML), or the name of a packaged one: fe-contact scenes"),

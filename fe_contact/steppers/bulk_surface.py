@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from fe_contact.assembly.cache import cached
+from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.operators import ElasticBody, SurfaceOperator
 from fe_contact.bodies.bulk_memory import BulkBody, Moduli
 from fe_contact.bodies.memory import step_law
@@ -73,12 +73,14 @@ class BulkSurface(ByModes, Deformable):
 
 
 def relaxing(
-    body: ElasticBody, moduli: Moduli, numerics: Numerics, length: float | None = None, rim: float | None = None
+    body: Recipe[ElasticBody], moduli: Moduli, numerics: Numerics, length: float | None = None, rim: float | None = None
 ) -> BulkSurface:
     """A meshed body of a material with these moduli, in an impact with these settings; see :class:`BulkSurface`."""
     return _surface(body, moduli, Pace.of(numerics), length, rim)
 
 
 @cached
-def _surface(body: ElasticBody, moduli: Moduli, pace: Pace, length: float | None, rim: float | None) -> BulkSurface:
+def _surface(
+    body: Recipe[ElasticBody], moduli: Moduli, pace: Pace, length: float | None, rim: float | None
+) -> BulkSurface:
     return BulkSurface(modes(body, *pace.ratios(moduli)), moduli, length=length, rim=rim)

@@ -30,9 +30,9 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from fe_contact.assembly.cache import cached
+from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import ElasticBody, SurfaceOperator
+from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, operator_of
 from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.assembly.surface import monomials
 from fe_contact.bodies.memory import StepLaw, SurfaceBody, SurfaceMemory, area_weights, graded, interpolate, step_law
@@ -284,9 +284,9 @@ class ScaledSurface(Deformable):
 
 
 @cached
-def on_mesh(body: ElasticBody, poisson: float) -> ScaledSurface:
+def on_mesh(body: Recipe[ElasticBody], poisson: float) -> ScaledSurface:
     """A body with lengths of its own, condensed for this Poisson's ratio: its mesh stays while the contact grows."""
-    return ScaledSurface(body.operator(poisson), follows_contact=False)
+    return ScaledSurface(operator_of(body, poisson), follows_contact=False)
 
 
 def _at_instants(stepper: Stepper, steps: Sequence[Step]) -> tuple[Snapshot, ...]:

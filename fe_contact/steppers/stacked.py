@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from scipy.linalg import block_diag
 
+from fe_contact.assembly.cache import Recipe
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, SurfaceOperator
 from fe_contact.assembly.pressed_surface import PressedSurface
@@ -76,7 +77,7 @@ class BulkSide(ByModes, BodySide):
     @classmethod
     def of(
         cls,
-        body: ElasticBody,
+        body: Recipe[ElasticBody],
         moduli: Moduli,
         pace: Pace,
         relaxation: Relaxation,

@@ -7,13 +7,12 @@ from functools import partial
 
 import numpy as np
 import numpy.typing as npt
-from skfem import Basis
 
 import meshes
-from fe_contact.assembly.cache import cached
-from fe_contact.assembly.forms import Array
+from fe_contact.assembly.cache import Recipe, cached
+from fe_contact.assembly.forms import Array, Basis
 from fe_contact.assembly.interior import Floating
-from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, axisymmetric, basis_on, made, plane
+from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made, operator_of, plane
 from fe_contact.assembly.surface import crown, trace_between
 from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.pressing import BodyStill, Still
@@ -45,9 +44,9 @@ class _Body:
     material: Material
     held: bool
 
-    def meshed(self, zone: Zone, elements: float, order: int, plane: bool) -> ElasticBody:
+    def meshed(self, zone: Zone, elements: float, order: int, plane: bool) -> Recipe[ElasticBody]:
         """In units of its radius; ``elements`` along a contact's half-width."""
-        return _meshed(elements, order, zone.smallest, zone.reference, self.held, plane)
+        return _meshed.recipe(elements, order, zone.smallest, zone.reference, self.held, plane)
 
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
@@ -109,7 +108,7 @@ def _together(
     return Stacked(own.operator, tuple(sides), first.radius)
 
 
-def _side(body: _Body, meshed: ElasticBody, shape: Shape, pace: Pace | None) -> BodySide:
+def _side(body: _Body, meshed: Recipe[ElasticBody], shape: Shape, pace: Pace | None) -> BodySide:
     """One of the bodies under a pressure at its own points."""
     material, relaxation = body.material, shape.modulus(body.material).scaled(shape.total)
     if pace is not None and material.constant == "bulk" and not material.young.is_elastic:
@@ -128,9 +127,7 @@ def _bodies(geometry: Geometry) -> list[_Body]:
     return sorted(bodies, key=lambda body: body.radius)
 
 
-@cached
-def _operator(body: ElasticBody, poisson: float) -> SurfaceOperator:
-    return body.operator(poisson)
+_operator = cached(operator_of)
 
 
 @cached

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from fe_contact.assembly.cache import Recipe
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import ElasticBody
+from fe_contact.assembly.operators import ElasticBody, WholeBody
 from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.pressing import Still
 from fe_contact.settings import Numerics
@@ -24,18 +25,20 @@ class MeshedTarget:
     """``still(indenter, radii, numerics)``: the target pressed slowly, ``radii``, m, those of the contacts expected.
 
     ``struck(geometry, numerics)``: the target in an impact, whose surface alone remembers; ``relaxing``: the same of a
-    bulk that relaxes. None where there is no such impact in this version.
+    bulk that relaxes. None where there is no such impact in this version. ``whole``: with its inside what ``struck``
+    knows by its surface, None where no fields are written.
     """
 
     still: Callable[[Indenter, Array, Numerics], Still]
     struck: Callable[[Geometry, Numerics], Deformable] | None = None
     relaxing: Callable[[Geometry, Numerics], Deformable] | None = None
+    whole: Callable[[Geometry, Numerics], WholeBody] | None = None
 
     @classmethod
     def meshed(
         cls,
         still: Callable[[Indenter, Array, Numerics], Still],
-        meshed: Callable[[Geometry, Numerics], ElasticBody],
+        meshed: Callable[[Geometry, Numerics], Recipe[ElasticBody]],
     ) -> MeshedTarget:
         """One that is ``meshed`` for an impact alike whatever it is made of."""
 
@@ -46,7 +49,10 @@ class MeshedTarget:
             moduli = Moduli.of(geometry.material, geometry.shape.total)
             return bulk_surface.relaxing(meshed(geometry, numerics), moduli, numerics)
 
-        return cls(still, struck, relaxing)
+        def whole(geometry: Geometry, numerics: Numerics) -> WholeBody:
+            return meshed(geometry, numerics).follow().condensed(geometry.material.nu)
+
+        return cls(still, struck, relaxing, whole)
 
 
 TARGETS = Folder[MeshedTarget]("fe_contact.targets", "numerics", "target")

@@ -12,8 +12,17 @@ import scipy.sparse as sparse
 
 import meshes
 from fe_contact.assembly.cache import cached
+from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.forms import Array, Basis, Matrix
-from fe_contact.assembly.operators import basis_on, condensed, made, surface_operator, system_matrix
+from fe_contact.assembly.operators import (
+    SurfaceOperator,
+    WholeBody,
+    basis_on,
+    condensed,
+    made,
+    surface_operator,
+    system_matrix,
+)
 from fe_contact.assembly.surface import flat, lagrange
 from fe_contact.bodies.pressing import FixedStill, ScaledStill, Still
 from fe_contact.bodies.zone import LINE_REFINEMENT, REFINEMENT, STRUCK_REFINEMENT, Zone, held, smallest_struck
@@ -30,6 +39,11 @@ DATUM = 0.15  # size of the mesh over the datum's depth, per far radius of the s
 def surface(poisson: float, numerics: Numerics) -> ScaledSurface:
     """Contact surface for these settings; made once a process, then shared by every impact that agrees."""
     return _surface(poisson, numerics.elements_per_contact, numerics.order, numerics.far_radius)
+
+
+def whole(geometry: Geometry, numerics: Numerics) -> WholeBody:
+    """The same with its inside."""
+    return _whole(geometry.material.nu, numerics.elements_per_contact, numerics.order, numerics.far_radius)
 
 
 def struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
@@ -50,7 +64,16 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 
 @cached
 def _surface(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
-    return ScaledSurface(surface_operator(made(meshes.half_space, elements, far_radius), order, poisson))
+    return ScaledSurface(_operator(poisson, elements, order, far_radius))
+
+
+@on_disk
+def _operator(poisson: float, elements: float, order: int, far_radius: float) -> SurfaceOperator:
+    return _whole(poisson, elements, order, far_radius).operator
+
+
+def _whole(poisson: float, elements: float, order: int, far_radius: float) -> WholeBody:
+    return surface_operator(made(meshes.half_space, elements, far_radius), order, poisson)
 
 
 def under_rim(indenter: Indenter, radius: float, numerics: Numerics) -> Still:
@@ -62,10 +85,15 @@ def under_rim(indenter: Indenter, radius: float, numerics: Numerics) -> Still:
 
 @cached
 def _rimmed(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
+    return ScaledSurface(_rimmed_operator(poisson, elements, order, far_radius), follows_contact=False)
+
+
+@on_disk
+def _rimmed_operator(poisson: float, elements: float, order: int, far_radius: float) -> SurfaceOperator:
     """Condensed for unit radius."""
     basis = basis_on(made(meshes.layer_under_rim, elements, far_radius, far_radius), order)
     matrix, fixed = system_matrix(basis, poisson, ENDS), held(basis, along=("axis",), across=())
-    return ScaledSurface(condensed(basis, matrix, fixed, poisson, flat(basis)), follows_contact=False)
+    return condensed(basis, matrix, fixed, poisson, flat(basis)).operator
 
 
 def _plane_still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
@@ -91,11 +119,17 @@ def _plane_struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
 def _plane_surface(
     poisson: float, elements: float, order: int, smallest: float, datum: float, size: float
 ) -> ScaledSurface:
+    return ScaledSurface(_plane_operator(poisson, elements, order, smallest, datum, size), follows_contact=False)
+
+
+@on_disk
+def _plane_operator(
+    poisson: float, elements: float, order: int, smallest: float, datum: float, size: float
+) -> SurfaceOperator:
     """Condensed for unit reference radius; the datum's motion upwards is watched."""
     basis = basis_on(made(meshes.layer, elements, smallest, size, size), order)
     matrix, fixed = system_matrix(basis, poisson, ENDS, plane=True), held(basis, along=("axis",), across=())
-    operator = condensed(basis, matrix, fixed, poisson, flat(basis, 2), _upwards(basis, datum))
-    return ScaledSurface(operator, follows_contact=False)
+    return condensed(basis, matrix, fixed, poisson, flat(basis, 2), _upwards(basis, datum)).operator
 
 
 def _upwards(basis: Basis, depth: float) -> Matrix:
@@ -110,4 +144,4 @@ def _upwards(basis: Basis, depth: float) -> Matrix:
     return sparse.csr_matrix(entries, shape=(1, 2 * basis.N))
 
 
-MEMBER = MeshedTarget(still, struck=struck)
+MEMBER = MeshedTarget(still, struck=struck, whole=whole)

@@ -6,13 +6,13 @@ The outside of a layer that slides on its base: far from the contact a plate in 
 from __future__ import annotations
 
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sparse
-from skfem import FacetBasis, MeshTri
 
 import meshes
-from fe_contact.assembly.cache import cached
+from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.far_field import on_boundary
 from fe_contact.assembly.forms import Array, Basis, Matrix, elastic, plane_stiffness, stiffness
 from fe_contact.assembly.operators import ElasticBody, basis_on, made
@@ -34,6 +34,9 @@ from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.targets.layer import Layer
 
+if TYPE_CHECKING:
+    from skfem import MeshTri
+
 Sizes = tuple[float, float | None, float, float]  # elements, smallest contact, thickness, width: see _mesh
 SIDES = 0.4  # distance of the sides in thicknesses, per far radius of the settings
 
@@ -48,11 +51,11 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     refinement = LINE_REFINEMENT if indenter.shape.plane else REFINEMENT
     elements, width = refinement * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
     sizes, bonded = (elements, zone.smallest if rim is None else None, thickness, width), target.base == "bonded"
-    surface = on_mesh(_body(sizes, numerics.order, bonded, indenter.shape.plane), indenter.material.nu)
+    surface = on_mesh(_body.recipe(sizes, numerics.order, bonded, indenter.shape.plane), indenter.material.nu)
     return FixedStill(surface, indenter, numerics, zone.reference, zone.reference, thickness)
 
 
-def meshed(geometry: Geometry, numerics: Numerics) -> ElasticBody:
+def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:
     """The layer in an impact whose contact grows from nothing to the radius that the settings expect."""
     target = geometry.target
     assert isinstance(target, Layer)
@@ -60,7 +63,7 @@ def meshed(geometry: Geometry, numerics: Numerics) -> ElasticBody:
     smallest = None if geometry.shape.fixed_radius is not None else smallest_struck(geometry.shape)
     elements, width = STRUCK_REFINEMENT * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
     sizes = (elements, smallest, thickness, width)
-    return _body(sizes, numerics.order, target.base == "bonded", geometry.shape.plane)
+    return _body.recipe(sizes, numerics.order, target.base == "bonded", geometry.shape.plane)
 
 
 @cached
@@ -85,6 +88,8 @@ def matrix(basis: Basis, bonded: bool, plane: bool, bulk: float, shear: float) -
         return plane_stiffness(basis, law)
     if bonded:
         return stiffness(basis, law)
+    from skfem import FacetBasis
+
     sides = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["side"], intorder=2 * basis.elem.maxdeg)
     return stiffness(basis, law) + robin(sides, shear)
 

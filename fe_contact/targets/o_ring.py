@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 
 import meshes
-from fe_contact.assembly.cache import cached
+from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made
+from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made, operator_of
 from fe_contact.assembly.surface import crown
 from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.pressing import BodyStill, Still
@@ -41,7 +41,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     zone = Zone.round(radii, target.section_radius)
     mean_radius = target.mean_radius / target.section_radius
     elements = LINE_REFINEMENT * numerics.elements_per_contact
-    body = _body(elements, numerics.order, zone.smallest, zone.reference, mean_radius)
+    body = _body.recipe(elements, numerics.order, zone.smallest, zone.reference, mean_radius)
     surface = on_mesh(body, indenter.material.nu)
     return BodyStill(
         surface=surface.pressed,
@@ -67,9 +67,9 @@ def relaxing(geometry: Geometry, numerics: Numerics) -> Stacked:
     return _relaxing(relaxation, moduli, target, sizes, Pace.of(numerics))
 
 
-def meshed(geometry: Geometry, numerics: Numerics) -> ElasticBody:
+def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:
     """Half of it for every Poisson's ratio."""
-    return _body(*_sizes(geometry, numerics)[1])
+    return _body.recipe(*_sizes(geometry, numerics)[1])
 
 
 def _sizes(geometry: Geometry, numerics: Numerics) -> tuple[ORing, Sizes]:
@@ -85,13 +85,13 @@ def _sizes(geometry: Geometry, numerics: Numerics) -> tuple[ORing, Sizes]:
 
 @cached
 def _struck(poisson: float, relaxation: Relaxation, target: ORing, sizes: Sizes) -> Stacked:
-    operator = _body(*sizes).operator(poisson)
+    operator = operator_of(_body.recipe(*sizes), poisson)
     return Stacked(operator, (BodySide(operator, relaxation, operator.trace, target.lead),), target.section_radius)
 
 
 @cached
 def _relaxing(relaxation: Relaxation, moduli: Moduli, target: ORing, sizes: Sizes, pace: Pace) -> Stacked:
-    side = BulkSide.of(_body(*sizes), moduli, pace, relaxation, target.lead)
+    side = BulkSide.of(_body.recipe(*sizes), moduli, pace, relaxation, target.lead)
     return Stacked(side.operator, (side,), target.section_radius)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import ClassVar
 
@@ -10,6 +10,7 @@ import numpy as np
 import scipy.sparse.linalg as linalg
 
 import meshes
+from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.forms import Array, isotropic, stiffness
 from fe_contact.assembly.operators import basis_on, made
 from fe_contact.bodies.pressing import Pressed, Still
@@ -47,7 +48,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     if not isinstance(block, Block):
         return _round.still(indenter, radii, numerics)
     radius = block.fixed_radius
-    answer, unknowns = _answer(
+    unit = _unit_block(
         indenter.material.nu,
         FEWER * numerics.elements_per_contact,
         numerics.order,
@@ -55,14 +56,13 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
         block.sides,
         block.faces,
     )
-    return BlockStill(radius * answer, radius, unknowns)
+    return replace(unit, stiffness=radius * unit.stiffness, radius=radius)
 
 
 @lru_cache(maxsize=32)
-def _answer(
-    poisson: float, elements: float, order: int, half_height: float, sides: str, faces: str
-) -> tuple[float, int]:
-    """Force per depth of a block of unit radius and unit modulus, that of its sides; unknowns of the half."""
+@on_disk
+def _unit_block(poisson: float, elements: float, order: int, half_height: float, sides: str, faces: str) -> BlockStill:
+    """A block of unit radius and unit modulus, that of its sides, by one half of it."""
     free = sides == "free"
     basis = basis_on(made(meshes.prism, elements, half_height, free and faces == "bonded"), order)
     young = 1.0 if free else (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson)
@@ -74,7 +74,7 @@ def _answer(
     displacement[moved] = -0.5  # half of a unit depth
     loose = np.setdiff1d(np.arange(displacement.size), fixed)
     displacement[loose] = linalg.spsolve(matrix[loose][:, loose], -(matrix @ displacement)[loose])
-    return 2.0 * float(displacement @ (matrix @ displacement)), displacement.size
+    return BlockStill(2.0 * float(displacement @ (matrix @ displacement)), 1.0, displacement.size)
 
 
 MEMBER = MeshedTarget(still, struck=_round.struck, relaxing=_round.relaxing)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 import meshes
-from fe_contact.assembly.cache import cached
+from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.forms import Array, Matrix, elastic, polar_stiffness
 from fe_contact.assembly.operators import ElasticBody, basis_on, made
 from fe_contact.assembly.surface import flat
@@ -41,18 +41,18 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     zone = Zone.of(np.minimum(radii, WIDEST / MARGIN * target.inner_radius))
     angle, thickness = zone.reference / target.inner_radius, thickness_over(zone.reference, target.thickness)
     elements = LINE_REFINEMENT * numerics.elements_per_contact
-    surface = on_mesh(_body(elements, numerics.order, zone.smallest, thickness, angle), indenter.material.nu)
+    surface = on_mesh(_body.recipe(elements, numerics.order, zone.smallest, thickness, angle), indenter.material.nu)
     return FixedStill(surface, indenter, numerics, zone.reference, angle, thickness)
 
 
-def meshed(geometry: Geometry, numerics: Numerics) -> ElasticBody:
+def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:
     """The ring in an impact whose contact grows from nothing to the arc that the settings expect."""
     target = geometry.target
     assert isinstance(target, Ring)
     reference = min(numerics.contact_radius, WIDEST * target.inner_radius)
     elements = STRUCK_REFINEMENT * numerics.elements_per_contact
     angle, thickness = reference / target.inner_radius, thickness_over(reference, target.thickness)
-    return _body(elements, numerics.order, smallest_struck(geometry.shape), thickness, angle)
+    return _body.recipe(elements, numerics.order, smallest_struck(geometry.shape), thickness, angle)
 
 
 @cached

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 import meshes
-from fe_contact.assembly.cache import cached
+from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made
 from fe_contact.assembly.surface import Surface, ring_area
@@ -32,7 +32,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The washer at rest; ``radii``, m: where the contact ends, alike at every depth."""
     target = indenter.target
     assert isinstance(target, Washer)
-    surface = on_mesh(_body(*_sizes(target, float(radii.max()), numerics)), indenter.material.nu)
+    surface = on_mesh(_body.recipe(*_sizes(target, float(radii.max()), numerics)), indenter.material.nu)
     return BodyStill(
         surface=surface.pressed,
         operator=surface.operator,
@@ -52,9 +52,9 @@ def relaxing(geometry: Geometry, numerics: Numerics) -> BulkSurface:
     return bulk_surface.relaxing(meshed(geometry, numerics), moduli, numerics, target.height, rim)
 
 
-def meshed(geometry: Geometry, numerics: Numerics) -> ElasticBody:
+def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:
     """The same for every Poisson's ratio."""
-    return _body(*_sizes(geometry.target, geometry.target.fixed_radius(geometry.shape) or 0.0, numerics))
+    return _body.recipe(*_sizes(geometry.target, geometry.target.fixed_radius(geometry.shape) or 0.0, numerics))
 
 
 def _sizes(target: Target, rim: float, numerics: Numerics) -> Sizes:

@@ -13,11 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
-from lumped.numbers import Array
+from lumped.numbers import Array, bisected
 
 # The load d^(3/2) of a depth that is a half sine over time rises by at most so many peaks per duration.
 STEEPEST = 3.0
-HALVINGS = 2000  # of the longest time, enough for the shortest a number can be
 
 
 @dataclass(frozen=True)
@@ -210,8 +209,6 @@ class Recovery:
 
     def until(self, share: float) -> float:
         """Time, s, at which a share of what goes is left; zero where nothing goes. Raises BadInput."""
-        from scipy.optimize import brentq  # late: scenes and the spring row need numpy alone
-
         if not 0.0 < share < 1.0:
             raise BadInput(Fault("recovery", "share", f"{share:g}: accepted between 0 and 1"))
         goes = float(self(0.0)) - self.permanent
@@ -220,10 +217,7 @@ class Recovery:
         most = float(np.abs(self.amplitudes).sum())
         last = (1.0 + np.log(most / (share * abs(goes)))) * max(self.times)
 
-        def over(time: float) -> float:
-            return (float(self(time)) - self.permanent) / goes - share
-
-        return float(brentq(over, 0.0, last, xtol=float(np.finfo(float).tiny), rtol=1e-12, maxiter=HALVINGS))
+        return bisected(lambda time: (float(self(time)) - self.permanent) / goes > share, 0.0, last)[1]
 
 
 def decaying(constant: float, amplitudes: Sequence[float], times: Sequence[float], at: ArrayLike) -> Array:

@@ -41,7 +41,7 @@ def end(nu: float, radius: float, elements: float = FINE) -> End:
     """Of a rod of this radius, its far end on rollers; displacement in the work of the pressure."""
     basis = basis_on(meshes.layer(elements, 1.0, LONG * radius, radius - 1.1), 4)
     fixed = held(basis, along=("axis",), across=("base",))
-    operator = ElasticBody(basis, partial(axisymmetric, basis), fixed, flat(basis)).operator(nu)
+    operator = ElasticBody(basis, partial(axisymmetric, basis), fixed, flat(basis)).condensed(nu).operator
     pressure = np.sqrt(np.maximum(1.0 - operator.points**2, 0.0))
     weighed = operator.weights * pressure
     displacement = operator.trace @ operator.compliance @ (operator.trace.T @ weighed)

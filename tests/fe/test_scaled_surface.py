@@ -37,7 +37,7 @@ class Indentation:
 
 
 def surface(nu: float, elements: float = 4.0, order: int = 4, far_radius: float = 20.0) -> ScaledSurface:
-    return ScaledSurface(surface_operator(meshes.half_space(elements, far_radius), order, nu))
+    return ScaledSurface(surface_operator(meshes.half_space(elements, far_radius), order, nu).operator)
 
 
 def indent(
