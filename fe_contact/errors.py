@@ -9,8 +9,7 @@ from typing import Concatenate, ParamSpec, TypeVar
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Number
-from lumped.schema.record import keys_of
+from lumped.schema.keys import Number, keys_of
 from meshes.errors import GmshMissing, MeshError, MeshTooFine
 
 Said = TypeVar("Said", Scene, Indenter)

@@ -19,7 +19,7 @@ from fe_contact.budget.refine import Finer, ImpactWay, dominant, refine
 from fe_contact.budget.runs import operations
 from fe_contact.budget.several import Row, Several
 from fe_contact.errors import says_which_key
-from fe_contact.march.flight import UNFOLLOWED
+from fe_contact.march.impacts import UNFOLLOWED
 from fe_contact.progress import Progress, silent
 from fe_contact.recovery import indentation_left, recovers
 from fe_contact.settings import Given, Numerics, check_kind

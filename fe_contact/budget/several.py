@@ -19,8 +19,7 @@ from fe_contact.budget.budget import CAUSES, Budget, Causes, Contacts, TotalWork
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.softening import Softening
 from fe_contact.budget.variation import Variation
-from fe_contact.march.flight import Grounded
-from fe_contact.march.impacts import Followed
+from fe_contact.march.impacts import Followed, Grounded
 from fe_contact.settings import Numerics
 from fe_contact.steppers.march import Strike
 from lumped.result.history import COLUMNS, History

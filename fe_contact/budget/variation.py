@@ -10,8 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.curve import Curve, Reading
-from fe_contact.budget.local_polynomial import BETWEEN, NEAREST_QUARTIC, PLACES
+from fe_contact.budget.curve import BETWEEN, NEAREST_QUARTIC, PLACES, Curve, Reading
 
 TOP = 0.998  # of the largest depth or force, above which it is near: further away what comes later counts as an error
 LATE = 0.75  # share of the contact from which path and speed count for those at separation

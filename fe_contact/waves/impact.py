@@ -27,7 +27,7 @@ from fe_contact.dynamics.schemes import generalised_alpha
 from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.dynamics.stepping import Enforced, ImplicitStepper
 from fe_contact.errors import MemoryTooSmall, TooManySteps
-from fe_contact.march.flight import Grounded
+from fe_contact.march.impacts import Grounded
 from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import WaveNumerics
 from fe_contact.steppers.march import March, Strike, Work
