@@ -19,7 +19,6 @@ import numpy as np
 
 from fe_contact.assembly.forms import check_compressible
 from fe_contact.bodies.pressing import Still
-from fe_contact.errors import says_which_key
 from fe_contact.settings import RANGES, Given, Numerics, check_kind
 from fe_contact.steppers.flat_end import FlatEnd
 from fe_contact.targets.base import TARGETS
@@ -72,7 +71,6 @@ class Plan:
     ledger: tuple[LedgerEntry, ...]
 
 
-@says_which_key
 def plan(scene: Scene, given: Given) -> Plan:
     """Choose what ``given`` (checked settings, see :func:`fe_contact.settings.checked`) leaves open, without waves.
 
