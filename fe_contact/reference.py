@@ -23,7 +23,7 @@ from fe_contact.march.impacts import UNFOLLOWED
 from fe_contact.progress import Progress, silent
 from fe_contact.recovery import indentation_left, recovers
 from fe_contact.settings import Given, Numerics, check_kind
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from fe_contact.targets.base import TARGETS, struck
 from lumped.errors import BadInput, Fault
 from lumped.result.result import (

@@ -24,7 +24,7 @@ import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array
 from fe_contact.march.impact import Energies, balanced
-from fe_contact.steppers.march import March, Strike
+from fe_contact.steppers.steps import March, Strike
 
 STENCIL = 6  # nodes of a polynomial
 PLACES = 17  # equidistant, from which a quartic is fitted

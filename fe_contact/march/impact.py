@@ -20,8 +20,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall, TooManySteps
 from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import Numerics
-from fe_contact.steppers.march import March, Strike, Work
-from fe_contact.steppers.steps import State, Step, Stepping
+from fe_contact.steppers.steps import March, State, Step, Stepping, Strike, Work
 from fe_contact.steppers.struck import Struck
 
 Energies = Mapping[str, float]
@@ -237,7 +236,7 @@ def _inverse_smoothstep(value: float) -> float:
 def record(
     stepper: Stepping, states: Sequence[State], steps: Sequence[Step], separated: bool, end_spread: float
 ) -> March:
-    """Gather what a march leaves behind; ``end_spread`` as in :class:`fe_contact.steppers.march.March`."""
+    """Gather what a march leaves behind; ``end_spread`` as in :class:`fe_contact.steppers.steps.March`."""
     works, last = [step.work for step in steps], states[len(steps)]
     return March(
         time=np.array([state.time for state in states]),

@@ -32,8 +32,7 @@ from fe_contact.errors import TooManySteps
 from fe_contact.march.impact import marched, onwards
 from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import Numerics
-from fe_contact.steppers.march import March, Strike
-from fe_contact.steppers.steps import Stepping
+from fe_contact.steppers.steps import March, Stepping, Strike
 from fe_contact.steppers.struck import Struck
 from lumped.materials import Relaxation
 

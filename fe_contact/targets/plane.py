@@ -12,8 +12,7 @@ import scipy.sparse.linalg as linalg
 import meshes
 from fe_contact.assembly.forms import Array, isotropic, stiffness
 from fe_contact.assembly.operators import basis_on, made
-from fe_contact.bodies.pressing import Pressed, Still
-from fe_contact.bodies.zone import held
+from fe_contact.bodies.pressing import Pressed, Still, held
 from fe_contact.settings import Numerics
 from fe_contact.targets import _round
 from fe_contact.targets.base import MeshedTarget
