@@ -2,39 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import wraps
-from typing import Concatenate, ParamSpec, TypeVar
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Number
-from lumped.schema.record import keys_of
+from lumped.schema.keys import Number, keys_of
 from meshes.errors import GmshMissing, MeshError, MeshTooFine
 
-Said = TypeVar("Said", Scene, Indenter)
 FINENESS = "numerics.tolerance, numerics.elements_per_contact"
-Given = ParamSpec("Given")
-Found = TypeVar("Found")
 
 
-def says_which_key(door: Callable[Concatenate[Said, Given], Found]) -> Callable[Concatenate[Said, Given], Found]:
-    """A door whose faults name the scene's file and its keys, whatever part or mesh refused a number inside."""
-
-    @wraps(door)
-    def named(scene: Said, /, *args: Given.args, **options: Given.kwargs) -> Found:
-        with scene.addressed():
-            try:
-                return door(scene, *args, **options)
-            except GmshMissing:  # no number's fault
-                raise
-            except MeshTooFine as refused:
-                raise BadInput(Fault(scene.source, FINENESS, f"{refused}; cure: a larger tolerance")) from refused
-            except MeshError as refused:
-                raise BadInput(Fault(scene.source, _lengths(scene), str(refused))) from refused
-
-    return named
+@contextmanager
+def faults_of(scene: Scene | Indenter) -> Iterator[None]:
+    """Inside, faults name the scene's file and its keys, whatever part or mesh refused a number. Raises BadInput."""
+    with scene.addressed():
+        try:
+            yield
+        except GmshMissing:  # no number's fault
+            raise
+        except MeshTooFine as refused:
+            raise BadInput(Fault(scene.source, FINENESS, f"{refused}; cure: a larger tolerance")) from refused
+        except MeshError as refused:
+            raise BadInput(Fault(scene.source, _lengths(scene), str(refused))) from refused
 
 
 def _lengths(scene: Scene | Indenter) -> str:

@@ -34,8 +34,8 @@ from fe_contact.bodies.pressing import BEYOND
 from fe_contact.budget.certify import Certified
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.settings import Numerics
-from fe_contact.steppers.march import Snapshot
 from fe_contact.steppers.scaled_surface import ScaledSurface
+from fe_contact.steppers.steps import Snapshot
 from fe_contact.targets.base import TARGETS
 from lumped.errors import BadInput, Fault
 from lumped.scene.scene import Scene

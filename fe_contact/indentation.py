@@ -19,7 +19,7 @@ from fe_contact.budget.certify import LEAST_ORDER, other_mesh, other_setting
 from fe_contact.budget.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, RIM_PENALTY
 from fe_contact.budget.refine import Finer, dominant, refine
 from fe_contact.budget.variation import factor
-from fe_contact.errors import says_which_key
+from fe_contact.errors import faults_of
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import Given, Numerics, check_kind
 from fe_contact.targets.base import TARGETS
@@ -57,7 +57,6 @@ class PressedDepths:
 
 
 @one_thread
-@says_which_key
 def indent(
     indenter: Indenter,
     depths: tuple[float, ...],
@@ -71,17 +70,18 @@ def indent(
     Raises BadInput for depths and materials that cannot be, and for contacts too wide for the target; NotReached where
     contact does not settle.
     """
-    check_kind(given, False, indenter.source)
     clock = Clock()
-    modulus, asked = indenter.modulus(instant), len(indenter.checked(depths))
-    depth = _accompanied(np.array(depths))
-    elastic, numerics = indenter.elastic(instant), settings(given, indenter.shape)
-    check_compressible(indenter)
-    _check_digits(elastic)
-    way = Indenting(elastic, depth, expected(elastic, depth, numerics), frozenset(given) - {"tolerance"}, progress)
-    found, _ = refine(way, numerics)
-    base, budget, numerics = found.base, found.budget, found.numerics
-    indenter.check_contacts(depth[:asked], base.contact_radius[:asked])
+    with faults_of(indenter):
+        check_kind(given, False, indenter.source)
+        modulus, asked = indenter.modulus(instant), len(indenter.checked(depths))
+        depth = _accompanied(np.array(depths))
+        elastic, numerics = indenter.elastic(instant), settings(given, indenter.shape)
+        check_compressible(indenter)
+        _check_digits(elastic)
+        way = Indenting(elastic, depth, expected(elastic, depth, numerics), frozenset(given) - {"tolerance"}, progress)
+        found, _ = refine(way, numerics)
+        base, budget, numerics = found.base, found.budget, found.numerics
+        indenter.check_contacts(depth[:asked], base.contact_radius[:asked])
     error = ROUNDING + np.sum([budget[cause] for cause in CAUSES], axis=0)[:asked]
     force = (modulus * indenter.shape.total * base.force)[:asked]
     kept = ("tolerance", "elements_per_contact", "order", "penalty", "enforcement", "far_radius")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fe_contact.errors import says_which_key
+from fe_contact.errors import faults_of
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import Given, checked
 from lumped import laws
@@ -29,7 +29,6 @@ def default(scene: Scene) -> str:
     return FE if scene.law is None else scene.law.name
 
 
-@says_which_key
 def simulate(
     scene: Scene,
     method: str | None,
@@ -38,34 +37,33 @@ def simulate(
     progress: Progress = silent,
 ) -> Result:
     """One impact of ``scene`` by a method; see :func:`fe_contact.run` for the parameters and errors."""
-    given, method = settings(table, tolerance, scene.source), method or default(scene)
-    if method == FE:
-        return _finite_elements(scene, given, progress)
-    if method == "cheapest":
-        return _cheapest(scene, given, progress)
-    if method not in laws.available():
-        names = (*OWN, *laws.available())
-        raise BadInput(Fault("--method", "", f"{shown(method)}: accepted {', '.join(names)}{nearest(method, names)}"))
-    return _lumped(scene, method, given)
+    with faults_of(scene):
+        given, method = settings(table, tolerance, scene.source), method or default(scene)
+        if method not in OWN:
+            return _lumped(scene, method, given)
+        result = _exact(scene, given) if method != FE else None
+        if result is None:
+            from fe_contact.reference import fe  # late: a law needs no finite elements
+
+            result = fe(scene, given, progress)
+        return result
 
 
 def _lumped(scene: Scene, name: str, given: Given) -> Result:
+    """By a lumped law. Raises BadInput for an unknown name."""
     from fe_contact.budget.plan import DEFAULT_TOLERANCE
 
+    if name not in laws.available():
+        names = (*OWN, *laws.available())
+        raise BadInput(Fault("--method", "", f"{shown(name)}: accepted {', '.join(names)}{nearest(name, names)}"))
     found = simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))
     if scene.has_geometry:
         scene.check_sunk(found.quantities["peak_depth"].value or 0.0)
     return found
 
 
-def _finite_elements(scene: Scene, given: Given, progress: Progress) -> Result:
-    from fe_contact.reference import fe
-
-    return fe(scene, given, progress)
-
-
-def _cheapest(scene: Scene, given: Given, progress: Progress) -> Result:
-    """An exact law where it meets the tolerance, else finite elements; without geometry the scene's own law."""
+def _exact(scene: Scene, given: Given) -> Result | None:
+    """By an exact law, None where none meets the tolerance; without geometry by the scene's own law."""
     if scene.law is not None and not scene.has_geometry:
         return _lumped(scene, scene.law.name, given)
     for name in EXACT_WITH_INERTIA if scene.model.inertia else EXACT:
@@ -75,4 +73,4 @@ def _cheapest(scene: Scene, given: Given, progress: Progress) -> Result:
             continue
         if result.converged:
             return result
-    return _finite_elements(scene, given, progress)
+    return None

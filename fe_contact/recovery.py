@@ -13,8 +13,7 @@ import numpy as np
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import Budget
 from fe_contact.budget.curve import Curve
-from fe_contact.budget.softening import Softening
-from fe_contact.budget.variation import Variation
+from fe_contact.budget.variation import Softening, Variation
 from fe_contact.schemes import galerkin
 from lumped.materials import Recovery
 from lumped.result.result import IndentationLeft

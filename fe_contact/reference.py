@@ -18,12 +18,12 @@ from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, ImpactWay, dominant, refine
 from fe_contact.budget.runs import operations
 from fe_contact.budget.several import Row, Several
-from fe_contact.errors import says_which_key
-from fe_contact.march.flight import UNFOLLOWED
+from fe_contact.errors import faults_of
+from fe_contact.march.impacts import UNFOLLOWED
 from fe_contact.progress import Progress, silent
 from fe_contact.recovery import indentation_left, recovers
 from fe_contact.settings import Given, Numerics, check_kind
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from fe_contact.targets.base import TARGETS, struck
 from lumped.errors import BadInput, Fault
 from lumped.result.result import (
@@ -75,7 +75,9 @@ Solved = SolvedBy[Certified]  # without waves
 def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
     """Force history of a scene by finite elements, with waves or without, and error bars; see :func:`solve`."""
     if not scene.model.inertia:
-        return result_of(scene, solve(scene, given, progress))
+        check_target(scene)
+        solved = _solved(scene, given, progress, Statics.of)
+        return result_of(scene, solved)
     target = with_waves(scene)
     target.check(scene)
     return result_of(scene, _solved(scene, given, progress, target.way))
@@ -88,19 +90,18 @@ def with_waves(scene: Scene) -> WaveTarget:
     return WAVES.get(scene.target.name)
 
 
-@says_which_key
 def plan(scene: Scene, given: Given) -> Plan:
     """Choose what ``given`` (checked settings, see :func:`fe_contact.settings.checked`) leaves open.
 
     Raises NotReached where even a coarse estimate does not come to an end.
     """
-    if not scene.model.inertia:
-        return statics.plan(scene, given)
-    check_kind(given, True, scene.source)
-    return with_waves(scene).plan(scene, given)
+    with faults_of(scene):
+        if not scene.model.inertia:
+            return statics.plan(scene, given)
+        check_kind(given, True, scene.source)
+        return with_waves(scene).plan(scene, given)
 
 
-@says_which_key
 def solve(scene: Scene, given: Given, progress: Progress = silent) -> Solved:
     """Plan, certify, refine until the bars meet the tolerance or nothing is left to refine; without waves.
 
@@ -113,8 +114,9 @@ def solve(scene: Scene, given: Given, progress: Progress = silent) -> Solved:
     Raises NotReached where no march came to an end, BadInput for a scene without geometry, of several impacts on a body
     that does not remember by its surface alone, or that goes deeper than its bodies.
     """
-    check_target(scene)
-    return _solved(scene, given, progress, Statics.of)
+    with faults_of(scene):
+        check_target(scene)
+        return _solved(scene, given, progress, Statics.of)
 
 
 def _solved(

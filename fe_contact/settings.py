@@ -13,9 +13,8 @@ from typing import Annotated, Any, Self
 
 from lumped.errors import SHOWN_FAULTS, BadInput, Fault, nearest, shown
 from lumped.schema import Table
-from lumped.schema.keys import Key
+from lumped.schema.keys import Key, keys_of
 from lumped.schema.members import available
-from lumped.schema.record import keys_of
 
 Given = Mapping[str, Any]  # values of keys, each of its own type
 STATIC_SCHEMES, WAVE_SCHEMES = "fe_contact.schemes", "fe_contact.dynamics.schemes"

@@ -167,7 +167,7 @@ def marginal(imports: float) -> None:
     import lumped
     from fe_contact.budget.plan import plan
     from fe_contact.march.impact import march
-    from fe_contact.steppers.march import Strike
+    from fe_contact.steppers.steps import Strike
     from fe_contact.targets import half_space
 
     rng = random.SystemRandom()

@@ -3,5 +3,5 @@
 ``memory``    what the past of a viscoelastic surface adds;
 ``offer``     the contract of a body on a mesh that stays: in ``memory`` where the surface alone remembers,
               ``bulk_memory`` where volume and shape relax apart, by ``modes``;
-``pressing``  bodies at rest; ``zone`` where their contacts may end; ``bar`` a body with mass in one dimension.
+``pressing``  bodies at rest, and where their contacts may end; ``bar`` a body with mass in one dimension.
 """

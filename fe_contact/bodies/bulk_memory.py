@@ -19,10 +19,10 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import SurfaceOperator
-from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.bodies.memory import StepLaw, SurfaceMemory, step_law
 from fe_contact.bodies.modes import Modes
 from fe_contact.bodies.offer import Recalled, Whole
+from fe_contact.contact.problem import PressedSurface
 from fe_contact.schemes.base import MemoryScheme
 from lumped.materials import Material, Relaxation
 

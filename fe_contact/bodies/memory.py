@@ -22,8 +22,8 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import SurfaceOperator
-from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.bodies.offer import Recalled, Whole
+from fe_contact.contact.problem import PressedSurface
 from fe_contact.schemes import galerkin
 from fe_contact.schemes.base import MemoryScheme
 from lumped.materials import Relaxation

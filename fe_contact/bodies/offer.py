@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import SurfaceOperator
-from fe_contact.assembly.pressed_surface import PressedSurface
+from fe_contact.contact.problem import PressedSurface
 
 Memory: TypeAlias = Any  # what a body carries from step to step, each kind its own
 

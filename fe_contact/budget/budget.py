@@ -14,11 +14,10 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.curve import Curve
-from fe_contact.budget.softening import Softening
-from fe_contact.budget.variation import SAFETY, Variation
-from fe_contact.march.flight import Grounded
+from fe_contact.budget.variation import SAFETY, Softening, Variation
+from fe_contact.march.impacts import Grounded
 from fe_contact.settings import Numerics
-from fe_contact.steppers.march import March, Work
+from fe_contact.steppers.steps import March, Work
 from lumped.result.history import History, densified
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS, Quantity
 

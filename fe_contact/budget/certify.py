@@ -45,13 +45,12 @@ from fe_contact.budget.budget import SETTING, Causes
 from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.runs import Runs
 from fe_contact.budget.several import Judged, Several
-from fe_contact.budget.softening import Softening, compliance_change
-from fe_contact.budget.variation import SAFETY, UNORDERED, Variation, factor
+from fe_contact.budget.variation import SAFETY, UNORDERED, Softening, Variation, compliance_change, factor
 from fe_contact.progress import Count, Progress, silent
 from fe_contact.schemes.base import SCHEMES
 from fe_contact.settings import Numerics
 from fe_contact.steppers.flat_end import FlatEnd
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from fe_contact.steppers.struck import Deformable, Struck
 from lumped.scene.geometry import Geometry
 

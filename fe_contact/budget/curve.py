@@ -4,6 +4,7 @@ The abscissa is ``x = sqrt(t / duration)``: powers of the square root of time at
 polynomial, and marches whose ends differ a little are compared at equal shares of their contact. The force
 comes from the impulse, the one quantity that a step of any scheme knows exactly, by way of the mean force
 ``G = impulse / t``, which stays regular at touch: ``F = d(t G)/dt = G + x/2 dG/dx``.
+Between nodes lie polynomials through the nearest six, several fields at once.
 
 Contact radius over time, from the radii found in the steps of a march.
 
@@ -22,16 +23,96 @@ import numpy as np
 import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.local_polynomial import PLACES, LocalPolynomials, fitted_peak, peak
-from fe_contact.march.account import Energies, balanced
-from fe_contact.steppers.march import March, Strike
+from fe_contact.march.impact import Energies, balanced
+from fe_contact.steppers.steps import March, Strike
 
+STENCIL = 6  # nodes of a polynomial
+PLACES = 17  # equidistant, from which a quartic is fitted
+FINE = np.linspace(0.0, 1.0, 201)  # where in an interval a maximum is looked for
+BETWEEN = np.linspace(-1.0, 1.0, PLACES)  # places on (-1, 1) through which a quartic is fitted
+NEAREST_QUARTIC = np.linalg.pinv(np.vander(BETWEEN, 5))  # from values there to its five coefficients
 PEAK_SHARE = 0.98  # of its peak above which a force is near it
 HALF_AS_HIGH = 0.25  # of the error of a peak's place, of fourth order in the width, is left where a fit is half as high
 SHARES = np.linspace(0.0, 1.0, 601)  # of the contact, equally spaced
 EARLIEST = 4  # rows after touch that tell whether steps or shares are more crowded there
 DENSE = SHARES**2 * (3 - 2 * SHARES)  # shares of the contact, crowded at its ends, for peaks and norms
 INSIDE = np.arange(1, 8)[:, None] / 8  # places put into every interval
+
+
+@dataclass(frozen=True, eq=False)
+class LocalPolynomials:
+    """Newton's form through every six successive ``nodes`` (n,), which increase, or through all if they are fewer.
+
+    ``differences`` (level, field, polynomial): divided differences on the first nodes of each polynomial.
+    """
+
+    nodes: Array
+    differences: Array
+
+    @classmethod
+    def through(cls, nodes: Array, values: Array) -> LocalPolynomials:
+        """Polynomials of the fields ``values`` (f, n)."""
+        size = min(STENCIL, len(nodes))
+        table = [values]
+        for level in range(1, size):
+            table.append((table[-1][:, 1:] - table[-1][:, :-1]) / (nodes[level:] - nodes[:-level]))
+        return cls(nodes, np.stack([level[:, : len(nodes) - size + 1] for level in table]))
+
+    def at(self, places: Array) -> tuple[Array, Array]:
+        """Value and derivative of every field, (f, p), each by the polynomial whose nodes lie around."""
+        size, fields, count = self.differences.shape
+        first = np.minimum(np.maximum(self.nodes.searchsorted(places) - size // 2, 0), count - 1)
+        coefficients = self.differences.take(first, axis=2)
+        steps = places - self.nodes.take(first + np.arange(size - 1)[:, None])
+        value, slope = coefficients[-1], np.zeros((fields, len(places)))
+        for step, coefficient in zip(steps[::-1], coefficients[-2::-1], strict=True):
+            slope *= step
+            slope += value
+            value *= step
+            value += coefficient
+        return value, slope
+
+
+def peak(time: Array, values: Array) -> tuple[float, float]:
+    """Place and height of the maximum, by the quartic through the highest sample's neighbourhood."""
+    top = min(max(int(np.argmax(values)), 2), len(values) - 3)
+    around = slice(top - 2, top + 3)
+    span = time[top + 2] - time[top - 2]
+    x = np.asarray((time[around] - time[top]) / span, dtype=np.float64)
+    quartic = np.asarray(np.linalg.solve(np.vander(x), values[around]), dtype=np.float64)
+    best, height = _top(quartic, float(x[0]), float(x[-1]))
+    return float(time[top] + best * span), height
+
+
+def fitted_peak(first: float, last: float, values: Array) -> tuple[float, float]:
+    """Place between ``first`` and ``last`` and height of the maximum, by the quartic nearest to ``PLACES`` values.
+
+    Their neighbours' mean keeps a small jitter of the values from moving the place.
+    """
+    best, height = _top(NEAREST_QUARTIC @ values, -1.0, 1.0)
+    return first + 0.5 * (best + 1.0) * (last - first), height
+
+
+def _top(quartic: Array, low: float, high: float) -> tuple[float, float]:
+    """Place and height of a quartic's maximum in an interval."""
+    a, b, c, d, e = quartic.tolist()
+    fine = low + (high - low) * FINE
+    best = float(fine[int(np.argmax((((a * fine + b) * fine + c) * fine + d) * fine))])
+    spacing = (high - low) * float(FINE[1])
+    best = _stationary(quartic, best, max(best - spacing, low), min(best + spacing, high))
+    return best, (((a * best + b) * best + c) * best + d) * best + e
+
+
+def _stationary(quartic: Array, place: float, low: float, high: float) -> float:
+    """Where the quartic's derivative vanishes between ``low`` and ``high``, by Newton's method; else near its end."""
+    a, b, c, d, _ = quartic.tolist()
+    for _ in range(4):
+        slope = ((4 * a * place + 3 * b) * place + 2 * c) * place + d
+        bend = (12 * a * place + 6 * b) * place + 2 * c
+        if bend >= 0.0:
+            return place
+        place = min(max(place - slope / bend, low), high)
+    return place
 
 
 @dataclass(frozen=True, eq=False)

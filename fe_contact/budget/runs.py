@@ -16,7 +16,7 @@ from fe_contact.march.impacts import Followed, SurfaceBouncer, follow
 from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import Numerics
 from fe_contact.steppers.flat_end import FlatEnd
-from fe_contact.steppers.march import Strike, Work
+from fe_contact.steppers.steps import Strike, Work
 from fe_contact.steppers.struck import Deformable, Struck
 from fe_contact.targets.base import struck
 from lumped.errors import NotReached

@@ -17,12 +17,10 @@ import numpy as np
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, Causes, Contacts, TotalWork
 from fe_contact.budget.curve import Curve
-from fe_contact.budget.softening import Softening
-from fe_contact.budget.variation import Variation
-from fe_contact.march.flight import Grounded
-from fe_contact.march.impacts import Followed
+from fe_contact.budget.variation import Softening, Variation
+from fe_contact.march.impacts import Followed, Grounded
 from fe_contact.settings import Numerics
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from lumped.result.history import COLUMNS, History
 from lumped.result.result import UNITS, Quantity
 

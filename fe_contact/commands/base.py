@@ -23,12 +23,11 @@ from lumped.errors import BadInput, Fault, shown
 from lumped.indentation import Indentation
 from lumped.result.folder import publish
 from lumped.result.result import NO_KEY, Result, worst
-from lumped.scene.file import load, load_indenter
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
+from lumped.scene.tables import load, load_indenter
 from lumped.schema import Table
-from lumped.schema.files import SCENES
-from lumped.schema.toml_file import overridden, parse_assignment, parsed
+from lumped.schema.files import SCENES, overridden, parse_assignment, parsed
 
 DONE, NOT_REACHED = 0, 3  # two of the exit codes of cli, which loads this file only when it is needed
 LONGEST = 80  # characters of what --set changed in a folder's name: file systems take 255 bytes with the scene's name

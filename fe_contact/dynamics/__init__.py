@@ -4,6 +4,5 @@
 ``mass/``     ways to put the mass on the nodes, one a file;
 ``schemes/``  time integrators as numbers, one a file;
 ``stepping``  what a step would do without new pressure, and how it yields to one;
-``march``     the loop, written once, with what happens within a step;
-``ledger``    where the energy goes, each term computed on its own.
+``march``     the loop, written once, with what happens within a step, and where the energy goes.
 """

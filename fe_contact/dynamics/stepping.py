@@ -31,9 +31,8 @@ import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array, Indices, Matrix
 from fe_contact.assembly.interior import factorized
-from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.contact.enforcement.base import Enforcement
-from fe_contact.contact.problem import ContactProblem, Touching
+from fe_contact.contact.problem import ContactProblem, PressedSurface, Touching
 from fe_contact.dynamics.body import BodyState, BodyWithMass, Pressing, internal
 from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.errors import ContactNotSettled

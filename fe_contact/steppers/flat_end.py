@@ -20,8 +20,7 @@ from fe_contact.contact.problem import ContactSolution
 from fe_contact.errors import ContactLost
 from fe_contact.schemes.base import SCHEMES
 from fe_contact.settings import Numerics
-from fe_contact.steppers.march import Snapshot, Strike, Work
-from fe_contact.steppers.steps import Inertia, OfSurface, State, Step, Stepping
+from fe_contact.steppers.steps import Inertia, OfSurface, Snapshot, State, Step, Stepping, Strike, Work
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 

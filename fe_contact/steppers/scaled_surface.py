@@ -33,17 +33,15 @@ import numpy.typing as npt
 from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, operator_of
-from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.assembly.surface import monomials
 from fe_contact.bodies.memory import StepLaw, SurfaceBody, SurfaceMemory, area_weights, graded, interpolate, step_law
 from fe_contact.bodies.pressing import BEYOND, EDGE_WINDOW, RESCALINGS
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
-from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching, count, moved
+from fe_contact.contact.problem import ContactProblem, ContactSolution, PressedSurface, Touching, count, moved
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
 from fe_contact.schemes.base import SCHEMES, MemoryScheme
 from fe_contact.settings import Numerics
-from fe_contact.steppers.march import Snapshot, Strike, Work
-from fe_contact.steppers.steps import Inertia, OfSurface, State, Step, Stepping, coming_square
+from fe_contact.steppers.steps import Inertia, OfSurface, Snapshot, State, Step, Stepping, Strike, Work, coming_square
 from fe_contact.steppers.struck import Deformable
 from lumped.materials import Relaxation
 from lumped.numbers import gauss

@@ -19,14 +19,14 @@ from scipy.linalg import block_diag
 from fe_contact.assembly.cache import Recipe
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, SurfaceOperator
-from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.bodies.bulk_memory import BulkBody, Moduli
 from fe_contact.bodies.memory import SurfaceBody
 from fe_contact.bodies.modes import ByModes, Condensed, Modes, modes
 from fe_contact.bodies.offer import Half, Offer, Recalled
+from fe_contact.contact.problem import PressedSurface
 from fe_contact.schemes.base import MemoryScheme
 from fe_contact.steppers.bulk_surface import Pace
-from fe_contact.steppers.march import Snapshot
+from fe_contact.steppers.steps import Snapshot
 from fe_contact.steppers.struck import Deformable
 from lumped.materials import Relaxation
 

@@ -30,8 +30,7 @@ from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
 from fe_contact.schemes.base import SCHEMES, MemoryScheme
 from fe_contact.settings import Numerics
-from fe_contact.steppers.march import Snapshot, Strike, Work
-from fe_contact.steppers.steps import Inertia, State, Step, Stepping, coming_square
+from fe_contact.steppers.steps import Inertia, Snapshot, State, Step, Stepping, Strike, Work, coming_square
 from lumped.materials import Relaxation
 
 

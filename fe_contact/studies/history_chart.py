@@ -16,8 +16,7 @@ from fe_contact.studies.style import prefixed, readable, with_error
 from lumped.result.history import History
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Kind, Number
-from lumped.schema.record import keys_of
+from lumped.schema.keys import Kind, Number, keys_of
 
 HEIGHT = 4.35  # in
 BAND_VISIBLE = 0.01  # share of the peak below which the band is a hair line and is drawn magnified

@@ -15,12 +15,13 @@ from fe_contact.assembly.interior import Floating
 from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made, operator_of, plane
 from fe_contact.assembly.surface import crown, trace_between
 from fe_contact.bodies.bulk_memory import Moduli
-from fe_contact.bodies.pressing import BodyStill, Still
-from fe_contact.bodies.zone import (
+from fe_contact.bodies.pressing import (
     LINE_REFINEMENT,
     MARGIN,
     SPHERE_REFINEMENT,
     STRUCK_REFINEMENT,
+    BodyStill,
+    Still,
     Zone,
     smallest_struck,
 )

@@ -24,8 +24,17 @@ from fe_contact.assembly.operators import (
     system_matrix,
 )
 from fe_contact.assembly.surface import flat, lagrange
-from fe_contact.bodies.pressing import FixedStill, ScaledStill, Still
-from fe_contact.bodies.zone import LINE_REFINEMENT, REFINEMENT, STRUCK_REFINEMENT, Zone, held, smallest_struck
+from fe_contact.bodies.pressing import (
+    LINE_REFINEMENT,
+    REFINEMENT,
+    STRUCK_REFINEMENT,
+    FixedStill,
+    ScaledStill,
+    Still,
+    Zone,
+    held,
+    smallest_struck,
+)
 from fe_contact.settings import Numerics
 from fe_contact.steppers.scaled_surface import ScaledSurface
 from fe_contact.targets.base import MeshedTarget

@@ -17,11 +17,12 @@ from fe_contact.assembly.far_field import on_boundary
 from fe_contact.assembly.forms import Array, Basis, Matrix, elastic, plane_stiffness, stiffness
 from fe_contact.assembly.operators import ElasticBody, basis_on, made
 from fe_contact.assembly.surface import flat
-from fe_contact.bodies.pressing import FixedStill, Still
-from fe_contact.bodies.zone import (
+from fe_contact.bodies.pressing import (
     LINE_REFINEMENT,
     REFINEMENT,
     STRUCK_REFINEMENT,
+    FixedStill,
+    Still,
     Zone,
     held,
     smallest_struck,

@@ -12,11 +12,12 @@ from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made, operator_of
 from fe_contact.assembly.surface import crown
 from fe_contact.bodies.bulk_memory import Moduli
-from fe_contact.bodies.pressing import BodyStill, Still
-from fe_contact.bodies.zone import (
+from fe_contact.bodies.pressing import (
     LINE_REFINEMENT,
     MARGIN,
     STRUCK_REFINEMENT,
+    BodyStill,
+    Still,
     Zone,
     held,
     smallest_struck,

@@ -13,8 +13,7 @@ import meshes
 from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.forms import Array, isotropic, stiffness
 from fe_contact.assembly.operators import basis_on, made
-from fe_contact.bodies.pressing import Pressed, Still
-from fe_contact.bodies.zone import held
+from fe_contact.bodies.pressing import Pressed, Still, held
 from fe_contact.settings import Numerics
 from fe_contact.targets import _round
 from fe_contact.targets.base import MeshedTarget

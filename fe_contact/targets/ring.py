@@ -11,11 +11,12 @@ from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.forms import Array, Matrix, elastic, polar_stiffness
 from fe_contact.assembly.operators import ElasticBody, basis_on, made
 from fe_contact.assembly.surface import flat
-from fe_contact.bodies.pressing import FixedStill, Still
-from fe_contact.bodies.zone import (
+from fe_contact.bodies.pressing import (
     LINE_REFINEMENT,
     MARGIN,
     STRUCK_REFINEMENT,
+    FixedStill,
+    Still,
     Zone,
     held,
     smallest_struck,

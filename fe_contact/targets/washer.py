@@ -12,8 +12,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made
 from fe_contact.assembly.surface import Surface, ring_area
 from fe_contact.bodies.bulk_memory import Moduli
-from fe_contact.bodies.pressing import BodyStill, Still
-from fe_contact.bodies.zone import held, thickness_over
+from fe_contact.bodies.pressing import BodyStill, Still, held, thickness_over
 from fe_contact.settings import Numerics
 from fe_contact.steppers import bulk_surface
 from fe_contact.steppers.bulk_surface import BulkSurface

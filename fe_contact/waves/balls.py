@@ -12,7 +12,7 @@ from fe_contact.assembly.cache import cached
 from fe_contact.assembly.forms import Array, check_compressible, isotropic, mass, stiffness
 from fe_contact.assembly.operators import basis_on, made
 from fe_contact.assembly.surface import crown, hats, trace_between
-from fe_contact.bodies.zone import WIDEST, held
+from fe_contact.bodies.pressing import WIDEST, held
 from fe_contact.budget.plan import Plan
 from fe_contact.dynamics.body import Part
 from fe_contact.settings import RANGES, Given, WaveNumerics

@@ -37,7 +37,7 @@ from fe_contact.budget.variation import SAFETY, Variation, factor
 from fe_contact.march.impacts import Followed, follow
 from fe_contact.progress import Count, Counted, Progress, uncounted
 from fe_contact.settings import Numerics, WaveNumerics
-from fe_contact.steppers.march import March, Strike
+from fe_contact.steppers.steps import March, Strike
 from fe_contact.waves.impact import Flights, WaveBouncer
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.plan import Cost, graded

@@ -20,17 +20,27 @@ from fe_contact.assembly.cache import Store
 from fe_contact.assembly.forms import Array
 from fe_contact.bodies.pressing import half_width
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
-from fe_contact.dynamics import ledger
 from fe_contact.dynamics.body import BodyState, BodyWithMass, undeformed
-from fe_contact.dynamics.march import MOST_WORK, Choices, Moment, Motion, Sample, march, onwards, touched
+from fe_contact.dynamics.march import (
+    MOST_WORK,
+    Choices,
+    Moment,
+    Motion,
+    Sample,
+    account_after,
+    account_at_start,
+    march,
+    onwards,
+    touched,
+)
 from fe_contact.dynamics.schemes import generalised_alpha
 from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.dynamics.stepping import Enforced, ImplicitStepper
 from fe_contact.errors import MemoryTooSmall, TooManySteps
-from fe_contact.march.flight import Grounded
+from fe_contact.march.impacts import Grounded
 from fe_contact.progress import Counted, uncounted
 from fe_contact.settings import WaveNumerics
-from fe_contact.steppers.march import March, Strike, Work
+from fe_contact.steppers.steps import March, Strike, Work
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.plan import MARCHES, graded
 from lumped.scene.scene import Scene
@@ -181,7 +191,7 @@ class WaveBouncer:
         self._choices, self._longest = choices_of(scene, numerics), LONGEST * numerics.contact_time
         self.flights = Flights(moving.body, self._choices, max(round(PATIENCE * numerics.steps), 2), counted)
         still = undeformed(moving.body, moving.velocity)
-        self._moment = Moment(still, ledger.opened(moving.body, still))
+        self._moment = Moment(still, account_at_start(moving.body, still))
         self._steps = 0
 
     def contact(self, strike: Strike) -> March:
@@ -268,8 +278,8 @@ class Flights:
         return stepper.flown(moment.state)
 
     def _entered(self, moment: Moment, state: BodyState) -> Moment:
-        """A step further in the ledger too."""
-        return Moment(state, ledger.entered(moment.energies, self._body, DAMPED, moment.state, state))
+        """A step further in the account of energy too."""
+        return Moment(state, account_after(moment.energies, self._body, DAMPED, moment.state, state))
 
     def _stepper(self, level: int) -> ImplicitStepper:
         """Of steps 2^level as long as the first."""

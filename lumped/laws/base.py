@@ -11,8 +11,7 @@ from lumped.errors import BadInput, Fault
 from lumped.laws._damping import Family
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Key
-from lumped.schema.record import Sets
+from lumped.schema.keys import Key, Sets
 from lumped.targets import HalfSpace
 
 

@@ -27,8 +27,7 @@ from lumped.result.history import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
-from lumped.schema.keys import Choice, Key
-from lumped.schema.record import keys_of
+from lumped.schema.keys import Choice, Key, keys_of
 from lumped.solvers.hereditary.approach import DEPTH, approach
 from lumped.solvers.hereditary.closing import Closing, close
 from lumped.solvers.hereditary.march import Settings

@@ -9,8 +9,7 @@ from typing import Annotated, ClassVar
 from lumped.errors import BadInput, Fault
 from lumped.materials.relaxation import Relaxation
 from lumped.schema import Table
-from lumped.schema.keys import Choice, Key, Number
-from lumped.schema.record import Record, written
+from lumped.schema.keys import Choice, Key, Number, Record, written
 
 MODULUS, DENSITY = Number(1e-3, 1e16, "Pa"), Number(1e-3, 1e6, "kg/m3")
 POISSON = Number(-1.0, 0.5, above=True)

@@ -13,10 +13,8 @@ from lumped.materials.networks.base import TIME, Viscosity
 from lumped.ptmd.system import DAMPING, MASS, STIFFNESS
 from lumped.scene.tables import SPEED
 from lumped.schema import Table
-from lumped.schema.files import data_folder
-from lumped.schema.keys import Key, Number, Numbers
-from lumped.schema.record import keys_of, read_table, unknown_key
-from lumped.schema.toml_file import overridden, parsed
+from lumped.schema.files import data_folder, overridden, parsed
+from lumped.schema.keys import Key, Number, Numbers, keys_of, read_table, unknown_key
 from lumped.shapes.base import SIZE
 
 RATIO, FORCE = Number(1e-9, 1e9), Number(1e-15, 1e15, "N")

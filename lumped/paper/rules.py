@@ -8,10 +8,8 @@ from decimal import Decimal
 
 from lumped.errors import BadInput, Fault, nearest
 from lumped.paper.value import Value
-from lumped.schema.files import data_folder
-from lumped.schema.keys import Choice, Key, Number, Text
-from lumped.schema.record import read_table
-from lumped.schema.toml_file import parsed
+from lumped.schema.files import data_folder, parsed
+from lumped.schema.keys import Choice, Key, Number, Text, read_table
 
 AGREES, DIFFERS, UNDECIDED, UNKNOWN = "agrees", "differs", "undecided", "cannot be computed from the text"
 UNPRINTED = "nothing printed"

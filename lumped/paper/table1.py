@@ -16,8 +16,7 @@ from lumped.materials import Material, Relaxation
 from lumped.numbers import Real
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import Model
-from lumped.schema.keys import Key
-from lumped.schema.record import Record, keys_of, written
+from lumped.schema.keys import Key, Record, keys_of, written
 from lumped.shapes import Shape
 from lumped.shapes.base import SIZE
 from lumped.shapes.cone import Cone

@@ -18,12 +18,10 @@ from lumped.ptmd.system import (
     PtmdRing,
     Start,
 )
-from lumped.scene.file import TableReader
+from lumped.scene.tables import TableReader
 from lumped.schema import Table
-from lumped.schema.files import Packaged
-from lumped.schema.keys import Choice, Key
-from lumped.schema.record import keys_of
-from lumped.schema.toml_file import overridden, parsed
+from lumped.schema.files import Packaged, overridden, parsed
+from lumped.schema.keys import Choice, Key, keys_of
 
 CASES, DEFAULT = Packaged("ptmd", "case"), "paper"
 RING_KEYS, START_KEYS = keys_of(PtmdRing), keys_of(Start)

@@ -24,8 +24,7 @@ from lumped.ptmd.equations import (
 from lumped.ptmd.phase import ROWS_PER_PERIOD, Follow, PtmdPhase, row_spacing
 from lumped.ptmd.result import Energy, Measures, PtmdContact, PtmdMotion, PtmdResult
 from lumped.ptmd.system import SIDES, PoundingDamper, Start
-from lumped.schema.keys import Key, Number
-from lumped.schema.record import read_table
+from lumped.schema.keys import Key, Number, read_table
 
 # How a phase is followed, and how many rows that may take.
 ROUTES = {"exact": (exact.route, exact.MOST_ROWS), "integrated": (integrated.route, integrated.MOST_ROWS)}

@@ -10,8 +10,7 @@ import numpy as np
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Relaxation
-from lumped.schema.keys import Key, Number
-from lumped.schema.record import Record
+from lumped.schema.keys import Key, Number, Record
 from lumped.shapes.base import SIZE
 
 LENGTH = Key(SIZE, "length")

@@ -10,9 +10,8 @@ from pathlib import Path
 from lumped.errors import BadInput, Fault, addressed
 from lumped.materials import Material
 from lumped.numbers import Array
-from lumped.scene.file import load_indenter
 from lumped.scene.geometry import Geometry, check_striker_material, contact_modulus, places, tables
-from lumped.scene.tables import Model
+from lumped.scene.tables import Model, load_indenter
 from lumped.schema import Table
 from lumped.schema.keys import Number
 from lumped.shapes import Shape

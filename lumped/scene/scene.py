@@ -12,7 +12,6 @@ from typing import Annotated, Protocol
 from lumped.errors import BadInput, Fault, addressed
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material, Relaxation
-from lumped.scene.file import load, read
 from lumped.scene.geometry import (
     Geometry,
     absurd_depth,
@@ -34,11 +33,13 @@ from lumped.scene.tables import (
     Motion,
     gravity_faults,
     inertia_faults,
+    load,
     mass_faults,
+    read,
 )
 from lumped.schema import Table
+from lumped.schema.keys import check_fields
 from lumped.schema.members import Folder
-from lumped.schema.record import check_fields
 from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
 

@@ -1,16 +1,41 @@
-"""The small tables of a scene: `[model]`, `[motion]`, `[law]`, and the keys and ranges of its numbers."""
+"""The tables of a scene, and how they are read: from a TOML file, from a packaged one by its name, or from a mapping.
+
+`[model]`, `[motion]` and `[law]` with the keys and ranges of the scene's own numbers come first. The tables of a file
+are walked once, their values checked, a material's among them, and every fault is reported; raw `[numerics]` are
+handed on.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Annotated, ClassVar
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import Annotated, ClassVar, Protocol, TypeVar
 
 from lumped.errors import BadInput, Fault
+from lumped.materials import Material
+from lumped.materials.networks import NETWORKS
 from lumped.schema import Table
-from lumped.schema.keys import Choice, Count, Flag, Key, Number, Text
-from lumped.schema.members import Folder
-from lumped.schema.record import Described, Record, read_table
+from lumped.schema.files import SCENES, overridden, parsed
+from lumped.schema.keys import (
+    Choice,
+    Count,
+    Described,
+    Flag,
+    Key,
+    Number,
+    Part,
+    Record,
+    Text,
+    keys_of,
+    optional,
+    placed,
+    read_table,
+    unknown_key,
+)
+from lumped.schema.members import Folder, Member, alternatives
+from lumped.shapes import SHAPES, Shape
 from lumped.targets import TARGETS, Target
 
 LAWS = Folder[Described]("lumped.laws", source="law")  # they know scenes: here only the names of their keys are known
@@ -106,3 +131,234 @@ def mass_faults(source: str, mass: float, swinging: float) -> list[Fault]:
 def _moving() -> str:
     """Names of the targets whose waves can be followed."""
     return ", ".join(name for name, target in TARGETS.members.items() if target.kind.has_inertia)
+
+
+def load(
+    kind: Callable[..., Impact],
+    source: str | Path,
+    overrides: Mapping[str, object] | None = None,
+    law_known: bool = True,
+) -> tuple[Impact, Table]:
+    """The scene, made by its ``kind``, of a file or of a packaged name, and its raw `[numerics]` table.
+
+    `overrides` maps dotted keys ("striker.velocity") to values that replace the file's. Where the law is yet to be
+    found, not `law_known`, mass and velocity are enough. Raises BadInput with every fault found, at most 20.
+    """
+    return _reader(source, overrides).scene(kind, law_known)
+
+
+def load_indenter(
+    kind: Callable[..., Pressed], source: str | Path, overrides: Mapping[str, object] | None = None
+) -> tuple[Pressed, Table]:
+    """What a slow indentation needs of a file, and its raw `[numerics]`. Raises BadInput with every fault."""
+    return _reader(source, overrides).indenter(kind)
+
+
+def read(
+    kind: Callable[..., Impact],
+    table: Mapping[str, object],
+    source: str = "scene",
+    overrides: Mapping[str, object] | None = None,
+) -> tuple[Impact, Table]:
+    """The scene of a table as in a scene file, and its raw `[numerics]` table. Raises BadInput."""
+    return SceneReader(source, overridden(table, overrides or {}, source)).scene(kind)
+
+
+def _reader(source: str | Path, overrides: Mapping[str, object] | None) -> SceneReader:
+    """What reads the file of a path or a packaged name. Raises BadInput."""
+    path = SCENES.resolved(source)
+    return SceneReader(path.name, overridden(parsed(path), overrides or {}, path.name), path.parent)
+
+
+class Lawful(Protocol):
+    """What a scene file may describe: an impact, perhaps with a law of its own."""
+
+    def check_law(self) -> None:
+        """Raise BadInput for a law of its own that has no answer for it."""
+
+
+Impact = TypeVar("Impact", bound=Lawful)
+
+
+Pressed = TypeVar("Pressed")
+B = TypeVar("B")
+Made = TypeVar("Made")
+
+
+class TableReader:
+    """Walks the tables of a file once and keeps every fault; `TABLES` are those it may hold.
+
+    `source` is what faults call the file, `folder` where the files start that it names.
+    """
+
+    TABLES: ClassVar[tuple[str, ...]]
+
+    def __init__(self, source: str, raw: Table, folder: Path = Path()) -> None:
+        self.source = source
+        self.raw = raw
+        self.folder = folder
+        self.faults: list[Fault] = []
+
+    def name(self) -> str:
+        """The name given, by default the file's; checks the keys of the top level too."""
+        top = {key: value for key, value in self.raw.items() if key not in self.TABLES}
+        values, faults = read_table(self.source, "", {"name": Path(self.source).stem} | top, NAME_KEYS)
+        names = [*NAME_KEYS, *self.TABLES]
+        for fault in faults:
+            if fault.key not in NAME_KEYS:
+                fault = replace(fault, message=unknown_key(fault.key, names))
+            elif fault.key not in top:
+                fault = replace(fault, message=f"missing, and the file's own name will not do: {fault.message}")
+            self.faults.append(fault)
+        return str(values.get("name", ""))
+
+    def checked(self, path: str, table: Table, keys: Mapping[str, Key]) -> Table:
+        """The accepted values of a table; what is refused becomes a fault."""
+        values, faults = read_table(self.source, path, table, keys)
+        self.faults += faults
+        return values
+
+    def made(self, path: str, make: Callable[..., Made], values: Table, *parts: str) -> Made | None:
+        """What is made of a table's checked values; None with a fault noted, which one of `parts` found at its key."""
+        try:
+            return make(**values)
+        except ValueError as error:
+            self.faults.append(Fault(self.source, path, str(error)))
+        except BadInput as bad:
+            self.faults += [fault.at(self.source, dict.fromkeys(parts, path)) for fault in bad.faults]
+        return None
+
+    def network(self, path: str, table: Table) -> Material | None:
+        """The material of a table, None with a fault noted."""
+        own = max(alternatives(NETWORKS, table.get("law")), key=lambda keys: len(keys.keys() & table.keys()))
+        known = len(self.faults)
+        shared = keys_of(Material)
+        values = self.checked(path, table, {"law": Key(Member(NETWORKS.package)), **own, **shared})
+        if len(self.faults) > known:
+            return None
+        common = {key: values.pop(key) for key in shared if key in values}
+        law = NETWORKS.get(values.pop("law"))
+        young = self.made(path, law.of, placed(values, self.folder), "material", "samples", "prony fit")
+        if young is None:
+            return None
+        return self.made(path, partial(Material, young), common, "material")
+
+
+class SceneReader(TableReader):
+    """Makes a scene, or what a slow indentation needs of it, of the tables of a scene file."""
+
+    TABLES = ("striker", "target", "model", "motion", "law", "numerics")
+
+    def scene(self, kind: Callable[..., Impact], law_known: bool = True) -> tuple[Impact, Table]:
+        """The scene and the raw numerics; raises BadInput when anything is wrong.
+
+        Without geometry a law has to be known, unless it is yet to be found.
+        """
+        name, law = self.name(), self.law()
+        lawful = "law" in self.raw or not law_known
+        alone = lawful and "shape" not in self.table("striker", required=False, quiet=True)
+        bodies = self.masses_alone() if alone else self.bodies()
+        model = self.checked("model", self.table("model", required=False), keys_of(Model))
+        motion = self.checked("motion", self.table("motion", required=False), keys_of(Motion))
+        numerics = self.table("numerics", required=False)
+        if alone or bodies["target"] is not None:
+            self.inertia(model, bodies.get("target"))
+        if self.faults:
+            raise BadInput(self.faults)
+        built = kind(**bodies, law=law, model=Model(**model), motion=Motion(**motion), name=name, source=self.source)
+        if law is not None and law_known:
+            built.check_law()
+        return built, numerics
+
+    def indenter(self, kind: Callable[..., Pressed]) -> tuple[Pressed, Table]:
+        """The scene without its motion; raises BadInput when anything is wrong."""
+        name = self.name()
+        bodies = self.bodies(optional(STRIKER_KEYS))
+        model = self.checked("model", self.table("model", required=False), keys_of(Model))
+        numerics = self.table("numerics", required=False)
+        if self.faults:
+            raise BadInput(self.faults)
+        own = {key: bodies[key] for key in ("shape", "material", "target", "striker_material")}
+        return kind(**own, model=Model(**model), name=name, source=self.source), numerics
+
+    def bodies(self, striker_keys: Mapping[str, Key] = STRIKER_KEYS) -> Table:
+        """Striker, target and material of a scene with geometry; None for what has a fault."""
+        striker, shape = self.body("striker", SHAPES, striker_keys)
+        held, target = self.body("target", TARGETS, TARGET_KEYS)
+        own = {"shape": shape, "target": target, "target_mass": held.get("mass")}
+        return {**striker, **own, **self.materials(target, shape)}
+
+    def materials(self, target: Target | None, shape: Shape | None) -> dict[str, Material | None]:
+        """The target's material, or the striker's where the target is rigid, and that of a striker that yields too."""
+        if target is None or target.deformable:
+            yields = self.striker_yields(target, shape)
+            own = self.material("target")
+            return {"material": own, "striker_material": self.material("striker") if yields else None}
+        if "material" in self.table("target", required=False, quiet=True):
+            self.faults.append(Fault(self.source, "target.material", f"a {target.name} is rigid; leave it out"))
+        return {"material": self.material("striker"), "striker_material": None}
+
+    def striker_yields(self, target: Target | None, shape: Shape | None) -> bool:
+        """Whether a striker on a target that yields has a material too, and may."""
+        given = "material" in self.table("striker", required=False, quiet=True)
+        if not given or target is None or shape is None:
+            return False
+        inertia = bool(self.table("model", required=False, quiet=True).get("inertia"))
+        refused = target.yielding_faults(self.source, shape, inertia)
+        self.faults += refused
+        return not refused
+
+    def masses_alone(self) -> Table:
+        """The masses of a scene that has a law of its own and no geometry."""
+        striker = self.checked("striker", self.table("striker"), STRIKER_KEYS)
+        held = self.checked("target", self.table("target", required=False), TARGET_KEYS)
+        return {**striker, "shape": None, "target_mass": held.get("mass")}
+
+    def law(self) -> LawChoice | None:
+        """The law with its parameters; None without one, or with a fault noted."""
+        table = self.table("law", required=False)
+        if not table:
+            return None
+        (own,) = alternatives(LAWS, table.get("name"))
+        values = self.checked("law", table, {"name": Key(Member(LAWS.package)), **own})
+        return LawChoice(values.pop("name"), values) if not self.faults else None
+
+    def body(self, part: str, folder: Folder[Part[B]], common: Mapping[str, Key]) -> tuple[Table, B | None]:
+        """A body's checked common values, and what the member of `folder` makes of its own keys."""
+        table = self.table(part)
+        rest = {key: value for key, value in table.items() if key != "material"}
+        if part not in self.raw:
+            return {}, None
+        (own,) = alternatives(folder, table.get("shape"))
+        values = self.checked(part, rest, {"shape": Key(Member(folder.package)), **common, **own})
+        shape: str | None = values.pop("shape", None)
+        shared = {key: values.pop(key) for key in common if key in values}
+        if shape is None or not values.keys() >= {key for key in own if own[key].required}:
+            return shared, None
+        return shared, self.made(part, folder.get(shape).of, values, shape)
+
+    def material(self, part: str) -> Material | None:
+        """The material of a body, None with a fault noted."""
+        body = self.table(part, required=False, quiet=True)
+        if not body:
+            return None
+        path, table = f"{part}.material", self.table("material", inside=part)
+        return self.network(path, table) if table else None
+
+    def inertia(self, model: Table, target: Target | None) -> None:
+        """Whether the target can have the inertia asked for, and a density for it."""
+        part = "striker" if target is not None and not target.deformable else "target"
+        material = self.table(part, required=False, quiet=True).get("material")
+        density = material.get("density") if isinstance(material, Mapping) else None
+        self.faults += inertia_faults(self.source, model.get("inertia", False), density, target)
+
+    def table(self, key: str, inside: str = "", required: bool = True, quiet: bool = False) -> Table:
+        """The table `key`, empty when it is missing or no table: a fault if required, unless `quiet`."""
+        place = self.raw[inside] if inside else self.raw
+        value = place.get(key, None if required else {})
+        if isinstance(value, Mapping):
+            return dict(value)
+        if not quiet:
+            message = "not a table" if key in place else "missing; a scene needs this table"
+            self.faults.append(Fault(self.source, f"{inside}.{key}".lstrip("."), message))
+        return {}

@@ -1,17 +1,32 @@
-"""Files by their names: a user's, no device, no pipe, nothing without end; the packaged ones, and where they lie."""
+"""Files by their names: a user's, no device, no pipe, nothing without end; the packaged ones, and where they lie.
+
+Those in TOML are read here, and single keys of them set, with named faults.
+"""
 
 from __future__ import annotations
 
 import os
+import re
 import stat
+import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
-from lumped.errors import BadInput, Fault, nearest
+from lumped.errors import BadInput, Fault, nearest, shown
+from lumped.schema import Table
 
 # A pipe that nobody writes into opens at once, and the kernel's own files do not wait for something to say.
 AT_ONCE = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+# No scene needs as much; what tomllib takes for a key of n parts or n brackets grows by n^2 or ends its recursion.
+MOST_BYTES, MOST_DEPTH = 100_000, 16
+TEXT_OR_COMMENT = re.compile(
+    r""""{3}(?:[^\\]|\\.)*?(?:"{3,5}|\Z)|'{3}.*?(?:'{3,5}|\Z)|"(?:[^"\\\n]|\\.)*"?|'[^'\n]*'?|\#[^\n]*""", re.DOTALL
+)
+DEEP_KEY = re.compile(rf"(?<![\w-])(?:[\w-]+[ \t]*\.[ \t]*){{{MOST_DEPTH}}}")
+TOO_DEEP = f"nested too deep; accepted: dotted keys, tables and lists up to {MOST_DEPTH} deep"
+LINE = re.compile(r"at line (\d+)")
 
 
 def content(path: Path, most: int, kind: str) -> bytes:
@@ -78,3 +93,81 @@ class Packaged:
 
 
 SCENES = Packaged("scenes", "scene")
+
+
+def parsed(path: Path) -> Table:
+    """The raw tables of a TOML file; raises BadInput when it cannot be read or is no TOML."""
+    source, kind = str(path), f"a TOML file of at most {MOST_BYTES} bytes"
+    try:
+        text = content(path, MOST_BYTES, kind).decode("utf-8-sig")  # editors on Windows put a mark before it
+    except UnicodeDecodeError as error:
+        raise BadInput(Fault(source, "", "cannot be read: not a text in UTF-8")) from error
+    try:
+        return _tables(text)
+    except ValueError as error:
+        raise BadInput(Fault(source, "", f"not a TOML file: {error}{_line_of(error, text)}")) from error
+
+
+def parse_assignment(text: str) -> tuple[str, object]:
+    """`striker.radius=0.01` -> ("striker.radius", 0.01); a value that is no TOML is taken as a text.
+
+    Raises BadInput when there is no `=` or no key.
+    """
+    key, sign, value = (part.strip() for part in text.partition("="))
+    parts = key.split(".")
+    if not sign or not all(part.strip() for part in parts):
+        raise BadInput(Fault("--set", text, "accepted: key=value with a dotted key, as striker.radius=0.01"))
+    if len(parts) > MOST_DEPTH:
+        raise BadInput(Fault("--set", key, TOO_DEEP))
+    try:
+        table = _tables(f"value = {value}")
+    except tomllib.TOMLDecodeError:
+        return key, value
+    except ValueError as error:
+        raise BadInput(Fault("--set", key, str(error))) from error
+    return key, table["value"] if len(table) == 1 else value
+
+
+def overridden(table: Mapping[str, object], overrides: Mapping[str, object], source: str) -> Table:
+    """A copy of the tables with the dotted keys of `overrides` set. Raises BadInput."""
+    result: Table = dict(table)
+    for dotted, value in overrides.items():
+        *path, last = dotted.split(".")
+        place = result
+        for part in path:
+            inner = place.get(part, {})
+            if not isinstance(inner, Mapping):
+                raise BadInput(Fault(source, dotted, f"{part} is a value, not a table"))
+            place[part] = dict(inner)
+            place = place[part]
+        place[last] = value
+    return result
+
+
+def _tables(text: str) -> Table:
+    """What a text in TOML says; raises ValueError, a TOMLDecodeError where it is none, also of one too deep to read."""
+    bare = TEXT_OR_COMMENT.sub(lambda found: "" if found[0].startswith("#") else "text", text)
+    if DEEP_KEY.search(bare) or _brackets(bare) > MOST_DEPTH:
+        raise ValueError(TOO_DEEP)
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except ValueError as error:  # Python reads no number of more than 4300 digits
+        raise ValueError("a number has thousands of digits; accepted: up to 1e300") from error
+
+
+def _brackets(text: str) -> int:
+    """How deep the brackets of a text are nested at most."""
+    depth = deepest = 0
+    for bracket in re.findall(r"[\[\]{}]", text):
+        depth = depth + 1 if bracket in "[{" else max(depth - 1, 0)
+        deepest = max(deepest, depth)
+    return deepest
+
+
+def _line_of(error: ValueError, text: str) -> str:
+    """The line that an error names, so that it names the key too; empty where it names none."""
+    number, lines = LINE.search(str(error)), text.splitlines()
+    at = int(number[1]) if number else 0
+    return f": {shown(lines[at - 1].strip())}" if 1 <= at <= len(lines) else ""

@@ -9,8 +9,7 @@ from pkgutil import iter_modules
 from typing import Generic, TypeVar
 
 from lumped.errors import BadInput, Fault, nearest, shown
-from lumped.schema.keys import Key
-from lumped.schema.record import Described, Sets, optional
+from lumped.schema.keys import Described, Key, Sets, optional
 
 NOT_MEMBERS = ("base",)
 M = TypeVar("M", covariant=True)

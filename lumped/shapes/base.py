@@ -15,8 +15,7 @@ from lumped.load_curves.plane_contact import LineProfile
 from lumped.materials import Material, Relaxation
 from lumped.numbers import Array
 from lumped.schema import Table
-from lumped.schema.keys import Number
-from lumped.schema.record import Record, written
+from lumped.schema.keys import Number, Record, written
 
 SIZE = Number(1e-9, 1e4, "m")  # of a body, but for one that may be long beside its contact
 

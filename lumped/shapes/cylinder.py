@@ -10,8 +10,7 @@ from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.hertz import HertzImpact
 from lumped.load_curves.plane_contact import CylinderProfile, LineProfile, ParabolaProfile
-from lumped.schema.keys import Key, Number
-from lumped.schema.record import Part
+from lumped.schema.keys import Key, Number, Part
 from lumped.shapes.base import SIZE, Circular, Parabolic, Shape
 
 

@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike
 
 from lumped.load_curves.power import Power
 from lumped.numbers import Array
-from lumped.schema.keys import Key, Number
-from lumped.schema.record import Part
+from lumped.schema.keys import Key, Number, Part
 from lumped.shapes.base import Shape
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
-from lumped.schema.record import Part
+from lumped.schema.keys import Part
 from lumped.shapes._block import SIDES, THICKNESS, Block
 
 HEIGHT = replace(THICKNESS, name="height")

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from lumped.load_curves import fixed_area
-from lumped.schema.keys import Key
-from lumped.schema.record import Part
+from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, FlatEnded
 
 

@@ -8,8 +8,7 @@ from typing import Annotated, ClassVar
 
 from lumped.load_curves.hertz import Hertz, HertzImpact, hertz_impact
 from lumped.load_curves.sneddon_sphere import SneddonSphere
-from lumped.schema.keys import Key
-from lumped.schema.record import Part
+from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, Circular, Parabolic, Round, Shape
 
 

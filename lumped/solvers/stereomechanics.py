@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from lumped.errors import BadInput, Fault
-from lumped.schema.keys import Key, Number
-from lumped.schema.record import Record
+from lumped.schema.keys import Key, Number, Record
 
 MASS, VELOCITY = Number(1e-21, 1e12, "kg"), Number(-1e9, 1e9, "m/s")
 

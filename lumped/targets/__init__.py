@@ -1,7 +1,7 @@
 """Targets, one a file: a member is the class that a target's table describes."""
 
+from lumped.schema.keys import Part
 from lumped.schema.members import Folder
-from lumped.schema.record import Part
 from lumped.targets.base import Target as Target
 from lumped.targets.half_space import HalfSpace as HalfSpace
 

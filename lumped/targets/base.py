@@ -15,7 +15,7 @@ from lumped.materials import Material
 from lumped.materials.radiation import Pulse, radiated_share
 from lumped.numbers import Array
 from lumped.schema import Table
-from lumped.schema.record import Record, written
+from lumped.schema.keys import Record, written
 from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
 

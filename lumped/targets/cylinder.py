@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
-from lumped.schema.record import Part
+from lumped.schema.keys import Part
 from lumped.shapes.cylinder import Cylinder as Profile
 from lumped.targets._round import SUPPORT, RoundTarget
 

@@ -8,8 +8,7 @@ from typing import Annotated, ClassVar
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.half_plane import HalfPlane
-from lumped.schema.keys import Key, Number
-from lumped.schema.record import Part
+from lumped.schema.keys import Key, Number, Part
 from lumped.shapes.base import Shape
 from lumped.targets.base import Target
 

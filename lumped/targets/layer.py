@@ -18,8 +18,7 @@ from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.layer import BASES, LayerCurve, LayerPunch, LineLayer, PointLayer
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
-from lumped.schema.keys import Choice, Key, Number
-from lumped.schema.record import Part
+from lumped.schema.keys import Choice, Key, Number, Part
 from lumped.shapes.base import Shape
 from lumped.targets.base import MOVES, Target
 

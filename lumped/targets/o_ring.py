@@ -13,8 +13,7 @@ from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.numbers import Array
-from lumped.schema.keys import Key
-from lumped.schema.record import Part
+from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, Shape
 from lumped.shapes.sphere import Sphere
 from lumped.targets.base import MOVES, NEEDS_DENSITY, Target

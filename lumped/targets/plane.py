@@ -10,7 +10,7 @@ from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
-from lumped.schema.record import Part
+from lumped.schema.keys import Part
 from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
 from lumped.shapes.sphere import RoundShape

@@ -14,8 +14,7 @@ from lumped.load_curves.ring import RodInRing
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.numbers import Array
-from lumped.schema.keys import Key
-from lumped.schema.record import Part
+from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, Shape
 from lumped.targets.base import Target
 from lumped.targets.layer import Layer

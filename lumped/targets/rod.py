@@ -10,8 +10,7 @@ from typing import Annotated, ClassVar
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
-from lumped.schema.keys import Choice, Key, Number
-from lumped.schema.record import Part
+from lumped.schema.keys import Choice, Key, Number, Part
 from lumped.shapes.base import Shape
 from lumped.targets.base import LOST_FORCE, Target
 

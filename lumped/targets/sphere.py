@@ -9,7 +9,7 @@ from lumped.errors import Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.half_space import TwoProfiles
 from lumped.materials import Material
-from lumped.schema.record import Part
+from lumped.schema.keys import Part
 from lumped.shapes import Sphere as Profile
 from lumped.shapes.base import Shape
 from lumped.targets._round import SUPPORT, RoundTarget

@@ -9,8 +9,7 @@ from typing import Annotated, ClassVar
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
-from lumped.schema.keys import Key
-from lumped.schema.record import Part
+from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, Shape
 from lumped.targets.base import MOVES, NEEDS_DENSITY, Target
 from lumped.targets.layer import BASE, moving_share

@@ -10,7 +10,7 @@ import pytest
 
 import lumped
 from fe_contact.settings import Numerics
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from lumped.load_curves.hertz import hertz_impact
 from lumped.materials import Relaxation
 from lumped.result.result import RULED_RELATIVE

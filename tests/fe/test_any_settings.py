@@ -18,7 +18,7 @@ from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs
 from fe_contact.methods import simulate as fe
 from fe_contact.settings import RANGES
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from lumped import FeContactError, Relaxation, Result, Scene, laws, simulate
 
 IMPACTS, SEED, END_TO_END = 120, 20261124, 0.95

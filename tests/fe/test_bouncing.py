@@ -17,8 +17,8 @@ from fe_contact.bodies.memory import SurfaceMemory, area_weights
 from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs
 from fe_contact.cli import main
-from fe_contact.march.flight import Released
-from fe_contact.steppers.march import Strike
+from fe_contact.march.impacts import Released
+from fe_contact.steppers.steps import Strike
 from lumped.laws import mdr
 from lumped.materials import Relaxation
 

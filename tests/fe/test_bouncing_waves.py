@@ -14,10 +14,9 @@ import pytest
 import fe_contact
 from fe_contact.budget.curve import Curve
 from fe_contact.cli import main
-from fe_contact.march.flight import Grounded
-from fe_contact.march.impacts import follow
+from fe_contact.march.impacts import Grounded, follow
 from fe_contact.methods import simulate
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from fe_contact.waves.certify import WaveRun
 from fe_contact.waves.impact import WaveBouncer, motion, record
 from fe_contact.waves.targets import half_space

@@ -13,7 +13,7 @@ import fe_contact
 from fe_contact.budget.budget import CAUSES, SETTING
 from fe_contact.budget.certify import Certified, certify
 from fe_contact.budget.plan import plan
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from lumped import Material, Relaxation, Result, Scene, laws, simulate
 from lumped.shapes.punch import Punch
 from lumped.targets.layer import Layer

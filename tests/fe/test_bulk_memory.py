@@ -19,12 +19,12 @@ from fe_contact.assembly.operators import ElasticBody, element, moduli, operator
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.bulk_memory import BulkBody, BulkMemory, Moduli
 from fe_contact.bodies.modes import modes, poisson
-from fe_contact.bodies.zone import held
+from fe_contact.bodies.pressing import held
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import plan
 from fe_contact.march.impact import march
 from fe_contact.schemes.base import SCHEMES
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from fe_contact.targets import _round, layer, o_ring, ring, washer
 from fe_contact.targets.base import TARGETS, struck
 from lumped import BadInput, Material, Relaxation, Scene, laws, simulate

@@ -18,12 +18,12 @@ from fe_contact.budget.budget import CAUSES, SETTING
 from fe_contact.budget.certify import Certified, certify
 from fe_contact.budget.plan import plan
 from fe_contact.budget.refine import dominant
-from fe_contact.budget.softening import Softening
+from fe_contact.budget.variation import Softening
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import solve
 from fe_contact.reference import result_of
 from fe_contact.settings import Numerics
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from fe_contact.targets import half_space
 from lumped import laws, load_curves
 from lumped.laws import mdr

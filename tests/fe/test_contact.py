@@ -10,10 +10,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.contact import problem as contact
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
-from fe_contact.contact.problem import ContactProblem, ContactSolution, solve
+from fe_contact.contact.problem import ContactProblem, ContactSolution, PressedSurface, solve
 
 augmented, corrected, exact, penalty = (
     ENFORCEMENTS.get(name) for name in ("augmented", "corrected", "exact", "penalty")

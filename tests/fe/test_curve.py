@@ -7,11 +7,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from fe_contact.budget.curve import Curve, seen_from_both_sides
-from fe_contact.budget.local_polynomial import PLACES, LocalPolynomials, fitted_peak, peak
+from fe_contact.budget.curve import PLACES, Curve, LocalPolynomials, fitted_peak, peak, seen_from_both_sides
 from fe_contact.budget.variation import calmest
 from fe_contact.march.impact import STEPS_ALLOWED, share_of_rest, step_length, time_left
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from lumped import Scene
 
 SEEDS = st.integers(0, 2**32 - 1)

@@ -15,7 +15,7 @@ import numpy.typing as npt
 import pytest
 
 import fe_contact
-from fe_contact.march.account import _crept
+from fe_contact.march.impact import _crept
 from lumped import Relaxation, Result, Scene, laws, simulate
 
 Array = npt.NDArray[np.float64]

@@ -15,11 +15,11 @@ from fe_contact.assembly.forms import isotropic
 from fe_contact.budget.certify import certify
 from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs
-from fe_contact.budget.softening import compliance_change
+from fe_contact.budget.variation import compliance_change
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.settings import Numerics
-from fe_contact.steppers.march import Strike
 from fe_contact.steppers.scaled_surface import ScaledSurface
+from fe_contact.steppers.steps import Strike
 from fe_contact.targets import half_space
 from lumped import Relaxation, Scene
 from lumped.load_curves import Hertz

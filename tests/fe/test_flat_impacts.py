@@ -13,7 +13,7 @@ import fe_contact
 from fe_contact.reference import solve
 from fe_contact.settings import Numerics
 from fe_contact.steppers.flat_end import FlatStepper
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from lumped import BadInput, Material, Model, Relaxation, Result, Scene, laws, simulate
 from lumped.scene.scene import Motion
 from lumped.shapes.plate import Plate

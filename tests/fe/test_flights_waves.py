@@ -10,9 +10,8 @@ import scipy.sparse as sparse
 from scipy.optimize import brentq
 
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
-from fe_contact.dynamics import ledger
 from fe_contact.dynamics.body import BodyState, BodyWithMass, Part, Pressing, internal, undeformed
-from fe_contact.dynamics.march import Choices, Moment
+from fe_contact.dynamics.march import Choices, Moment, account_at_start
 from fe_contact.dynamics.schemes import generalised_alpha
 from fe_contact.dynamics.stepping import Enforced
 from fe_contact.waves.impact import Flights
@@ -55,7 +54,7 @@ class Case:
         velocity = np.array([self.rising, -self.speed])
         acceleration = np.array([-forces[0] - self.dashpot * self.rising, self.gravity])
         state = BodyState(0.0, displacement, velocity, acceleration, branches, forces, at_rest.signed_pressure)
-        return Moment(state, ledger.opened(body, state))
+        return Moment(state, account_at_start(body, state))
 
     def touch(self) -> float:
         """The first zero of the gap after the separation, s, by the eigenvalues of the plate's motion."""

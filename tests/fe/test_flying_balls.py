@@ -17,7 +17,7 @@ from fe_contact.cli import main
 from fe_contact.dynamics.march import Motion, march
 from fe_contact.methods import simulate
 from fe_contact.settings import RANGES, WaveNumerics
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from fe_contact.waves.impact import choices_of, energies, motion, record
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.targets import half_space, plane, sphere

@@ -18,7 +18,7 @@ from fe_contact.assembly.far_field import wave_speeds
 from fe_contact.budget.curve import Curve
 from fe_contact.cli import main
 from fe_contact.methods import simulate
-from fe_contact.steppers.march import March, Strike
+from fe_contact.steppers.steps import March, Strike
 from fe_contact.waves.impact import motion, parting, record
 from fe_contact.waves.targets import half_space
 from fe_contact.waves.targets.half_space import moving

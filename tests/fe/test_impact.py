@@ -27,9 +27,8 @@ from fe_contact.reference import solve
 from fe_contact.schemes.base import SCHEMES
 from fe_contact.settings import Numerics
 from fe_contact.steppers import scaled_surface
-from fe_contact.steppers.march import March, Strike
 from fe_contact.steppers.scaled_surface import ScaledSurface
-from fe_contact.steppers.steps import State, Step
+from fe_contact.steppers.steps import March, State, Step, Strike
 from fe_contact.targets import half_space
 from lumped import BadInput
 from lumped.laws import mdr

@@ -17,7 +17,7 @@ from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import plan
 from fe_contact.march.impact import march
 from fe_contact.steppers import scaled_surface
-from fe_contact.steppers.march import March, Snapshot, Strike
+from fe_contact.steppers.steps import March, Snapshot, Strike
 from fe_contact.studies.compare import law_pressure
 from fe_contact.studies.compare.law_pressure import LawPressure
 from fe_contact.targets import half_space

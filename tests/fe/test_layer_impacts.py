@@ -14,7 +14,7 @@ from fe_contact.budget.plan import plan
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.march.impact import march
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from fe_contact.steppers.struck import WIDTH, FixedStepper
 from fe_contact.targets.base import struck
 from lumped import BadInput, Material, Model, Relaxation, Result, Scene, Sphere, laws, simulate

@@ -16,7 +16,7 @@ from fe_contact.budget.curve import Curve
 from fe_contact.cli import main
 from fe_contact.dynamics.march import Motion
 from fe_contact.methods import simulate
-from fe_contact.steppers.march import March, Strike
+from fe_contact.steppers.steps import March, Strike
 from fe_contact.waves.impact import motion, record
 from fe_contact.waves.targets import half_space, layer
 from fe_contact.waves.targets.base import WAVES

@@ -11,7 +11,7 @@ import pytest
 
 from fe_contact.budget.curve import Curve
 from fe_contact.methods import simulate
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from fe_contact.waves.impact import motion, record
 from fe_contact.waves.targets import half_space
 from fe_contact.waves.targets.half_space import moving

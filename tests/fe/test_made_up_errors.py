@@ -15,10 +15,9 @@ from fe_contact.budget.budget import CAUSES, Budget, Causes
 from fe_contact.budget.certify import _rows, _time_steps, trust
 from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.several import _error
-from fe_contact.budget.softening import Softening
-from fe_contact.budget.variation import SAFETY, Variation
+from fe_contact.budget.variation import SAFETY, Softening, Variation
 from fe_contact.settings import Numerics
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from fe_contact.waves.certify import Moved
 from lumped.materials import Relaxation
 

@@ -15,7 +15,7 @@ from fe_contact.budget import certify
 from fe_contact.budget.budget import CAUSES, SETTING, Budget
 from fe_contact.budget.curve import Curve
 from fe_contact.settings import Numerics, WaveNumerics
-from fe_contact.steppers.march import March, Strike, Work
+from fe_contact.steppers.steps import March, Strike, Work
 from fe_contact.waves import certify as waves
 from lumped.materials import Relaxation
 

@@ -13,7 +13,7 @@ import pytest
 import meshes
 from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on
 from fe_contact.assembly.surface import flat
-from fe_contact.bodies.zone import held
+from fe_contact.bodies.pressing import held
 from fe_contact.methods import simulate
 from lumped import Scene, laws
 from lumped.result.model_ledger import ROD_END

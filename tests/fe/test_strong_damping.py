@@ -15,7 +15,7 @@ import fe_contact
 import lumped
 from fe_contact.budget.plan import plan
 from fe_contact.march.impact import march
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from fe_contact.targets.base import struck
 from lumped.laws import mdr, ting
 from lumped.result.result import RULED_RELATIVE

@@ -15,7 +15,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import SETTING
 from fe_contact.budget.plan import EARLY_PEAK
 from fe_contact.budget.refine import AIM, factors, missing
-from fe_contact.steppers.march import March, Strike, Work
+from fe_contact.steppers.steps import March, Strike, Work
 from fe_contact.waves.certify import AT, GROWTH, ORDER, ROWS, WaveRuns, certify, curve_of, reading
 from fe_contact.waves.plan import graded, viscous_share
 from fe_contact.waves.targets import half_space

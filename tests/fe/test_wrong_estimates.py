@@ -11,10 +11,10 @@ import pytest
 
 import fe_contact
 from fe_contact.budget import plan as planning
+from fe_contact.budget.plan import scales
 from fe_contact.budget.runs import PILOT_STEPS, PLACED, Runs
-from fe_contact.budget.scales import scales
 from fe_contact.march.impact import share_of_rest, step_length
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from lumped import Result, Scene, laws, simulate
 
 SCENES = ("polymer-sphere", "polymer-layer", "rod-in-ring", "polymer-cone")

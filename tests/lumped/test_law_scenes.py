@@ -11,8 +11,7 @@ from typing import Any
 import pytest
 
 from lumped import BadInput, Motion, Scene, laws, simulate
-from lumped.scene.file import read
-from lumped.scene.tables import LawChoice
+from lumped.scene.tables import LawChoice, read
 
 BARE: dict[str, Any] = {
     "striker": {"mass": 1.0, "velocity": 1.0},

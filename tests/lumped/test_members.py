@@ -16,7 +16,7 @@ from lumped.materials import Material
 from lumped.materials.networks import NETWORKS
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE, UNITS
 from lumped.scene.tables import Model, Motion
-from lumped.schema.record import keys_of
+from lumped.schema.keys import keys_of
 from lumped.shapes import SHAPES as SHAPE_KINDS
 from lumped.shapes import Shape
 from lumped.targets import TARGETS as TARGET_KINDS

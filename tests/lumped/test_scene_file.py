@@ -12,9 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumped import BadInput, Scene
-from lumped.scene.file import load, read
-from lumped.schema.files import SCENES
-from lumped.schema.toml_file import parse_assignment
+from lumped.scene.tables import load, read
+from lumped.schema.files import SCENES, parse_assignment
 
 SOLID: dict[str, Any] = {
     "name": "try",

@@ -12,10 +12,9 @@ from functools import lru_cache
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.contact import problem as contact
 from fe_contact.contact.enforcement.base import Enforcement
-from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching
+from fe_contact.contact.problem import ContactProblem, ContactSolution, PressedSurface, Touching
 
 SURFACES_KEPT = 8  # work: memory, surfaces whose dense system is kept
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.budget.scales import has_curve
+from fe_contact.budget.plan import has_curve
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.reference import Solved

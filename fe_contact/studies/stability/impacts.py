@@ -24,7 +24,7 @@ from fe_contact.dynamics.march import Motion
 from fe_contact.march.impact import march
 from fe_contact.schemes.base import SCHEMES
 from fe_contact.settings import WaveNumerics
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from fe_contact.studies.stability.base import Case, Chart, Measure, MethodStudy
 from fe_contact.targets.base import struck
 from fe_contact.waves.impact import motion

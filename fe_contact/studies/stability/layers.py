@@ -14,11 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.pressed_surface import PressedSurface
 from fe_contact.bodies.pressing import FixedStill
 from fe_contact.budget.plan import DEFAULTS
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
-from fe_contact.contact.problem import ContactProblem, ContactSolution
+from fe_contact.contact.problem import ContactProblem, ContactSolution, PressedSurface
 from fe_contact.indentation import press, settings
 from fe_contact.studies.stability.base import Case, Chart, Measure, MethodStudy
 from fe_contact.targets.base import TARGETS

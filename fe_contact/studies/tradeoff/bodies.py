@@ -21,7 +21,7 @@ from fe_contact.budget.certify import certify
 from fe_contact.budget.runs import operations
 from fe_contact.reference import check_target, fe
 from fe_contact.settings import KEYS, Given, Numerics
-from fe_contact.steppers.march import Strike
+from fe_contact.steppers.steps import Strike
 from fe_contact.studies.tradeoff.point import MEASURED, Answer, Truth
 from fe_contact.targets import half_space
 from fe_contact.waves.balls import unit_ball

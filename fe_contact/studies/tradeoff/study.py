@@ -17,8 +17,8 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.budget.plan import plan
 from fe_contact.progress import Progress
+from fe_contact.reference import plan
 from fe_contact.settings import RANGES, Given, Numerics, WaveNumerics
 from fe_contact.studies import journal
 from fe_contact.studies.files import Line, write_study

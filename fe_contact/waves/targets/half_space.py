@@ -18,7 +18,7 @@ from fe_contact.assembly.far_field import dashpots, wave_speeds
 from fe_contact.assembly.forms import Array, check_compressible, isotropic, mass
 from fe_contact.assembly.operators import basis_on, made, system_matrix
 from fe_contact.assembly.surface import flat
-from fe_contact.bodies.zone import held
+from fe_contact.bodies.pressing import held
 from fe_contact.budget.plan import Plan
 from fe_contact.dynamics.body import BodyState, Part
 from fe_contact.dynamics.march import march

@@ -13,9 +13,8 @@ from fe_contact.assembly.far_field import on_boundary
 from fe_contact.assembly.forms import Basis, Matrix, check_compressible, mass, plane_mass
 from fe_contact.assembly.operators import basis_on, made, moduli
 from fe_contact.assembly.surface import flat
-from fe_contact.bodies.zone import held, thickness_over
-from fe_contact.budget.plan import Plan
-from fe_contact.budget.scales import scales
+from fe_contact.bodies.pressing import held, thickness_over
+from fe_contact.budget.plan import Plan, scales
 from fe_contact.dynamics.body import Part
 from fe_contact.settings import RANGES, Given, WaveNumerics
 from fe_contact.targets.layer import matrix

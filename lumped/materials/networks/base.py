@@ -8,8 +8,7 @@ from typing import Annotated
 
 from lumped.materials.material import MODULUS
 from lumped.materials.relaxation import Relaxation
-from lumped.schema.keys import Key, Number
-from lumped.schema.record import Sets, keys_of, made
+from lumped.schema.keys import Key, Number, Sets, keys_of, made
 
 MODULUS_OR_ZERO = Number(0.0, 1e16, "Pa")
 TIME = Number(1e-15, 1e15, "s")

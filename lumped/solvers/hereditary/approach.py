@@ -138,18 +138,15 @@ def follow(
     """March over a span of r from a state until `over`; `first` is the length to begin with. Raises NotReached."""
     beyond: BadInput | NotReached | None = None
 
-    def piece(root: float, length: float, state: Array) -> HereditaryPiece | None:
-        motion, found = PieceMotion.over_root(problem, settings.table, root, length), None
-        if before is not None:
-            force = before.value(FORCE, root + length * settings.table.points)
-            found = motion.piece(state, problem.gravity - force)
-        return found or motion.piece(state, problem.gravity - float(state[FORCE]))
-
     def attempt(root: float, length: float, state: Array) -> HereditaryPiece | None:
         """A long piece may try depths beyond the load curve that the motion never sees: then a shorter one."""
         nonlocal beyond
+        motion, found = PieceMotion.over_root(problem, settings.table, root, length), None
         try:
-            return piece(root, length, state)
+            if before is not None:
+                force = before.value(FORCE, root + length * settings.table.points)
+                found = motion.piece(state, problem.gravity - force)
+            return found or motion.piece(state, problem.gravity - float(state[FORCE]))
         except (BadInput, NotReached) as failure:
             beyond = failure
             return None
