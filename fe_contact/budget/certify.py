@@ -2,9 +2,9 @@
 
 Time steps in the ratio 1 : 2 : 4 give a value (extrapolated from the two finest) and its change from the pair before.
 Mesh and penalty are varied on the coarsest of them, where a march is cheapest: what they change hardly depends on the
-step, unless they are coarse themselves, or a dashpot jitters on a mesh that stays. The far field of an elastic body on
-a mesh that follows the contact takes no march, unless further contacts follow, each of which is judged like the
-first from the same runs. A change between settings in the ratio 1 : 2 bounds the error by
+step, unless they are coarse themselves, or the mesh stays while the contact's edge crosses it. The far field of an
+elastic body on a mesh that follows the contact takes no march, unless further contacts follow, each of which is judged
+like the first from the same runs. A change between settings in the ratio 1 : 2 bounds the error by
 
     SAFETY / (2^order - 1) x change ,
 
@@ -62,11 +62,9 @@ MESH_ORDER = {3: 1, 4: 2}  # by element order: the edge allows three in the forc
 WITNESS = 2  # times the order have the elements that tell of those which lock
 WITNESS_ELEMENTS = 4.0  # of them along the contact radius, at least
 MESH_ORDER_ANYWHERE = 1.5  # where the edge falls anywhere in an element: the pressure has a root there
-# what a mesh that stays changes weighs so much there: its ripples hide in what is read once, and in what adds up
-ANYWHERE = {"peak_time": 2.0, "peak_depth": 3.0, "duration": 1.5}
-DAMPED_ANYWHERE = {"duration": 8.0, "restitution": 3.0, "impulse": 3.0}  # the same by a dashpot, whose force jitters
+# what a mesh that stays changes weighs so much by a dashpot: its force jitters, which hides in what adds up
+DAMPED_ANYWHERE = {"duration": 8.0, "restitution": 3.0, "impulse": 3.0}
 DAMPED_SINCE = 0.5  # share of the contact from which path and speed count there: the end alone may agree by chance
-TOP_ANYWHERE = 0.95  # share of the largest depth above which such changes count: their sign turns ever again
 # of the steps' change in the share that branches about as fast as a step carry, by quantity, and of the force
 KEPT = {"peak_depth": 0.4, "duration": 0.4, "impulse": 1.5, "restitution": 1.5}
 KEPT_OF_FORCE = 0.1  # the same share of the force
@@ -141,16 +139,14 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
 def _by_mesh(
     curve: Callable[[Numerics], Curve | None], numerics: Numerics, cheap: Numerics, follows_contact: bool, viscous: bool
 ) -> tuple[Numerics, Variation | None]:
-    """Settings of another mesh, and what it changes: where a mesh stays, that ripples."""
+    """Settings of another mesh, and what it changes; ``viscous``: by a dashpot's force too, which jitters."""
     meshed = _judging(numerics, cheap, "mesh", not follows_contact)
     mesh, trusted = other_mesh(meshed) if follows_contact else other_mesh(meshed, MESH_ORDER_ANYWHERE)
     change = partial(_variation, curve(meshed), curve(mesh), trusted)
     if follows_contact:
         return mesh, change()
-    if viscous:
-        change = partial(change, since=DAMPED_SINCE)
-    weights = ANYWHERE | (DAMPED_ANYWHERE if viscous else {})
-    return mesh, change(weights=weights, unresolved=np.inf, top=TOP_ANYWHERE)
+    damped = {"weights": DAMPED_ANYWHERE, "since": DAMPED_SINCE} if viscous else {}
+    return mesh, change(unresolved=np.inf, **damped)
 
 
 def _judging(numerics: Numerics, cheap: Numerics, cause: str, stays: bool = False) -> Numerics:

@@ -38,8 +38,7 @@ class Variation:
     """Two curves that differ in one setting, and the factor that turns their difference into an error.
 
     ``weights``: what that factor is to be multiplied with for quantities that deserve less trust. ``unresolved``: time
-    up to which no order shows, s; where it is not told, the first step of the second curve. ``top``: share of the
-    largest depth above which what changes the depth counts.
+    up to which no order shows, s; where it is not told, the first step of the second curve.
     """
 
     first: Curve
@@ -47,7 +46,6 @@ class Variation:
     factor: float
     weights: Mapping[str, float] = field(default_factory=dict)
     unresolved: float | None = None
-    top: float = TOP
     since: float = LATE
 
     @cached_property
@@ -62,7 +60,7 @@ class Variation:
         around = {
             "peak_force": self._peak_force,
             "peak_time": self._peak_time,
-            "peak_depth": float(depth[first.dense.depth > self.top * first.dense.depth.max()].max()),
+            "peak_depth": float(depth[first.dense.depth > TOP * first.dense.depth.max()].max()),
             "duration": float(depth[self.late :].max()) / speed if speed > 0.0 else np.inf,
             "impulse": self.impulse,
             "restitution": self.velocity / first.strike.velocity,
