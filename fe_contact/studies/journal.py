@@ -42,7 +42,7 @@ def rows(file: Path, calls: Mapping[str, partial[R]], progress: Progress, jobs: 
     with closing(measured(left, jobs)) as found:
         for name, row in found:
             call = left[name]
-            line = json.dumps({"suite": _suite(), "call": _said(call), "row": encoded(row, call.args)})
+            line = json.dumps({"suite": suite(), "call": _said(call), "row": encoded(row, call.args)})
             _keep(file, line)
             known[_said(call)] = json.loads(line)["row"]  # as another run reads it
             progress(name)
@@ -60,7 +60,7 @@ def _said(call: partial[Any]) -> str:
 
 
 @cache
-def _suite() -> str:
+def suite() -> str:
     """A digest of the suite, of its data and of the versions beneath it."""
     specs = [find_spec(package) for package in PACKAGES]
     folders = [Path(place) for spec in specs if spec for place in spec.submodule_search_locations or ()]
@@ -79,7 +79,7 @@ def _kept(file: Path) -> Table:
             content = json.loads(line)
         except json.JSONDecodeError:
             continue
-        if isinstance(content, dict) and content.get("suite") == _suite():
+        if isinstance(content, dict) and content.get("suite") == suite():
             found[content["call"]] = content["row"]
     return found
 
