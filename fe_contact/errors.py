@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
+from importlib import import_module
+from types import ModuleType
 from typing import Concatenate, ParamSpec, TypeVar
 
 from lumped.errors import BadInput, Fault, NotReached
@@ -142,3 +144,18 @@ class WorkerLost(NotReached):
     def __init__(self) -> None:
         reason = "a process of the study was killed, as systems do for want of memory"
         super().__init__(f"{reason}; cure: free some, then the same command again: rows that were measured are kept")
+
+
+class ExtraMissing(BadInput):
+    """An option needs a package that is not installed; ``extra`` is the option's name, and that of what installs it."""
+
+    def __init__(self, package: str, extra: str) -> None:
+        super().__init__(Fault(f"--{extra}", "", f"{package} is missing; cure: pip install 'fe-contact[{extra}]'"))
+
+
+def optional(module: str, extra: str) -> ModuleType:
+    """A module of a package that only the option ``extra`` needs; raises ExtraMissing."""
+    try:
+        return import_module(module)
+    except ImportError:
+        raise ExtraMissing(module.partition(".")[0], extra) from None

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, TypeVar, get_type_hints
 
 from fe_contact.progress import Progress
-from fe_contact.studies.workers import Here, Processes, answers
+from fe_contact.studies.workers import answers, workers
 from lumped.result.result import provenance
 from lumped.schema import Table
 from lumped.schema.files import data_folder
@@ -97,6 +97,6 @@ def measured(calls: Mapping[str, partial[R]], jobs: int) -> Generator[tuple[str,
     The processes are killed when the caller stops, fails or is interrupted: close the iterator then. They also end
     when this process is killed itself. Raises WorkerLost, and whatever a call raises.
     """
-    processes = min(jobs, len(calls))
-    with Processes(processes) if processes > 1 else Here() as workers:
-        yield from answers(workers, calls.items(), processes)
+    processes = max(1, min(jobs, len(calls)))
+    with workers(processes) as (executor, ahead):
+        yield from answers(executor, calls.items(), ahead)

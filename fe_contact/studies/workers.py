@@ -10,8 +10,8 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Generator, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
-from contextlib import contextmanager
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ThreadPoolExecutor, wait
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from itertools import islice
 from multiprocessing import connection, get_context, resource_tracker
@@ -20,9 +20,13 @@ from queue import SimpleQueue
 from threading import Lock
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
-from fe_contact.errors import WorkerLost
+from fe_contact.errors import WorkerLost, optional
 from fe_contact.threads import one_thread
+from lumped.errors import BadInput, Fault, shown
+from lumped.schema.keys import Count
 
+JOBS = Count(1, 1024)  # safety: more processes than machines hold
+LOCAL = "local"  # in the place of an address: Dask's own processes on this machine
 ATTEMPTS = 3  # safety: of a call whose process dies; the system may have ended it for what another one took
 Asked = ParamSpec("Asked")
 Name = TypeVar("Name")
@@ -44,6 +48,41 @@ def answers(
             return
         for done in wait(asked, return_when=FIRST_COMPLETED).done:
             yield asked.pop(done), done.result()
+
+
+def checked_jobs(jobs: int | str) -> int:
+    """So many processes; raises BadInput."""
+    try:
+        return JOBS.read(int(jobs) if isinstance(jobs, str) else jobs)
+    except ValueError:
+        raise BadInput(Fault("--jobs", "", f"{shown(jobs)}: accepted {JOBS.accepted}")) from None
+
+
+@contextmanager
+def workers(jobs: int, dask: str | None = None) -> Iterator[tuple[Executor, int]]:
+    """Who answers, and how many they are: this process for one job, or so many processes, or the workers of ``dask``.
+
+    That is the address of a scheduler of Dask, which has workers of its own, or LOCAL: so many on this machine. Raises
+    ExtraMissing, BadInput where no scheduler answers, WorkerLost where it gives a call up.
+    """
+    if dask is None:
+        with Processes(jobs) if jobs > 1 else Here() as executor:
+            yield executor, jobs
+        return
+    distributed = optional("distributed", "dask")
+    with ExitStack() as stack:
+        try:
+            local = {"n_workers": jobs, "threads_per_worker": 1, "dashboard_address": None}
+            cluster = stack.enter_context(distributed.LocalCluster(**local)) if dask == LOCAL else dask
+            client = stack.enter_context(distributed.Client(cluster))
+        except (OSError, ValueError) as failure:
+            accepted = f"accepted: {LOCAL}, or the address of a scheduler that answers, as tcp://host:8786"
+            raise BadInput(Fault("--dask", dask, f"{failure}; {accepted}")) from None
+        client.wait_for_workers(1)
+        try:
+            yield client.get_executor(pure=False, retries=ATTEMPTS), sum(client.nthreads().values())
+        except (distributed.KilledWorker, CancelledError):
+            raise WorkerLost from None
 
 
 class Here(Executor):

@@ -96,10 +96,11 @@ DRAW_KEYS: Mapping[str, Key] = {
 
 @dataclass(frozen=True)
 class Axis:
-    """Keys that vary together, and their values: of all ``keys``, at every place of the axis."""
+    """Keys that vary together, and their values: of all ``keys``, at every place of the axis; ``drawn`` at random."""
 
     keys: tuple[str, ...]
     places: tuple[Values, ...]
+    drawn: bool = False
 
 
 @dataclass(frozen=True)
@@ -269,7 +270,7 @@ class _Reader:
             return []
         normal = np.random.default_rng(values["seed"]).standard_normal((values["count"], len(kinds))) @ roots.T
         columns = [made(z).tolist() for made, z in zip(kinds.values(), normal.T, strict=True) if made is not None]
-        return [Axis(tuple(kinds), tuple(zip(*columns, strict=True)))]
+        return [Axis(tuple(kinds), tuple(zip(*columns, strict=True)), drawn=True)]
 
     def drawn(self, where: str, spec: object) -> Callable[[Array], Array] | None:
         """How a key follows from a standard normal variable; None with a fault noted."""

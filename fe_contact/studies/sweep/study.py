@@ -17,15 +17,14 @@ from functools import cached_property, lru_cache, partial
 from hashlib import sha256
 from itertools import islice, product
 from pathlib import Path
-
-import numpy as np
+from typing import Any
 
 from fe_contact.methods import OWN, simulate
-from fe_contact.progress import Progress
+from fe_contact.progress import Progress, silent
 from fe_contact.studies.journal import suite
 from fe_contact.studies.sweep.cases import BaseScene, Sweep
 from fe_contact.studies.sweep.table import SweepTable
-from fe_contact.studies.workers import answers
+from fe_contact.studies.workers import answers, checked_jobs, workers
 from fe_contact.threads import one_thread
 from lumped.errors import BadInput, FeContactError
 from lumped.result.result import UNITS
@@ -57,19 +56,19 @@ class Questions:
     sweep: Sweep
 
     @cached_property
-    def _begun(self) -> bytes:
-        """What all digests have in common; of a file that a table names, its content."""
+    def _begun(self) -> Any:  # a hash has no type with a name
+        """The beginning of all digests; of a file that a table names, its content."""
         base = self.sweep.base
-        named = {text for text in _texts([base.tables, [axis.places for axis in self.sweep.axes]])}
+        named = {*_texts([base.tables, [axis.places for axis in self.sweep.axes]])}
         files = {text: (base.folder / text).read_bytes().hex() for text in sorted(named) if _is_file(base.folder, text)}
-        return json.dumps([suite(), base.tables, self.sweep.tolerance, files], sort_keys=True, default=str).encode()
+        return sha256(_told([suite(), base.tables, self.sweep.tolerance, files]))
 
     def of(self, case: int) -> Iterator[Question]:
         """One a method, in their order."""
         overrides = self.sweep.overrides(case)
         for method in self.sweep.methods:
-            digest = sha256(self._begun)
-            digest.update(json.dumps([overrides, method], sort_keys=True, default=str).encode())
+            digest = self._begun.copy()
+            digest.update(_told([overrides, method]))
             yield Question(digest.hexdigest()[:DIGITS], overrides, method)
 
     def cases(self) -> Iterator[int]:
@@ -78,6 +77,10 @@ class Questions:
         ordered = sorted(axes, key=lambda one: not any(_meshed(key) for key in one[0].keys))
         for steps in product(*(range(0, len(axis.places) * stride, stride) for axis, stride in ordered)):
             yield sum(steps)
+
+
+def _told(content: object) -> bytes:
+    return json.dumps(content, sort_keys=True, default=str).encode()  # a date of a file is its text
 
 
 def _texts(value: object) -> Iterator[str]:
@@ -164,24 +167,46 @@ def _row(base: BaseScene, tolerance: float | None, question: Question) -> Table:
     return row | {"cpu_s": time.process_time() - begun}
 
 
-def run(sweep: Sweep, folder: Path, executor: Executor, jobs: int, resume: bool, progress: Progress) -> SweepTable:
-    """Ask ``jobs`` workers of an ``executor`` for every row that ``folder`` does not hold, or for all; the table.
+def run(
+    sweep: Sweep,
+    folder: Path,
+    jobs: int = 1,
+    dask: str | None = None,
+    resume: bool = False,
+    progress: Progress = silent,
+) -> SweepTable:
+    """The table of a sweep: ``jobs`` :func:`workers` are asked for all rows; to ``resume``, for what ``folder`` lacks.
 
-    Raises WorkerLost, and what only a defect of ours raises; the rows until then are kept.
+    Raises what these raise, and what only a defect of ours does; the rows until then are kept.
     """
+    jobs = checked_jobs(jobs)
     folder.mkdir(parents=True, exist_ok=True)
     questions, rows = Questions(sweep), Rows(folder, resume)
-    left = (one for case in questions.cases() for one in questions.of(case) if one.digest not in rows)
-    total = sweep.count * len(sweep.methods)
+
+    def left() -> Iterator[Question]:
+        return (one for case in questions.cases() for one in questions.of(case) if one.digest not in rows)
+
+    total = sum(1 for _ in left()) if resume else sweep.count * len(sweep.methods)
+    if total:
+        with workers(min(jobs, total), dask) as (executor, count):
+            _ask(sweep, left(), total, rows, executor, count, progress)
+    rows.tidy()
+    return SweepTable.of(
+        sweep, ((case, [rows[one.digest] for one in questions.of(case)]) for case in questions.cases())
+    )
+
+
+def _ask(
+    sweep: Sweep, left: Iterator[Question], total: int, rows: Rows, executor: Executor, count: int, progress: Progress
+) -> None:
+    """Ask so many workers for the ``total`` rows that are left, and keep them batch by batch."""
     most = MOST_OWN if set(sweep.methods) & {*OWN} else MOST_LUMPED
-    size = max(1, min(most, total // (SHARES * jobs)))
+    size = max(1, min(most, total // (SHARES * count)))
     batches = iter(lambda: tuple(islice(left, size)), ())
     calls = ((len(batch), partial(answer, sweep.base, sweep.tolerance, batch)) for batch in batches)
     done, failed, begun = 0, 0, time.monotonic()
-    for count, batch in answers(executor, calls, 2 * jobs):
+    for answered, batch in answers(executor, calls, 2 * count):
         rows.keep(batch)
-        done += count
+        done += answered
         failed += sum(not row["converged"] for row in batch.values())
-        progress(f"{done / (time.monotonic() - begun):.3g} a second, {failed} failed", done, total)
-    rows.tidy()
-    return SweepTable.of(sweep, ((case, [rows[one.digest] for one in questions.of(case)]) for case in questions.cases()))
+        progress(f"{done / (time.monotonic() - begun):.3g} a second, {failed} without a result", done, total)

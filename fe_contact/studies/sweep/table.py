@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from fe_contact.errors import ExtraMissing
+from fe_contact.errors import optional
 from fe_contact.studies.sweep.cases import Sweep
 from lumped.numbers import Array
 from lumped.result.result import UNITS, provenance
@@ -21,7 +21,7 @@ from lumped.schema.json_file import plain, write_json
 
 SCHEMA = "fe-contact/sweep/1"
 LEAST_RANKED = 3  # values of a key, or of a quantity, below which no rank says anything
-PARQUET_ROWS = 100_000  # work: of the table turned into Parquet at a time
+PARQUET = "parquet"  # the option, and the extra that installs what it needs
 Truths = npt.NDArray[np.bool_]
 
 
@@ -60,11 +60,6 @@ class SweepTable:
                     reasons[place] = row["reason"]
                 cpu += row["cpu_s"]
         return cls(sweep, values, errors, converged, refused, reasons, cpu)
-
-    @property
-    def all_ended(self) -> bool:
-        """Whether every case is an answer that converged, or a refusal by name."""
-        return bool((self.converged | self.refused).all())
 
     @cached_property
     def numbers(self) -> dict[str, Array]:
@@ -112,9 +107,7 @@ class SweepTable:
     def record(self, wall: float) -> Table:
         """What ``sweep.json`` says, ``wall`` s after the beginning."""
         sweep = self.sweep
-        count = {"converged": self.converged, "refused": self.refused & ~self.converged}
-        counted = {name: int(column.sum()) for name, column in count.items()}
-        missed = int((~self.converged & ~self.refused).sum())
+        ended = {"converged": self.converged, "refused": self.refused, "not_converged": ~self.converged & ~self.refused}
         ranks = {
             method: {name: self.ranks(place, quantity) for quantity, name in enumerate(UNITS)}
             for place, method in enumerate(sweep.methods)
@@ -128,13 +121,44 @@ class SweepTable:
                 "tolerance": sweep.tolerance,
                 "axes": [{"keys": axis.keys, "values": len(axis.places)} for axis in sweep.axes],
                 "cases": sweep.count,
-                "answers": {**counted, "not_converged": missed},
+                "answers": {name: int(column.sum()) for name, column in ended.items()},
                 "rank_correlation": ranks,
                 "provenance": provenance(),
                 "timing": {"cpu_s": self.cpu, "wall_s": wall},
             }
         )
         return content
+
+    def summary(self) -> list[str]:
+        """A line a method: how its answers ended, and the widest bar of a peak force."""
+        said = []
+        for place, method in enumerate(self.sweep.methods):
+            converged, refused = self.converged[:, place], self.refused[:, place]
+            counts = f"{converged.sum()} converged, {refused.sum()} refused"
+            missed = (~converged & ~refused).sum()
+            said.append(f"{method}: {counts}, {missed} not converged{self._widest(place)}")
+        return said
+
+    def _widest(self, method: int) -> str:
+        """The case whose answer converged with the widest bar; nothing where none has a bar."""
+        force = (slice(None), method, list(UNITS).index("peak_force"))
+        known = self.converged[:, method] & (self.values[force] > 0.0) & np.isfinite(self.errors[force])
+        if not known.any():
+            return ""
+        bars = np.divide(self.errors[force], self.values[force], out=np.full(known.size, -1.0), where=known)
+        return f"; widest bar {bars.max():.1e} of the peak force, case {bars.argmax() + 1}"
+
+    @property
+    def missed(self) -> str:
+        """What did not converge, in one line; nothing where all did."""
+        places = np.argwhere(~self.converged & ~self.refused).tolist()
+        if not places:
+            return ""
+        case, method = places[0]
+        first = (
+            f"case {case + 1} by {self.sweep.methods[method]}: {self.reasons.get((case, method), 'no reason given')}"
+        )
+        return f"{len(places)} of {self.converged.size} answers did not converge; {first}"
 
     def write(self, where: Path, wall: float, parquet: bool = False) -> None:
         """``table.csv``, ``sweep.json`` and, where it is asked for, ``table.parquet``; raises ExtraMissing."""
@@ -144,14 +168,31 @@ class SweepTable:
             self._write_parquet(where / "table.parquet")
 
     def _write_parquet(self, path: Path) -> None:
-        try:
-            from pyarrow import csv, parquet
-        except ImportError:
-            raise ExtraMissing("pyarrow", "parquet") from None
-        with csv.open_csv(path.with_name("table.csv")) as batches:
-            with parquet.ParquetWriter(path, batches.schema) as writer:
-                for batch in batches:
-                    writer.write_batch(batch)
+        arrow, parquet = optional("pyarrow", PARQUET), optional("pyarrow.parquet", PARQUET)
+        columns = [arrow.array(column, from_pandas=True) for column in self._columns()]  # NaN is what is undefined
+        parquet.write_table(arrow.table(columns, names=self.header), path)
+
+    def _columns(self) -> Iterator[Sequence[object] | npt.NDArray[np.generic]]:
+        """Of the table, each of all its rows."""
+        cases, methods = range(self.sweep.count), self.sweep.methods
+        yield np.repeat(np.arange(1, len(cases) + 1), len(methods))
+        for key in self.sweep.keys:
+            column = self.numbers.get(key)
+            yield np.repeat(
+                [str(_cell(self.sweep.overrides(case)[key])) for case in cases] if column is None else column,
+                len(methods),
+            )
+        yield [*methods] * len(cases)
+        yield self.converged.ravel()
+        yield [self.reasons.get((case, method), "") for case in cases for method in range(len(methods))]
+        for quantity in range(len(UNITS)):
+            yield self.values[..., quantity].ravel()
+            yield self.errors[..., quantity].ravel()
+
+
+def require_parquet() -> None:
+    """Raises ExtraMissing, before any work, where no table could be written as Parquet."""
+    optional("pyarrow.parquet", PARQUET)
 
 
 def _cell(value: object) -> object:
