@@ -21,7 +21,7 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.studies.workers import checked_jobs
 
     begun = time.monotonic()
-    jobs, sweep = checked_jobs(args.jobs or _processors()), load(args.sweep)
+    jobs, sweep = checked_jobs(_processors() if args.jobs is None else args.jobs), load(args.sweep)
     if args.parquet:
         require_parquet()
     run = base.StudyRun.of(args, "sweep", sweep.name)

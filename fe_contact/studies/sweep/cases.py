@@ -31,6 +31,7 @@ from lumped.schema.toml_file import overridden, parsed
 
 MOST_CASES = 10_000_000  # work: days on a hundred processes
 MOST_DRAWS = 1_000_000  # work: their values are held
+DIGITS = 15  # rounding: between 0.01 and 0.03 lies 0.02, not 0.019999999999999997
 SAMPLE = 24  # of cases that are read before any runs: a fault that all of them have is the sweep file's
 RANGES: Mapping[str, Callable[..., Array]] = {"linear": np.linspace, "log": np.geomspace}
 VALUES = "a list of values, or { linear = [low, high], count = n }, or { log = [low, high], count = n }"
@@ -243,7 +244,7 @@ class _Reader:
         self.faults += faults
         if ends is None or len(self.faults) > known:
             return ()
-        return tuple(RANGES[kind](*ends, values["count"]).tolist())
+        return tuple(float(f"{value:.{DIGITS}g}") for value in RANGES[kind](*ends, values["count"]).tolist())
 
     def two(self, where: str, value: object, above_zero: bool = False) -> tuple[float, float] | None:
         """Two finite numbers; None with a fault noted."""

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import LogLocator, MaxNLocator
 
 from fe_contact.studies import style
 from fe_contact.studies.style import Look
@@ -20,6 +21,7 @@ MAPPED = ("restitution", "peak_force")
 NAME, WIDTH = "sweep", 130  # of the files; characters in a line of the heading
 EVEN = 1e-6  # rounding: of steps between values that were spaced evenly
 LEVELS, BINS = 9, 24  # look: lines of a map at most; bars of a histogram at most
+WIDE, THIN = 2.6, 1.0  # look: of the first method's curve and the last one's, so that none hides another, pt
 
 
 def plot_sweep(table: SweepTable, where: Path) -> tuple[Path, ...]:
@@ -53,12 +55,18 @@ def _scale(quantity: str, values: Array) -> tuple[float, str]:
 
 
 def _geometric(values: Array) -> bool:
-    """Whether sorted values have equal ratios rather than equal steps, or span more than a decade."""
-    if values[0] <= 0.0:
-        return False
+    """Whether values, sorted and each once, have equal ratios rather than equal steps, or span more than a decade."""
+    if values[0] <= 0.0 or values.size < 3:
+        return bool(_decades(values))
     steps, ratios = np.diff(values), np.diff(np.log(values))
     even = np.ptp(steps) <= EVEN * steps.max()
-    return bool(values[-1] > 10.0 * values[0] or np.ptp(ratios) <= EVEN * ratios.max()) and not even
+    return not even and (_decades(values) or bool(np.ptp(ratios) <= EVEN * ratios.max()))
+
+
+def _decades(values: Array) -> bool:
+    """Whether values are positive and span more than a decade; those that are not finite count for nothing."""
+    known = values[np.isfinite(values)]
+    return bool(known.size and known.max() > 10.0 * known.min() > 0.0)
 
 
 def _scaled(key: str, values: Array, to_scale: Callable[[str], object], to_label: Callable[[str], object]) -> None:
@@ -92,13 +100,16 @@ def _panel(axes: Axes, table: SweepTable, key: str, quantity: str) -> None:
     factor, name = _scale(quantity, np.array(values))
     for method, column in enumerate(values):
         bars = _column(table, quantity, method, table.errors)[order]
-        look: Look = {"color": _colour(method), "marker": "o", "markersize": 2.2}
+        width = WIDE + (THIN - WIDE) * method / max(len(values) - 1, 1)
+        look: Look = {"color": _colour(method), "marker": "o", "markersize": 1.8 * width, "linewidth": width}
         axes.plot(x, factor * column, label=table.sweep.methods[method], **look)
         axes.fill_between(
             x, factor * (column - bars), factor * (column + bars), color=_colour(method), alpha=0.25, lw=0
         )
     _scaled(key, x, axes.set_xscale, axes.set_xlabel)
     axes.set_ylabel(name)
+    if _decades(np.array(values)):
+        axes.set_yscale("log")
 
 
 def _maps(table: SweepTable, numbers: list[str], where: Path) -> tuple[Path, ...]:
@@ -121,11 +132,13 @@ def _map(axes: Axes, table: SweepTable, numbers: list[str], quantity: str) -> No
     known = values[np.isfinite(values)]
     if known.size and np.ptp(known) > EVEN * np.abs(known).max():
         shown = np.ma.masked_invalid(values)
-        axes.contourf(x, y, shown, LEVELS, cmap="cividis", alpha=0.75)
-        lines = axes.contour(x, y, shown, LEVELS, colors=style.BLACK, linewidths=0.6)
-        axes.clabel(lines, fontsize=6.0)
+        look: Look = {"locator": LogLocator(subs=(1.0, 2.0, 5.0)) if _decades(known) else MaxNLocator(LEVELS)}
+        axes.contourf(x, y, shown, cmap="cividis", alpha=0.75, extend="both", **look)
+        lines = axes.contour(x, y, shown, colors=style.BLACK, linewidths=0.6, **look)
+        axes.clabel(lines, fontsize=6.0, fmt="%g")
     _scaled(numbers[1], x, axes.set_xscale, axes.set_xlabel)
     _scaled(numbers[0], y, axes.set_yscale, axes.set_ylabel)
+    axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
 
 
 def _scatter(table: SweepTable, numbers: list[str], where: Path) -> tuple[Path, ...]:

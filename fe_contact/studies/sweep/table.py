@@ -76,14 +76,15 @@ class SweepTable:
     def ranks(self, method: int, quantity: int) -> dict[str, float]:
         """Spearman's rank correlation of a quantity with every key that is a number, over the answers that converged.
 
-        Empty where one of both hardly varies.
+        Empty where the quantity varies by less than its bars, or takes too few values.
         """
         from scipy.stats import spearmanr
 
         known = self.converged[:, method] & np.isfinite(self.values[:, method, quantity])
         values = self.values[known, method, quantity]
         keys = {key: column[known] for key, column in self.numbers.items()}
-        if np.unique(values).size < LEAST_RANKED:
+        bars = self.errors[known, method, quantity]
+        if np.unique(values).size < LEAST_RANKED or np.ptp(values) <= 2.0 * bars.max():
             return {}
         varied = {key: column for key, column in keys.items() if np.unique(column).size >= LEAST_RANKED}
         return {key: float(spearmanr(column, values).statistic) for key, column in varied.items()}
