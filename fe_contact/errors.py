@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import wraps
-from importlib import import_module
-from types import ModuleType
 from typing import Concatenate, ParamSpec, TypeVar
 
 from lumped.errors import BadInput, Fault, NotReached
@@ -153,9 +152,10 @@ class ExtraMissing(BadInput):
         super().__init__(Fault(f"--{extra}", "", f"{package} is missing; cure: pip install 'fe-contact[{extra}]'"))
 
 
-def optional(module: str, extra: str) -> ModuleType:
-    """A module of a package that only the option ``extra`` needs; raises ExtraMissing."""
+@contextmanager
+def optional(extra: str) -> Iterator[None]:
+    """Inside, a package is imported that only the option ``extra`` needs; raises ExtraMissing."""
     try:
-        return import_module(module)
-    except ImportError:
-        raise ExtraMissing(module.partition(".")[0], extra) from None
+        yield
+    except ImportError as failure:
+        raise ExtraMissing((failure.name or extra).partition(".")[0], extra) from None

@@ -125,6 +125,12 @@ def test_so_many_processes_are_refused(jobs: str, empty: Path, capfd: pytest.Cap
     assert len(list(empty.iterdir())) == 1
 
 
+def test_the_manual_shows_a_sweep_file(tmp_path: Path) -> None:
+    manual = Path(fe_contact.__file__).with_name("manual") / "sweeps.md"
+    (tmp_path / "sweep.toml").write_text(manual.read_text(encoding="utf-8").split("```toml")[1].partition("```")[0])
+    assert load(tmp_path / "sweep.toml").count == 10 * 3 * 2 * 20
+
+
 # cases
 
 
@@ -333,7 +339,7 @@ def test_a_spoiled_batch_is_asked_for_again(tmp_path: Path) -> None:
     for content in (b"", b"[]\n", b'{"digest": 3}\n', b"\xff\xfe", None, None, None):
         file = files(tmp_path)[int(rng.integers(len(files(tmp_path))))]
         text = file.read_bytes()
-        file.write_bytes(text[: int(rng.integers(len(text)))] if content is None else content)
+        file.write_bytes(text[: int(rng.integers(len(text) + 1))] if content is None else content)
         again = fe_contact.sweep(source, tmp_path, resume=True)
         assert np.array_equal(again.values, table.values, equal_nan=True)
         assert np.array_equal(again.errors, table.errors, equal_nan=True)

@@ -62,14 +62,15 @@ def checked_jobs(jobs: int | str) -> int:
 def workers(jobs: int, dask: str | None = None) -> Iterator[tuple[Executor, int]]:
     """Who answers, and how many they are: this process for one job, or so many processes, or the workers of ``dask``.
 
-    That is the address of a scheduler of Dask, which has workers of its own, or LOCAL: so many on this machine. Raises
-    ExtraMissing, BadInput where no scheduler answers, WorkerLost where it gives a call up.
+    That is the address of a scheduler of Dask, whose first worker is waited for, or LOCAL: so many on this machine.
+    Raises ExtraMissing, BadInput where no scheduler answers, WorkerLost where it gives a call up.
     """
     if dask is None:
         with Processes(jobs) if jobs > 1 else Here() as executor:
             yield executor, jobs
         return
-    distributed = optional("distributed", "dask")
+    with optional("dask"):
+        import distributed
     with ExitStack() as stack:
         try:
             local = {"n_workers": jobs, "threads_per_worker": 1, "dashboard_address": None}

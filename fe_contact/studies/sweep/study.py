@@ -17,7 +17,6 @@ from functools import cached_property, lru_cache, partial
 from hashlib import sha256
 from itertools import islice, product
 from pathlib import Path
-from typing import Any
 
 from fe_contact.methods import OWN, simulate
 from fe_contact.progress import Progress, silent
@@ -56,20 +55,18 @@ class Questions:
     sweep: Sweep
 
     @cached_property
-    def _begun(self) -> Any:  # a hash has no type with a name
-        """The beginning of all digests; of a file that a table names, its content."""
+    def _shared(self) -> str:
+        """A digest of what all answers depend on; of a file that a table names, its content."""
         base = self.sweep.base
         named = {*_texts([base.tables, [axis.places for axis in self.sweep.axes]])}
         files = {text: (base.folder / text).read_bytes().hex() for text in sorted(named) if _is_file(base.folder, text)}
-        return sha256(_told([suite(), base.tables, self.sweep.tolerance, files]))
+        return _digest([suite(), base.tables, self.sweep.tolerance, files])
 
     def of(self, case: int) -> Iterator[Question]:
         """One a method, in their order."""
         overrides = self.sweep.overrides(case)
         for method in self.sweep.methods:
-            digest = self._begun.copy()
-            digest.update(_told([overrides, method]))
-            yield Question(digest.hexdigest()[:DIGITS], overrides, method)
+            yield Question(_digest([self._shared, overrides, method]), overrides, method)
 
     def cases(self) -> Iterator[int]:
         """All cases, those of one mesh one after the other: axes that change it are walked slowest."""
@@ -79,8 +76,9 @@ class Questions:
             yield sum(steps)
 
 
-def _told(content: object) -> bytes:
-    return json.dumps(content, sort_keys=True, default=str).encode()  # a date of a file is its text
+def _digest(content: object) -> str:
+    text = json.dumps(content, sort_keys=True, default=str)  # a date of a file is its text
+    return sha256(text.encode()).hexdigest()[:DIGITS]
 
 
 def _texts(value: object) -> Iterator[str]:
@@ -125,7 +123,7 @@ class Rows:
 
     def keep(self, batch: Mapping[str, Table]) -> None:
         """Rows more, in a file that appears all at once."""
-        name = f"{sha256(' '.join(batch).encode()).hexdigest()[:DIGITS]}.jsonl"
+        name = f"{_digest([*batch])}.jsonl"
         lines = (f"{json.dumps({'digest': digest, 'row': row})}\n" for digest, row in batch.items())
         part = self._folder / f"{name}.{os.getpid()}{PART}"
         part.write_text("".join(lines), encoding="utf-8")

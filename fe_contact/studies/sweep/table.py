@@ -21,7 +21,6 @@ from lumped.schema.json_file import plain, write_json
 
 SCHEMA = "fe-contact/sweep/1"
 LEAST_RANKED = 3  # values of a key, or of a quantity, below which no rank says anything
-PARQUET = "parquet"  # the option, and the extra that installs what it needs
 Truths = npt.NDArray[np.bool_]
 
 
@@ -169,9 +168,11 @@ class SweepTable:
             self._write_parquet(where / "table.parquet")
 
     def _write_parquet(self, path: Path) -> None:
-        arrow, parquet = optional("pyarrow", PARQUET), optional("pyarrow.parquet", PARQUET)
-        columns = [arrow.array(column, from_pandas=True) for column in self._columns()]  # NaN is what is undefined
-        parquet.write_table(arrow.table(columns, names=self.header), path)
+        with optional("parquet"):
+            import pyarrow
+            from pyarrow import parquet
+        columns = [pyarrow.array(column, from_pandas=True) for column in self._columns()]  # NaN is what is undefined
+        parquet.write_table(pyarrow.table(columns, names=self.header), path)
 
     def _columns(self) -> Iterator[Sequence[object] | npt.NDArray[np.generic]]:
         """Of the table, each of all its rows."""
@@ -193,7 +194,8 @@ class SweepTable:
 
 def require_parquet() -> None:
     """Raises ExtraMissing, before any work, where no table could be written as Parquet."""
-    optional("pyarrow.parquet", PARQUET)
+    with optional("parquet"):
+        import pyarrow.parquet  # noqa: F401 - whether it can be
 
 
 def _cell(value: object) -> object:
