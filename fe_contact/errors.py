@@ -142,7 +142,9 @@ class WorkerLost(NotReached):
 
     def __init__(self) -> None:
         reason = "a process of the study was killed, as systems do for want of memory"
-        super().__init__(f"{reason}; cure: free some, then the same command again: rows that were measured are kept")
+        super().__init__(
+            f"{reason}; cure: free some, then the same command again (sweep: with --resume); rows measured are kept"
+        )
 
 
 class ExtraMissing(BadInput):

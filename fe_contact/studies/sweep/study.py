@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import os
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
@@ -18,7 +18,7 @@ from hashlib import sha256
 from itertools import islice, product
 from pathlib import Path
 
-from fe_contact.methods import OWN, simulate
+from fe_contact.methods import simulate
 from fe_contact.progress import Progress, silent
 from fe_contact.studies.journal import suite
 from fe_contact.studies.sweep.cases import BaseScene, Sweep
@@ -31,7 +31,7 @@ from lumped.schema import Table
 
 DIGITS = 32  # of a digest: no two of 1e18 rows share one
 SHARES = 8  # batches of a worker: who is done first waits for an eighth of a share at most
-MOST_OWN, MOST_LUMPED = 16, 500  # work: answers in a batch, of a second or two; a file each, so that files stay few
+BATCH, MOST = 2.0, 500  # work: s that a batch takes, which is lost with its worker, and its answers; a file each
 HELD = 64  # batches held while the table is read, some hundred kilobytes each
 # keys, or their last parts, that change no mesh: cases that differ in these alone follow one another
 UNMESHED = ("velocity", "mass", "gravity", "direction", "impacts", "end_time")
@@ -198,13 +198,15 @@ def _ask(
     sweep: Sweep, left: Iterator[Question], total: int, rows: Rows, executor: Executor, count: int, progress: Progress
 ) -> None:
     """Ask so many workers for the ``total`` rows that are left, and keep them batch by batch."""
-    most = MOST_OWN if set(sweep.methods) & {*OWN} else MOST_LUMPED
-    size = max(1, min(most, total // (SHARES * count)))
-    batches = iter(lambda: tuple(islice(left, size)), ())
-    calls = ((len(batch), partial(answer, sweep.base, sweep.tolerance, batch)) for batch in batches)
-    done, failed, begun = 0, 0, time.monotonic()
-    for answered, batch in answers(executor, calls, 2 * count):
+    most, done, failed, spent, begun = min(MOST, total // (SHARES * count)), 0, 0, 0.0, time.monotonic()
+
+    def calls() -> Iterator[tuple[int, Callable[[], dict[str, Table]]]]:
+        while batch := tuple(islice(left, max(1, min(most, int(BATCH * done / spent) if spent else 1)))):
+            yield len(batch), partial(answer, sweep.base, sweep.tolerance, batch)
+
+    for answered, batch in answers(executor, calls(), 2 * count):
         rows.keep(batch)
         done += answered
         failed += sum(not row["converged"] for row in batch.values())
+        spent += sum(row["cpu_s"] for row in batch.values())
         progress(f"{done / (time.monotonic() - begun):.3g} a second, {failed} without a result", done, total)
