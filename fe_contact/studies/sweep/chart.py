@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import LogLocator, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 
 from fe_contact.studies import style
 from fe_contact.studies.style import Look
@@ -132,13 +132,24 @@ def _map(axes: Axes, table: SweepTable, numbers: list[str], quantity: str) -> No
     known = values[np.isfinite(values)]
     if known.size and np.ptp(known) > EVEN * np.abs(known).max():
         shown = np.ma.masked_invalid(values)
-        look: Look = {"locator": LogLocator(subs=(1.0, 2.0, 5.0)) if _decades(known) else MaxNLocator(LEVELS)}
-        axes.contourf(x, y, shown, cmap="cividis", alpha=0.75, extend="both", **look)
-        lines = axes.contour(x, y, shown, colors=style.BLACK, linewidths=0.6, **look)
+        look: Look = {"levels": _levels(known), "norm": "log" if _decades(known) else "linear"}
+        axes.contourf(x, y, shown, cmap="cividis", alpha=0.75, **look)
+        lines = axes.contour(x, y, shown, levels=look["levels"], colors=style.BLACK, linewidths=0.6)
         axes.clabel(lines, fontsize=6.0, fmt="%g")
     _scaled(numbers[1], x, axes.set_xscale, axes.set_xlabel)
     _scaled(numbers[0], y, axes.set_yscale, axes.set_ylabel)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+
+
+def _levels(known: Array) -> Array:
+    """Round values from below the least to above the largest."""
+    low, high = float(known.min()), float(known.max())
+    if _decades(known):
+        powers = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1.0)
+        ticks = np.outer(powers, (1.0, 2.0, 5.0)).ravel() if powers.size < LEVELS else powers
+    else:
+        ticks = np.asarray(MaxNLocator(LEVELS).tick_values(low, high))
+    return ticks[max(0, int(np.searchsorted(ticks, low, "right")) - 1) : int(np.searchsorted(ticks, high)) + 1]
 
 
 def _scatter(table: SweepTable, numbers: list[str], where: Path) -> tuple[Path, ...]:
