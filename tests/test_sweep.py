@@ -218,6 +218,24 @@ def test_a_sweep_that_has_grown_asks_only_for_the_rest(tmp_path: Path) -> None:
     assert totals == [20, 30, 0]
 
 
+def test_a_file_that_the_scene_names_is_part_of_the_question(empty: Path) -> None:
+    (empty / "rubber.toml").write_text(
+        '[striker]\nshape = "sphere"\nradius = 0.006\nmass = 0.05\nvelocity = 0.02\n'
+        '[target]\nshape = "half_space"\n[target.material]\nlaw = "measured"\nfile = "moduli.csv"\nnu = 0.45\n'
+    )
+    sweep = {"scene": "rubber.toml", "methods": ["ting"], "axes": {SPEED: [0.02]}}
+    forces = []
+    for stiffness in (1.0, 4.0, 1.0):
+        frequency = np.geomspace(1e-2, 1e4, 30)
+        branch = 1j * frequency * 0.01 * 2 * np.pi
+        modulus = stiffness * 1e6 * (1.0 + branch / (1.0 + branch))
+        lines = [f"{f},{m.real},{m.imag}" for f, m in zip(frequency, modulus, strict=True)]
+        (empty / "moduli.csv").write_text("\n".join(["frequency_Hz,storage_Pa,loss_Pa", *lines]))
+        forces.append(fe_contact.sweep(sweep, empty, resume=True).values[0, 0, 0])
+    assert forces[0] == forces[2]
+    assert forces[1] > 1.5 * forces[0]
+
+
 # how cases end
 
 

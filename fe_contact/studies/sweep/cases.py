@@ -308,7 +308,7 @@ class _Reader:
         beside = self.folder / str(scene)
         try:
             path = beside if exists(beside) and beside.is_file() else SCENES.resolved(str(scene))
-            return BaseScene(parsed(path), path.name, path.parent)
+            return BaseScene(parsed(path), path.name, path.parent.absolute())
         except BadInput as bad:
             self.faults += [Fault(self.source, "scene", fault.message) for fault in bad.faults]
             return None
