@@ -132,4 +132,22 @@ class WorkerLost(NotReached):
 
     def __init__(self) -> None:
         reason = "a process of the study was killed, as systems do for want of memory"
-        super().__init__(f"{reason}; cure: free some, then the same command again: rows that were measured are kept")
+        super().__init__(
+            f"{reason}; cure: free some, then the same command again (sweep: with --resume); rows measured are kept"
+        )
+
+
+class ExtraMissing(BadInput):
+    """An option needs a package that is not installed; ``extra`` is the option's name, and that of what installs it."""
+
+    def __init__(self, package: str, extra: str) -> None:
+        super().__init__(Fault(f"--{extra}", "", f"{package} is missing; cure: pip install 'fe-contact[{extra}]'"))
+
+
+@contextmanager
+def optional(extra: str) -> Iterator[None]:
+    """Inside, a package is imported that only the option ``extra`` needs; raises ExtraMissing."""
+    try:
+        yield
+    except ImportError as failure:
+        raise ExtraMissing((failure.name or extra).partition(".")[0], extra) from None

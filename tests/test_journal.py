@@ -74,7 +74,7 @@ def test_another_suite_measures_anew(
     tmp_path: Path, calls_measured: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rows(tmp_path / "rows.jsonl", moduli(1.0), silent)
-    monkeypatch.setattr(journal, "_suite", lambda: "another")
+    monkeypatch.setattr(journal, "suite", lambda: "another")
     rows(tmp_path / "rows.jsonl", moduli(1.0), silent)
     assert calls_measured == ["E = 1", "E = 1"]
 
@@ -85,7 +85,7 @@ def test_a_changed_source_is_another_suite(tmp_path: Path, monkeypatch: pytest.M
     digests = set()
     for text in ("radius = 1.0", "radius = 2.0"):
         (tmp_path / "scene.toml").write_text(text)
-        digests |= {journal._suite.__wrapped__() for _ in range(2)}
+        digests |= {journal.suite.__wrapped__() for _ in range(2)}
     assert len(digests) == 2
 
 

@@ -8,24 +8,16 @@ and what is asked of another suite, of another scene or with other settings is m
 from __future__ import annotations
 
 import json
-import os
-import signal
-import sys
-from collections.abc import Generator, Iterator, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import closing, contextmanager
+from collections.abc import Generator, Mapping
+from contextlib import closing
 from functools import cache, partial
 from hashlib import sha256
 from importlib.util import find_spec
-from itertools import islice
-from multiprocessing import connection, get_context, resource_tracker
-from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any, TypeVar, get_type_hints
 
-from fe_contact.errors import WorkerLost
 from fe_contact.progress import Progress
-from fe_contact.threads import one_thread
+from fe_contact.studies.workers import answers, workers
 from lumped.result.result import provenance
 from lumped.schema import Table
 from lumped.schema.files import data_folder
@@ -50,7 +42,7 @@ def rows(file: Path, calls: Mapping[str, partial[R]], progress: Progress, jobs: 
     with closing(measured(left, jobs)) as found:
         for name, row in found:
             call = left[name]
-            line = json.dumps({"suite": _suite(), "call": _said(call), "row": encoded(row, call.args)})
+            line = json.dumps({"suite": suite(), "call": _said(call), "row": encoded(row, call.args)})
             _keep(file, line)
             known[_said(call)] = json.loads(line)["row"]  # as another run reads it
             progress(name)
@@ -68,7 +60,7 @@ def _said(call: partial[Any]) -> str:
 
 
 @cache
-def _suite() -> str:
+def suite() -> str:
     """A digest of the suite, of its data and of the versions beneath it."""
     specs = [find_spec(package) for package in PACKAGES]
     folders = [Path(place) for spec in specs if spec for place in spec.submodule_search_locations or ()]
@@ -87,7 +79,7 @@ def _kept(file: Path) -> Table:
             content = json.loads(line)
         except json.JSONDecodeError:
             continue
-        if isinstance(content, dict) and content.get("suite") == _suite():
+        if isinstance(content, dict) and content.get("suite") == suite():
             found[content["call"]] = content["row"]
     return found
 
@@ -105,90 +97,6 @@ def measured(calls: Mapping[str, partial[R]], jobs: int) -> Generator[tuple[str,
     The processes are killed when the caller stops, fails or is interrupted: close the iterator then. They also end
     when this process is killed itself. Raises WorkerLost, and whatever a call raises.
     """
-    if min(jobs, len(calls)) < 2:
-        for name, call in calls.items():
-            with one_thread:
-                found = call()
-            yield name, found
-        return
-    left, asked = iter(calls.items()), dict[Any, str]()  # the calls that are at work, by the line to their process
-    workers: list[BaseProcess] = []
-    try:
-        with _signals_held():  # a process that is interrupted while it starts would print how far it came
-            for name, call in islice(left, jobs):
-                worker, line = _started()
-                workers.append(worker)
-                asked[line] = name
-                line.send(call)
-        while asked:
-            ready = connection.wait(list(asked))
-            for line in [one for one in asked if one in ready]:
-                name = asked.pop(line)
-                failure, found = line.recv()
-                for following, call in islice(left, 1):
-                    asked[line] = following
-                    line.send(call)
-                if failure is not None:
-                    raise failure
-                yield name, found
-    except (EOFError, ConnectionError):
-        raise WorkerLost from None
-    finally:
-        with _signals_held():
-            for worker in workers:
-                worker.kill()
-        for worker in workers:
-            worker.join()
-
-
-def _started() -> tuple[BaseProcess, connection.Connection]:
-    """A process that answers calls, and the line to it.
-
-    A pool of the standard library would need semaphores, which some systems refuse to a user.
-    """
-    context = get_context("spawn")
-    ours, its = context.Pipe()
-    worker = context.Process(target=_answer, args=(its,), daemon=True)
-    worker.start()
-    its.close()
-    return worker, ours
-
-
-@contextmanager
-def _signals_held() -> Iterator[None]:
-    """Signals that end this process come afterwards; processes started meanwhile hold them too."""
-    if sys.platform == "win32":
-        yield
-        return
-    resource_tracker.ensure_running()  # starts with the first process else, and lets signals through again
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _answer(line: connection.Connection) -> None:
-    """In a new process: what calls give, or how they fail, until nobody asks any more, as without a parent.
-
-    A second thread measures, so that this one hears the line's end at once. An interrupt is the parent's to answer.
-    """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if sys.platform != "win32":
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, signal.SIGTERM})
-
-    def said(done: Future[Any]) -> None:
-        failure, sent = done.exception(), False
-        try:
-            line.send((failure, None if failure else done.result()))
-            sent = True
-        finally:
-            if not sent:  # nothing else would be heard, and waited for without end
-                os._exit(1)
-
-    measuring = ThreadPoolExecutor(1, initializer=one_thread.__enter__)  # for as long as this process lives
-    try:
-        while True:
-            measuring.submit(line.recv()).add_done_callback(said)
-    except EOFError:
-        os._exit(1)
+    processes = max(1, min(jobs, len(calls)))
+    with workers(processes) as (executor, ahead):
+        yield from answers(executor, calls.items(), ahead)
