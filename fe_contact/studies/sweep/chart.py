@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import MaxNLocator
+from matplotlib.axis import Axis as PlotAxis
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from fe_contact.studies import style
 from fe_contact.studies.style import Look
@@ -76,6 +77,15 @@ def _scaled(key: str, values: Array, to_scale: Callable[[str], object], to_label
         to_scale("log")
 
 
+def _plain_numbers(*axes: PlotAxis) -> None:
+    """Where an axis is logarithmic: 1, 2 and 5 of each decade as they are written, and no other."""
+    for axis in axes:
+        if axis.get_scale() == "log":
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
+
+
 def _colour(method: int) -> str:
     return style.CYCLE[method % len(style.CYCLE)]
 
@@ -110,6 +120,7 @@ def _panel(axes: Axes, table: SweepTable, key: str, quantity: str) -> None:
     axes.set_ylabel(name)
     if _decades(np.array(values)):
         axes.set_yscale("log")
+    _plain_numbers(axes.xaxis, axes.yaxis)
 
 
 def _maps(table: SweepTable, numbers: list[str], where: Path) -> tuple[Path, ...]:
@@ -117,7 +128,7 @@ def _maps(table: SweepTable, numbers: list[str], where: Path) -> tuple[Path, ...
     sweep, method = table.sweep, table.sweep.methods[0]
     text = [f"By the method {method}. White: an answer did not converge, or was refused. SI units."]
     with style.sheet(where, NAME, _title(sweep), text, 2.7, width=WIDTH) as sheet:
-        for place, axes in enumerate(sheet.panels(1, 2, 0.085, 0.985, wspace=0.3)):
+        for place, axes in enumerate(sheet.panels(1, 2, 0.1, 0.965, wspace=0.34)):
             _map(axes, table, numbers, MAPPED[place])
             style.label(axes, "ab"[place], _scale(MAPPED[place], _column(table, MAPPED[place], 0, table.values))[1])
     return sheet.paths
@@ -135,9 +146,11 @@ def _map(axes: Axes, table: SweepTable, numbers: list[str], quantity: str) -> No
         look: Look = {"levels": _levels(known), "norm": "log" if _decades(known) else "linear"}
         axes.contourf(x, y, shown, cmap="cividis", alpha=0.75, **look)
         lines = axes.contour(x, y, shown, levels=look["levels"], colors=style.BLACK, linewidths=0.6)
-        axes.clabel(lines, fontsize=6.0, fmt="%g")
+        for label in axes.clabel(lines, fontsize=6.0, fmt="%g"):
+            label.set_clip_on(False)
     _scaled(numbers[1], x, axes.set_xscale, axes.set_xlabel)
     _scaled(numbers[0], y, axes.set_yscale, axes.set_ylabel)
+    _plain_numbers(axes.xaxis, axes.yaxis)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
 
 
