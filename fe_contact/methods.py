@@ -41,7 +41,7 @@ def simulate(
         given, method = settings(table, tolerance, scene.source), method or default(scene)
         if method not in OWN:
             return _lumped(scene, method, given)
-        result = _exact(scene, given) if method != FE else None
+        result = exact(scene, given) if method != FE else None
         if result is None:
             from fe_contact.reference import fe  # late: a law needs no finite elements
 
@@ -62,8 +62,11 @@ def _lumped(scene: Scene, name: str, given: Given) -> Result:
     return found
 
 
-def _exact(scene: Scene, given: Given) -> Result | None:
-    """By an exact law, None where none meets the tolerance; without geometry by the scene's own law."""
+def exact(scene: Scene, given: Given) -> Result | None:
+    """By the cheapest exact law, None where none meets the tolerance; without geometry by the scene's own law.
+
+    `given`: :func:`settings`. Raises BadInput, and NotReached where the scene's own law does not come to an end.
+    """
     if scene.law is not None and not scene.has_geometry:
         return _lumped(scene, scene.law.name, given)
     for name in EXACT_WITH_INERTIA if scene.model.inertia else EXACT:

@@ -112,6 +112,12 @@ class WaveNumerics(Numerics):
 
 
 KEYS = keys_of(WaveNumerics)  # what a user may choose
+SCALES = {  # what a plan estimates, by field
+    "contact_radius": "m, the largest that is expected",
+    "contact_time": "s, as it is expected",
+    "peak_share": "time of the peak force over the contact time, as it is expected",
+    "finer": "times as many elements at the surface as the body has, with waves",
+}
 RANGES = {name: (key.kind.low, key.kind.high) for name, key in KEYS.items() if isinstance(key.kind, Range)}
 
 

@@ -1,14 +1,17 @@
-"""``fe-contact plan SCENE``: the settings chosen and the model ledger, without solving."""
+"""``fe-contact plan SCENE``: the cheapest method, the settings of finite elements and the model ledger."""
 
 from __future__ import annotations
 
 import argparse
+import math
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
+from fe_contact.settings import KEYS, SCALES
 from lumped.errors import FeContactError, NotReached
-from lumped.result.result import good_to
+from lumped.result.result import Result, good_to
 from lumped.scene.scene import Scene
+from lumped.schema import Table
 
 if TYPE_CHECKING:  # finite elements are loaded when they are needed
     from fe_contact.budget.plan import Plan
@@ -16,18 +19,33 @@ if TYPE_CHECKING:  # finite elements are loaded when they are needed
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Print settings, ledger, what waves take, and why finite elements refuse the scene; 3 where that is too much."""
-    from fe_contact.methods import settings
+    """Print method, settings, ledger, what waves take, why finite elements refuse the scene; 3 where that is too much.
+
+    An exact law is asked, in milliseconds; no finite elements.
+    """
+    from fe_contact.methods import exact, settings
     from fe_contact.reference import plan
 
     scene, table = base.read_scene(args)
-    progress = base.progress_of(args)
+    progress, given = base.progress_of(args), settings(table, None, scene.source)
     progress("plan")
-    chosen = plan(scene, settings(table, None, scene.source))
+    answer = exact(scene, given)
+    method = {"name": "fe"} if answer is None else _known(answer)
+    title = f"{scene.name}: {_words(answer)}"
+    if not scene.has_geometry:
+        nothing: Table = {"numerics": None, "model_ledger": [], "cost": None, "refused": None}
+        base.say(args, {"method": method} | nothing, [], title)
+        return base.DONE
+    chosen = plan(scene, given)
     takes, refused = _takes(scene, chosen)
     ledger = [entry.to_json(float(chosen.numerics.tolerance)) for entry in chosen.ledger]
-    content = {"numerics": chosen.numerics.as_dict(), "model_ledger": ledger, "cost": takes and takes.as_dict()}
-    base.say(args, content | {"refused": refused and str(refused)}, _lines(chosen, takes), scene.name)
+    content = {
+        "method": method,
+        "numerics": chosen.numerics.as_dict(),
+        "model_ledger": ledger,
+        "cost": takes and takes.as_dict(),
+    }
+    base.say(args, content | {"refused": refused and str(refused)}, _lines(chosen, takes), title)
     if refused and not args.json:
         base.complain(str(refused))
     return base.NOT_REACHED if isinstance(refused, NotReached) else base.DONE  # what only laws can follow is a plan too
@@ -36,8 +54,10 @@ def execute(args: argparse.Namespace) -> int:
 def _lines(chosen: Plan, takes: Cost | None) -> list[str]:
     """Every setting, what waves take, every effect left out."""
     tolerance = float(chosen.numerics.tolerance)
-    settings = chosen.numerics.as_dict().items()
-    lines = [f"{key:21s} {value if not isinstance(value, float) else format(value, '.6g')}" for key, value in settings]
+    words = {name: key.meaning for name, key in KEYS.items()} | SCALES
+    lines = ["settings of finite elements:"]
+    for key, value in chosen.numerics.as_dict().items():
+        lines.append(f"  {key:21s} {value if not isinstance(value, float) else format(value, '.6g'):<12} {words[key]}")
     lines += [] if takes is None else [f"takes {takes}"]
     lines.append("left out, relative to the peak force:")
     for entry in chosen.ledger:
@@ -45,6 +65,21 @@ def _lines(chosen: Plan, takes: Cost | None) -> list[str]:
         size += f"{entry.estimate:.2g}, " if entry.estimate is not None else ""
         lines.append(f"  {entry.effect} ({entry.treated}): {size}{entry.verdict(tolerance)}")
     return [*lines, good_to(chosen.ledger)]
+
+
+def _known(answer: Result) -> Table:
+    """What an exact answer says of itself: its bar, relative to the peak force, and its processor time, s."""
+    peak = answer.quantities["peak_force"]
+    bar = (peak.error or 0.0) / (peak.value or math.inf)
+    return {"name": answer.method, "bar": bar, "cpu_s": answer.timing["cpu_s"]}
+
+
+def _words(answer: Result | None) -> str:
+    """The same in words."""
+    if answer is None:
+        return "finite elements; no exact law of this model meets the tolerance"
+    known = _known(answer)
+    return f"{known['name']} answers, bar {known['bar']:.1g} of the peak force, in {1e3 * known['cpu_s']:.0f} ms"
 
 
 def _takes(scene: Scene, chosen: Plan) -> tuple[Cost | None, FeContactError | None]:
@@ -65,7 +100,7 @@ def _takes(scene: Scene, chosen: Plan) -> tuple[Cost | None, FeContactError | No
 
 
 MEMBER = base.Command(
-    "the settings chosen and what the model leaves out, without solving",
+    "the cheapest method, the settings of finite elements, and what the model leaves out",
     (
         *base.SCENE,
         *base.OUTPUT,

@@ -354,6 +354,19 @@ def test_plan_says_settings_and_ledger_and_solves_nothing(
     assert is_empty(empty)
 
 
+def test_plan_speaks_first_of_the_cheapest_method(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Of an exact law where one meets the tolerance, by its own bar; of finite elements where none knows the model."""
+    for name, method in ((str(scene), "mdr"), ("polymer-layer", "ting"), ("paper-steel-hertz", "hertz")):
+        assert exit_code("plan", name, "--json") == 0
+        told = json.loads(capsys.readouterr().out)["method"]
+        assert told["name"] == method
+        assert 0.0 < told["bar"] <= 1e-3
+        assert exit_code("plan", name) == 0
+        assert method in capsys.readouterr().out.splitlines()[0]
+    assert exit_code("plan", "steel-ball-waves", "--json") == 0
+    assert json.loads(capsys.readouterr().out)["method"] == {"name": "fe"}
+
+
 @pytest.mark.parametrize("name", COMMANDS.names)
 def test_every_command_explains_itself(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert exit_code(name, "--help") == 0
