@@ -165,6 +165,19 @@ def test_values_are_those_of_single_runs(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["cases"]
 
 
+def test_a_case_without_enough_memory_is_a_row_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(scene: Scene, *_: Any) -> Any:
+        if scene.velocity > 0.1:
+            raise MemoryError
+        return fe_contact.run(scene, 1e-2, "hertz")
+
+    monkeypatch.setattr(study, "simulate", refused)
+    table = fe_contact.sweep(tables(axes={SPEED: [0.2, 0.05]}))
+    assert table.converged.tolist() == [[False], [True]]
+    assert not table.all_ended
+    assert "out of memory" in table.reasons[0, 0]
+
+
 def test_the_tolerance_may_be_an_axis() -> None:
     asked = [1e-2, 1e-4]
     table = fe_contact.sweep(tables(("fe",), axes={"numerics.tolerance": asked}, tolerance=5e-2))

@@ -162,6 +162,8 @@ def _row(base: BaseScene, tolerance: float | None, question: Question) -> Table:
         row["values"] = {name: (one.value, one.error) for name, one in found.quantities.items() if name in UNITS}
     except FeContactError as failure:
         row |= {"refused": isinstance(failure, BadInput), "reason": "; ".join(str(failure).splitlines())}
+    except MemoryError:
+        row["reason"] = "out of memory; cure: a larger tolerance, fewer numerics.elements_per_contact, or more memory"
     return row | {"cpu_s": time.process_time() - begun}
 
 
