@@ -174,7 +174,7 @@ def test_a_case_without_enough_memory_is_a_row_with_its_reason(monkeypatch: pyte
     monkeypatch.setattr(study, "simulate", refused)
     table = fe_contact.sweep(tables(axes={SPEED: [0.2, 0.05]}))
     assert table.converged.tolist() == [[False], [True]]
-    assert not table.all_ended
+    assert not table.refused.any()
     assert "out of memory" in table.reasons[0, 0]
 
 
