@@ -145,7 +145,7 @@ class ExtraMissing(BadInput):
 
 
 @contextmanager
-def optional(extra: str) -> Iterator[None]:
+def import_of(extra: str) -> Iterator[None]:
     """Inside, a package is imported that only the option ``extra`` needs; raises ExtraMissing."""
     try:
         yield

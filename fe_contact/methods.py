@@ -24,6 +24,18 @@ def settings(table: Given, tolerance: float | None, source: str) -> Table:
     return checked(given, source)
 
 
+def names() -> tuple[str, ...]:
+    """Of all methods."""
+    return (*OWN, *laws.available())
+
+
+def refusal(name: object) -> str:
+    """Why this is no name of a method; empty where it is one."""
+    known = names()
+    hint = nearest(name, known) if isinstance(name, str) else ""
+    return "" if name in known else f"{shown(name)}: accepted {', '.join(known)}{hint}"
+
+
 def default(scene: Scene) -> str:
     """The method of a scene that nobody chose one for: the law it names, else finite elements."""
     return FE if scene.law is None else scene.law.name
@@ -53,9 +65,8 @@ def _lumped(scene: Scene, name: str, given: Given) -> Result:
     """By a lumped law. Raises BadInput for an unknown name."""
     from fe_contact.budget.plan import DEFAULT_TOLERANCE
 
-    if name not in laws.available():
-        names = (*OWN, *laws.available())
-        raise BadInput(Fault("--method", "", f"{shown(name)}: accepted {', '.join(names)}{nearest(name, names)}"))
+    if reason := refusal(name):
+        raise BadInput(Fault("--method", "", reason))
     found = simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))
     if scene.has_geometry:
         scene.check_sunk(found.quantities["peak_depth"].value or 0.0)

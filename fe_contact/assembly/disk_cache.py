@@ -115,7 +115,7 @@ def most_bytes() -> float:
     raise BadInput(Fault(BOUND, "", f"{shown(said)}: accepted a number of megabytes, 0 or more"))
 
 
-def kept(where: Path) -> list[tuple[float, int, Path]]:
+def entries(where: Path) -> list[tuple[float, int, Path]]:
     """Files of answers, whole or begun: when they were used last, their bytes, their names; the oldest first."""
     found = []
     for path in where.glob("[0-9a-f]" * SEAL + ".npz*"):
@@ -127,7 +127,7 @@ def kept(where: Path) -> list[tuple[float, int, Path]]:
 
 def clear(where: Path, most: float = 0.0) -> None:
     """Remove the files not used for longest until the rest takes no more than ``most`` bytes."""
-    files = kept(where)
+    files = entries(where)
     taken = sum(size for _, size, _ in files)
     for _, size, path in files:
         if taken <= most:
@@ -139,14 +139,14 @@ def clear(where: Path, most: float = 0.0) -> None:
 
 def _key(question: Recipe[_Answer]) -> str:
     """SHA-256 of a question and of all else that decides the answer."""
-    return hashlib.sha256(json.dumps([_told(question), _maker(), blas()]).encode()).hexdigest()
+    return hashlib.sha256(json.dumps([_in_json(question), _maker(), blas()]).encode()).hexdigest()
 
 
-def _told(argument: Hashable) -> object:
+def _in_json(argument: Hashable) -> object:
     """An argument in JSON: floats by all their digits, a recipe by its function's name."""
     if isinstance(argument, Recipe):
-        return [f"{argument.make.__module__}.{argument.make.__qualname__}", *map(_told, argument.arguments)]
-    return [_told(part) for part in argument] if isinstance(argument, tuple) else argument
+        return [f"{argument.make.__module__}.{argument.make.__qualname__}", *map(_in_json, argument.arguments)]
+    return [_in_json(part) for part in argument] if isinstance(argument, tuple) else argument
 
 
 @cache

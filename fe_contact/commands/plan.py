@@ -30,7 +30,7 @@ def execute(args: argparse.Namespace) -> int:
     progress, given = base.progress_of(args), settings(table, None, scene.source)
     progress("plan")
     answer = exact(scene, given)
-    method = {"name": "fe"} if answer is None else _known(answer)
+    method = {"name": "fe"} if answer is None else _bar_and_cost(answer)
     title = f"{scene.name}: {_words(answer)}"
     if not scene.has_geometry:
         nothing: Table = {"numerics": None, "model_ledger": [], "cost": None, "refused": None}
@@ -67,7 +67,7 @@ def _lines(chosen: Plan, takes: Cost | None) -> list[str]:
     return [*lines, good_to(chosen.ledger)]
 
 
-def _known(answer: Result) -> Table:
+def _bar_and_cost(answer: Result) -> Table:
     """What an exact answer says of itself: its bar, relative to the peak force, and its processor time, s."""
     peak = answer.quantities["peak_force"]
     bar = (peak.error or 0.0) / (peak.value or math.inf)
@@ -78,8 +78,8 @@ def _words(answer: Result | None) -> str:
     """The same in words."""
     if answer is None:
         return "finite elements; no exact law of this model meets the tolerance"
-    known = _known(answer)
-    return f"{known['name']} answers, bar {known['bar']:.1g} of the peak force, in {1e3 * known['cpu_s']:.0f} ms"
+    costs = _bar_and_cost(answer)
+    return f"{costs['name']} answers, bar {costs['bar']:.1g} of the peak force, in {1e3 * costs['cpu_s']:.0f} ms"
 
 
 def _takes(scene: Scene, chosen: Plan) -> tuple[Cost | None, FeContactError | None]:

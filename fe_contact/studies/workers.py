@@ -20,7 +20,7 @@ from queue import SimpleQueue
 from threading import Lock
 from typing import Any, NamedTuple, ParamSpec, TypeVar
 
-from fe_contact.errors import WorkerLost, optional
+from fe_contact.errors import WorkerLost, import_of
 from fe_contact.threads import one_thread
 from lumped.errors import BadInput, Fault, shown
 from lumped.schema.keys import Count
@@ -69,7 +69,7 @@ def workers(jobs: int, dask: str | None = None) -> Iterator[tuple[Executor, int]
         with Processes(jobs) if jobs > 1 else Here() as executor:
             yield executor, jobs
         return
-    with optional("dask"):
+    with import_of("dask"):
         import distributed
     with ExitStack() as stack:
         try:
@@ -133,7 +133,7 @@ class Processes(Executor):
         worker = self._idle.get()
         try:
             for _ in range(ATTEMPTS):
-                worker = worker or self._started()
+                worker = worker or self._start()
                 try:
                     worker.line.send(call)
                     failure, found = worker.line.recv()
@@ -150,7 +150,7 @@ class Processes(Executor):
         finally:
             self._idle.put(worker)
 
-    def _started(self) -> _Worker:
+    def _start(self) -> _Worker:
         """A process that answers calls, and the line to it. Raises WorkerLost where no more are wanted."""
         context = get_context("spawn")
         ours, its = context.Pipe()

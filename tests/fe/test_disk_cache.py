@@ -17,7 +17,7 @@ import fe_contact
 from fe_contact import threads
 from fe_contact.assembly import cache, disk_cache
 from fe_contact.assembly.cache import BODIES, Store
-from fe_contact.assembly.disk_cache import BOUND, OFF, PLACE, kept
+from fe_contact.assembly.disk_cache import BOUND, OFF, PLACE, entries
 from fe_contact.cli import main
 from fe_contact.targets import half_space
 from lumped import Result, Scene
@@ -71,10 +71,10 @@ def bits(found: Result) -> list[object]:
     "name", ["polymer-sphere", "polymer-layer", "rod-in-ring", "polymer-punch", "polymer-half-plane", "polymer-o-ring"]
 )
 def test_numbers_with_and_without_are_the_same_to_the_bit(name: str, disk: Path) -> None:
-    cold, files = forgotten(name), kept(disk)
+    cold, files = forgotten(name), entries(disk)
     warm = forgotten(name)
     assert files
-    assert {path for _, _, path in kept(disk)} == {path for _, _, path in files}, "nothing new was made"
+    assert {path for _, _, path in entries(disk)} == {path for _, _, path in files}, "nothing new was made"
     with disk_cache.without_disk():
         without = forgotten(name)
     assert bits(cold) == bits(warm) == bits(without)
@@ -86,7 +86,7 @@ def test_a_body_of_constant_bulk_modulus_is_known_too(disk: Path) -> None:
     for _ in range(2):
         cache._BODIES = Store(BODIES)
         found.append(bits(fe_contact.run(scene, 1e-2)))
-        files = len(kept(disk))
+        files = len(entries(disk))
     assert found[0] == found[1]
     assert files > 0
 
@@ -101,7 +101,7 @@ def test_a_known_geometry_loads_neither_gmsh_nor_scikit_fem(name: str, disk: Pat
 
 
 def only(disk: Path) -> Path:
-    (_, _, path), *others = kept(disk)
+    (_, _, path), *others = entries(disk)
     assert not others
     return path
 
@@ -132,7 +132,7 @@ def test_a_killed_writer_leaves_whole_answers_or_none(disk: Path) -> None:
         for _ in range(7):
             time.sleep(rng.uniform(0.0, 0.02))
             os.kill(writer.pid, signal.SIGSTOP)
-            for _, _, path in kept(disk):
+            for _, _, path in entries(disk):
                 assert path.suffix != ".npz" or disk_cache._read(path) is not None
             os.kill(writer.pid, signal.SIGCONT)
         writer.kill()
@@ -148,7 +148,7 @@ def test_processes_may_share_the_folder(disk: Path) -> None:
     writers += [subprocess.Popen([sys.executable, "-c", PROBE, "polymer-punch"], stdout=subprocess.PIPE, text=True)]
     told = {writer.communicate()[0].split("\n")[0] for writer in writers}
     assert len(told) == 1
-    assert all(path.suffix == ".npz" and disk_cache._read(path) for _, _, path in kept(disk))
+    assert all(path.suffix == ".npz" and disk_cache._read(path) for _, _, path in entries(disk))
 
 
 def test_the_folder_keeps_its_bound_and_the_last_used(disk: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -157,17 +157,17 @@ def test_the_folder_keeps_its_bound_and_the_last_used(disk: Path, monkeypatch: p
     size = first.stat().st_size
     monkeypatch.setenv(BOUND, str(3.5 * size / 2**20))
     for age, nu in enumerate((0.1, 0.2, 0.4, 0.45)):
-        for older, _, path in kept(disk):
+        for older, _, path in entries(disk):
             os.utime(path, (older - 10.0, older - 10.0))
         half_space._operator(*ASKED)  # used, hence young
         half_space._operator(nu, *ASKED[1:])
-        files = kept(disk)
+        files = entries(disk)
         assert sum(size for _, size, _ in files) <= 3.5 * size
         assert len(files) == min(age + 2, 3)
         assert first in [path for _, _, path in files]
     monkeypatch.setenv(BOUND, "0")
     half_space._operator(0.05, *ASKED[1:])
-    assert len(kept(disk)) == 3, "what has no room is not written"
+    assert len(entries(disk)) == 3, "what has no room is not written"
 
 
 def test_a_bound_that_is_none_is_bad_input(
@@ -192,14 +192,14 @@ def test_another_version_is_another_question(disk: Path, monkeypatch: pytest.Mon
     import importlib.metadata
 
     half_space._operator(*ASKED)
-    known, version = kept(disk), importlib.metadata.version
+    known, version = entries(disk), importlib.metadata.version
     for package in ("fe-contact", "numpy", "scipy", "scikit-fem", "gmsh"):
         other = {package: "0.0.1"}
         monkeypatch.setattr(importlib.metadata, "version", lambda name, other=other: other.get(name) or version(name))
         disk_cache._maker.cache_clear()
         half_space._operator(*ASKED)
-        assert len(kept(disk)) == len(known) + 1
-        known = kept(disk)
+        assert len(entries(disk)) == len(known) + 1
+        known = entries(disk)
     monkeypatch.undo()
     disk_cache._maker.cache_clear()
 
@@ -209,7 +209,7 @@ def test_another_processor_is_another_question(disk: Path, monkeypatch: pytest.M
     assert threads.blas()
     monkeypatch.setattr(disk_cache, "blas", lambda: ["openblas 0.0 Z80"])
     half_space._operator(*ASKED)
-    assert len(kept(disk)) == 2
+    assert len(entries(disk)) == 2
 
 
 @pytest.mark.parametrize("way", ["environment", "option"])

@@ -15,11 +15,9 @@ from pathlib import Path
 import numpy as np
 from scipy.special import ndtr
 
-from fe_contact import settings
-from fe_contact.methods import OWN
+from fe_contact import methods, settings
 from fe_contact.settings import Given
-from lumped import laws
-from lumped.errors import BadInput, Fault, nearest, shown
+from lumped.errors import BadInput, Fault, shown
 from lumped.numbers import Array
 from lumped.scene.scene import Scene
 from lumped.scene.tables import SceneReader
@@ -51,17 +49,14 @@ class Methods:
     @property
     def accepted(self) -> str:
         """In words."""
-        return f"a list of methods, of {', '.join((*OWN, *laws.available()))}"
+        return f"a list of methods, of {', '.join(methods.names())}"
 
     def read(self, value: object) -> tuple[str, ...]:
         """The names; raises ValueError for one that is none."""
-        names = (*OWN, *laws.available())
         if not isinstance(value, list) or not value:
             raise ValueError
-        for one in value:
-            if one not in names:
-                hint = nearest(one, names) if isinstance(one, str) else ""
-                raise ValueError(f"{shown(one)}: accepted {', '.join(names)}{hint}")
+        if reason := next(filter(None, map(methods.refusal, value)), ""):
+            raise ValueError(reason)
         return tuple(dict.fromkeys(value))
 
 
@@ -189,7 +184,7 @@ class _Reader:
             raise BadInput(self.faults)
         chosen = {name: values[name] for name in ("methods", "tolerance") if name in values}
         found = Sweep(values.get("name", Path(self.source).stem), self.source, base, axes, **chosen)
-        self.faults += self.shared(found)
+        self.faults += self.common_faults(found)
         if self.faults:
             raise BadInput(self.faults)
         return found
@@ -236,7 +231,7 @@ class _Reader:
 
     def range(self, where: str, kind: str, spec: Given) -> Values:
         """So many values between two ends."""
-        ends = self.two(f"{where}.{kind}", spec[kind], above_zero=kind == "log")
+        ends = self.pair(f"{where}.{kind}", spec[kind], above_zero=kind == "log")
         count, known = Count(1, MOST_CASES), len(self.faults)
         values, faults = read_table(self.source, where, {"count": spec["count"]}, {"count": Key(count)})
         self.faults += faults
@@ -244,7 +239,7 @@ class _Reader:
             return ()
         return tuple(float(f"{value:.{DIGITS}g}") for value in RANGES[kind](*ends, values["count"]).tolist())
 
-    def two(self, where: str, value: object, above_zero: bool = False) -> tuple[float, float] | None:
+    def pair(self, where: str, value: object, above_zero: bool = False) -> tuple[float, float] | None:
         """Two finite numbers; None with a fault noted."""
         number = Number(0.0 if above_zero else -1e300, 1e300, above=above_zero)
         try:
@@ -261,7 +256,7 @@ class _Reader:
         values, faults = read_table(self.source, "draws", given, DRAW_KEYS)
         self.faults += faults
         specs = {key: spec for key, spec in table.items() if key not in (*DRAW_KEYS, "correlation")}
-        kinds = {key: self.drawn(f"draws.{key}", spec) for key, spec in specs.items()}
+        kinds = {key: self.transform(f"draws.{key}", spec) for key, spec in specs.items()}
         roots = self.correlation(table.get("correlation", []), list(kinds))
         if len(values) < len(DRAW_KEYS) or not kinds or None in kinds.values():
             if not kinds:
@@ -271,14 +266,14 @@ class _Reader:
         columns = [made(z).tolist() for made, z in zip(kinds.values(), normal.T, strict=True) if made is not None]
         return [Axis(tuple(kinds), tuple(zip(*columns, strict=True)), drawn=True)]
 
-    def drawn(self, where: str, spec: object) -> Callable[[Array], Array] | None:
+    def transform(self, where: str, spec: object) -> Callable[[Array], Array] | None:
         """How a key follows from a standard normal variable; None with a fault noted."""
         if not isinstance(spec, Mapping) or len(spec) != 1 or next(iter(spec)) not in DRAWS:
             self.fault(where, f"{shown(spec)}; accepted: {DRAWN}")
             return None
         ((kind, value),) = spec.items()
-        two = self.two(f"{where}.{kind}", value, above_zero=kind == "log_uniform")
-        return None if two is None else lambda z: DRAWS[kind](*two, z)
+        ends = self.pair(f"{where}.{kind}", value, above_zero=kind == "log_uniform")
+        return None if ends is None else lambda z: DRAWS[kind](*ends, z)
 
     def correlation(self, pairs: object, keys: list[str]) -> Array:
         """The root of the correlation matrix of the normal variables, (n, n); the unit matrix with a fault noted."""
@@ -311,7 +306,7 @@ class _Reader:
             self.faults += [Fault(self.source, "scene", fault.message) for fault in bad.faults]
             return None
 
-    def shared(self, sweep: Sweep) -> list[Fault]:
+    def common_faults(self, sweep: Sweep) -> list[Fault]:
         """What every case of a sample is refused for: a key that no scene has, a base scene with a fault.
 
         A value out of its range is its own case's fault alone. Beside other faults of the file, some axis is missing:

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from fe_contact.errors import optional
+from fe_contact.errors import import_of
 from fe_contact.studies.sweep.cases import Sweep
 from lumped.numbers import Array
 from lumped.result.result import UNITS, provenance
@@ -168,7 +168,7 @@ class SweepTable:
             self._write_parquet(where / "table.parquet")
 
     def _write_parquet(self, path: Path) -> None:
-        with optional("parquet"):
+        with import_of("parquet"):
             import pyarrow
             from pyarrow import parquet
         columns = [pyarrow.array(column, from_pandas=True) for column in self._columns()]  # NaN is what is undefined
@@ -194,7 +194,7 @@ class SweepTable:
 
 def require_parquet() -> None:
     """Raises ExtraMissing, before any work, where no table could be written as Parquet."""
-    with optional("parquet"):
+    with import_of("parquet"):
         import pyarrow.parquet  # noqa: F401 - whether it can be
 
 
