@@ -23,13 +23,17 @@ TOP_LEVEL = FILES | {"data", "tests"} | {*PACKAGES}
 STANDARD = sys.stdlib_module_names
 LUMPED = STANDARD | {"lumped", "numpy", "scipy"}
 MESHES = STANDARD | {"meshes", "numpy", "scipy", "skfem", "meshio", "gmsh"}
-FINITE_ELEMENTS = LUMPED | MESHES | {"fe_contact", "matplotlib", "threadpoolctl"}
+EXTRAS = {
+    "distributed": "fe_contact/studies/workers.py",
+    "pyarrow": "fe_contact/studies/sweep/table.py",
+}
+FINITE_ELEMENTS = LUMPED | MESHES | {"fe_contact", "matplotlib", "threadpoolctl", *EXTRAS}
 ALLOWED = {"lumped": LUMPED, "meshes": MESHES, "fe_contact": FINITE_ELEMENTS}
 HEAVY = {"skfem", "gmsh", "matplotlib", "meshio", "scipy.integrate"}
 NOT_LOADED = {
     "lumped": HEAVY | {"meshes", "fe_contact"},
     "meshes": {"lumped", "fe_contact", "skfem", "gmsh", "matplotlib"},
-    "fe_contact": {"gmsh", "matplotlib", "scipy.integrate"},
+    "fe_contact": {"gmsh", "matplotlib", "scipy.integrate", *EXTRAS},
 }
 SERIALIZERS = {"pickle", "_pickle", "cloudpickle", "dill", "joblib", "marshal", "shelve"}
 
@@ -102,6 +106,11 @@ def test_only_charts_import_matplotlib() -> None:
 
 def test_only_the_session_imports_gmsh() -> None:
     assert importers("gmsh") == {"meshes/session.py"}
+
+
+@pytest.mark.parametrize("extra", EXTRAS)
+def test_one_file_imports_an_extra(extra: str) -> None:
+    assert importers(extra) == {EXTRAS[extra]}
 
 
 def test_no_relative_import_leaves_its_package() -> None:
