@@ -23,17 +23,18 @@ TOP_LEVEL = FILES | {"data", "tests"} | {*PACKAGES}
 STANDARD = sys.stdlib_module_names
 LUMPED = STANDARD | {"lumped", "numpy", "scipy"}
 MESHES = STANDARD | {"meshes", "numpy", "scipy", "skfem", "meshio", "gmsh"}
-EXTRAS = {
+ONE_IMPORTER = {
     "distributed": "fe_contact/studies/workers.py",
+    "gmsh": "meshes/session.py",
     "pyarrow": "fe_contact/studies/sweep/table.py",
 }
-FINITE_ELEMENTS = LUMPED | MESHES | {"fe_contact", "matplotlib", "threadpoolctl", *EXTRAS}
+FINITE_ELEMENTS = LUMPED | MESHES | {"fe_contact", "matplotlib", "threadpoolctl", *ONE_IMPORTER}
 ALLOWED = {"lumped": LUMPED, "meshes": MESHES, "fe_contact": FINITE_ELEMENTS}
 HEAVY = {"skfem", "gmsh", "matplotlib", "meshio", "scipy.integrate"}
 NOT_LOADED = {
     "lumped": HEAVY | {"meshes", "fe_contact"},
     "meshes": {"lumped", "fe_contact", "skfem", "gmsh", "matplotlib"},
-    "fe_contact": {"gmsh", "matplotlib", "scipy.integrate", *EXTRAS},
+    "fe_contact": {"matplotlib", "scipy.integrate", *ONE_IMPORTER},
 }
 SERIALIZERS = {"pickle", "_pickle", "cloudpickle", "dill", "joblib", "marshal", "shelve"}
 
@@ -78,7 +79,6 @@ def name(path: Path) -> str:
     return path.relative_to(ROOT).as_posix()
 
 
-@pytest.mark.family
 @pytest.mark.parametrize("package", PACKAGES)
 def test_a_floor_imports_only_what_it_may(package: str) -> None:
     assert sources(package), f"{package} has no source"
@@ -104,13 +104,9 @@ def test_only_charts_import_matplotlib() -> None:
     assert importers("matplotlib") <= charts | {"fe_contact/studies/style.py"}
 
 
-def test_only_the_session_imports_gmsh() -> None:
-    assert importers("gmsh") == {"meshes/session.py"}
-
-
-@pytest.mark.parametrize("extra", EXTRAS)
-def test_one_file_imports_an_extra(extra: str) -> None:
-    assert importers(extra) == {EXTRAS[extra]}
+@pytest.mark.parametrize("package", ONE_IMPORTER)
+def test_one_file_alone_imports_it(package: str) -> None:
+    assert importers(package) == {ONE_IMPORTER[package]}
 
 
 def test_no_relative_import_leaves_its_package() -> None:
