@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from fe_contact.errors import faults_of
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import Given, checked
@@ -69,7 +71,8 @@ def _lumped(scene: Scene, name: str, given: Given) -> Result:
         raise BadInput(Fault("--method", "", reason))
     found = simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))
     if scene.has_geometry:
-        scene.check_sunk(found.quantities["peak_depth"].value or 0.0)
+        widest = float(np.nanmax(found.history.contact_radius, initial=0.0))
+        scene.check_sunk(found.quantities["peak_depth"].value or 0.0, widest)
     return found
 
 

@@ -142,7 +142,7 @@ def _steps(tolerance: float, peak_share: float, finer: int) -> int:
 def scales(scene: Scene, numerics: Numerics) -> mdr.ImpactScales:
     """Of a scene; ``numerics`` but for the settings that are coarse. Raises NotReached, BadInput."""
     geometry = scene.geometry
-    if isinstance(geometry.target, HalfSpace) and geometry.shape.fixed_radius is None and not geometry.shape.plane:
+    if isinstance(geometry.target, HalfSpace) and not geometry.shape.flat_radius and not geometry.shape.plane:
         return mdr.estimate(scene, SPRINGS)
     coarse, curve = numerics.varied(**COARSE), has_curve(scene)
     if not (curve and geometry.surface_remembers):

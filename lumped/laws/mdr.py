@@ -82,8 +82,8 @@ class SpringRow:
 def of(scene: Scene) -> SpringRow:
     """The law for a scene: every half-space has it. Raises BadInput without geometry, and for a fixed contact area."""
     check(scene, SpringRow.name)
-    if scene.profile.fixed_radius is not None:
-        reason = "its springs touch all at once, and are one; accepted: correspondence, which is exact here"
+    if scene.profile.flat_radius > 0.0:
+        reason = "its springs touch all at once; accepted: ting"
         raise BadInput(Fault(scene.source, "striker.shape", f"{scene.profile.name}: {reason}"))
     return SpringRow()
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,6 +12,7 @@ from numpy.typing import ArrayLike
 from lumped.load_curves.base import GAUSS_POINTS, LoadCurve
 from lumped.numbers import Array, Real, gauss
 
+DOUBLINGS = 60  # of a contact radius: further than any accepted depth goes
 STEPS, LAST_STEP = 60, 1e-12  # of Newton's method; the step after that is rounding
 
 
@@ -44,8 +47,79 @@ class HalfSpaceCurve(LoadCurve):
         return np.asarray(reach * (slope_over_x @ weights) / np.pi)
 
 
+class KnownByRadius(HalfSpaceCurve):
+    """A curve whose depth and force are known over the contact radius; the radius of a depth is found by Newton."""
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Contact radii, ascending, m, beyond which depth(a) starts anew as a root does: where the face bends."""
+        return ()
+
+    @property
+    def least_radius(self) -> float:
+        """Contact radius of the first touch, m: zero, but under a flat end."""
+        return 0.0
+
+    @abstractmethod
+    def force_at(self, contact_radius: ArrayLike) -> Real:
+        """F/E* at a contact radius, m^2."""
+
+    def wider(self, depth: Array) -> Array:
+        """Contact radii, m, not below those of depths above zero, m, (n,): from the last break on, doubled."""
+        radius = np.full_like(depth, self.breaks[-1] or 1.0)
+        for _ in range(DOUBLINGS):
+            short = self.depth(radius) < depth
+            if not short.any():
+                break
+            radius = np.where(short, 2.0 * radius, radius)
+        return radius
+
+    def force(self, depth: ArrayLike) -> Real:
+        """F/E*, m^2."""
+        return self.force_at(self.contact_radius(depth))
+
+    def contact_radius(self, depth: ArrayLike) -> Real:
+        """a with depth(a) = depth, m: Newton's steps, and the middle of the places around it where one leaves them."""
+        asked = np.asarray(depth, dtype=float)
+        wanted = asked[asked > 0.0]
+        radius = self.wider(wanted)
+        low, high = np.full_like(radius, self.least_radius), radius
+        with np.errstate(invalid="ignore"):  # of an infinite depth, which a solver asks that has lost its way
+            for _ in range(STEPS):
+                over, before = self.depth(radius) - wanted, radius
+                low, high = np.where(over < 0.0, radius, low), np.where(over > 0.0, radius, high)
+                radius = radius - over / self.depth_slope(radius)
+                radius = np.where((radius < low) | (radius > high), 0.5 * (low + high), radius)
+                if np.all(np.abs(radius - before) <= LAST_STEP * radius):
+                    break
+        found = np.full_like(asked, self.least_radius)
+        found[asked > 0.0] = radius
+        return found
+
+    def energy(self, depth: ArrayLike) -> Array:
+        """Work of indentation, as every half-space's, but from break to break."""
+        d = np.maximum(np.asarray(depth, dtype=float), 0.0)
+        a, starts = np.asarray(self.contact_radius(d)), np.array((0.0, *self.breaks))
+        last = np.searchsorted(starts, a, side="right") - 1
+        inner = self._before_breaks[last] + self._squared(starts[last], a)
+        return np.asarray(d * (self.force_at(a) - a * d) + inner)
+
+    @cached_property
+    def _before_breaks(self) -> Array:
+        """int_0^b depth(x)^2 dx up to zero and to every break b, m^3, (breaks + 1,)."""
+        ends = np.array((0.0, 0.0, *self.breaks))
+        return np.asarray(np.cumsum(self._squared(ends[:-1], ends[1:])))
+
+    def _squared(self, start: Array, end: Array) -> Array:
+        """int depth(x)^2 dx between places without a break between them, m^3, (n,)."""
+        nodes, weights = gauss(GAUSS_POINTS)
+        width = end - start
+        x = start[..., None] + width[..., None] * nodes**2
+        return np.asarray(width * (np.square(self.depth(x)) @ (2.0 * nodes * weights)))
+
+
 @dataclass(frozen=True)
-class TwoProfiles(HalfSpaceCurve):
+class TwoProfiles(KnownByRadius):
     """Two convex profiles on one another: heights add, so at one contact radius depths and forces add.
 
     E* is that of both materials together.
@@ -59,10 +133,6 @@ class TwoProfiles(HalfSpaceCurve):
         """The smaller of the two, m."""
         return min(self.first.extent, self.second.extent)
 
-    def force(self, depth: ArrayLike) -> Real:
-        """F/E*, m^2."""
-        return self.force_at(self.contact_radius(depth))
-
     def force_at(self, contact_radius: ArrayLike) -> Real:
         """F1(a) + F2(a), m^2."""
         return self.first.force_at(contact_radius) + self.second.force_at(contact_radius)
@@ -75,17 +145,6 @@ class TwoProfiles(HalfSpaceCurve):
         """d1'(a) + d2'(a)."""
         return self.first.depth_slope(contact_radius) + self.second.depth_slope(contact_radius)
 
-    def contact_radius(self, depth: ArrayLike) -> Real:
-        """a with d1(a) + d2(a) = depth, m, by Newton: the sum is convex, and each profile alone would be wider."""
-        asked = np.asarray(depth, dtype=float)
-        wanted = asked[asked > 0.0]
-        radius = np.minimum(self.first.contact_radius(wanted), self.second.contact_radius(wanted))
-        with np.errstate(invalid="ignore"):  # of an infinite depth, which a solver asks that has lost its way
-            for _ in range(STEPS):
-                step = (self.depth(radius) - wanted) / self.depth_slope(radius)
-                radius = radius - step
-                if np.all(np.abs(step) <= LAST_STEP * radius):
-                    break
-        found = np.zeros_like(asked)
-        found[asked > 0.0] = radius
-        return found
+    def wider(self, depth: Array) -> Array:
+        """Each profile alone would be wider, m."""
+        return np.asarray(np.minimum(self.first.contact_radius(depth), self.second.contact_radius(depth)))

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.base import GAUSS_POINTS, LoadCurve
 from lumped.load_curves.half_space import HalfSpaceCurve
-from lumped.numbers import Real
+from lumped.numbers import Real, falling_zero, gauss
 
 
 @dataclass(frozen=True)
@@ -71,3 +71,21 @@ def power_impact(curve: LoadCurve, alpha: float, modulus: float, mass: float, ve
     integral = math.sqrt(math.pi) * math.gamma(1.0 + 1.0 / power) / math.gamma(0.5 + 1.0 / power)
     force = modulus * factor * math.pow(depth, alpha)
     return HertzImpact(2.0 * depth / velocity * integral, depth, force, float(curve.contact_radius(depth)))
+
+
+def curve_impact(curve: LoadCurve, modulus: float, mass: float, velocity: float) -> HertzImpact:
+    """Scales of the elastic impact on any curve that has an energy, modulus in Pa.
+
+    It turns where E* W(d_m) = m v^2/2 and lasts 2/v int_0^d_m dd/sqrt(1 - W(d)/W(d_m)), the root taken out by
+    d = d_m (1 - s^2).
+    """
+    wanted = 0.5 * mass / modulus * velocity**2
+    deepest = 1e-9  # m, and doubled until it is too deep
+    while float(curve.energy(deepest)) < wanted:
+        deepest *= 2.0
+    depth = falling_zero(lambda d: 1.0 - float(curve.energy(d)) / wanted, 0.0, deepest)
+    nodes, weights = gauss(GAUSS_POINTS)
+    left = 1.0 - curve.energy(depth * (1.0 - nodes**2)) / wanted
+    duration = 4.0 * depth / velocity * float(weights @ (nodes / np.sqrt(left)))
+    force = modulus * float(curve.force(depth))
+    return HertzImpact(duration, depth, force, float(curve.contact_radius(depth)))

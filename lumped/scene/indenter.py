@@ -91,7 +91,8 @@ class Indenter:
 
     def check_contacts(self, depths: Array, contact_radii: Array) -> None:
         """Raise BadInput for depths, m, whose contacts, m, are too wide for the target."""
-        wrong = [(d, self.target.check_contact(float(a))) for d, a in zip(depths, contact_radii, strict=True)]
+        widths = [(d, float(a)) for d, a in zip(depths, contact_radii, strict=True)]
+        wrong = [(d, self.target.check_contact(a) or self.shape.check_contact(a)) for d, a in widths]
         faults = [Fault("--depths", "", f"{d:g}: {reason}; cure: a smaller depth") for d, reason in wrong if reason]
         if faults:
             raise BadInput(faults)

@@ -211,8 +211,9 @@ class Scene:
 
     def check_sunk(self, depth: float, contact_radius: float = 0.0) -> None:
         """Raise BadInput where an impact went to a depth, m, or a contact radius, m, that is too much."""
-        target = self.geometry.target
-        reason = target.check_depth(self.geometry.shape, depth) or target.check_contact(contact_radius)
+        target, shape = self.geometry.target, self.geometry.shape
+        wide = target.check_contact(contact_radius) or shape.check_contact(contact_radius)
+        reason = target.check_depth(shape, depth) or wide
         if reason:
             told = f"the striker sinks in by {depth:.3g} m: {reason}; cure: a lower velocity, a stiffer material"
             raise BadInput(Fault(self.source, "striker.velocity", told))

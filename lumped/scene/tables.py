@@ -335,7 +335,7 @@ class SceneReader(TableReader):
         shared = {key: values.pop(key) for key in common if key in values}
         if shape is None or not values.keys() >= {key for key in own if own[key].required}:
             return shared, None
-        return shared, self.made(part, folder.get(shape).of, values, shape)
+        return shared, self.made(part, folder.get(shape).of, placed(values, self.folder), shape)
 
     def material(self, part: str) -> Material | None:
         """The material of a body, None with a fault noted."""

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
-from lumped.load_curves.hertz import HertzImpact, power_impact
+from lumped.load_curves.hertz import HertzImpact, curve_impact, power_impact
 from lumped.load_curves.plane_contact import LineProfile
 from lumped.materials import Material, Relaxation
 from lumped.numbers import Array
@@ -58,6 +58,11 @@ class Shape(Record, ABC):
         return None
 
     @property
+    def flat_radius(self) -> float:
+        """Contact radius of the first touch, m: zero, but where the lowest part is flat."""
+        return self.fixed_radius or 0.0
+
+    @property
     def tip_radius(self) -> float | None:
         """Radius of curvature of the lowest point, m; None where it has none."""
         return None
@@ -90,9 +95,21 @@ class Shape(Record, ABC):
         """
         return power_impact(self.load_curve, self.exponent_of_force, modulus, mass, velocity)
 
+    def check_contact(self, contact_radius: float) -> str:
+        """What is wrong with a contact as wide, m, under this profile; empty where nothing is."""
+        return ""
+
     def to_dict(self) -> Table:
         """The shape's part of the striker's table."""
         return {"shape": self.name} | written(self)
+
+
+class Mixed(Shape):
+    """A profile whose force is no power of the depth."""
+
+    def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
+        """Scales of the elastic impact, from the work of indentation."""
+        return curve_impact(self.load_curve, modulus, mass, velocity)
 
 
 class FlatEnded(Shape):

@@ -98,7 +98,7 @@ class Target(Record, ABC):
 
     def waves_under(self, shape: Shape) -> bool:
         """Whether `model.inertia` can be true under a striker of this shape."""
-        return self.has_inertia and shape.fixed_radius is None
+        return self.has_inertia and shape.flat_radius == 0.0
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """What is wrong with a striker of this shape that has a material as the target has, with inertia or without."""

@@ -43,7 +43,7 @@ def check(scene: Scene) -> None:
     if scene.striker_material is not None:
         scene.check_single("fe, where the ball rings on between contacts,")
     shape, faults = scene.geometry.shape, [*too_fast(scene), *changing(scene)]
-    if shape.plane or shape.fixed_radius is not None:
+    if shape.plane or shape.flat_radius > 0.0:
         reason = f"{shape.name}: no waves under it in this version; accepted with model.inertia: sphere, cone, power"
         faults.append(Fault(scene.source, "striker.shape", reason))
     if faults:

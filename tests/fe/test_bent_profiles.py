@@ -1,0 +1,58 @@
+"""Strikers whose face bends, by finite elements: against Ting's exact answer on their closed load curves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import fe_contact
+from lumped import Scene, laws, simulate
+from lumped.shapes import Shape, Sphere
+from lumped.shapes.profile import Profile
+from lumped.shapes.rounded_punch import RoundedPunch
+from lumped.shapes.sphere_cone import SphereCone
+
+RULED = ("peak_force", "peak_depth", "duration", "impulse", "restitution")
+
+
+def sphere_cone(random: np.random.Generator, width: float) -> Shape:
+    """The sphere's circle within the contact or beside it, width in m."""
+    angle = float(random.uniform(3.0, 35.0))
+    return SphereCone(width * float(10.0 ** random.uniform(-1.0, 0.3)) / np.sin(np.radians(angle)), angle)
+
+
+def rounded_punch(random: np.random.Generator, width: float) -> Shape:
+    """A flat from a tenth of the contact to nearly all of it."""
+    return RoundedPunch(width * float(random.uniform(0.1, 1.5)), width * float(10.0 ** random.uniform(-0.5, 1.5)))
+
+
+def profile(random: np.random.Generator, width: float) -> Shape:
+    """Random bends at random radii, the last of them far beyond the contact."""
+    r = np.append(0.0, np.cumsum(random.uniform(0.1, 0.4, 24))) * width
+    bends = random.uniform(0.2, 1.0, 24)
+    height = np.append(0.0, np.cumsum(0.02 * np.cumsum(bends) * np.diff(r)))
+    return Profile(tuple(r.tolist()), tuple(height.tolist()))
+
+
+@pytest.mark.family
+@pytest.mark.parametrize("make", [rounded_punch, sphere_cone, profile])
+def test_impacts_lie_within_their_bars(
+    make: Callable[[np.random.Generator, float], Shape], campaign_size: Callable[[int], int]
+) -> None:
+    random, base = np.random.default_rng(1999), Scene.load("polymer-sphere")
+    width = base.profile.hertz_impact(base.contact_modulus.glassy, base.mass, base.velocity).contact_radius
+    assert isinstance(base.profile, Sphere)
+    for _ in range(campaign_size(30)):
+        scene = replace(base, shape=make(random, width), velocity=0.02 * float(10.0 ** random.uniform(-0.5, 0.3)))
+        tolerance = float(random.choice([1e-2, 1e-3]))
+        found, exact = fe_contact.run(scene, tolerance=tolerance), simulate(laws.get("ting").of(scene), scene, 1e-6)
+        assert found.converged, scene
+        for name in RULED:
+            bar, truth = found.quantities[name], exact.quantities[name]
+            assert abs((bar.value or 0.0) - (truth.value or 0.0)) <= (bar.error or 0.0) + (truth.error or 0.0), (
+                name,
+                scene,
+            )

@@ -1,0 +1,163 @@
+"""Profiles whose face bends: a table of heights, a rounded flat end, a cone with a sphere at its tip."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from lumped import BadInput, Scene, laws, simulate
+from lumped.load_curves import ConeCurve, Hertz, SneddonSphere
+from lumped.load_curves.half_space import KnownByRadius
+from lumped.shapes import Shape, Sphere
+from lumped.shapes.profile import Profile, read
+from lumped.shapes.rounded_punch import RoundedPunch
+from lumped.shapes.sphere_cone import SphereCone
+from lumped.targets.layer import Layer
+
+RADIUS = 0.006
+TABLE = Profile((0.0, 1e-3, 1.5e-3, 2.5e-3, 4e-3), (0.0, 2e-5, 6e-5, 2e-4, 9e-4))
+PLATEAU = Profile((0.0, 1e-3, 2e-3, 3e-3), (0.0, 0.0, 1e-4, 4e-4))
+BENT: list[Shape] = [SphereCone(RADIUS, 19.7), SphereCone(RADIUS, 80.0), RoundedPunch(2e-3, RADIUS), TABLE, PLATEAU]
+WIDER = np.array([1.0 + 1e-6, 1.03, 1.3, 2.1, 7.0])
+
+
+def curve_of(shape: Shape) -> KnownByRadius:
+    curve = shape.load_curve
+    assert isinstance(curve, KnownByRadius)
+    return curve
+
+
+def widths(curve: KnownByRadius) -> np.ndarray:
+    """Contact radii between the bends and beyond, each side of every bend, m."""
+    places = [place for place in curve.breaks if place > curve.least_radius] or [curve.breaks[-1]]
+    found = np.unique(np.concatenate([np.multiply.outer(places, WIDER).ravel(), 0.9 * np.array(places)]))
+    return found[found > curve.least_radius]
+
+
+def abel(shape: Shape, a: float) -> float:
+    """a int_0^a h'(r)/sqrt(a^2 - r^2) dr, from bend to bend."""
+    curve = curve_of(shape)
+    ends = np.arcsin(np.array([0.0, *(place for place in curve.breaks if 0.0 < place < a), a]) / a)
+    parts = [
+        quad(lambda angle: float(shape.slope(a * np.sin(angle))), low, high, epsabs=0.0, epsrel=1e-12)[0]
+        for low, high in pairwise(ends)
+        if float(shape.slope(a * np.sin(high))) > 0.0
+    ]
+    return a * sum(parts)
+
+
+@pytest.mark.parametrize("shape", BENT, ids=lambda shape: shape.name)
+def test_the_depth_is_abels_transform_of_the_slope(shape: Shape) -> None:
+    for a in widths(curve_of(shape)):
+        assert float(curve_of(shape).depth(a)) == pytest.approx(abel(shape, float(a)), rel=1e-10)
+
+
+@pytest.mark.parametrize("shape", BENT, ids=lambda shape: shape.name)
+def test_depth_radius_force_slope_and_energy_belong_together(shape: Shape) -> None:
+    curve, a = curve_of(shape), widths(curve_of(shape))
+    depth, step = curve.depth(a), 1e-6
+    np.testing.assert_allclose(curve.contact_radius(depth), a, rtol=1e-12)
+    assert float(curve.contact_radius(float(depth[-1]))) == pytest.approx(a[-1], rel=1e-13), "of a number too"
+    rise = (curve.depth(a * (1.0 + step)) - curve.depth(a * (1.0 - step))) / (2.0 * step * a)
+    inside = (a > 1.001 * curve.least_radius) & (np.abs(np.subtract.outer(a, curve.breaks)).min(axis=-1) > 1e-4 * a)
+    np.testing.assert_allclose(rise[inside], curve.depth_slope(a)[inside], rtol=1e-7)
+    depth = depth[a > 1.001 * curve.least_radius]  # nearer, what radii are found to counts
+    force = (curve.energy(depth * (1.0 + step)) - curve.energy(depth * (1.0 - step))) / (2.0 * step * depth)
+    np.testing.assert_allclose(force, curve.force(depth), rtol=1e-7)
+    np.testing.assert_allclose(curve.force(curve.depth(a)), curve.force_at(a), rtol=1e-11)
+    slope = (curve.force(depth * (1.0 + step)) - curve.force(depth * (1.0 - step))) / (2.0 * step * depth)
+    np.testing.assert_allclose(slope, 2.0 * a[-depth.size :], rtol=1e-7)
+
+
+@pytest.mark.parametrize("shape", BENT, ids=lambda shape: shape.name)
+def test_the_pressure_carries_the_force(shape: Shape) -> None:
+    curve = curve_of(shape)
+    a = 1.7 * curve.breaks[-1]
+    circles = np.arccos(np.array([0.0, *(place for place in curve.breaks if place > 0.0), a]) / a)
+    nodes, weights = np.polynomial.legendre.leggauss(200)
+    force = 0.0
+    for high, low in pairwise(circles):  # r = a cos(angle) takes out the root at the edge
+        angle = low + (high - low) * 0.5 * (nodes + 1.0)
+        rings = 2.0 * np.pi * a**2 * np.sin(angle) * np.cos(angle)
+        force += 0.5 * (high - low) * weights @ (rings * curve.pressure(a * np.cos(angle), a))
+    assert force == pytest.approx(float(curve.force_at(a)), rel=1e-5 if shape.name == "profile" else 1e-6)
+    assert curve.pressure(np.array([a, 2.0 * a]), a) == pytest.approx([0.0, 0.0], abs=1e-9)
+
+
+def test_a_sphere_cone_is_a_sphere_when_shallow_and_a_cone_when_deep() -> None:
+    curve, depth = SphereCone(RADIUS, 30.0).load_curve, 0.01 * RADIUS
+    assert float(curve.force(depth)) == pytest.approx(float(SneddonSphere(RADIUS).force(depth)), rel=1e-14)
+    # Deep, its tip is missing from the cone's: depths are less by a constant.
+    deep, cone = 1e5 * RADIUS, ConeCurve(30.0)
+    assert float(curve.force(deep)) == pytest.approx(float(cone.force(deep)), rel=1e-4)
+    assert curve.contact_radius(deep) == pytest.approx(float(cone.contact_radius(deep)), rel=1e-4)
+
+
+def test_a_rounded_punch_presses_as_a_flat_one_first_and_as_its_edge_alone_without_a_flat() -> None:
+    punch = RoundedPunch(2e-3, RADIUS).load_curve
+    assert float(punch.force(1e-12)) == pytest.approx(2.0 * 2e-3 * 1e-12, rel=1e-5)
+    edge = RoundedPunch(1e-9, RADIUS).load_curve
+    assert float(edge.force(1e-4)) == pytest.approx(float(Hertz(RADIUS).force(1e-4)), rel=1e-5)
+
+
+convex = st.lists(st.tuples(st.floats(0.05, 1.0), st.floats(0.01, 1.0)), min_size=3, max_size=30)
+
+
+@given(convex)
+def test_a_table_is_met_and_stays_convex(rows: list[tuple[float, float]]) -> None:
+    width, bend = np.array(rows).T
+    r = np.append(0.0, np.cumsum(width))
+    height = np.append(0.0, np.cumsum((1e-3 + np.cumsum(bend)) * width))
+    profile = Profile(tuple(r.tolist()), tuple(height.tolist()))
+    np.testing.assert_allclose(profile.height(r), height, rtol=1e-6, atol=1e-7 * height[-1])
+    slope = profile.slope(np.linspace(0.0, r[-1], 1001))
+    assert np.all(np.diff(slope) >= -1e-6 * slope[-1])
+    assert slope[0] >= 0.0
+
+
+def test_a_table_of_a_sphere_answers_as_the_sphere_to_second_order() -> None:
+    def off(rows: int) -> float:
+        r = np.linspace(0.0, 0.6 * RADIUS, rows)
+        table = Profile(tuple(r.tolist()), tuple(Sphere(RADIUS).height(r).tolist()))
+        return abs(float(table.load_curve.force(0.1 * RADIUS)) / float(SneddonSphere(RADIUS).force(0.1 * RADIUS)) - 1.0)
+
+    assert off(41) < 1e-4
+    assert off(81) < 0.35 * off(41)
+
+
+@pytest.mark.parametrize("shape", [SphereCone(RADIUS, 19.7), TABLE], ids=lambda shape: shape.name)
+def test_ting_and_the_springs_agree(shape: Shape, impact: Callable[..., Scene]) -> None:
+    scene = impact(0.5, (0.5,), (1.0,), shape=shape)
+    exact, row = (simulate(laws.get(law).of(scene), scene, 1e-5) for law in ("ting", "mdr"))
+    for name in ("peak_force", "peak_depth", "duration", "restitution"):
+        assert exact.quantities[name].value == pytest.approx(row.quantities[name].value, rel=1e-5)
+
+
+def test_what_is_refused_says_why(tmp_path: Path, impact: Callable[..., Scene]) -> None:
+    for heights in ((0.0, 2e-5, 1e-5), (1e-6, 2e-5, 4e-5), (0.0, 3e-5, 4e-5), (0.0, 1e-5)):
+        with pytest.raises(BadInput, match="accepted"):
+            Profile((0.0, 1e-3, 2e-3), heights)
+    with pytest.raises(BadInput, match="a corner at the radius"):
+        Profile((0.0, 1e-3, 2e-3, 3e-3, 4e-3), (0.0, 1e-5, 2e-5, 1e-4, 1.8e-4))
+    with pytest.raises(BadInput, match="half_space alone"):
+        replace(impact(1.0, shape=TABLE), target=Layer(0.01, "bonded"))
+    with pytest.raises(BadInput, match="springs touch all at once"):
+        laws.get("mdr").of(impact(1.0, shape=RoundedPunch(2e-3, RADIUS)))
+    assert "ends at 0.004 m" in TABLE.check_contact(0.005)
+    table = tmp_path / "tip.csv"
+    table.write_text("r_m,height_m\n0,0\n0.001,0.00002\n0.002,0.0001\n")
+    assert read(table) == Profile((0.0, 1e-3, 2e-3), (0.0, 2e-5, 1e-4))
+    scene = {
+        "striker": {"shape": "profile", "file": "tip.csv", "r": [0.0], "mass": 0.05, "velocity": 0.02},
+        "target": {"shape": "half_space", "material": {"law": "elastic", "E": 1e6, "nu": 0.3}},
+    }
+    with pytest.raises(BadInput, match="accepted: file, or r and height"):
+        Scene.from_dict(scene)
