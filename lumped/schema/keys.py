@@ -244,7 +244,8 @@ def check_fields(owner: str, record: object) -> None:
 def written(record: object) -> dict[str, object]:
     """The values of a record by the names of its keys, as in the table that gives it back; None is left out."""
     values = {name: getattr(record, key.field) for name, key in keys_of(type(record)).items()}
-    return {name: value for name, value in values.items() if value is not None}
+    known = {name: value for name, value in values.items() if value is not None}
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in known.items()}
 
 
 class Record:

@@ -41,7 +41,7 @@ SHAPES = {
     "prism": {"area": 1e-4, "height": 0.02, "sides": "free", "faces": "bonded"},
     "sphere_cone": {"radius": 0.001, "angle": 20.0},
     "rounded_punch": {"flat_radius": 0.002, "edge_radius": 0.01},
-    "profile": {"r": (0.0, 1e-3, 2e-3), "height": (0.0, 1e-5, 4e-5)},
+    "profile": {"r": [0.0, 1e-3, 2e-3], "height": [0.0, 1e-5, 4e-5]},
     "plate": {"area": 1e-4, "thickness": 0.002, "sides": "confined", "faces": "sliding"},
 }
 TARGETS: dict[str, dict[str, object]] = {
