@@ -16,6 +16,7 @@ from functools import cached_property, lru_cache
 from typing import ClassVar
 
 import numpy as np
+from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault, nearest
@@ -173,11 +174,17 @@ class LayerPunch(FixedArea):
 
 
 def abel(equation: DualEquation, phi: Array, r: Array) -> Array:
-    """-(1/pi) int_r^ratio psi'(t)/sqrt(t^2-r^2) dt of phi's smooth part psi, r in thicknesses, zero outside."""
+    """-(1/pi) int_r^ratio psi'(t)/sqrt(t^2-r^2) dt of phi's smooth part psi, r in thicknesses, zero outside.
+
+    psi' by a polynomial on (0, ratio), of as many points as resolve phi itself.
+    """
+    points, half = equation.nodes.size, 0.5 * equation.ratio or 1.0  # nothing touches yet
+    slopes = chebyshev.chebinterpolate(lambda z: equation.correction_slope(phi, half * (z + 1.0)), points - 1)
     reach = np.sqrt(np.maximum(equation.ratio**2 - r**2, 0.0))
-    nodes, weights = gauss(equation.nodes.size)
+    nodes, weights = gauss(points)
     t = np.hypot(reach[..., None] * nodes, np.abs(r)[..., None])
-    slope = np.divide(equation.correction_slope(phi, t), t, out=np.zeros_like(t), where=t > 0.0)
+    inside = np.minimum(t / half, 2.0) - 1.0
+    slope = np.divide(chebyshev.chebval(inside, slopes), t, out=np.zeros_like(t), where=t > 0.0)
     return np.asarray(-reach * (slope @ weights) / np.pi)
 
 

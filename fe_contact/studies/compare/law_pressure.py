@@ -14,6 +14,7 @@ and outside. In the exact laws t1 is the earlier time at which the contact radiu
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -70,9 +71,11 @@ class LawPressure:
         if time > self.times[-1]:
             return np.zeros_like(radii)
         until = self._until(time)
-        times = np.append(self.times[self.times < until], until)
-        path = np.interp(times, self.times, self.contact_radii)
-        elastic = np.stack([self.curve.pressure(radii, float(a)) for a in path])
+        before = self.times < until
+        times = np.append(self.times[before], until)
+        edge = float(np.interp(until, self.times, self.contact_radii))
+        path = _elastic(self.curve, tuple(self.contact_radii.tolist()), tuple(radii.tolist()))
+        elastic = np.vstack([path[before], self.curve.pressure(radii, edge)])
         middles = 0.5 * (times[1:] + times[:-1])
         pressure = self.modulus(time - middles) @ np.diff(elastic, axis=0)
         if until == time:  # the viscosity's pulse acts at s = t only
@@ -93,3 +96,10 @@ class LawPressure:
             return time
         now = np.interp(time, self.times, self.contact_radii)
         return float(np.interp(now, self.contact_radii[: largest + 1], self.times[: largest + 1]))
+
+
+@lru_cache(maxsize=8)  # the laws of one comparison, each asked at several times, for its error and for the chart
+def _elastic(curve: LoadCurve, contact_radii: tuple[float, ...], radii: tuple[float, ...]) -> Array:
+    """Elastic pressures per unit modulus, a row a contact radius, m, at radii, m."""
+    places = np.array(radii)
+    return np.stack([curve.pressure(places, a) for a in contact_radii])
