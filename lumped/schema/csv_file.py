@@ -28,10 +28,10 @@ def write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[object]
         writer.writerows([_cell(value) for value in row] for row in rows)
 
 
-def write_columns(path: Path, header: Sequence[str], columns: Sequence[Array]) -> None:
-    """Columns of numbers, each (rows,)."""
+def write_columns(path: Path, header: Sequence[str], columns: Sequence[Array], digits: int = 17) -> None:
+    """Columns of numbers, each (rows,), with so many significant digits: all that they have by default."""
     table = np.column_stack(columns)
-    np.savetxt(path, table, fmt="%.17g", delimiter=",", header=",".join(header), comments="")
+    np.savetxt(path, table, fmt=f"%.{digits}g", delimiter=",", header=",".join(header), comments="")
 
 
 def read_columns(path: Path, wanted: tuple[str, ...], most: int = MOST_ROWS) -> dict[str, Array]:

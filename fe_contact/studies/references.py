@@ -1,0 +1,222 @@
+"""The published histories: every packaged scene answered, its history and quantities with bars, for anyone to cite.
+
+They lie in `data/references/` as a Data Package (https://datapackage.org, version 2): a CSV file of the history and a
+JSON file of everything else a scene. Nothing reads them in place of a run: they are what a later suite is held against.
+A value has moved by its difference over the sum of both bars; up to 1 the two agree.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact import __version__
+from fe_contact.methods import simulate
+from fe_contact.progress import Progress, silent
+from fe_contact.studies.files import write_study
+from lumped.errors import BadInput, Fault, FeContactError, nearest
+from lumped.numbers import Array
+from lumped.result.history import COLUMNS, History
+from lumped.result.result import Quantity, Result
+from lumped.scene.scene import Scene
+from lumped.schema import Table
+from lumped.schema.csv_file import write_columns
+from lumped.schema.files import SCENES, data_folder
+from lumped.schema.json_file import write_json
+
+PACKAGE, RECORD = "datapackage.json", "references.json"
+SCHEMA = "fe-contact/references/1"
+DIGITS, ROUNDING = (
+    9,
+    1e-8,
+)  # of a history as it is written, and what it may move a force by: below every bar of elements
+OURS = ("timing", "work", "provenance")  # of a result: what another machine has otherwise
+UNITS = {"_per_s": "m/s", "_s": "s", "_m": "m", "_N": "N"}  # by the end of a column's name, the longest first
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """What is published of a scene: its history, and its quantities with their bars."""
+
+    history: History
+    quantities: Mapping[str, Quantity]
+
+    @classmethod
+    def read(cls, folder: Path, name: str) -> Reference | None:
+        """That of a scene; None where none is published."""
+        if not (folder / f"{name}.json").exists():
+            return None
+        content = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
+        quantities = {key: Quantity(**quantity) for key, quantity in content["quantities"].items()}
+        return cls(History.read_csv(folder / f"{name}.csv"), quantities)
+
+
+@dataclass(frozen=True)
+class Move:
+    """One quantity of a scene: published, found now, and by how much it moved over the sum of both bars.
+
+    `moved` is None where only one of the two is defined.
+    """
+
+    scene: str
+    quantity: str
+    published: float | None
+    found: float | None
+    bars: float
+    moved: float | None
+
+    @property
+    def agrees(self) -> bool:
+        """Whether both can be true."""
+        return self.moved is not None and self.moved <= 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Renewal:
+    """A scene answered again: the result, None where nothing may be published and `reason` says why; what moved."""
+
+    scene: str
+    result: Result | None
+    moves: tuple[Move, ...]
+    is_new: bool
+    reason: str = ""
+
+    @property
+    def agrees(self) -> bool:
+        """Whether what is published still stands: nothing, where nothing could be."""
+        return all(move.agrees for move in self.moves) if self.result is not None else self.is_new
+
+    @property
+    def line(self) -> str:
+        """For a person."""
+        if self.result is None:
+            return f"{self.scene}: not published: {self.reason}"
+        if self.is_new:
+            return f"{self.scene}: new"
+        most = max(self.moves, key=lambda move: math.inf if move.moved is None else move.moved)
+        if most.moved is None:
+            return f"{self.scene}: {most.quantity} is undefined in one of both"
+        verdict = "agrees" if self.agrees else "DIFFERS"
+        return f"{self.scene}: {verdict}: moved by up to {most.moved:.2g} of both bars ({most.quantity})"
+
+
+def folder() -> Path:
+    """Where the published histories lie."""
+    return data_folder() / "references"
+
+
+def checked(names: Sequence[str]) -> tuple[str, ...]:
+    """Names of packaged scenes, all of them where none is given. Raises BadInput with every unknown one."""
+    known = SCENES.names
+    faults = [
+        Fault("--scenes", "", f"{name}: no packaged scene{nearest(name, known)}") for name in set(names) - {*known}
+    ]
+    if faults:
+        raise BadInput(faults)
+    return tuple(name for name in known if name in names) if names else known
+
+
+def renewed(names: Sequence[str], published: Path, progress: Progress = silent) -> Iterator[Renewal]:
+    """Every scene answered by its default method at its default tolerance, against what `published` holds of it."""
+    for count, name in enumerate(names):
+        progress(name, count, len(names))
+        older = Reference.read(published, name)
+        try:
+            result = simulate(Scene.load(name), None, {})
+        except FeContactError as failure:
+            yield Renewal(name, None, (), older is None, str(failure))
+            continue
+        if result.converged:
+            yield Renewal(name, result, moves(name, older, result), older is None)
+        else:
+            yield Renewal(name, None, (), older is None, result.message)
+
+
+def moves(name: str, older: Reference | None, newer: Result) -> tuple[Move, ...]:
+    """What moved of a scene's quantities; the history by the norm of the difference over that of the force."""
+    if older is None:
+        return ()
+    found = {key: newer.quantities[key] for key in older.quantities if key in newer.quantities}
+    apart = _apart(older.history, newer.history)
+    return tuple(
+        _move(
+            name, key, older.quantities[key], Quantity(apart, quantity.error, "1") if key == "history_l2" else quantity
+        )
+        for key, quantity in found.items()
+    )
+
+
+def _move(scene: str, key: str, older: Quantity, newer: Quantity) -> Move:
+    bars = (older.error or 0.0) + (newer.error or 0.0)
+    if older.value is None or newer.value is None:
+        return Move(scene, key, older.value, newer.value, bars, 0.0 if older.value is newer.value else None)
+    moved = abs(newer.value - older.value) / (bars + ROUNDING * (abs(older.value) or 1.0))
+    return Move(scene, key, older.value, newer.value, bars, moved)
+
+
+def _apart(older: History, newer: History) -> float:
+    """The norm of the difference of two forces over that of the older."""
+    times: Array = np.union1d(older.time, newer.time)
+    difference = newer.force_at(times) - older.force_at(times)
+    return float(np.sqrt(np.trapezoid(difference**2, times) / np.trapezoid(older.force_at(times) ** 2, times)))
+
+
+def write_references(renewals: Sequence[Renewal], where: Path) -> None:
+    """Write all that is to be published, and ``moves.csv``, what moved, into a folder."""
+    write_published(renewals, where)
+    lines = [asdict(move) | {"agrees": move.agrees} for one in renewals for move in one.moves]
+    scenes = {one.scene: {"agrees": one.agrees, "new": one.is_new, "reason": one.reason} for one in renewals}
+    headers = {"moves": (*Move.__dataclass_fields__, "agrees")}
+    write_study(where, "references", {"schema": SCHEMA, "scenes": scenes}, {"moves": lines}, headers)
+
+
+def write_published(renewals: Sequence[Renewal], where: Path) -> None:
+    """Write history and result of every scene that may be published, and the package's description, into a folder."""
+    published = [one for one in renewals if one.result is not None]
+    for one in published:
+        _write_scene(one, where)
+    write_json(where / PACKAGE, _package([one.scene for one in published]))
+    write_json(where / RECORD, {"schema": SCHEMA, "scenes": [one.scene for one in published]})
+
+
+def _write_scene(renewal: Renewal, where: Path) -> None:
+    result = renewal.result
+    assert result is not None
+    columns = [getattr(result.history, name) for name in COLUMNS]
+    write_columns(where / f"{renewal.scene}.csv", tuple(COLUMNS.values()), columns, DIGITS)
+    content = {key: value for key, value in result.to_json().items() if key not in OURS}
+    write_json(where / f"{renewal.scene}.json", content | {"suite": __version__})
+
+
+def _package(names: Sequence[str]) -> Table:
+    """The description of the package: a table a scene, its columns with their units."""
+    fields = [{"name": column, "type": "number", "unit": _unit(column)} for column in COLUMNS.values()]
+    return {
+        "$schema": "https://datapackage.org/profiles/2.0/datapackage.json",
+        "name": "fe-contact-references",
+        "title": "Force histories of impacts with error bars",
+        "version": __version__,
+        "licenses": [{"name": "CC-BY-4.0", "path": "https://creativecommons.org/licenses/by/4.0/"}],
+        "resources": [
+            {
+                "name": name,
+                "path": f"{name}.csv",
+                "type": "table",
+                "format": "csv",
+                "mediatype": "text/csv",
+                "encoding": "utf-8",
+                "description": f"history of the packaged scene {name}; quantities, bars and settings: {name}.json",
+                "schema": {"fields": fields},
+            }
+            for name in names
+        ],
+    }
+
+
+def _unit(column: str) -> str:
+    return next(unit for end, unit in UNITS.items() if column.endswith(end))

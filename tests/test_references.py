@@ -1,0 +1,138 @@
+"""What is published: histories that a run of today repeats within both bars, in a package that others can read."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from shutil import copytree
+
+import numpy as np
+import pytest
+
+from fe_contact.cli import main
+from fe_contact.studies import references
+from fe_contact.studies.references import Reference, folder, moves, renewed
+from lumped import Scene, laws, simulate
+from lumped.result.history import COLUMNS
+from lumped.result.result import Quantity, Result
+from lumped.schema.files import SCENES
+
+MOST_BYTES = 5_000_000
+UNPUBLISHED = {"bar", "ball-bouncing-waves"}  # their tolerance is not reached, which a run says
+LONG = {name for name in SCENES.names if name.endswith("-waves")}
+PUBLISHED = sorted({*SCENES.names} - UNPUBLISHED)
+
+
+@pytest.fixture(scope="module")
+def package() -> dict[str, object]:
+    content: dict[str, object] = json.loads((folder() / "datapackage.json").read_text(encoding="utf-8"))
+    return content
+
+
+def test_every_scene_that_converges_is_published_and_nothing_else(package: dict[str, object]) -> None:
+    resources = package["resources"]
+    assert isinstance(resources, list)
+    assert [one["name"] for one in resources] == PUBLISHED
+    assert package["licenses"]
+    files = {path.name for path in folder().iterdir() if not path.name.startswith(".")}
+    assert files == {"datapackage.json", "references.json"} | {
+        f"{n}.{end}" for n in PUBLISHED for end in ("csv", "json")
+    }
+    assert sum(path.stat().st_size for path in folder().iterdir()) < MOST_BYTES
+
+
+def test_the_package_describes_each_table_as_it_is(package: dict[str, object]) -> None:
+    resources = package["resources"]
+    assert isinstance(resources, list)
+    for one in resources:
+        with (folder() / one["path"]).open(encoding="utf-8", newline="") as file:
+            rows = csv.reader(file)
+            assert next(rows) == [field["name"] for field in one["schema"]["fields"]] == [*COLUMNS.values()]
+            assert all(math.isfinite(float(cell)) for row in rows for cell in row)
+        units = {field["name"]: field["unit"] for field in one["schema"]["fields"]}
+        assert units["velocity_m_per_s"] == "m/s"
+        assert units["force_error_N"] == units["force_N"] == "N"
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_a_published_history_tells_its_own_quantities(name: str) -> None:
+    """Impulse and peak force again from the rows of the CSV, by a route that knows no result."""
+    found = Reference.read(folder(), name)
+    assert found is not None
+    rows, said = found.history, found.quantities
+    allowed = 2e-3 * rows.force.max()  # what straight lines between rows may miss
+    assert rows.force.max() == pytest.approx(said["peak_force"].value, abs=allowed + (said["peak_force"].error or 0.0))
+    contacts = Scene.load(name).motion.impacts
+    first = rows.time <= (said["duration"].value or math.inf) if contacts > 1 else rows.time >= 0.0
+    impulse = float(np.trapezoid(rows.force[first], rows.time[first]))
+    assert impulse == pytest.approx(said["impulse"].value, rel=5e-3) or contacts > 1
+
+
+def test_a_run_of_today_agrees_with_what_is_published(campaign_size: Callable[[int], int]) -> None:
+    random = np.random.default_rng(20161015)
+    names = [str(name) for name in random.permutation(sorted({*PUBLISHED} - LONG))][: campaign_size(len(PUBLISHED))]
+    for one in renewed(names, folder()):
+        assert one.result is not None, one.line
+        assert one.agrees, one.line
+
+
+@pytest.fixture(scope="module")
+def result() -> Result:
+    scene = Scene.load("steel-ball")
+    return simulate(laws.get("hertz").of(scene), scene, 1e-6)
+
+
+def published_of(result: Result, **changed: Quantity) -> Reference:
+    return Reference(result.history, {**result.quantities, **changed})
+
+
+def test_what_moved_by_more_than_both_bars_is_found(result: Result) -> None:
+    peak = result.quantities["peak_force"].value or 0.0
+    for times, agrees in ((0.75, True), (1.25, False)):
+        older = published_of(result, peak_force=Quantity(peak * (1.0 + 1e-3 * times), 1e-3 * peak, "N"))
+        (move,) = [move for move in moves("steel-ball", older, result) if move.quantity == "peak_force"]
+        assert move.moved == pytest.approx(times, rel=1e-3)
+        assert move.agrees is agrees
+    undefined = published_of(result, duration=Quantity(None, None, "s"))
+    assert any(move.moved is None and not move.agrees for move in moves("steel-ball", undefined, result))
+    exact = published_of(result, restitution=Quantity(0.5, 0.0, "1"))
+    assert any(move.quantity == "restitution" and not move.agrees for move in moves("steel-ball", exact, result))
+
+
+def test_a_history_that_moved_is_found_where_no_quantity_did(result: Result) -> None:
+    bent = replace(result.history, force=result.history.force * (1.0 + 1e-3 * np.sin(300.0 * result.history.time)))
+    older = Reference(bent, result.quantities)
+    (move,) = [move for move in moves("steel-ball", older, result) if move.quantity == "history_l2"]
+    assert not move.agrees
+
+
+def test_check_names_what_differs_and_ends_with_3(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    older = copytree(folder(), tmp_path / "older")
+    file = older / "paper-steel-kelvin.json"
+    content = json.loads(file.read_text(encoding="utf-8"))
+    content["quantities"]["duration"]["value"] *= 1.01
+    file.write_text(json.dumps(content), encoding="utf-8")
+    monkeypatch.setattr(references, "folder", lambda: older)
+    asked = ["references", "--scenes", "paper-steel-kelvin,paper-steel-linear", "--out", str(tmp_path / "out")]
+    assert main([*asked, "--check"]) == 3
+    out, err = capsys.readouterr()
+    assert "paper-steel-kelvin: DIFFERS" in out
+    assert "(duration)" in out
+    assert "paper-steel-linear: agrees" in out
+    assert "paper-steel-kelvin" in err
+    assert "paper-steel-linear" not in err
+    assert main(asked) == 0, "without --check it only tells"
+    assert (tmp_path / "out" / "moves.csv").exists()
+
+
+def test_unknown_scenes_are_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["references", "--scenes", "steel-bal", "--out", str(tmp_path / "out")]) == 2
+    assert "steel-ball" in capsys.readouterr().err
+    assert main(["references", "--update", "--scenes", "steel-ball", "--out", str(tmp_path / "out")]) == 2
+    assert not (tmp_path / "out").exists()
