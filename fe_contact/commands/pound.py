@@ -1,0 +1,42 @@
+"""``fe-contact pound FILE``: structures that pound on each other, or on a wall, while the ground moves."""
+
+from __future__ import annotations
+
+import argparse
+from functools import partial
+
+from fe_contact.commands import base
+from lumped.errors import NotReached
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Simulate, write, report; 0 or 3."""
+    from fe_contact.studies.pound import RECORD, told, write_failure, write_pound
+    from fe_contact.studies.pound_chart import plot_study
+    from lumped.pounding.case_file import load
+    from lumped.pounding.study import study
+
+    case = load(args.file, base.overrides_of(args))
+    names = [name.strip() for name in args.laws.split(",") if name.strip()]
+    case.check_laws(names)
+    run = base.StudyRun.of(args, "pound", case.name)
+    try:
+        found = study(case, names, run.progress)
+    except NotReached as failure:
+        write_failure(case, str(failure), run.where)
+        raise
+    title = f"{case.name}: {case.end_time:g} s"
+    write, plot = partial(write_pound, found), partial(plot_study, found)
+    return run.finish(RECORD, told(found), write, plot, title, missed=found.message)
+
+
+MEMBER = base.Command(
+    "structures that pound on each other or on a wall: response, contacts, energies, chart",
+    (
+        base.option("file", help="file (TOML) or packaged name, as two-frames; see the page pounding of the manual"),
+        base.option("--laws", default="", metavar="A,B", help="other laws to compare, given by e and the same peak"),
+        base.override("override a key of the file"),
+        *base.OUTPUT,
+    ),
+    execute,
+)

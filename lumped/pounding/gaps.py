@@ -1,0 +1,199 @@
+"""What a gap does: apart, pressed, or leaving a dent without force; and what ends each.
+
+A gap that is apart touches where its depth rises through zero. Where the depth may have come up to zero between two
+points of a step and gone again, the step is first cut at the closest approach, so that no touch is missed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.numbers import Array
+from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, Stage
+from lumped.solvers.point.contact import following
+from lumped.solvers.radau import Nodes
+
+UNTOUCHED = Stage(True, 0.0, 0.0)
+
+
+class Mode(Enum):
+    """What a gap does."""
+
+    APART = "the storeys are clear of each other"
+    PRESSED = "they press each other"
+    LEAVING = "they have parted, but a dent is left between them"
+
+
+class Happening(Enum):
+    """What ends a step."""
+
+    NEAREST = "closest approach without touch"
+    TOUCH = "first touch"
+    TURN = "approach becomes rebound, or rebound approach"
+    CORNER = "a corner of the law"
+    EXIT = "the end of contact"
+    LEFT = "out of the dent"
+    AGAIN = "pressed again within the dent"
+
+
+class FrameStep(NamedTuple):
+    """One step, `length` s long: states (s, 2 n), and depths, rates and forces of all gaps, (m, s), at its points.
+
+    `gain`, N, is the force times the pace of the nodes; `starts` and `leaving` are depths and rates where it begins,
+    (m,); `memories`: what the laws remember at its end.
+    """
+
+    length: float
+    nodes: Nodes
+    states: Array
+    starts: Array
+    leaving: Array
+    depth: Array
+    rate: Array
+    force: Array
+    gain: Array
+    memories: tuple[tuple[float, ...], ...]
+
+    def slope(self, values: Array) -> float:
+        """Over time at its end of what has these values at its points; not a number for mirrored nodes."""
+        pace = float(self.nodes.pace[-1])
+        return float(self.nodes.leaving @ values) / (pace * self.length) if pace > 0.0 else float("nan")
+
+
+@dataclass(frozen=True)
+class GapState:
+    """A gap where a step begins. `stage` counts while it is pressed or leaving, `corners` are those still ahead.
+
+    `touched`: when it was touched, s, while the force still grows from depth zero, else None; `passed`: the closest
+    approach has just been here; `memory`: the law's.
+    """
+
+    mode: Mode
+    stage: Stage = UNTOUCHED
+    corners: tuple[float, ...] = ()
+    touched: float | None = None
+    passed: bool = False
+    memory: tuple[float, ...] = ()
+
+
+OPEN = GapState(Mode.APART)
+
+
+def pressed(law: PointLaw, depth: float, rate: float, slowest: float, time: float) -> GapState:
+    """Pressed from `time`, s, on, at a depth, m, and a rate, m/s, of which no law is told less than `slowest`."""
+    speed = max(abs(rate), slowest)
+    stage = Stage(rate > 0.0 or depth <= 0.0, depth, speed, depth)
+    touched = time if depth <= 0.0 else None
+    return GapState(Mode.PRESSED, stage, law.corners(stage), touched, memory=law.touch(Bodies(1.0, speed)).memory)
+
+
+class GapEvent(NamedTuple):
+    """It happens at the first point of a step where its value is no longer above zero, of those that `only` leaves."""
+
+    gap: int
+    happening: Happening
+    value: Callable[[FrameStep], Array]
+    only: Callable[[FrameStep], NDArray[np.bool_]] | None = None
+    surfaces: bool = False
+
+    def first(self, step: FrameStep) -> int | None:
+        """The point where it has happened."""
+        fallen = self.value(step) <= 0.0
+        if self.only is not None:
+            fallen &= self.only(step)
+        return int(fallen.argmax()) if fallen.any() else None
+
+
+def events_of(gap: int, state: GapState, law: PointLaw, exit_rule: str, depth: float, noise: float) -> list[GapEvent]:
+    """What can end a step for a gap that begins at `depth`, m; `noise`: a depth that is zero but for rounding."""
+    if state.mode is Mode.APART:
+        return [_touch(gap, depth, noise), _nearest(gap, state, noise)]
+    if state.mode is Mode.LEAVING:
+        return [_left(gap), _again(gap, state, law)]
+    sign = 1.0 if state.stage.approaching else -1.0
+    found = [GapEvent(gap, Happening.TURN, lambda step: sign * step.rate[gap])]
+    if state.corners:
+        corner = state.corners[0]
+        found.append(GapEvent(gap, Happening.CORNER, lambda step: sign * (corner - step.depth[gap])))
+    if not state.stage.approaching:
+        by_force = law.tensile and exit_rule == "force"
+        value = _force_left(gap) if by_force else lambda step: step.depth[gap]
+        found.append(GapEvent(gap, Happening.EXIT, value, surfaces=not by_force))
+    return found
+
+
+def _touch(gap: int, depth: float, noise: float) -> GapEvent:
+    """From a depth of zero the depth itself vanishes: then its mean rate since tells of the next touch."""
+    if depth < 0.0:
+        return GapEvent(gap, Happening.TOUCH, lambda step: noise - step.depth[gap])
+    return GapEvent(gap, Happening.TOUCH, lambda step: (noise - step.depth[gap]) / step.nodes.points)
+
+
+def _nearest(gap: int, state: GapState, noise: float) -> GapEvent:
+    """The depth turns between two points so near to zero that its tangents there reach it."""
+
+    def suspicious(step: FrameStep) -> NDArray[np.bool_]:
+        rate = np.append(step.leaving[gap], step.rate[gap])
+        depth = np.append(step.starts[gap], step.depth[gap])
+        apart = step.length * np.diff(step.nodes.points, prepend=0.0)
+        turned = (rate[:-1] > 0.0) & (rate[1:] < 0.0)
+        reach = np.maximum(depth[:-1], depth[1:]) + apart * np.maximum(rate[:-1], -rate[1:])
+        found = turned & (reach > noise)
+        found[0] &= not state.passed
+        return np.asarray(found)
+
+    return GapEvent(gap, Happening.NEAREST, lambda step: step.rate[gap], suspicious)
+
+
+def _left(gap: int) -> GapEvent:
+    return GapEvent(gap, Happening.LEFT, lambda step: step.depth[gap])
+
+
+def _again(gap: int, state: GapState, law: PointLaw) -> GapEvent:
+    """The law, which does not act here, would press again."""
+
+    def value(step: FrameStep) -> Array:
+        depth = np.maximum(step.depth[gap], TINY)
+        force = np.asarray(law.force(depth, step.rate[gap], state.stage))
+        return np.asarray(np.where(step.depth[gap] > 0.0, -force, 1.0))
+
+    return GapEvent(gap, Happening.AGAIN, value)
+
+
+def _force_left(gap: int) -> Callable[[FrameStep], Array]:
+    """The force as long as there is depth; above the surface its mean stiffness times the depth goes on."""
+
+    def value(step: FrameStep) -> Array:
+        depth, force = step.depth[gap], step.force[gap]
+        beyond = force.max() / depth.max() if depth.max() > 0.0 else 1.0
+        return np.asarray(np.where(depth > 0.0, force, beyond * depth))
+
+    return value
+
+
+def after(
+    event: GapEvent, state: GapState, law: PointLaw, depth: float, rate: float, slowest: float, time: float
+) -> tuple[GapState, float]:
+    """The gap after what happened to it at a depth, m, and at a rate, m/s; and its depth, zero at the surface."""
+    match event.happening:
+        case Happening.NEAREST:
+            return replace(state, passed=True), depth
+        case Happening.TOUCH:
+            return (pressed(law, 0.0, rate, slowest, time) if rate > 0.0 else OPEN), 0.0
+        case Happening.TURN:
+            stage = following(law, state.stage, depth)
+            return replace(state, stage=stage, corners=law.corners(stage), touched=None), depth
+        case Happening.CORNER:
+            return replace(state, corners=state.corners[1:]), depth
+        case Happening.EXIT if not event.surfaces:
+            return replace(state, mode=Mode.LEAVING, corners=(), touched=None), depth
+        case Happening.AGAIN:
+            return pressed(law, depth, rate, slowest, time), depth
+        case _:
+            return OPEN, 0.0

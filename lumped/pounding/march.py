@@ -1,0 +1,129 @@
+"""The frames marched from row to row; in a row from happening to happening of the gaps, each located exactly."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from lumped.errors import BadInput, Fault, NotReached
+from lumped.numbers import Array
+from lumped.pounding.flow import TERMS, longest_row
+from lumped.pounding.frames import PoundingFrames
+from lumped.pounding.gaps import OPEN, FrameStep, GapEvent, GapState, Mode, after, pressed
+from lumped.pounding.ground import GroundMotion
+from lumped.pounding.trial import NODES, FramesAt, FrameTrial, Rules
+from lumped.solvers.point.bodies import Bodies
+from lumped.solvers.radau import STAGES
+
+MOST_ROWS = 300_000  # work: some minutes
+MOST_STEPS = 3000  # work: of one row, more is no motion but chatter
+# Told of every step: where it began, the step, where it led.
+Listener = Callable[[FramesAt, FrameStep, FramesAt], None]
+
+
+def rows(frames: PoundingFrames, ground: GroundMotion, end_time: float) -> tuple[Array, float]:
+    """Times of the rows, s, from zero to the end, no kink of the ground between two of them; the longest apart.
+
+    Raises BadInput when they are too many.
+    """
+    longest = longest_row(frames, ground)
+    kinks = ground.kinks[(ground.kinks > 0.0) & (ground.kinks < end_time)]
+    stops = np.unique(np.concatenate([[0.0], kinks, [end_time]]))
+    counts = np.ceil(np.diff(stops) / longest).astype(int)
+    if counts.sum() > MOST_ROWS:
+        most = end_time * MOST_ROWS / counts.sum()
+        reason = f"more than {MOST_ROWS} rows of {longest:.2g} s; accepted: at most {most:.3g} s for these structures"
+        raise BadInput(Fault("motion", "end_time", reason))
+    between = [
+        np.linspace(low, high, n, endpoint=False) for low, high, n in zip(stops, stops[1:], counts, strict=False)
+    ]
+    times = np.concatenate([*between, [end_time]])
+    return times, float(np.diff(times).max())
+
+
+@dataclass(frozen=True, eq=False)
+class FrameMarch:
+    """Rules and the ground: what moves frames from row to row."""
+
+    rules: Rules
+    ground: GroundMotion
+
+    def run(self, times: Array, listener: Listener) -> None:
+        """From the start through all rows. Raises NotReached."""
+        frames = self.rules.flow.frames
+        at, length = FramesAt(0.0, frames.start, -frames.distances, (OPEN,) * len(frames.gaps)), math.inf
+        # A trial of Newton's method may go beyond all numbers: then the step is refused.
+        with np.errstate(all="ignore"):
+            for until in times[1:].tolist():
+                at, length = self._row(at, until, length, listener)
+
+    def _row(self, at: FramesAt, until: float, length: float, listener: Listener) -> tuple[FramesAt, float]:
+        """To the end of a row; the length proposed for the next step, s."""
+        for _ in range(MOST_STEPS):
+            free = self._free(at)
+            start = self._touched(self._placed(at, free), free, until - at.time)
+            fresh = [i for i, gap in enumerate(start.gaps) if gap.mode is not at.gaps[i].mode]
+            length = min([length, *(self._first_length(i, start.gaps[i]) for i in fresh)])
+            trial = FrameTrial(self.rules, start, free)
+            step, event, length = trial.accepted(min(length, until - at.time), length)
+            end = until if event is None and step.length == until - at.time else at.time + step.length
+            following, length = self._after(trial, step, event, end, length)
+            listener(start, step, following)
+            at = following
+            if at.time >= until:
+                return at, length
+        raise NotReached(
+            f"{MOST_STEPS} steps between {until:.6g} s and the row before; cure: an earlier motion.end_time"
+        )
+
+    def _free(self, at: FramesAt) -> Array:
+        return self.rules.flow.series(at.state, self.ground.series(at.time, self.rules.flow.unit, TERMS))
+
+    def _placed(self, at: FramesAt, free: Array) -> FramesAt:
+        """With the depths of the gaps that are apart, which the state tells: zero where they are but for rounding."""
+        flow, frames = self.rules.flow, self.rules.flow.frames
+        depths = frames.rows @ at.state[: flow.size] - frames.distances
+        depths[depths >= -2.0 * flow.noise(free)] = 0.0
+        apart = [gap.mode is Mode.APART for gap in at.gaps]
+        return at._replace(depths=np.where(apart, depths, at.depths))
+
+    def _touched(self, at: FramesAt, free: Array, length: float) -> FramesAt:
+        """With the gaps pressed that lie at depth zero and close from here on: at rest, their first motion tells."""
+        zero = [i for i, gap in enumerate(at.gaps) if gap.mode is Mode.APART and at.depths[i] == 0.0]
+        if not zero:
+            return at
+        flow = self.rules.flow
+        noise, slowest = flow.noise(free), flow.slowest(free)
+        first = (length / flow.unit * NODES.points[0]) ** np.arange(1.0, TERMS + 1.0)
+        moved = flow.frames.rows @ (first @ free[1:, : flow.size])
+        rates, gaps = flow.frames.rows @ at.state[flow.size :], list(at.gaps)
+        for i in zero:
+            if moved[i] > 2.0 * noise[i] and rates[i] >= 0.0:
+                gaps[i] = pressed(self.rules.laws[i], 0.0, float(rates[i]), slowest, at.time)
+        return at._replace(gaps=tuple(gaps))
+
+    def _after(
+        self, trial: FrameTrial, step: FrameStep, event: GapEvent | None, time: float, length: float
+    ) -> tuple[FramesAt, float]:
+        """The instant where a step led, and the length of the next one, s."""
+        state, gaps, depths = step.states[-1], list(trial.at.gaps), step.depth[:, -1].copy()
+        for i, (gap, memory) in enumerate(zip(gaps, step.memories, strict=True)):
+            if gap.passed or gap.memory != memory:
+                gaps[i] = replace(gap, passed=False, memory=memory)
+        if event is not None:
+            i, law, before = event.gap, self.rules.laws[event.gap], gaps[event.gap]
+            depth, rate = float(depths[i]), float(step.rate[i, -1])
+            gaps[i], depths[i] = after(event, before, law, depth, rate, self.rules.flow.slowest(trial.free), time)
+            if gaps[i].mode is Mode.PRESSED and before.mode is not Mode.PRESSED:
+                length = min(length, self._first_length(i, gaps[i]))
+        if not any(gap.mode is Mode.PRESSED for gap in gaps):
+            length = math.inf
+        return FramesAt(time, state, depths, tuple(gaps)), length
+
+    def _first_length(self, i: int, gap: GapState) -> float:
+        """Of a contact, s."""
+        law, bodies = self.rules.laws[i], Bodies(float(self.rules.flow.frames.reduced_masses[i]), gap.stage.speed)
+        return float(self.rules.tolerance ** (law.grading(gap.stage) / STAGES) * law.time_scale(bodies))

@@ -1,0 +1,222 @@
+"""The motion of frames under a ground motion: marched once, and what is kept of every step.
+
+That is rows, peaks between them, contacts, and energies summed by the steps' own quadrature.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from lumped.errors import BadInput, Fault
+from lumped.laws._force_law import ForceLaw
+from lumped.numbers import Array, highest
+from lumped.pounding.flow import TERMS, FrameFlow
+from lumped.pounding.frames import PoundingFrames
+from lumped.pounding.gaps import FrameStep, GapState, Mode
+from lumped.pounding.ground import STILL, GroundMotion
+from lumped.pounding.march import FrameMarch, rows
+from lumped.pounding.result import FrameContact, FramesEnergy, FramesMotion, FramesResult, StoreyPeaks
+from lumped.pounding.trial import FramesAt, Rules
+from lumped.solvers.point.bodies import TINY, State
+from lumped.solvers.radau import STAGES, Nodes
+
+PLACES = np.linspace(0.0, 1.0, 33)  # in a step, among which its peak is looked for
+
+
+def simulate(
+    frames: PoundingFrames,
+    laws: Sequence[ForceLaw] = (),
+    ground: GroundMotion = STILL,
+    end_time: float = 20.0,
+    tolerance: float = 1e-10,
+) -> FramesResult:
+    """The frames from their start to `end_time`, s, a law for each gap.
+
+    `tolerance`: error of a relative speed in one step of a contact, over the speed at touch. Raises BadInput, and
+    NotReached where contacts do not end.
+    """
+    if len(laws) != len(frames.gaps):
+        raise BadInput(Fault("simulate", "laws", f"{len(laws)}; accepted: one for each of {len(frames.gaps)} gaps"))
+    times, longest = rows(frames, ground, end_time)
+    march = FrameMarch(Rules(FrameFlow(frames, longest), laws, tolerance), ground)
+    account = Account(march)
+    march.run(times, account)
+    return account.result()
+
+
+@dataclass
+class Peaks:
+    """The largest sizes of some numbers, and the polynomials over the place in the steps where they were."""
+
+    size: Array
+    series: Array
+
+    @classmethod
+    def of(cls, count: int) -> Peaks:
+        """Nothing yet."""
+        return cls(np.zeros(count), np.zeros((STAGES, count)))
+
+    def see(self, values: Array, nodes: Nodes) -> Array:
+        """Values at the points of a step, (s, n); which of them are larger than any before, (n,)."""
+        size = np.abs(values).max(axis=0)
+        larger = size > self.size
+        if larger.any():
+            self.size = np.where(larger, size, self.size)
+            self.series[:, larger] = nodes.series @ values[:, larger]
+        return np.asarray(larger)
+
+    def heights(self) -> Array:
+        """Each at the top of its polynomial."""
+        return np.array([self.top(i)[1] for i in range(self.size.size)])
+
+    def top(self, i: int) -> tuple[float, float]:
+        """Place in its step, and height."""
+
+        def curve(places: Array) -> Array:
+            return np.abs(np.polynomial.legendre.legval(2.0 * places - 1.0, self.series[:, i]))
+
+        place, height = highest(curve, PLACES)
+        return place, max(height, float(self.size[i]))
+
+
+@dataclass
+class OpenContact:
+    """A contact that is under way: touched at `start`, s, at `closing`, m/s; its largest force so far and where."""
+
+    start: float
+    closing: float
+    impulse: float = 0.0
+    peak: Peaks = field(default_factory=lambda: Peaks.of(1))
+    step: tuple[float, FrameStep] | None = None
+
+    def see(self, time: float, step: FrameStep, gap: int) -> None:
+        """One step more, from `time`, s, on."""
+        self.impulse += step.length * float(step.nodes.weights @ step.gain[gap])
+        if self.peak.see(step.force[gap][:, None], step.nodes)[0] or self.step is None:
+            self.step = time, step
+
+    def contact(self, gap: str, end: float | None, rate: float) -> FrameContact:
+        """As it is known when it ends; at the end of the motion None."""
+        place, height = self.peak.top(0)
+        time, step = self.step or (self.start, None)
+        share = 0.0 if step is None else float(np.interp(place, step.nodes.places, step.nodes.points, left=0.0))
+        parted = None if end is None or self.closing <= 0.0 else -rate / self.closing
+        peak_time = time + share * (0.0 if step is None else step.length)
+        return FrameContact(gap, self.start, end, height, peak_time, self.impulse, self.closing, parted)
+
+
+class Account:
+    """Listens to a march."""
+
+    def __init__(self, march: FrameMarch) -> None:
+        self.march, self.flow = march, march.rules.flow
+        self.frames = frames = self.flow.frames
+        self.names = tuple(frames.gaps)
+        self.times, self.states = [0.0], [frames.start]
+        self.forces = [np.zeros(len(frames.gaps))]
+        self.peaks = Peaks.of(4 * self.flow.size)
+        self.open: dict[int, OpenContact] = {}
+        self.contacts: list[FrameContact] = []
+        self.input = self.damping = self.lost = 0.0
+        self.steps = self.pressed_steps = 0
+        self.last: FramesAt | None = None
+
+    def __call__(self, at: FramesAt, step: FrameStep, to: FramesAt) -> None:
+        """One step of the march."""
+        pressed = [i for i, gap in enumerate(at.gaps) if gap.mode is Mode.PRESSED]
+        self.steps, self.pressed_steps = self.steps + 1, self.pressed_steps + bool(pressed)
+        self._sum(at, step, pressed)
+        self.peaks.see(self._values(step), step.nodes)
+        for i in pressed:
+            if i not in self.open:
+                self.open[i] = OpenContact(at.time, float(step.leaving[i]))
+                self.lost -= self._stored(i, at.gaps[i], float(at.depths[i]))
+            self.open[i].see(at.time, step, i)
+            if to.gaps[i].mode is not Mode.PRESSED:
+                self.contacts.append(self.open.pop(i).contact(self.names[i], to.time, float(step.rate[i, -1])))
+                self.lost += self._stored(i, at.gaps[i], float(step.depth[i, -1]))
+        self.times.append(to.time)
+        self.states.append(to.state)
+        self.forces.append(step.force[:, -1] * [gap.mode is Mode.PRESSED for gap in to.gaps])
+        self.last = to
+
+    def _sum(self, at: FramesAt, step: FrameStep, pressed: list[int]) -> None:
+        """Work of the ground, losses in the structures and in the contacts, over a step."""
+        frames, speeds = self.frames, step.states[:, self.flow.size :]
+        weights = step.length * step.nodes.weights * step.nodes.pace
+        shares = self.flow.shares(step.nodes, step.length)[:, :TERMS]
+        ground = shares @ self.march.ground.series(at.time, self.flow.unit, TERMS)
+        self.input -= float(weights @ (ground * (speeds @ frames.mass)))
+        self.damping += float(weights @ np.einsum("si,ij,sj->s", speeds, frames.damping, speeds))
+        for i in pressed:
+            known = State(float(at.depths[i]), float(step.leaving[i]), 0.0, at.gaps[i].memory)
+            law = self.march.rules.laws[i].within(known, step.length)
+            depth = np.maximum(step.depth[i], TINY)
+            self.lost += float(weights @ (law.lost(depth, step.rate[i], at.gaps[i].stage) * step.rate[i]))
+
+    def _values(self, step: FrameStep) -> Array:
+        """Displacement, drift, total acceleration and speed of every storey at the points of a step, (s, 4 n)."""
+        n = self.flow.size
+        places, speeds = step.states[:, :n], step.states[:, n:]
+        return np.hstack(
+            [places, places @ self.frames.to_drift.T, self._accelerations(step.states, step.force.T), speeds]
+        )
+
+    def _accelerations(self, states: Array, forces: Array) -> Array:
+        """Total ones, m/s2, (k, n), of states (k, 2 n) and forces (k, m)."""
+        n, frames = self.flow.size, self.frames
+        pulls = states[:, :n] @ frames.stiffness + states[:, n:] @ frames.damping + forces @ frames.rows
+        return np.asarray(-pulls / frames.mass)
+
+    def _stored(self, i: int, gap: GapState, depth: float) -> float:
+        return float(self.march.rules.laws[i].stored(max(depth, 0.0), gap.stage))
+
+    def result(self) -> FramesResult:
+        """All of it."""
+        time, states, forces = np.array(self.times), np.array(self.states), np.array(self.forces)
+        n, frames = self.flow.size, self.frames
+        motion = FramesMotion(
+            time,
+            states[:, :n],
+            states[:, :n] @ frames.to_drift.T,
+            states[:, n:],
+            self._accelerations(states, forces),
+            self.march.ground.acceleration(time),
+            forces,
+        )
+        still = [one.contact(self.names[i], None, 0.0) for i, one in self.open.items()]
+        contacts = tuple(sorted([*self.contacts, *still], key=lambda contact: (contact.start, contact.gap)))
+        return FramesResult(frames, motion, contacts, self._peaks(), self._energy(), self.steps, self.pressed_steps)
+
+    def _peaks(self) -> tuple[StoreyPeaks, ...]:
+        displacement, drift, acceleration, speed = self.peaks.heights().reshape(4, -1)
+        strain, kinetic = 0.5 * self.frames.columns * drift**2, 0.5 * self.frames.mass * speed**2
+        columns = np.array([displacement, drift, acceleration, strain, kinetic]).T.tolist()
+        return tuple(StoreyPeaks(*column) for column in columns)
+
+    def _energy(self) -> FramesEnergy:
+        first, last = self.states[0], self.states[-1]
+        return FramesEnergy(
+            initial=sum(self._energies(first)),
+            input=self.input,
+            kinetic=self._energies(last)[0],
+            strain=self._energies(last)[1],
+            damping=self.damping,
+            contact=self.lost,
+            contact_stored=self._held(),
+        )
+
+    def _held(self) -> float:
+        """What contacts that are still under way could give back, J."""
+        if self.last is None:
+            return 0.0
+        return sum(self._stored(i, self.last.gaps[i], float(self.last.depths[i])) for i in self.open)
+
+    def _energies(self, state: Array) -> tuple[float, float]:
+        """Kinetic and of strain, J."""
+        n = self.flow.size
+        kinetic = 0.5 * float(self.frames.mass @ state[n:] ** 2)
+        return kinetic, 0.5 * float(state[:n] @ self.frames.stiffness @ state[:n])

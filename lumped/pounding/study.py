@@ -1,0 +1,85 @@
+"""A case under its own law, without pounding, and under other laws; each motion marched twice for its error bars."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from lumped.laws._force_law import ForceLaw
+from lumped.pounding.case_file import PoundingCase
+from lumped.pounding.frames import PoundingFrames
+from lumped.pounding.result import FramesResult
+from lumped.pounding.simulation import simulate
+
+APART = "no contact"  # the variant whose structures pass through each other
+COARSE, FINE = 1e-6, 1e-8  # step tolerances of the two marches
+SAFETY = 2.0  # safety: two marches may agree by chance
+ROUNDING = 1e-12  # rounding: of a sum over thousands of steps, relative
+# What a converged motion may err by: a peak force, relative; the energy, of all that came in.
+MOST_ERROR, MOST_RESIDUAL = 1e-4, 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class Pounding:
+    """The finer of two marches under a law, and by how much both differ in every measure, times SAFETY."""
+
+    laws: tuple[ForceLaw, ...]
+    result: FramesResult
+    errors: dict[str, float]
+
+    @property
+    def message(self) -> str:
+        """Why it has not converged; empty when it has."""
+        cure = "cure: an earlier motion.end_time"
+        if self.errors["contacts"]:
+            return f"{len(self.result.contacts)} contacts, but others on coarser steps; {cure}"
+        relative = self.errors["peak_force"] / (self.result.peak_force or 1.0)
+        if relative > MOST_ERROR:
+            return f"the peak force changes by {relative:.1e} on coarser steps; {cure}"
+        if self.result.energy.open_share > MOST_RESIDUAL:
+            return f"the energy balance is open by {self.result.energy.open_share:.1e}; {cure}"
+        return ""
+
+
+@dataclass(frozen=True, eq=False)
+class PoundStudy:
+    """By law, the file's own first; and the same structures without contact. Of a file without gaps that alone."""
+
+    case: PoundingCase
+    motions: dict[str, Pounding]
+    apart: FramesResult
+
+    @property
+    def main(self) -> FramesResult:
+        """The motion of the case as given."""
+        return next((motion.result for motion in self.motions.values()), self.apart)
+
+    @property
+    def message(self) -> str:
+        """What did not converge; empty when all did."""
+        return "; ".join(f"{name}: {motion.message}" for name, motion in self.motions.items() if motion.message)
+
+
+def study(
+    case: PoundingCase, names: Sequence[str] = (), progress: Callable[[str], None] = lambda message: None
+) -> PoundStudy:
+    """The case under its own law and these others. Raises BadInput, before any work, and NotReached."""
+    own = case.law.name if case.law and case.frames.gaps else None
+    laws = {name: case.laws(None if name == own else name) for name in dict.fromkeys([own, *names]) if name and own}
+    motions = {}
+    for name, one in laws.items():
+        progress(name)
+        motions[name] = pounding(case, one)
+    free = PoundingFrames(case.frames.left, case.frames.right)
+    return PoundStudy(case, motions, simulate(free, (), case.ground, case.end_time))
+
+
+def pounding(case: PoundingCase, laws: tuple[ForceLaw, ...]) -> Pounding:
+    """One motion with its error bars. Raises NotReached."""
+    coarse, fine = (simulate(case.frames, laws, case.ground, case.end_time, tolerance) for tolerance in (COARSE, FINE))
+    other = coarse.measures()
+    errors = {
+        name: SAFETY * abs(value - other[name]) + (0.0 if name == "contacts" else ROUNDING * abs(value))
+        for name, value in fine.measures().items()
+    }
+    return Pounding(laws, fine, errors)

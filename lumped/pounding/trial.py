@@ -1,0 +1,321 @@
+"""One step of the frames from an instant: as long as the forces are smooth, cut at what happens first.
+
+While nothing is pressed a step is the linear motion itself. While some gaps are, their forces at all Radau points of
+the step are found at once, by Newton's method.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg.lapack import dgesv
+
+from lumped.errors import NotReached
+from lumped.laws._force_law import ForceLaw
+from lumped.numbers import Array
+from lumped.pounding.flow import FrameFlow
+from lumped.pounding.gaps import FrameStep, GapEvent, GapState, Mode, events_of
+from lumped.solvers.point.bodies import TINY, PointLaw, Stage, State
+from lumped.solvers.radau import STAGES, Nodes, radau
+
+NODES = radau(STAGES)
+ITERATIONS = 12  # work: Newton's, of one step
+SMALL, EXACT = 1e-11, 1e-14  # a correction times its ratio to the one before; a correction that is rounding
+LOCATIONS = 60  # work: trials of where in a step something happens
+PRECISE = 1e-14  # of the time reached, and of a row: where it happens
+NOISE = 1e-8  # rounding: of the slowest speed that counts, which no step can resolve
+SHORTEST, LONGEST, CAUTION = 0.1, 5.0, 0.8  # safety: least and most of the next step over this one, and the share
+HOPELESS = 2.0  # so much rougher than allowed a step need not be located any better to be refused
+FARTHEST = 1e4  # rounding: steps since touch, beyond which grading them is lost in the digits of the time
+
+
+class FramesAt(NamedTuple):
+    """An instant, s: the state (2 n,), the gaps, and their depths, m, (m,)."""
+
+    time: float
+    state: Array
+    depths: Array
+    gaps: tuple[GapState, ...]
+
+
+class Rules(NamedTuple):
+    """What every step of a march goes by: the linear motion, a law for each gap, and the `tolerance`.
+
+    That is the error of a rate in one step over the speed at touch.
+    """
+
+    flow: FrameFlow
+    laws: Sequence[ForceLaw]
+    tolerance: float
+
+
+@dataclass(frozen=True, eq=False)
+class FrameTrial:
+    """Steps of several lengths from one instant, of which `free` are the Taylor coefficients without forces."""
+
+    rules: Rules
+    at: FramesAt
+    free: Array
+
+    @cached_property
+    def _pressed(self) -> list[int]:
+        return [i for i, gap in enumerate(self.at.gaps) if gap.mode is Mode.PRESSED]
+
+    @cached_property
+    def _events(self) -> list[GapEvent]:
+        """Of the gaps that are not apart."""
+        return [event for i, gap in enumerate(self.at.gaps) if gap.mode is not Mode.APART for event in self._of(i)]
+
+    @cached_property
+    def _touches(self) -> dict[int, list[GapEvent]]:
+        """By those that are apart."""
+        return {i: self._of(i) for i, gap in enumerate(self.at.gaps) if gap.mode is Mode.APART}
+
+    def _of(self, i: int) -> list[GapEvent]:
+        """By one gap."""
+        law, noise = self.rules.laws[i], float(self._noise[i])
+        return events_of(i, self.at.gaps[i], law, law.exit, float(self.at.depths[i]), noise)
+
+    @cached_property
+    def _noise(self) -> Array:
+        return self.rules.flow.noise(self.free)
+
+    def _near(self, step: FrameStep) -> list[GapEvent]:
+        """The events that can lie in a step: gaps that stay far apart have none."""
+        reach = np.maximum(step.starts, step.depth.max(axis=1, initial=-np.inf))
+        reach += step.length * np.abs(step.rate).max(axis=1, initial=0.0)
+        near = (i for i in np.flatnonzero(reach >= 0.0).tolist() if self.at.gaps[i].mode is Mode.APART)
+        return [*self._events, *(event for i in near for event in self._touches[i])]
+
+    @cached_property
+    def _depths(self) -> Array:
+        """Taylor coefficients of the depths, (TERMS + 1, m)."""
+        return np.asarray(self.free[:, : self.rules.flow.size] @ self.rules.flow.frames.rows.T)
+
+    @cached_property
+    def _rates(self) -> Array:
+        return np.asarray(self.free[:, self.rules.flow.size :] @ self.rules.flow.frames.rows.T)
+
+    @cached_property
+    def _graded(self) -> tuple[int, float]:
+        """The power of the grading, and the time of the last touch, s, from which forces still grow."""
+        found = [
+            (gap.touched, self.rules.laws[i].grading(gap.stage))
+            for i, gap in enumerate(self.at.gaps)
+            if gap.mode is Mode.PRESSED and gap.touched is not None
+        ]
+        touched, power = max(found, default=(0.0, 1))
+        return power, touched
+
+    @cached_property
+    def _allowed(self) -> Array:
+        """Roughness of the rates, m/s, of the gaps that are pressed."""
+        speeds = np.abs(self._rates[0, self._pressed])
+        touch = np.array([self.at.gaps[i].stage.speed for i in self._pressed])
+        floor = NOISE * self.rules.flow.slowest(self.free)
+        return np.asarray(np.maximum(self.rules.tolerance * np.maximum(speeds, touch), floor))
+
+    def accepted(self, length: float, proposed: float) -> tuple[FrameStep, GapEvent | None, float]:
+        """The step taken, at most `length` long, s, what ended it, and how long the next one may be, s."""
+        shortest = PRECISE * (self.at.time + self.rules.flow.unit) * SHORTEST
+        guess = np.zeros((len(self._pressed), STAGES))
+        while length > 0.0:
+            nodes = self._nodes(length)
+            step, event = self._until_event(self._solved(length, nodes, guess))
+            if step is not None and not self._pressed:
+                return step, event, math.inf
+            rough = math.inf if step is None else float((self._roughness(step) / self._allowed).max())
+            if step is not None and (rough <= 1.0 or step.length <= shortest):
+                following = step.length * step.nodes.following(_ratio(rough, step.nodes.power))
+                return step, event, max(following, proposed) if step.length < proposed else following
+            if step is None:
+                length *= SHORTEST
+            else:
+                length = step.length * step.nodes.again(_ratio(rough, step.nodes.power))
+            proposed = length
+        raise NotReached(f"no step from {self.at.time:.6g} s on converges; cure: a law less stiff")
+
+    def _roughness(self, step: FrameStep) -> Array:
+        """What the last Legendre terms of the forces are worth in rates over the step, m/s, of the pressed gaps."""
+        last = np.abs(step.gain[self._pressed] @ step.nodes.series[-2:].T).max(axis=1)
+        return np.asarray(step.length * last / self.rules.flow.frames.reduced_masses[self._pressed])
+
+    def _nodes(self, length: float) -> Nodes:
+        power, touched = self._graded
+        begun = (self.at.time - touched) / length
+        return NODES.graded(power, begun) if power > 1 and begun < FARTHEST else NODES
+
+    def _ending(self, event: GapEvent, length: float) -> Nodes:
+        """The nodes of a step that ends with an event: at depth zero graded towards it."""
+        gap = self.at.gaps[event.gap]
+        left = self.rules.laws[event.gap].grading(gap.stage) if event.surfaces else 1
+        nodes = self._nodes(length)
+        return NODES.graded(left, mirrored=True) if left > 1 and nodes.power == 1 else nodes
+
+    def _until_event(self, step: FrameStep | None) -> tuple[FrameStep | None, GapEvent | None]:
+        """The step, cut short at its first event; and again at one before that which only the shorter step shows."""
+        event: GapEvent | None = None
+        for _ in range(1 + 2 * len(self.at.gaps)):
+            found = None if step is None else self._first(step, event)
+            if step is None or found is None:
+                break
+            event = found
+            step = self._located(step, event)
+        return step, event
+
+    def _first(self, step: FrameStep, known: GapEvent | None) -> GapEvent | None:
+        """The event that happens first within a step, other than one that is known to end it."""
+        found = [
+            (first, event)
+            for event in self._near(step)
+            if event is not known and (first := event.first(step)) is not None
+        ]
+        return min(found, key=lambda pair: pair[0])[1] if found else None
+
+    def _located(self, step: FrameStep, event: GapEvent) -> FrameStep | None:
+        """The step that ends where the event happens: Newton's method on its length, kept between what brackets it.
+
+        Or one near it that is too rough anyway; None without convergence.
+        """
+        values, place = event.value(step), event.first(step) or 0
+        low, high, length = _bracket(step, values, place)
+        nodes, guess = self._ending(event, length), step.gain
+        if nodes.mirrored != step.nodes.mirrored:
+            guess = np.outer(step.force[:, place], nodes.pace)
+        previous: tuple[float, float] | None = None
+        precise = PRECISE * (self.at.time + self.rules.flow.unit)
+        trial: FrameStep | None = None
+        for _ in range(LOCATIONS):
+            trial = self._solved(length, nodes, guess[self._pressed])
+            if trial is None:
+                return None
+            if self._pressed and bool((self._roughness(trial) > HOPELESS * self._allowed).any()):
+                return trial
+            values = event.value(trial)
+            at, slope = float(values[-1]), trial.slope(values)
+            if previous is not None and previous[0] != length:
+                slope = (at - previous[1]) / (length - previous[0])
+            elif not math.isfinite(slope):
+                slope = float(trial.rate[event.gap, -1])
+            low, high = (low, length) if at <= 0.0 else (length, high)
+            following = length - at / slope if slope < 0.0 else low
+            if at == 0.0 or abs(following - length) <= precise or high - low <= precise:
+                return trial
+            previous, length = (length, at), following if low < following < high else 0.5 * (low + high)
+            nodes, guess = self._ending(event, length), trial.gain
+        return trial
+
+    def _solved(self, length: float, nodes: Nodes, guess: Array) -> FrameStep | None:
+        """The step whose forces are those of the laws at every point; None without convergence."""
+        flow, at, p = self.rules.flow, self.at, self._pressed
+        shares = flow.shares(nodes, length)
+        states, rate = shares @ self.free, (shares @ self._rates).T
+        depth = at.depths[:, None] + (shares[:, 1:] @ self._depths[1:]).T
+        force, gain, memories = np.zeros_like(depth), np.zeros_like(depth), [gap.memory for gap in at.gaps]
+        if p:
+            over = flow.integrals(nodes, length)
+            pressing = self._pressing(length, nodes, over, depth[p], rate[p])
+            found = pressing.solved(guess, flow.frames.reduced_masses[p] / length)
+            if found is None:
+                return None
+            gain[p] = found
+            integrals = over @ gain.T  # (k, s, m)
+            states = states + np.einsum("ksm,knm->sn", integrals, flow.influence[: over.shape[0]])
+            depth += np.einsum("ksm,knm->ns", integrals, flow.on_depth[: over.shape[0]])
+            rate += np.einsum("ksm,knm->ns", integrals, flow.on_rate[: over.shape[0]])
+            force[p] = pressing.forces(depth[p], rate[p])
+            gain[p] = nodes.pace * force[p]
+            for i, law in zip(p, pressing.laws, strict=True):
+                memories[i] = law.remembered(np.maximum(depth[i], TINY))
+        return FrameStep(length, nodes, states, at.depths, self._rates[0], depth, rate, force, gain, tuple(memories))
+
+    def _pressing(self, length: float, nodes: Nodes, over: Array, depth: Array, rate: Array) -> Pressing:
+        """The pressed gaps within a step, from depths and rates without force, (p, s)."""
+        p, flow = self._pressed, self.rules.flow
+        by_gain = (
+            np.tensordot(on[: over.shape[0], p][:, :, p], over, (0, 0)).transpose(0, 2, 1, 3).reshape(depth.size, -1)
+            for on in (flow.on_depth, flow.on_rate)
+        )
+        return Pressing(
+            [self.rules.laws[i].within(self.known(i), length) for i in p],
+            [self.at.gaps[i].stage for i in p],
+            nodes.pace, depth, rate, *by_gain,
+        )  # fmt: skip
+
+    def known(self, i: int) -> State:
+        """What the law of a gap knows here."""
+        return State(float(self.at.depths[i]), float(self._rates[0, i]), 0.0, self.at.gaps[i].memory)
+
+
+@dataclass(frozen=True, eq=False)
+class Pressing:
+    """The pressed gaps within one step: laws and stages, the pace of its nodes, (s,), depths and rates without force,
+    (p, s), and what they get of the gains of all, (p s, p s).
+    """
+
+    laws: Sequence[PointLaw]
+    stages: Sequence[Stage]
+    pace: Array
+    depth: Array
+    rate: Array
+    depth_by_gain: Array
+    rate_by_gain: Array
+
+    def forces(self, depth: Array, rate: Array) -> Array:
+        """Of all gaps, N, (p, s)."""
+        pressed = np.maximum(depth, TINY)
+        found = (law.force(*one) for law, *one in zip(self.laws, pressed, rate, self.stages, strict=True))
+        return np.array(list(found))
+
+    def solved(self, gain: Array, scale: Array) -> Array | None:
+        """The gains that are the pace times the laws' forces, by Newton's method from a guess; None if it fails.
+
+        `scale`: the force, N, that changes a rate by itself over the step, per rate, (p,).
+        """
+        before = 0.0
+        for _ in range(ITERATIONS):
+            depth = self.depth + (self.depth_by_gain @ gain.ravel()).reshape(gain.shape)
+            rate = self.rate + (self.rate_by_gain @ gain.ravel()).reshape(gain.shape)
+            excess = gain - self.pace * self.forces(depth, rate)
+            correction = dgesv(self._jacobian(depth, rate), excess.ravel())[2].reshape(gain.shape)
+            gain = gain - correction
+            sizes = np.abs(gain[:, 0]) + np.abs(gain[:, -1]) + scale * (np.abs(self.rate[:, 0]) + np.abs(rate[:, -1]))
+            ratio = float((np.abs(correction).max(axis=1) / sizes).max())
+            if not math.isfinite(ratio):
+                return None
+            if ratio <= EXACT or ratio * ratio <= SMALL * before:
+                return gain
+            before = ratio
+        return None
+
+    def _jacobian(self, depth: Array, rate: Array) -> Array:
+        """Of the excess over the gains, (p s, p s)."""
+        jacobian, count = np.eye(depth.size), depth.shape[1]
+        pressed = np.maximum(depth, TINY)
+        for k, (law, stage) in enumerate(zip(self.laws, self.stages, strict=True)):
+            own = slice(k * count, (k + 1) * count)
+            over_depth, over_rate = law.tangents(pressed[k], rate[k], stage)
+            over_depth, over_rate = over_depth * (depth[k] > 0.0), np.reshape(over_rate, (-1, 1))
+            by_depth = over_depth @ self.depth_by_gain[own] if over_depth.ndim == 2 else (
+                over_depth[:, None] * self.depth_by_gain[own])  # fmt: skip
+            jacobian[own] -= self.pace[:, None] * (by_depth + over_rate * self.rate_by_gain[own])
+        return jacobian
+
+
+def _bracket(step: FrameStep, values: Array, place: int) -> tuple[float, float, float]:
+    """Between which times an event happens, s, and about when: on the line between two points."""
+    high, at_high = float(step.nodes.points[place]), float(values[place])
+    low, at_low = (float(step.nodes.points[place - 1]), float(values[place - 1])) if place else (0.0, -at_high)
+    share = high - at_high * (high - low) / (at_high - at_low) if at_high < at_low else high
+    return low * step.length, min(2.0 * high, 1.0) * step.length, share * step.length
+
+
+def _ratio(rough: float, power: int) -> float:
+    """How much longer the root of the next step may be: the last Legendre terms fall with the power s of it."""
+    ratio = CAUTION * rough ** (-1.0 / STAGES) if rough > 0.0 else LONGEST
+    return float(min(max(ratio, SHORTEST ** (1.0 / power)), LONGEST ** (1.0 / power)))
