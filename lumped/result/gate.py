@@ -50,7 +50,7 @@ def check_curve(curve: Curve, scene: Scene, source: str, touch_at_zero: bool = T
     `touch_at_zero`: whether what follows takes the curve's time zero, s, for the first touch. `source`: its file.
     """
     pulse = MeasuredPulse(curve.time, curve.force)
-    warnings = [f"{source}: {remark}" for remark in curve.remarks]
+    warnings = [f"{source}: {'; '.join(curve.remarks)}"] if curve.remarks else []
     checks = (*OF_THE_CURVE, *((_touch,) if touch_at_zero else ()), _impulse, _duration)
     for check in checks:
         for finding in check(pulse, scene):
