@@ -8,6 +8,8 @@ from lumped.errors import FeContactError as FeContactError
 from lumped.errors import NotReached as NotReached
 from lumped.fit import Fit as Fit
 from lumped.fit import fit as fit
+from lumped.identify import Identified as Identified
+from lumped.identify import identify as identify
 from lumped.laws.base import simulate as simulate
 from lumped.materials import Creep as Creep
 from lumped.materials import Material as Material

@@ -12,7 +12,8 @@ import pytest
 from fe_contact.cli import main
 from fe_contact.studies.fit_chart import plot_fit
 from lumped import History, Scene, fit, laws, simulate
-from lumped.result.score import normalized_error, read_curve
+from lumped.result.curve_file import read_curve
+from lumped.result.score import normalized_error
 
 BODY = "[striker]\nmass = 0.001\nvelocity = 1.0\n"
 LAW = '[law]\nname = "jankowski"\nk = 1e7\nxi = 0.2\n'
@@ -138,7 +139,8 @@ def test_what_is_not_reached_is_written_as_such(
 ) -> None:
     """Relaxed steel alone peaks above the curve, and no ratio makes it softer."""
     where = tmp_path / "out"
-    options = ["--scene", "steel-ball", "--free", "R1", "--fix", "R2=0.02", "--peak", "--out", str(where)]
+    bodies = ["--scene", "steel-ball", "--set", "striker.mass=0.001", "--set", "striker.velocity=1.0"]
+    options = [*bodies, "--free", "R1", "--fix", "R2=0.02", "--peak", "--out", str(where)]
     assert main(["fit", str(curve), "--law", "correspondence", *options]) == 3
     assert "no R1 gives the measured peak" in capsys.readouterr().err
     written = json.loads((where / "fit.json").read_text(encoding="utf-8"))

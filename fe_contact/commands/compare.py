@@ -17,11 +17,13 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.reference import result_of, solve
     from fe_contact.studies.compare.chart import plot_comparison
     from fe_contact.studies.compare.study import compare, comparison_content, write_comparison
-    from lumped.result.score import read_curve
+    from lumped.result.curve_file import read_curve
+    from lumped.result.gate import check_curve
 
     scene, table = base.read_scene(args)
     given, names = settings(table, None, scene.source), law_names(args.laws, scene)
     measured = None if args.measured is None else read_curve(args.measured)
+    remarks = () if measured is None else check_curve(measured, scene, str(args.measured))
     run = base.StudyRun.of(args, "compare", scene.name)
     if scene.model.inertia:
         solved, reference = None, simulate(scene, "fe", given, progress=run.progress)
@@ -37,6 +39,8 @@ def execute(args: argparse.Namespace) -> int:
         plot_comparison(comparison, folder)
 
     publish(run.where, write)
+    for remark in remarks:
+        base.complain(remark)
     title = f"{scene.name}: against finite elements"
     return base.report(args, reference, content, content["verdict"], run.where, title)
 

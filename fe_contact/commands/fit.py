@@ -22,7 +22,9 @@ def execute(args: argparse.Namespace) -> int:
     """Fit, write, report; 0 or 3."""
     from fe_contact.studies.fit_chart import plot_fit
     from lumped.fit import RECORD, fit, write_failure
-    from lumped.result.score import read_curve
+    from lumped.fit.space import TOUCH
+    from lumped.result.curve_file import read_curve
+    from lumped.result.gate import check_curve
 
     _check_opensees(args)
     scene, curve = base.read_scene_for_fit(args), read_curve(args.curve)
@@ -30,6 +32,7 @@ def execute(args: argparse.Namespace) -> int:
     fixed = {name: base.number(value, "--fix") for name, value in _pairs(args.fix, "--fix")}
     bounds = dict(_bounds(args.bounds))
     where = base.folder(args, "fit", scene.name)
+    remarks = check_curve(curve, scene, str(args.curve), TOUCH not in {*(free or ()), *fixed})
     base.progress_of(args)(f"fit of {args.law}")
     options = {"free": "--free", "fixed": "--fix", "bounds": "--bounds", "law": "--law"}
     try:
@@ -44,6 +47,8 @@ def execute(args: argparse.Namespace) -> int:
         plot_fit(curve, found, folder)
 
     _report(args, found, publish(where, write, RECORD), where)
+    for remark in remarks:
+        base.complain(remark)
     return base.DONE if found.result.converged else base.NOT_REACHED
 
 

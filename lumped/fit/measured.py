@@ -43,7 +43,7 @@ class Measured:
         """The own rows of a measured curve, of many the means, or 201 rows of a computed history. Raises BadInput."""
         rows = _spread(curve.time) if isinstance(curve, History) else slice(None)
         together = 1 if isinstance(curve, History) else -(-curve.time.size // MOST_POINTS)
-        time, force = _means(curve.time[rows], together), _means(curve.force[rows], together)
+        time, force = means(curve.time[rows], together), means(curve.force[rows], together)
         highest = peak(curve.time, curve.force)[1] if isinstance(curve, History) else float(force.max())
         if not highest > 0.0 or not time[-1] > max(time[0], 0.0):
             raise BadInput(Fault("curve", "", "has no force above zero after t = 0; accepted: a contact"))
@@ -94,7 +94,7 @@ def _spread(time: Array) -> NDArray[np.intp]:
     return np.unique(np.searchsorted(time, np.linspace(time[0], time[-1], POINTS)))
 
 
-def _means(column: Array, together: int) -> Array:
+def means(column: Array, together: int) -> Array:
     """The means of so many neighbouring rows each: they are known as well as the rows are."""
     starts = np.arange(0, column.size, together)
     return np.asarray(np.add.reduceat(column, starts) / np.diff(np.append(starts, column.size)))

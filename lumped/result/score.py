@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from lumped.errors import BadInput, Fault
 from lumped.numbers import Array, peak
 from lumped.result.history import ForceOverTime, History
-from lumped.schema.csv_file import read_columns
 
 POINTS = 201  # equally spaced times at which two curves are compared
 GAUSS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)  # shares of an interval: exact for the square of a line
@@ -25,10 +23,14 @@ NO_MOTION: dict[str, float | None] = dict.fromkeys(("peak_depth", "restitution",
 
 @dataclass(frozen=True, eq=False)
 class Curve(ForceOverTime):
-    """A measured force: time in s, never decreasing, and force in N, both of shape (n,)."""
+    """A measured force: time in s, never decreasing, and force in N, both of shape (n,).
+
+    `remarks`: what was guessed when it was read, as units.
+    """
 
     time: Array
     force: Array
+    remarks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -79,16 +81,6 @@ def normalized_error(reference: History | Curve, candidate: History | Curve) -> 
     measured = reference.force_at(times)
     size = float(np.linalg.norm(measured))
     return float(np.linalg.norm(candidate.force_at(times) - measured)) / size if size else np.inf
-
-
-def read_curve(path: Path) -> Curve:
-    """A measured curve: a CSV file with the columns time_s and force_N at least. Raises BadInput."""
-    columns = read_columns(path, ("time_s", "force_N"))
-    if np.any(np.diff(columns["time_s"]) < 0.0):
-        raise BadInput(Fault(str(path), "time_s", "decreases; accepted: times in order"))
-    if columns["force_N"].max() <= 0.0:
-        raise BadInput(Fault(str(path), "force_N", "never above zero; accepted: compression positive"))
-    return Curve(columns["time_s"], columns["force_N"])
 
 
 def _features(curve: History | Curve) -> dict[str, float | None]:

@@ -5,6 +5,7 @@ Those in TOML are read here, and single keys of them set, with named faults.
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import stat
@@ -142,6 +143,21 @@ def overridden(table: Mapping[str, object], overrides: Mapping[str, object], sou
             place = place[part]
         place[last] = value
     return result
+
+
+def toml_text(table: Mapping[str, object], path: str = "") -> str:
+    """Tables of numbers, texts and lists of them as a TOML file."""
+    inner = {name: value for name, value in table.items() if isinstance(value, Mapping)}
+    own = [f"{name} = {_toml_value(value)}" for name, value in table.items() if name not in inner]
+    head = [f"[{path}]"] if path and own else []
+    below = [toml_text(value, f"{path}.{name}".lstrip(".")) for name, value in inner.items()]
+    return "\n".join(filter(None, ["\n".join([*head, *own, ""]) if own else "", *below]))
+
+
+def _toml_value(value: object) -> str:
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_toml_value, value))}]"
+    return json.dumps(value)  # whose texts, numbers and truth values are TOML's too
 
 
 def _tables(text: str) -> Table:

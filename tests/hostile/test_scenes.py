@@ -169,7 +169,7 @@ class Mutations:
 def curve(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("curve") / "curve.csv"
     time = np.linspace(0.0, 6e-5, 60)
-    force = 40.0 * np.maximum(np.sin(np.pi * time / 5.5e-5), 0.0) ** 1.5
+    force = 15.0 * np.maximum(np.sin(np.pi * time / 5.5e-5), 0.0) ** 1.5
     np.savetxt(path, np.column_stack([time, force]), delimiter=",", header="time_s,force_N", comments="")
     return path
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from lumped import BadInput, History, score
-from lumped.result.score import Curve, normalized_error, read_curve
+from lumped.result.curve_file import read_curve
+from lumped.result.score import Curve, normalized_error
 
 
 def half_sine(peak: float, duration: float, rebound: float = 1.0) -> History:
@@ -100,7 +101,7 @@ def test_measured_curve_is_read_and_scored(tmp_path: Path) -> None:
     ("text", "message"),
     [
         ("", "missing column"),
-        ("time_s,force\n0,1\n1,2\n", "force_N: missing column"),
+        ("time_s,push\n0,1\n1,2\n", "force_N: missing column"),
         ("time_s,force_N\n0,1\n1,x\n", "no number"),
         ("time_s,force_N\n0,1\n", "at least two rows"),
         ("time_s,force_N\n0,1\n1,nan\n", "finite"),

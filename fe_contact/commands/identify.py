@@ -1,0 +1,120 @@
+"""``fe-contact identify CURVE.csv ... --scene SCENE --free KEY,...``: numbers of a scene from measured histories."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fe_contact.commands import base
+from lumped.errors import BadInput, Fault
+from lumped.result.folder import publish
+from lumped.schema.files import SCENES, parse_assignment, toml_text
+
+if TYPE_CHECKING:
+    from lumped.identify import Identified, Interval
+
+# CURVE.csv:striker.velocity=0.3,striker.mass=0.1; a path may hold colons of its own
+OWN = re.compile(r"(?P<path>.*?):(?P<own>[A-Za-z_]\w*\.[^:=]+=.*)")
+WRITE = "--write"
+
+
+def execute(args: argparse.Namespace) -> int:
+    """Read, judge, identify, write, report; 0, or 3 where no impact came near the curves."""
+    from fe_contact.studies.identify_chart import plot_identified
+    from lumped.identify import RECORD, identify
+    from lumped.result.curve_file import read_curve
+    from lumped.result.gate import check_curve
+    from lumped.scene.scene import Scene
+
+    overrides, own = base.overrides_of(args), dict(map(_curve_of, args.curves))
+    name = Path(SCENES.resolved(args.scene)).stem
+    where = base.folder(args, "identify", name)
+    _check_written(args.write)
+    corner = None if args.corner is None else _frequency(args.corner)
+    curves = {path: read_curve(Path(path)) for path in own}
+    warnings = list[str]()
+    for path, curve in curves.items():
+        warnings += check_curve(curve, Scene.load(args.scene, overrides | own[path]), path, touch_at_zero=False)
+    free = [key.strip() for key in args.free.split(",") if key.strip()]
+    base.progress_of(args)(f"identifies {len(free)} keys from {len(curves)} curves")
+    found = identify(curves, args.scene, free, own, overrides, corner, args.each)
+
+    def write(folder: Path) -> None:
+        found.write_files(folder)
+        plot_identified(found, folder)
+
+    content = publish(where, write, RECORD)
+    lines = [*summary(found), f"written to {where}"]
+    if args.write is not None:
+        _write_scene(args.write, found)
+        lines.append(f"the scene with these values: {args.write}")
+    base.say(args, content, lines, f"{name}: identified from {len(curves)} curve{'s' if len(curves) > 1 else ''}")
+    for warning in (*warnings, *found.warnings):
+        base.complain(warning)
+    return base.DONE
+
+
+def _curve_of(text: str) -> tuple[str, dict[str, object]]:
+    """A curve's path, and the keys that its impact has of its own. Raises BadInput."""
+    split = OWN.fullmatch(text)
+    if split is None:
+        return text, {}
+    return split["path"], dict(parse_assignment(part) for part in split["own"].split(",") if part.strip())
+
+
+def _frequency(text: str) -> float:
+    value = base.number(text, "--corner")
+    if not 0.0 < value < 1e12:  # safety: beyond any instrument's
+        raise BadInput(Fault("--corner", "", f"{value:g}: accepted a frequency above zero, Hz"))
+    return value
+
+
+def summary(found: Identified) -> list[str]:
+    """Every parameter with its interval, and how far the law explains the curves; one a line."""
+    width = max(map(len, found.parameters))
+    lines = [f"{name:{width}s} {shown(one)}" for name, one in found.parameters.items()]
+    for name, alone in found.each.items():
+        lines += [f"{name} alone: {key.rpartition('.')[2]} {shown(one)}" for key, one in alone.parameters.items()]
+    noises = ", ".join(f"{100.0 * curve.deviation / curve.peak:.2g} %" for curve in found.curves)
+    touches = ", ".join(f"{curve.touch:.6g}" for curve in found.curves)
+    test = f"Ljung-Box, p = {found.whiteness.probability:.2g}"
+    verdict = "what is left is noise" if found.adequate else "the law does not explain the curves"
+    return [*lines, f"touch at {touches} s, noise {noises} of the peak", f"{verdict} ({test})"]
+
+
+def shown(one: Interval) -> str:
+    """A value with its interval."""
+    low, high = ("open" if end is None else f"{end:.5g}" for end in (one.low, one.high))
+    return f"{one.value:.6g} ({low} to {high}, {100.0 * one.level:g} %) {one.unit}".rstrip()
+
+
+def _check_written(path: Path | None) -> None:
+    """Raise BadInput, before any work, for a scene file that cannot be written."""
+    if path is not None and (path.is_dir() or not path.absolute().parent.is_dir() or path.suffix != ".toml"):
+        raise BadInput(Fault(WRITE, str(path), "accepted: a file that ends with .toml, in a folder that is there"))
+
+
+def _write_scene(path: Path, found: Identified) -> None:
+    """The scene file with the values found. Raises BadInput."""
+    try:
+        path.write_text(toml_text(found.table), encoding="utf-8")
+    except OSError as failure:
+        raise BadInput(Fault(WRITE, str(path), f"cannot be written: {failure.strerror}")) from failure
+
+
+MEMBER = base.Command(
+    "numbers of a scene, as its material, from measured histories, with 90 % intervals",
+    (
+        base.option("curves", nargs="+", metavar="CURVE.csv[:KEY=VALUE,...]", help="measured force, with its own keys"),
+        base.option("--scene", required=True, help="scene (file or packaged name) whose values are the first guess"),
+        base.option("--free", required=True, metavar="KEY,...", help="keys to find, as target.material.E0"),
+        base.option("--each", action="store_true", help="every curve alone, too"),
+        base.option("--corner", metavar="HZ", help="of the instrument's low pass, where no silence tells the noise's"),
+        base.option(WRITE, type=Path, metavar="FILE.toml", help="write the scene with the values found"),
+        base.override(),
+        *base.OUTPUT,
+    ),
+    execute,
+)

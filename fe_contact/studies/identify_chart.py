@@ -1,0 +1,73 @@
+"""The chart of an identification: every curve with the identified law's force, and what is left beside its noise."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from fe_contact.studies import style
+from fe_contact.studies.style import prefixed, readable
+from lumped.identify import FittedCurve, Identified, Interval
+
+PANELS = 3.2  # height of a row of curves with their residuals, in
+COLUMNS, MOST = 3, 6  # look: curves beside each other, and in all
+TITLE_WIDTH = 128  # characters
+BAND = 2.0  # deviations of the noise
+
+
+def plot_identified(found: Identified, where: Path) -> tuple[Path, Path]:
+    """Write ``identified.svg`` and ``identified.png`` into the folder ``where``; their paths."""
+    curves = found.curves[:MOST]
+    columns = min(COLUMNS, len(curves))
+    rows = -(-len(curves) // columns)
+    lines = [f"{name} = {_shown(one)}" for name, one in found.parameters.items()]
+    lines.append(_verdict(found))
+    title, size = f"{found.source.removesuffix('.toml')}: identified", style.COLUMN if columns == 1 else style.PAGE
+    width = TITLE_WIDTH if columns > 1 else TITLE_WIDTH // 2
+    with style.sheet(where, "identified", title, lines, rows * PANELS, width=width, size=size, above=0.34) as sheet:
+        left, right = (0.16, 0.965) if columns == 1 else (0.08, 0.985)
+        grid = sheet.grid(rows, columns, left, right, hspace=0.42, wspace=0.32)
+        for i, curve in enumerate(curves):
+            inner = grid[i].subgridspec(2, 1, height_ratios=(2.2, 1.0), hspace=0.12)
+            force = sheet.figure.add_subplot(inner[0])
+            rest = sheet.figure.add_subplot(inner[1], sharex=force)
+            _force(force, curve, "abcdef"[i])
+            _left(rest, curve)
+    return sheet.paths
+
+
+def _verdict(found: Identified) -> str:
+    test = f"Ljung-Box, p = {found.whiteness.probability:.2g}"
+    if found.adequate:
+        return f"what is left is noise ({test})"
+    error = 100.0 * max(curve.error for curve in found.curves)
+    return f"the law does not explain the curves: {error:.2g} % of the peak is left beside the noise ({test})"
+
+
+def _shown(one: Interval) -> str:
+    low, high = ("open" if end is None else readable(end, one.unit, 3) for end in (one.low, one.high))
+    return f"{readable(one.value, one.unit)}, {100.0 * one.level:g} % from {low} to {high}"
+
+
+def _force(axes: Axes, curve: FittedCurve, letter: str) -> None:
+    second, _ = prefixed(float(np.ptp(curve.time)), "s")
+    newton, unit = prefixed(curve.peak, "N")
+    since = second * (curve.time - curve.touch)
+    axes.plot(since, newton * curve.force, ".", color=style.GREY, markersize=2.2, label="curve")
+    axes.plot(since, newton * curve.fitted, color=style.VERMILION, label="Ting's law")
+    axes.set(ylabel=f"force, {unit}")
+    axes.legend(loc="upper right")
+    axes.tick_params(labelbottom=False)
+    style.label(axes, letter, Path(curve.name).stem)
+
+
+def _left(axes: Axes, curve: FittedCurve) -> None:
+    """Measured minus fitted, in shares of the peak, over a band of two deviations of the noise."""
+    second, unit = prefixed(float(np.ptp(curve.time)), "s")
+    band = 100.0 * BAND * curve.deviation / curve.peak
+    axes.axhspan(-band, band, color="#e6e6e6", linewidth=0.0)
+    left = 100.0 * (curve.force - curve.fitted) / curve.peak
+    axes.plot(second * (curve.time - curve.touch), left, color=style.BLUE, linewidth=0.6)
+    axes.set(xlabel=f"time since touch, {unit}", ylabel="left, %")

@@ -1,0 +1,184 @@
+"""Several measured histories together against Ting's exact law: residuals over the noise, and their slopes.
+
+What is sought is one row of numbers: the places of the free keys, and for every curve its touch in shares of the
+pulse's width. A touch costs no impact: the same force is read at other times.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from lumped.errors import BadInput, NotReached
+from lumped.fit.measured import means
+from lumped.identify.keys import FreeKey, SceneFile
+from lumped.identify.noise import whitened
+from lumped.laws import ting
+from lumped.laws._hereditary import once
+from lumped.numbers import Array
+from lumped.result.gate import MeasuredPulse
+from lumped.result.score import Curve
+from lumped.scene.scene import Scene
+
+RTOL = 1e-6  # of an impact's integration: a thousandth of the least noise that an instrument has
+STEP, SHIFT = 1e-4, 1e-3  # of the differences: of a place, and of a touch over the width
+FAR = 10.0  # an impact that does not exist is so many times as far from the curve as none
+MOST_ROWS = 1200  # work: a smooth pulse is told by as many means of neighbouring rows as by all
+BEFORE, AFTER = 2.0, 3.0  # work: widths of silence that are kept around the pulse
+EVEN = 0.01  # of a step: rows are as even as that where noise has a colour
+
+
+class Force(Protocol):
+    """A force at times since touch, N, both (n,)."""
+
+    def __call__(self, time: Array) -> Array: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """The rows that are compared with: times, s, and forces, N, (n,); where the pulse begins and its width, s.
+
+    `own`: what the curve's scene has of its own, by dotted keys.
+    """
+
+    time: Array
+    force: Array
+    start: float
+    width: float
+    peak: float
+    own: Mapping[str, object]
+
+    @classmethod
+    def of(cls, curve: Curve, own: Mapping[str, object]) -> Samples:
+        """The pulse of a curve with the silence around it; of many rows means of neighbours."""
+        pulse = MeasuredPulse(curve.time, curve.force)
+        near = curve.time >= pulse.start - BEFORE * pulse.width
+        near &= curve.time <= pulse.end + AFTER * pulse.width
+        time, force = curve.time[near], curve.force[near]
+        together = -(-time.size // MOST_ROWS)
+        return cls(means(time, together), means(force, together), pulse.start, pulse.width, pulse.peak, own)
+
+    @property
+    def step(self) -> float | None:
+        """The time between rows, s; None where they are uneven."""
+        steps = np.diff(self.time)
+        mean = float(steps.mean())
+        return mean if np.all(np.abs(steps - mean) <= EVEN * mean) else None
+
+
+@dataclass(frozen=True)
+class Impact:
+    """One impact by Ting's law: its force since touch, and when it ends, s."""
+
+    force: Force
+    end: float
+
+    @classmethod
+    def of(cls, scene: Scene) -> Impact:
+        """Raises BadInput, NotReached."""
+        answer = once(scene, RTOL, ting.solve)
+        end = float(answer.times[-1])
+
+        def force(time: Array) -> Array:
+            inside = (time >= 0.0) & (time <= end)
+            found = np.zeros(time.size)
+            found[inside] = answer.columns.force(time[inside])
+            return found
+
+        return cls(force, end)
+
+
+@dataclass(frozen=True, eq=False)
+class Noise:
+    """Of one curve: the deviation of what is new in every row, N, and the colour, see :mod:`lumped.identify.noise`."""
+
+    deviation: float
+    colour: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Histories:
+    """The curves, the scene's file and its free keys; what is known of the noise of each curve."""
+
+    file: SceneFile
+    keys: tuple[FreeKey, ...]
+    samples: tuple[Samples, ...]
+    noises: tuple[Noise, ...]
+    known: dict[bytes, tuple[Impact, ...] | None] = field(default_factory=dict)
+
+    @property
+    def size(self) -> int:
+        """How many numbers are sought."""
+        return len(self.keys) + len(self.samples)
+
+    @property
+    def rows(self) -> int:
+        """How many residuals there are."""
+        return sum(s.time.size - n.colour.size for s, n in zip(self.samples, self.noises, strict=True))
+
+    def impacts(self, places: Array) -> tuple[Impact, ...] | None:
+        """The impact of every curve with the free keys at these places, (p,); None where one does not exist."""
+        key = places.tobytes()
+        if key not in self.known:
+            try:
+                scenes = [self.file.scene(self.keys, places, one.own) for one in self.samples]
+                self.known[key] = tuple(map(Impact.of, scenes))
+            except (BadInput, NotReached):
+                self.known[key] = None
+        return self.known[key]
+
+    def touches(self, sought: Array) -> list[float]:
+        """When the bodies of each curve meet, s."""
+        shares = sought[len(self.keys) :].tolist()
+        return [one.start + share * one.width for one, share in zip(self.samples, shares, strict=True)]
+
+    def differences(self, sought: Array) -> list[Array]:
+        """Measured less computed force of every curve, N, each (n,)."""
+        impacts = self.impacts(sought[: len(self.keys)])
+        if impacts is None:
+            return [FAR * one.force for one in self.samples]
+        every = zip(self.samples, impacts, self.touches(sought), strict=True)
+        return [one.force - impact.force(one.time - touch) for one, impact, touch in every]
+
+    def residuals(self, sought: Array) -> Array:
+        """What noise has to explain, over its deviation, of all curves one after the other, (rows,)."""
+        return np.concatenate(self.whitened(self.differences(sought)))
+
+    def whitened(self, columns: Sequence[Array]) -> list[Array]:
+        """Columns of every curve, N, (n, ...), seen as the noise is: without its colour, over its deviation."""
+        return [
+            whitened(column, noise.colour) / noise.deviation for column, noise in zip(columns, self.noises, strict=True)
+        ]
+
+    def slopes(self, sought: Array) -> Array:
+        """How the residuals change with all that is sought, (rows, size)."""
+        here, found = self.differences(sought), np.zeros((self.rows, self.size))
+        for column in range(len(self.keys)):
+            there, step = self._aside(sought, column)
+            changes = [(b - a) / step for a, b in zip(here, self.differences(there), strict=True)]
+            found[:, column] = np.concatenate(self.whitened(changes))
+        return self._of_touches(sought, found)
+
+    def _aside(self, sought: Array, column: int) -> tuple[Array, float]:
+        """A place beside, ahead or where no impact exists there behind, and how far."""
+        for step in (STEP, -STEP):
+            there = sought.copy()
+            there[column] += step
+            if self.impacts(there[: len(self.keys)]) is not None:
+                break
+        return there, step
+
+    def _of_touches(self, sought: Array, found: Array) -> Array:
+        """The slopes with those of the touches filled in, of each curve in its own rows."""
+        impacts, first = self.impacts(sought[: len(self.keys)]), 0
+        for i, (one, noise) in enumerate(zip(self.samples, self.noises, strict=True)):
+            rows = slice(first, first + one.time.size - noise.colour.size)
+            first = rows.stop
+            if impacts is not None:
+                time, shift = one.time - self.touches(sought)[i], SHIFT * one.width
+                change = (impacts[i].force(time + shift) - impacts[i].force(time - shift)) / (2.0 * SHIFT)
+                found[rows, len(self.keys) + i] = whitened(change, noise.colour) / noise.deviation
+        return found

@@ -1,0 +1,101 @@
+"""What noise is: its colour, how residuals are whitened by it, and whether what is left is noise at all.
+
+Coloured noise e_i = sum_k a_k e_(i-k) + w_i, w white, as an instrument's low pass makes it of white noise. Its colour
+is told by the silence before touch and after the contact, where no model can err, or by the corner of the low pass.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumped.numbers import Array
+
+HIGHEST_ORDER = 6  # work: of the noise's recursion; a low pass of second order needs two
+LAGS, ROWS_PER_LAG = 10, 5  # of the test of the residuals, where there are rows enough
+REJECTED = 0.01  # below this probability the residuals are no noise
+FADED = 0.05  # a correlation below which the memory of residuals has ended
+
+
+def colour_of(silence: Array) -> Array:
+    """The coefficients a_k of a silence, N, (n,): Yule and Walker's, of the order of the least Bayesian criterion."""
+    covariance = autocovariance(silence - silence.mean(), HIGHEST_ORDER)
+    best: Array = np.zeros(0)
+    least = math.inf
+    if not covariance[0] > 0.0:
+        return best
+    for order in range(HIGHEST_ORDER + 1):
+        found = _coefficients(covariance, order)
+        left = max(float(covariance[0] - found @ covariance[1 : order + 1]), 1e-300)
+        criterion = silence.size * math.log(left) + order * math.log(silence.size)
+        if criterion < least:
+            best, least = found, criterion
+    return best
+
+
+def _coefficients(covariance: Array, order: int) -> Array:
+    """Those of a recursion of an order, from the covariances of lags from zero on."""
+    lags = np.abs(np.subtract.outer(np.arange(order), np.arange(order)))
+    return np.asarray(np.linalg.lstsq(covariance[lags], covariance[1 : order + 1], rcond=None)[0])
+
+
+def colour_of_corner(corner: float, step: float) -> Array:
+    """The coefficient of a low pass of first order with its corner, Hz, at a time step, s: exp(-2 pi f h)."""
+    return np.array([math.exp(-2.0 * math.pi * corner * step)])
+
+
+def autocovariance(series: Array, most: int) -> Array:
+    """Mean products of rows so many rows apart, (most + 1,), in the square of the series' unit."""
+    n = series.size
+    return np.array([float(series[lag:] @ series[: n - lag]) / n if lag < n else 0.0 for lag in range(most + 1)])
+
+
+def whitened(series: Array, colour: Array) -> Array:
+    """What is new in every row: w_i = e_i - sum_k a_k e_(i-k), (n - order, ...)."""
+    order = colour.size
+    rows = series.shape[0] - order
+    found = series[order:].copy()
+    for lag, a in enumerate(colour.tolist(), start=1):
+        found -= a * series[order - lag : order - lag + rows]
+    return found
+
+
+@dataclass(frozen=True)
+class Whiteness:
+    """Ljung and Box's test, doi 10.1093/biomet/65.2.297: Q, lags, and how probable as much is of noise, a ratio."""
+
+    statistic: float
+    lags: int
+    probability: float
+
+    @property
+    def noise(self) -> bool:
+        """Whether the residuals may be noise."""
+        return self.probability >= REJECTED
+
+
+def whiteness(residuals: Sequence[Array]) -> Whiteness:
+    """Whether the residuals of several curves, each (n,), hang together: Q = sum n (n + 2) rho_k^2/(n - k)."""
+    from scipy.special import chdtrc
+
+    total, lags = 0.0, 0
+    for series in residuals:
+        n, most = series.size, min(LAGS, series.size // ROWS_PER_LAG)
+        covariance = autocovariance(series - series.mean(), most)
+        if most and covariance[0] > 0.0:
+            shares = (covariance[1:] / covariance[0]) ** 2 / (n - np.arange(1, most + 1))
+            total, lags = total + n * (n + 2) * float(shares.sum()), lags + most
+    return Whiteness(total, lags, float(chdtrc(lags, total)) if lags else 1.0)
+
+
+def memory(series: Array) -> float:
+    """How many rows tell as much as one alone: 1 + 2 sum rho_k, until the correlation has faded, at least one."""
+    covariance = autocovariance(series, series.size // 2)
+    if not covariance[0] > 0.0:
+        return 1.0
+    correlation = covariance[1:] / covariance[0]
+    faded = np.flatnonzero(correlation < FADED)
+    return 1.0 + 2.0 * max(float(correlation[: faded[0] if faded.size else None].sum()), 0.0)

@@ -1,0 +1,116 @@
+"""What was identified: parameters with their intervals, how they hang together, the noise, and whether the law fits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from lumped.identify.noise import Whiteness
+from lumped.numbers import Array
+from lumped.schema import Table
+from lumped.schema.csv_file import write_csv
+from lumped.schema.json_file import plain, write_json
+
+SCHEMA, RECORD = "fe-contact/identified/1", "identified.json"
+LEVEL = 0.9  # of the intervals
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A value and the ends of its interval by profile likelihood at a `level`, a share; an end is None where open.
+
+    Open is an end which the curves do not tell, or which lies beyond what is looked at.
+    """
+
+    value: float
+    low: float | None
+    high: float | None
+    level: float
+    unit: str
+
+
+@dataclass(frozen=True, eq=False)
+class FittedCurve:
+    """One measured curve: times, s, forces, N, and the identified law's, (n,); its touch, s.
+
+    `deviation` is that of the noise, N, of all rows; `colour`: the coefficients of its recursion, (order,);
+    `peak`: the highest force, N; `error`: of the law beyond the noise, over the peak.
+    """
+
+    name: str
+    time: Array
+    force: Array
+    fitted: Array
+    touch: float
+    deviation: float
+    colour: Array
+    peak: float
+    error: float
+
+    def noise_content(self) -> Table:
+        """What the record says of the noise."""
+        share = self.deviation / self.peak
+        colour = "white" if not self.colour.size else self.colour.tolist()
+        return {"curve": self.name, "deviation_N": self.deviation, "share_of_peak": share, "colour": colour}
+
+
+@dataclass(frozen=True, eq=False)
+class Identified:
+    """What one or several curves say of a scene.
+
+    `parameters` by dotted keys, SI units; `correlation`, a ratio, (p, p), of their logarithms, in the same order;
+    `table`: the scene file with the values found; `whiteness` tests what is left, and `warnings` say what it means.
+    `widened`: the sum of squares over the noise may grow so many times as much as of noise alone. `each`: what every
+    curve says alone, where that was asked for.
+    """
+
+    source: str
+    parameters: Mapping[str, Interval]
+    correlation: Array
+    curves: tuple[FittedCurve, ...]
+    whiteness: Whiteness
+    widened: float
+    table: Table
+    warnings: tuple[str, ...]
+    each: Mapping[str, Identified] = field(default_factory=dict)
+
+    @property
+    def adequate(self) -> bool:
+        """Whether what is left of the curves is noise."""
+        return self.whiteness.noise
+
+    def to_json(self) -> Table:
+        """The content of identified.json."""
+        test = {"test": "Ljung-Box", **asdict(self.whiteness)}
+        error = max(curve.error for curve in self.curves)
+        alone = {name: {"parameters": one._parameters, "adequate": one.adequate} for name, one in self.each.items()}
+        content = {
+            "schema": SCHEMA,
+            "scene": self.source,
+            "law": "ting",
+            "parameters": self._parameters,
+            "correlation": {"names": list(self.parameters), "matrix": self.correlation.tolist()},
+            "model": {"adequate": self.adequate, "error": error, "widened": self.widened, **test},
+            "onset_s": [curve.touch for curve in self.curves],
+            "noise": [curve.noise_content() for curve in self.curves],
+            "each": alone,
+            "warnings": list(self.warnings),
+        }
+        return dict(plain(content))
+
+    @property
+    def _parameters(self) -> Table:
+        return {name: asdict(one) for name, one in self.parameters.items()}
+
+    def write_files(self, folder: Path) -> None:
+        """identified.json and identified.csv, the curves with what is left of them, into a folder that is there."""
+        write_json(folder / RECORD, self.to_json())
+        rows = [
+            [curve.name, *row]
+            for curve in self.curves
+            for row in np.column_stack([curve.time, curve.force, curve.fitted]).tolist()
+        ]
+        write_csv(folder / "identified.csv", ("curve", "time_s", "force_N", "fitted_N"), rows)

@@ -1,0 +1,211 @@
+"""A measured curve from a CSV file, as loggers write it: units by the header, semicolons, decimal commas, more columns.
+
+The header is the first line that names a time and a force: `time_s,force_N`, `t [ms];F [kN]`, `Zeit/ms`, `Force (N)`;
+units may stand in a line of their own below. What had to be guessed is said in the curve's remarks.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from array import array
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from lumped.errors import BadInput, Fault, shown
+from lumped.numbers import Array
+from lumped.result.score import Curve
+from lumped.schema.csv_file import FILE, MOST_BYTES, MOST_ROWS
+from lumped.schema.files import content
+
+SEPARATORS = "\t;,"  # the first that tells a time from a force
+PREAMBLE = 40  # work: lines in which a header is looked for
+WORD = re.compile(r"[^\W_]+")
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """What a column holds: its name in SI, the words loggers call it by, and SI per unit."""
+
+    plain: str
+    names: frozenset[str]
+    units: Mapping[str, float]
+
+    def place(self, cells: Sequence[str]) -> ColumnOfCurve | None:
+        """The column that a header calls so, by its name, or by a unit that no other has. Raises ValueError of two."""
+        found = [self._read(place, cell) for place, cell in enumerate(cells)]
+        for told in (self._plain, self._named):
+            if columns := [column for column in found if told(column)]:
+                return columns[0]
+        measured = [column for column in found if column.unit]
+        if len(measured) > 1:
+            raise ValueError(", ".join(column.header for column in measured))
+        return measured[0] if measured else None
+
+    def _read(self, place: int, cell: str) -> ColumnOfCurve:
+        words = WORD.findall(cell)
+        unit = next((known for known in self.units if words and words[-1] == known), "")
+        name = " ".join(words[:-1] if unit and len(words) > 1 else words).lower()
+        return ColumnOfCurve(place, cell.strip(" #"), name, unit, self.units.get(unit, 1.0))
+
+    def _plain(self, column: ColumnOfCurve) -> bool:
+        return column.header == self.plain
+
+    def _named(self, column: ColumnOfCurve) -> bool:
+        return column.name in self.names
+
+
+class ColumnOfCurve(NamedTuple):
+    """Where a column stands, its header, the name and unit in that, and SI per unit."""
+
+    place: int
+    header: str
+    name: str
+    unit: str
+    factor: float
+
+
+TIME = Dimension(
+    "time_s",
+    frozenset(("time", "t", "zeit", "temps", "tiempo", "tempo")),
+    {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9},
+)
+FORCE = Dimension(
+    "force_N",
+    frozenset(("force", "f", "load", "kraft", "contact force", "impact force")),
+    {"N": 1.0, "kN": 1e3, "mN": 1e-3, "MN": 1e6, "µN": 1e-6, "μN": 1e-6, "uN": 1e-6, "kgf": 9.80665, "lbf": 4.4482216},
+)
+
+
+@dataclass(frozen=True)
+class CurveHeader:
+    """The columns of time and force, how many there are, the separator, and the lines up to the first of numbers."""
+
+    time: ColumnOfCurve
+    force: ColumnOfCurve
+    columns: int
+    separator: str
+    lines: int
+
+    @property
+    def remarks(self) -> Iterator[str]:
+        """What is not as `time_s,force_N` has it."""
+        for dimension, column in ((TIME, self.time), (FORCE, self.force)):
+            if column.header != dimension.plain:
+                unit = column.unit or f"no unit, so {WORD.findall(dimension.plain)[-1]}"
+                yield f"{column.header} is read as the {dimension.plain.partition('_')[0]}, in {unit}"
+
+
+def read_curve(path: Path) -> Curve:
+    """A measured curve: a CSV file with a time and a force at least. Raises BadInput."""
+    source = str(path)
+    try:
+        lines = content(path, MOST_BYTES, FILE).decode("utf-8-sig").splitlines()
+        header = _header(source, lines)
+        time, force, commas = _numbers(source, lines, header)
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise BadInput(Fault(source, "", f"cannot be read: no CSV text in UTF-8; accepted: {FILE}")) from error
+    if time.size < 2:
+        raise BadInput(Fault(source, header.force.header, "accepted: at least two rows of numbers"))
+    if np.any(back := np.diff(time) < 0.0):
+        reason = f"decreases after row {int(np.argmax(back)) + 1}; accepted: times in order; cure: sort the rows"
+        raise BadInput(Fault(source, header.time.header, reason))
+    if force.max() <= 0.0:
+        reason = "never above zero; accepted: compression positive; cure: multiply it by -1"
+        raise BadInput(Fault(source, header.force.header, reason))
+    separated = {",": "", ";": "semicolons separate the columns", "\t": ""}[header.separator]
+    told = (*header.remarks, separated, "commas are decimal" if commas else "")
+    return Curve(time, force, tuple(filter(None, told)))
+
+
+def _header(source: str, lines: Sequence[str]) -> CurveHeader:
+    """The first line that names a time and a force, the units perhaps in the next. Raises BadInput."""
+    first, lacking = "", [TIME.plain, FORCE.plain]
+    for number, line in enumerate(lines[:PREAMBLE]):
+        first = first or line.strip()
+        for separator in SEPARATORS:
+            cells = _cells(line, separator)
+            below = _cells(lines[number + 1], separator) if number + 1 < len(lines) else []
+            with_units, more = _with_units(cells, below)
+            try:
+                time, force = TIME.place(with_units), FORCE.place(with_units)
+            except ValueError as several:
+                reason = f"{several}: which is meant? cure: call the one {TIME.plain} or {FORCE.plain}"
+                raise BadInput(Fault(source, "", reason)) from None
+            if time and force and time.place != force.place:
+                return CurveHeader(time, force, len(cells), separator, number + 1 + more)
+            missing = [one.plain for one, there in ((TIME, time), (FORCE, force)) if not there]
+            lacking = min(lacking, missing or lacking, key=len)
+    said = f"missing column, with a header of {shown(first)}; accepted: time_s,force_N, or t [ms];F [kN] and the like"
+    raise BadInput(Fault(source, name, said) for name in lacking)
+
+
+def _cells(line: str, separator: str) -> list[str]:
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator), [])]
+
+
+def _with_units(cells: list[str], below: list[str]) -> tuple[list[str], int]:
+    """Header cells together with a line of units below them; how many lines that is."""
+    known = {*TIME.units, *FORCE.units}
+    if len(below) != len(cells) or not any(set(WORD.findall(cell)) & known for cell in below):
+        return cells, 0
+    if any(_is_number(cell) for cell in below):
+        return cells, 0
+    return [f"{name} [{unit.strip('[]()')}]" for name, unit in zip(cells, below, strict=True)], 1
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        return math.isfinite(_number(cell))
+    except ValueError:
+        return False
+
+
+def _number(cell: str) -> float:
+    """A number with a decimal point, or with a comma: of both kinds of marks the last is the decimal one."""
+    try:
+        return float(cell)
+    except ValueError:
+        if cell.rfind(",") > cell.rfind("."):
+            return float(cell.replace(".", "").replace(",", "."))
+        return float(cell.replace(",", ""))
+
+
+def _numbers(source: str, lines: Sequence[str], header: CurveHeader) -> tuple[Array, Array, bool]:
+    """Times, s, forces, N, and whether their commas are decimal. Raises BadInput."""
+    rows = (row for row in csv.reader(lines[header.lines :], delimiter=header.separator) if any(map(str.strip, row)))
+    columns, missing, commas = (array("d"), array("d")), list[int](), False
+    for number, row in enumerate(rows, start=1):
+        if number > MOST_ROWS:
+            told = f"more than {MOST_ROWS} rows; accepted: fewer, as every tenth"
+            raise BadInput(Fault(source, f"{header.time.header},{header.force.header}", told))
+        if header.separator == "," and number == 1 and len(row) == 2 * header.columns:
+            reason = "commas separate the columns and the decimals too; cure: export with semicolons or decimal points"
+            raise BadInput(Fault(source, f"row {number}", reason))
+        cells = [row[one.place].strip() if one.place < len(row) else "" for one in (header.time, header.force)]
+        if any(cell.lower() in ("", "nan", "na", "null") for cell in cells):
+            missing.append(number)
+            continue
+        for column, one, cell in zip(columns, (header.time, header.force), cells, strict=True):
+            column.append(_finite(source, number, one, cell))
+            commas = commas or "," in cell
+    if missing:
+        reason = f"{len(missing)} samples are missing, the first in row {missing[0]}; accepted: every value finite"
+        raise BadInput(Fault(source, header.force.header, f"{reason}; cure: export the record again, or cut it there"))
+    time, force = (np.array(column) for column in columns)
+    return time * header.time.factor, force * header.force.factor, commas
+
+
+def _finite(source: str, number: int, column: ColumnOfCurve, cell: str) -> float:
+    """The finite number in a row. Raises BadInput."""
+    try:
+        if math.isfinite(value := _number(cell)):
+            return value
+    except ValueError:
+        pass
+    raise BadInput(Fault(source, column.header, f"row {number} holds no number in this column, but {shown(cell)}"))

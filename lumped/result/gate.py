@@ -1,0 +1,317 @@
+"""The gate before any fit: whether a measured curve can be an impact of a scene's bodies, and if not, what was done.
+
+The impulse of one contact is J = m v (1 + e), 0 <= e <= 1, whatever the force law: units, calibration and lost rows
+show there. The rest is seen in the curve alone. One fault is said, the first in the order of causes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from lumped.errors import BadInput, Fault
+from lumped.numbers import Array
+from lumped.result.score import Curve
+from lumped.scene.geometry import stiffest_impact
+from lumped.scene.scene import Scene
+
+# The pulse is where the smoothed force is above this share of its peak, or above so many deviations of its noise.
+LEVEL, DEVIATIONS = 0.1, 4.0
+SMOOTHED = 0.1  # of the points above half of the peak: over these noise is averaged
+NOISE_SHARE = 0.005  # of the peak: a smaller noise is not averaged out, for the rows may be uneven
+ANOTHER = 0.2  # of the peak: as much force elsewhere is another contact
+LEAST_ROWS, FEW_ROWS = 8, 20  # in the pulse: fewer tell no shape; fewer tell it badly
+EVEN, HOLE, LOST = 0.05, 1.8, 0.05  # steps alike; a step over theirs that is a hole; share of the pulse that may lack
+# A smooth peak in steps of 8 bits has up to 6 % of its rows on the highest step: more is a limit of the instrument.
+CLIPPED, LEAST_CLIPPED = 0.08, 4
+LEVEL_OFF, TAIL = 0.02, 0.5  # of the peak: a silence may stand as far from zero; of the pulse: where silence begins
+DECAYED = 0.8  # second half of a silence over its first: a force that creeps to its end falls faster
+EARLY, LATE = 0.2, 0.45  # of the pulse: before zero and after it, where a force of a steep law seems to begin
+SPARE, NEARLY = 0.05, 0.01  # of m v: mass, velocity and force are measured to some per cent; not worth a word
+THOUSANDS = (1e3, 1e-3, 1e6, 1e-6)  # units mistaken for others: N for kN, s for ms, s for us
+ODD = 200.0  # a duration over that of the scene's material: steel's modulus over rubber's is 1e5, times 0.01 apart
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What is wrong with a curve, and whether it can be used all the same."""
+
+    message: str
+    fatal: bool = True
+
+
+def check_curve(curve: Curve, scene: Scene, source: str, touch_at_zero: bool = True) -> tuple[str, ...]:
+    """What to be warned of in a measured curve of a scene's impact; raises BadInput for one that cannot be one.
+
+    `touch_at_zero`: whether what follows takes the curve's time zero, s, for the first touch. `source`: its file.
+    """
+    pulse = MeasuredPulse(curve.time, curve.force)
+    warnings = [f"{source}: {'; '.join(curve.remarks)}"] if curve.remarks else []
+    checks = (*OF_THE_CURVE, *((_touch,) if touch_at_zero else ()), _impulse, _duration)
+    for check in checks:
+        for finding in check(pulse, scene):
+            if finding.fatal:
+                raise BadInput(Fault(source, "", finding.message))
+            warnings.append(f"{source}: {finding.message}")
+    return tuple(warnings)
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredPulse:
+    """A measured force, N, over time, s, both (n,), and where in it the one large pulse lies."""
+
+    time: Array
+    force: Array
+
+    @cached_property
+    def noise(self) -> float:
+        """Standard deviation of what changes from row to row, N, from second differences: a median, blind to jumps."""
+        if self.force.size < 5:
+            return 0.0
+        second = np.diff(self.force, 2) / math.sqrt(6.0)
+        return float(np.median(np.abs(second))) / 0.6745
+
+    @cached_property
+    def smooth(self) -> Array:
+        """The force, N, averaged over neighbours where it is noisy, (n,)."""
+        if self.noise < NOISE_SHARE * float(np.abs(self.force).max()):
+            return self.force
+        return np.convolve(self.force, np.full(self.window, 1.0 / self.window), mode="same")
+
+    @cached_property
+    def window(self) -> int:
+        """Rows over which noise is averaged."""
+        return max(1, int(SMOOTHED * np.count_nonzero(self.force > 0.5 * self.force.max()))) | 1
+
+    @cached_property
+    def peak(self) -> float:
+        """The highest force without noise, N."""
+        return float(self.smooth.max())
+
+    @cached_property
+    def level(self) -> float:
+        """Above it the bodies press, N."""
+        return max(LEVEL * self.peak, DEVIATIONS * self.noise / math.sqrt(self.window))
+
+    @cached_property
+    def rows(self) -> slice:
+        """The rows of the pulse around the peak."""
+        top, low = int(np.argmax(self.smooth)), np.flatnonzero(self.smooth < self.level)
+        first = low[low < top]
+        last = low[low > top]
+        return slice(int(first[-1]) + 1 if first.size else 0, int(last[0]) if last.size else self.time.size)
+
+    @property
+    def start(self) -> float:
+        """Where the pulse begins, s."""
+        return float(self.time[self.rows.start])
+
+    @property
+    def end(self) -> float:
+        """Where it ends, s."""
+        return float(self.time[self.rows.stop - 1])
+
+    @cached_property
+    def width(self) -> float:
+        """How long it lasts, s."""
+        return self.end - self.start or float(self.time[-1] - self.time[0]) / self.time.size
+
+    @property
+    def ended(self) -> bool:
+        """Whether the force has gone before the record ends."""
+        return bool(self.rows.stop < self.time.size)
+
+    @cached_property
+    def before(self) -> Array:
+        """The silence before the pulse, N, shape (k,)."""
+        return self.force[self.time < self.start - TAIL * self.width]
+
+    @cached_property
+    def after(self) -> Array:
+        """The silence after the pulse, N, shape (k,)."""
+        return self.force[self.time > self.end + TAIL * self.width] if self.ended else self.force[:0]
+
+    def impulse(self, margin: float) -> tuple[float, float]:
+        """Integral of the force over the pulse and a margin in widths, N s, and its standard deviation."""
+        near = (self.time >= self.start - margin * self.width) & (self.time <= self.end + margin * self.width)
+        time, force = self.time[near], self.force[near]
+        return float(np.trapezoid(force, time)), self.noise * float(np.sqrt(np.sum(np.diff(time) ** 2)))
+
+    def off_zero(self, silence: Array) -> float:
+        """The mean of a silence, N, where it is no chance; else zero."""
+        if silence.size < LEAST_ROWS:
+            return 0.0
+        mean = float(silence.mean())
+        chance = DEVIATIONS * float(silence.std()) / math.sqrt(silence.size / self.window)
+        return mean if abs(mean) > max(LEVEL_OFF * self.peak, chance) else 0.0
+
+
+Check = Callable[[MeasuredPulse, Scene], Iterator[Finding]]
+
+
+def _single(scene: Scene) -> bool:
+    """Whether the force is one smooth pulse: waves hold a force still, let it go, and bring it back."""
+    return scene.motion.impacts == 1 and not scene.model.inertia
+
+
+def _sign(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
+    lowest, highest = float(pulse.smooth.min()), float(pulse.smooth.max())
+    if -lowest > 2.0 * highest:
+        yield Finding(f"sign: the force reaches {lowest:.4g} N; compression is positive; cure: multiply it by -1")
+
+
+def _missing(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
+    """Holes in even rows, and rows that fell to zero amid the pulse."""
+    steps = np.diff(pulse.time)
+    usual = float(np.median(steps))
+    inside = (pulse.time[1:] > pulse.start - pulse.width) & (pulse.time[:-1] < pulse.end + pulse.width)
+    holes = inside & (steps > HOLE * usual)
+    if holes.any() and np.mean(np.abs(steps - usual) <= EVEN * usual) > 1.0 - 2.0 * EVEN:
+        lost = float((steps[holes] - usual).sum())
+        where = float(pulse.time[int(np.argmax(holes))])
+        count = round(lost / usual)
+        said = f"samples are missing: {count} of them, the first after {where:.6g} s"
+        yield Finding(f"{said}; cure: export the record whole, or measure again", lost > LOST * pulse.width)
+    near = np.minimum(np.maximum.accumulate(pulse.force), np.maximum.accumulate(pulse.force[::-1])[::-1])
+    fallen = (pulse.force == 0.0) & (near > ANOTHER * pulse.peak)
+    first, last = (np.flatnonzero(fallen)[[0, -1]]) if fallen.any() else (0, 0)
+    apart = float(pulse.time[last] - pulse.time[first])
+    if fallen.any() and _single(scene) and apart < pulse.width:
+        said = f"samples are missing: {fallen.sum()} rows are zero amid the contact"
+        yield Finding(f"{said}, the first at {pulse.time[first]:.6g} s; cure: leave these rows out, or measure again")
+
+
+def _rate(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
+    rows = pulse.rows.stop - pulse.rows.start
+    if rows < FEW_ROWS and _single(scene):
+        said = f"sample rate: {rows} rows while the bodies press; accepted from {LEAST_ROWS}, better {10 * FEW_ROWS}"
+        yield Finding(f"{said}; cure: above {FEW_ROWS / pulse.width:.3g} rows a second", rows < LEAST_ROWS)
+
+
+def _clipped(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
+    """Rows on one highest value."""
+    highest = float(pulse.force.max())
+    rows = int(np.count_nonzero(pulse.force[pulse.rows] >= highest * (1.0 - 1e-9)))
+    pressed = pulse.rows.stop - pulse.rows.start
+    if rows >= max(LEAST_CLIPPED, CLIPPED * pressed) and _single(scene):
+        said = f"the peak is clipped: {rows} rows stand at {highest:.6g} N, a limit of the instrument"
+        yield Finding(f"{said}; cure: a larger range; for what is left, leave these rows out")
+
+
+def _other_contact(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
+    floor = max(ANOTHER * pulse.peak, DEVIATIONS * pulse.noise / math.sqrt(pulse.window))
+    far = (pulse.time < pulse.start - TAIL * pulse.width) | (pulse.time > pulse.end + TAIL * pulse.width)
+    again = far & (pulse.smooth > floor)
+    if again.any() and pulse.ended and _single(scene):
+        when = float(pulse.time[int(np.argmax(again))])
+        said = f"there is another contact at {when:.6g} s, and the scene has one; is the pulse recorded twice?"
+        yield Finding(f"{said} cure: cut the record to one, or set motion.impacts for compare")
+
+
+def _zero(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
+    """A silence that is none: an offset where it stands alike before and after, else a drift."""
+    if not _single(scene):
+        return
+    before, after = pulse.off_zero(pulse.before), pulse.off_zero(pulse.after)
+    if after > 0.0 and (scene.gravity or not _lasts(pulse.after)):
+        after = 0.0  # a weight at rest, or a slow end
+    if not before and not after:
+        return
+    if before and (not pulse.after.size or abs(after - before) < 0.5 * abs(before)):
+        yield Finding(f"offset: before touch the force is {before:.4g} N; cure: subtract it")
+        return
+    told = f"drift: the force is {before:.4g} N before touch and {after:.4g} N after the contact"
+    yield Finding(f"{told}; cure: subtract the line between; charge amplifiers: a longer time constant")
+
+
+def _lasts(silence: Array) -> bool:
+    half = silence.size // 2
+    return half > 0 and bool(silence[half:].mean() > DECAYED * silence[:half].mean())
+
+
+def _touch(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
+    if _single(scene) and not -EARLY * pulse.width <= pulse.start <= LATE * pulse.width:
+        said = f"pre-trigger: the force begins at about {pulse.start:.6g} s, and time zero has to be the first touch"
+        yield Finding(f"{said}; cure: subtract it from the times; fit: --free touch,...; identify finds it")
+
+
+def _impulse(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
+    """J = m v (1 + e), and m g more for every second."""
+    mass = scene.reduced_mass + 3.0 * (scene.swinging_mass - scene.reduced_mass)  # a block's own mass counts whole
+    momentum = mass * scene.velocity
+    if not momentum or scene.motion.impacts > 1:
+        return
+    weight = mass * scene.gravity * pulse.width
+    (least, chance), (most, _) = pulse.impulse(1.0), pulse.impulse(math.inf)
+    low, high = (least - weight) / momentum, (max(least, most) - weight) / momentum
+    spare = SPARE + 3.0 * chance / momentum
+    if low > 2.0 + spare:
+        yield Finding(_too_large(pulse, scene, low))
+    elif high < 1.0 - spare and pulse.ended and not scene.model.inertia:
+        yield Finding(_too_small(pulse, scene, high))
+    elif low > 2.0 + NEARLY or (high < 1.0 - NEARLY and pulse.ended and not scene.model.inertia):
+        yield Finding(f"{_restitution(high)}, a little outside 0 to 1; cure: check mass and velocity", False)
+
+
+def _restitution(ratio: float) -> str:
+    return f"the impulse is {ratio:.4g} of mass times velocity, a restitution of {ratio - 1.0:.3g}"
+
+
+def _too_large(pulse: MeasuredPulse, scene: Scene, ratio: float) -> str:
+    if unit := _unit_of(pulse, scene, ratio):
+        return unit
+    cure = "check mass, velocity and the calibration"
+    if ratio < 4.0 * (1.0 + SPARE):
+        cure = f"is it doubled, as two sensors added, or half of the mass or velocity given? else {cure}"
+    return f"{_restitution(ratio)} > 1; cure: {cure}"
+
+
+def _too_small(pulse: MeasuredPulse, scene: Scene, ratio: float) -> str:
+    if unit := _unit_of(pulse, scene, ratio):
+        return unit
+    return f"{_restitution(ratio)} < 0; cure: check mass, velocity and calibration, and whether rows were cut off"
+
+
+def _unit_of(pulse: MeasuredPulse, scene: Scene, ratio: float) -> str:
+    """A unit mistaken for another, of the force or of the time: the contact's duration tells which."""
+    for factor in THOUSANDS:
+        if not 1.0 - SPARE <= ratio / factor <= 2.0 * (1.0 + SPARE):
+            continue
+        unit = {1e3: "m", 1e-3: "k", 1e6: "u", 1e-6: "M"}[factor]
+        force = f"the force is {factor:g} times too large: in {unit}N and read as N? cure: a header force_{unit}N"
+        cure = f"a header time_{unit}s" if factor > 1.0 else "divide it by the factor"
+        time = f"the time is {factor:g} times too long: in {unit}s and read as s? cure: {cure}"
+        span = _contact_times(scene)
+        if span is None:
+            return f"{_restitution(ratio)}: {force}; or {time}"
+        own, scaled = (_beyond(pulse.width / by, span) for by in (1.0, factor))
+        return f"{_restitution(ratio)}: {force if own <= scaled else time}"
+    return ""
+
+
+def _contact_times(scene: Scene) -> tuple[float, float] | None:
+    """The shortest and the longest elastic contact time of the scene's material, s; None without one."""
+    if not scene.has_geometry or scene.mass == 0.0:
+        return None
+    stiff = stiffest_impact(scene.profile, scene.contact_modulus, scene.reduced_mass, scene.velocity).duration
+    return min(stiff, scene.elastic_contact_time), scene.elastic_contact_time
+
+
+def _beyond(duration: float, span: tuple[float, float]) -> float:
+    """How far a duration lies outside of a span, in logarithms; zero inside."""
+    return max(math.log(span[0] / duration), math.log(duration / span[1]), 0.0)
+
+
+def _duration(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
+    """Force and time both wrong by one factor leave the impulse right."""
+    span = _contact_times(scene)
+    if span is not None and _beyond(pulse.width, span) > math.log(ODD):
+        said = f"the contact lasts {pulse.width:.3g} s, and {span[1]:.3g} s with the scene's material"
+        yield Finding(f"{said}; are time and force both in other units? else the material is far off", False)
+
+
+OF_THE_CURVE: tuple[Check, ...] = (_sign, _missing, _rate, _clipped, _other_contact, _zero)

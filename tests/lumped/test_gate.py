@@ -1,0 +1,172 @@
+"""The gate before any fit: forty spoiled curves, each named by its fault, and two hundred sound ones that pass."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lumped import BadInput, FeContactError, Scene, laws, simulate
+from lumped.numbers import Array
+from lumped.result.curve_file import read_curve
+from lumped.result.gate import check_curve
+from lumped.result.score import Curve
+from lumped.schema.files import SCENES
+
+Made = tuple[Array, Array]
+Spoil = Callable[[Array, Array], Made]
+SEED = 20261125
+ROWS, NOISE = 400, 0.01
+
+
+def made(name: str, lead: float = 0.0, noise: float = NOISE, rows: int = ROWS, seed: int = 1) -> Made:
+    """A measurement of the scene's impact by its exact law: silence before, in durations, the pulse, silence after."""
+    scene = Scene.load(name)
+    history = simulate(laws.get(scene.law.name if scene.law else "ting").of(scene), scene, 1e-4).history
+    last = float(history.time[-1])
+    time = np.linspace(-lead * last, 2.5 * last, rows)
+    rng = np.random.default_rng(seed)
+    return time, history.force_at(time) + noise * history.force.max() * rng.normal(size=time.size)
+
+
+def scaled(of_time: float, of_force: float) -> Spoil:
+    return lambda time, force: (of_time * time, of_force * force)
+
+
+def clipped(share: float) -> Spoil:
+    return lambda time, force: (time, np.minimum(force, share * force.max()))
+
+
+def hole(begin: float, end: float) -> Spoil:
+    """Rows lacking, in shares of the time from zero on."""
+
+    def spoil(time: Array, force: Array) -> Made:
+        kept = (time < begin * time[-1]) | (time > end * time[-1])
+        return time[kept], force[kept]
+
+    return spoil
+
+
+def dropped(time: Array, force: Array) -> Made:
+    top = int(np.argmax(force))
+    return time, np.where(np.abs(np.arange(time.size) - top) < 2, 0.0, force)
+
+
+def twice(time: Array, force: Array) -> Made:
+    step = time[-1] - time[-2]
+    return np.append(time, time + time[-1] + step), np.append(force, force)
+
+
+def drift(time: Array, force: Array) -> Made:
+    return time, force + 0.15 * force.max() * (time - time[0]) / (time[-1] - time[0])
+
+
+SPOILED: tuple[tuple[str, Spoil, float, str], ...] = (
+    ("force in mN", scaled(1.0, 1e3), 0.0, "force is 1000 times too large"),
+    ("force in kN", scaled(1.0, 1e-3), 0.0, "force is 0.001 times too large"),
+    ("time in ms", scaled(1e3, 1.0), 0.0, "time is 1000 times too long"),
+    ("time in us", scaled(1e6, 1.0), 0.0, "time is 1e\\+06 times too long"),
+    ("time in ks", scaled(1e-3, 1.0), 0.0, "time is 0.001 times too long"),
+    ("sign", scaled(1.0, -1.0), 0.0, "sign|never above zero"),
+    ("touch late", lambda time, force: (time - time[0], force), 1.0, "pre-trigger"),
+    ("touch long past", lambda time, force: (time - 5.0 * time[-1], force), 0.0, "pre-trigger"),
+    ("clipped at 95 %", clipped(0.95), 0.0, "peak is clipped"),
+    ("clipped at 70 %", clipped(0.7), 0.0, "peak is clipped"),
+    ("two sensors added", scaled(1.0, 2.0), 0.0, "doubled"),
+    ("recorded twice", twice, 0.0, "another contact"),
+    ("a hole", hole(0.15, 0.2), 0.0, "samples are missing"),
+    ("a dropout", dropped, 0.0, "samples are missing"),
+    ("half a hertz", lambda time, force: (time[::40], force[::40]), 0.0, "sample rate"),
+    ("offset", lambda time, force: (time, force + 0.08 * force.max()), 1.0, "offset"),
+    ("drift", drift, 1.0, "drift"),
+    ("a heavier striker", scaled(1.0, 0.3), 0.0, "< 0"),
+)
+SPOILED_SCENES = ("steel-ball-sls", "polymer-layer")
+
+
+@pytest.mark.parametrize("name", SPOILED_SCENES)
+@pytest.mark.parametrize(("says", "spoil", "lead", "message"), SPOILED, ids=[one[0] for one in SPOILED])
+def test_a_spoiled_curve_is_named(name: str, says: str, spoil: Spoil, lead: float, message: str) -> None:
+    time, force = made(name, lead)
+    scene = Scene.load(name)
+    assert check_curve(Curve(time, force), scene, "curve") == ()
+    with pytest.raises(BadInput, match=message) as refused:
+        check_curve(Curve(*spoil(time, force)), scene, "curve")
+    assert len(refused.value.faults) == 1
+    assert "cure: " in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("time_s,force_N\n0,1,0,5\n0,2,1,5\n", "commas separate the columns and the decimals too"),
+        ("time_s,force_N\n0,1\n1,\n2,3\n", "samples are missing, the first in row 2"),
+        ("time_s;pressure_Pa\n0;1\n1;2\n", "force_N: missing column"),
+        ("t,left [N],right [N]\n0,1,2\n1,2,3\n", "which is meant"),
+    ],
+)
+def test_a_spoiled_file_is_named(text: str, message: str, tmp_path: Path) -> None:
+    (tmp_path / "curve.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(BadInput, match=message):
+        read_curve(tmp_path / "curve.csv")
+
+
+@pytest.mark.parametrize(
+    ("header", "separator", "comma", "of_time", "of_force", "remarks"),
+    [
+        ("time_s,force_N", ",", False, 1.0, 1.0, 0),
+        ("channel,force_N,time_s", ",", False, 1.0, 1.0, 0),
+        ("time_ms,force_kN", ",", False, 1e3, 1e-3, 2),
+        ("t [ms];F [kN]", ";", True, 1e3, 1e-3, 4),
+        ("Zeit/µs\tKraft/mN", "\t", True, 1e6, 1e3, 3),
+        ("Time (s);Load (N)", ";", False, 1.0, 1.0, 3),
+        ("# time_s,force_N", ",", False, 1.0, 1.0, 0),
+        ("Logger 7\n\nTime,Force\n(ms),(N)", ",", False, 1e3, 1.0, 2),
+        ("t,F", ",", False, 1.0, 1.0, 2),
+    ],
+)
+def test_a_header_is_read_as_it_is_meant(
+    header: str, separator: str, comma: bool, of_time: float, of_force: float, remarks: int, tmp_path: Path
+) -> None:
+    """The same curve in every dress, and every guess is said."""
+    time, force = made("steel-ball-sls")
+    places = [cell.strip() for cell in header.splitlines()[-1].split(separator)]
+    columns = {"time": of_time * time, "force": of_force * force}
+    order = ["time", "force"] if len(places) == 2 else ["time", "force", "time"]
+    rows = [separator.join(f"{columns[one][i]:.12g}" for one in order) for i in range(time.size)]
+    text = header + "\n" + "\n".join(row.replace(".", ",") if comma else row for row in rows)
+    (tmp_path / "curve.csv").write_text(text, encoding="utf-8")
+    curve = read_curve(tmp_path / "curve.csv")
+    assert curve.time == pytest.approx(time, rel=1e-9, abs=1e-15)
+    assert curve.force == pytest.approx(force, rel=1e-9)
+    assert len(curve.remarks) == remarks
+
+
+def sound(rng: np.random.Generator) -> Iterator[tuple[Scene, Curve]]:
+    """Random packaged scenes by any law they have, at any rate that tells a pulse, with noise up to 5 %."""
+    while True:
+        scene = Scene.load(str(rng.choice(SCENES.names)))
+        name = scene.law.name if scene.law else str(rng.choice(laws.available()))
+        rows, noise = int(rng.integers(200, 3000)), 0.05 * rng.random()
+        before, after = rng.random(2) * 2.0 * (rng.random(2) < 0.7)
+        try:
+            history = simulate(laws.get(name).of(scene), scene, 1e-3).history
+        except FeContactError:
+            continue
+        last = float(history.time[-1])
+        time = np.linspace(-before * last, (1.0 + after) * last, rows)
+        force = history.force_at(time) + noise * history.force.max() * rng.normal(size=rows)
+        yield scene, Curve(time, force)
+
+
+def test_sound_curves_pass(campaign_size: Callable[..., int]) -> None:
+    curves, refused = sound(np.random.default_rng(SEED)), []
+    for _ in range(campaign_size(200, 20)):
+        scene, curve = next(curves)
+        try:
+            check_curve(curve, scene, scene.name)
+        except BadInput as bad:
+            refused.append(str(bad))
+    assert refused == []

@@ -1,0 +1,94 @@
+"""``fe-contact identify``: files that say what is printed, a scene that runs, exit codes, one line a fault."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fe_contact.cli import main
+from lumped import Scene, laws, simulate
+
+FREE = "target.material.E1,target.material.E2,target.material.C1"
+TRUTH = {"E1": 1.8e6, "E2": 0.9e6, "C1": 1.8e4}
+FAST = 0.1
+
+
+@pytest.fixture(scope="module")
+def curves(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """Two impacts on polymer-sphere by the row of springs, as a logger writes them; the second one faster."""
+    where, rng, paths = tmp_path_factory.mktemp("curves"), np.random.default_rng(1), []
+    for velocity in (0.02, FAST):
+        scene = Scene.load("polymer-sphere", {"striker.velocity": velocity})
+        history = simulate(laws.get("mdr").of(scene), scene, 1e-4).history
+        time = np.linspace(-0.5, 1.5, 300) * history.time[-1]
+        force = history.force_at(time) + 0.005 * history.force.max() * rng.normal(size=time.size)
+        paths.append(where / f"v{velocity:g}.csv")
+        rows = [f"{1e3 * t + 3.0:.9g};{f:.9g}".replace(".", ",") for t, f in zip(time, force, strict=True)]
+        paths[-1].write_text("t [ms];F [N]\n" + "\n".join(rows), encoding="utf-8")
+    return paths[0], paths[1]
+
+
+def test_two_curves_tell_the_polymer(
+    curves: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    slow, fast = curves
+    where, scene = tmp_path / "out", tmp_path / "found.toml"
+    line = ["identify", str(slow), f"{fast}:striker.velocity={FAST}", "--scene", "polymer-sphere", "--free", FREE]
+    assert main([*line, "--each", "--json", "--out", str(where), "--write", str(scene)]) == 0
+    said = capsys.readouterr()
+    printed = json.loads(said.out)
+    assert printed == json.loads((where / "identified.json").read_text(encoding="utf-8"))
+    for key, true in TRUTH.items():
+        one = printed["parameters"][f"target.material.{key}"]
+        assert one["low"] < one["value"] < one["high"]
+        assert abs(one["value"] / true - 1.0) < 0.1
+        assert (one["level"], one["unit"]) == (0.9, "Pa s" if key == "C1" else "Pa")
+    assert printed["model"]["adequate"]
+    assert printed["onset_s"] == pytest.approx([0.003, 0.003], abs=2e-4)
+    assert [one["share_of_peak"] for one in printed["noise"]] == pytest.approx([0.005] * 2, rel=0.2)
+    assert set(printed["each"]) == {str(slow), str(fast)}
+    assert len(said.err.splitlines()) == 2, "how each file was read, in one line"
+    with (where / "identified.csv").open(encoding="utf-8", newline="") as file:
+        assert sum(1 for _ in csv.DictReader(file)) == 600
+    found = Scene.load(scene)
+    assert found.name == "polymer-sphere"
+    assert main(["run", str(scene), "--method", "ting", "--out", str(tmp_path / "run"), "--quiet"]) == 0
+    assert {path.name for path in where.iterdir()} == {f"identified.{kind}" for kind in ("json", "csv", "svg", "png")}
+
+
+def test_a_person_reads_intervals(
+    curves: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The relaxation held at another time than the truth's: what is left says so."""
+    line = ["identify", str(curves[0]), "--scene", "polymer-sphere", "--set", "target.material.C1=1e6"]
+    assert main([*line, "--free", "target.material.E1", "--out", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr()
+    assert "target.material.E1 " in said.out
+    assert "90 %" in said.out
+    assert "the law does not explain the curves" in said.out
+    assert "not to be trusted" in said.err
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--free", "target.material.E3"], "--free: target.material.E3: no number of polymer-sphere.toml; accepted: "),
+        (["--free", FREE, "--write", "found.json"], "--write: found.json: accepted: a file that ends with .toml"),
+        (["--free", FREE, "--corner", "-3"], "--corner: -3: accepted a frequency above zero, Hz"),
+        (["--free", FREE, "--set", "striker.mass=0.5"], "< 0; cure: check mass"),
+        (["--free", FREE, "--set", "striker.mas=50.0"], "striker.mas: unknown key"),
+    ],
+)
+def test_bad_options_write_nothing(
+    options: list[str], message: str, curves: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    where = tmp_path / "none"
+    assert main(["identify", str(curves[0]), "--scene", "polymer-sphere", "--out", str(where), *options]) == 2
+    said = capsys.readouterr().err
+    assert message in said
+    assert len(said.splitlines()) == 1
+    assert not where.exists()
