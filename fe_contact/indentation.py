@@ -16,12 +16,12 @@ import numpy as np
 from fe_contact.assembly.forms import Array, check_compressible
 from fe_contact.bodies.pressing import Still
 from fe_contact.budget.certify import LEAST_ORDER, other_mesh, other_setting
-from fe_contact.budget.plan import DEFAULT_TOLERANCE, DEFAULTS, ELEMENTS, RIM_PENALTY
+from fe_contact.budget.plan import DEFAULTS, ELEMENTS, RIM_PENALTY
 from fe_contact.budget.refine import Finer, dominant, refine
 from fe_contact.budget.variation import factor
 from fe_contact.errors import faults_of
 from fe_contact.progress import Progress, silent
-from fe_contact.settings import Given, Numerics, check_kind
+from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, check_kind
 from fe_contact.targets.base import TARGETS
 from fe_contact.threads import one_thread
 from lumped.errors import BadInput, Fault

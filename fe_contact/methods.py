@@ -1,23 +1,30 @@
-"""Any method by its name: finite elements, a lumped law, or the cheapest of them that is exact enough."""
+"""Any method by its name: finite elements, a lumped law, or the cheapest of them that is exact enough.
+
+The methods of a scene are weighed by one rule for every command: what a law leaves out of the resolved model, then
+what it costs, then the bar that it reaches. Laws answer in milliseconds, so that the first exact one is asked rather
+than guessed at.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
 from fe_contact.errors import faults_of
 from fe_contact.progress import Progress, silent
-from fe_contact.settings import Given, checked
+from fe_contact.settings import DEFAULT_TOLERANCE, Given, checked
 from lumped import laws
 from lumped import simulate as simulate_law
 from lumped.errors import BadInput, Fault, FeContactError, nearest, shown
-from lumped.result.result import Result
+from lumped.result.result import Result, largest_bar, unmet
 from lumped.scene.scene import Scene
 from lumped.schema import Table
 
 FE = "fe"
-EXACT = ("mdr", "ting")  # exact in milliseconds: the row of springs on the half-space, Ting on any load curve
-EXACT_WITH_INERTIA = ("rod_waves",)
 OWN = (FE, "cheapest")
+LOADING = 0.35  # s: finite elements take no less, before they know the scene: what loading their packages takes
 
 
 def settings(table: Given, tolerance: float | None, source: str) -> Table:
@@ -55,18 +62,17 @@ def simulate(
         given, method = settings(table, tolerance, scene.source), method or default(scene)
         if method not in OWN:
             return _lumped(scene, method, given)
-        result = exact(scene, given) if method != FE else None
-        if result is None:
-            from fe_contact.reference import fe  # late: a law needs no finite elements
+        weighing = weigh(scene, given) if method != FE else None
+        if weighing and weighing.answer:
+            return weighing.answer
+        from fe_contact.reference import fe  # late: a law needs no finite elements
 
-            result = fe(scene, given, progress)
-        return result
+        found = fe(scene, given, progress)
+        return replace(found, weighed=weighing.to_json()) if weighing else found
 
 
 def _lumped(scene: Scene, name: str, given: Given) -> Result:
     """By a lumped law. Raises BadInput for an unknown name."""
-    from fe_contact.budget.plan import DEFAULT_TOLERANCE
-
     if reason := refusal(name):
         raise BadInput(Fault("--method", "", reason))
     found = simulate_law(laws.get(name).of(scene), scene, tolerance=given.get("tolerance", DEFAULT_TOLERANCE))
@@ -76,18 +82,128 @@ def _lumped(scene: Scene, name: str, given: Given) -> Result:
     return found
 
 
-def exact(scene: Scene, given: Given) -> Result | None:
-    """By the cheapest exact law, None where none meets the tolerance; without geometry by the scene's own law.
+@dataclass(frozen=True)
+class Weighed:
+    """A method beside the others: its bar, the largest that the tolerance rules, and the processor time expected, s.
 
-    `given`: :func:`settings`. Raises BadInput, and NotReached where the scene's own law does not come to an end.
+    The bar is that asked for, or the one found of a law that was asked; both None of a method that is no answer.
+    `reason`: why it is taken, or is not.
     """
-    if scene.law is not None and not scene.has_geometry:
-        return _lumped(scene, scene.law.name, given)
-    for name in EXACT_WITH_INERTIA if scene.model.inertia else EXACT:
-        try:
-            result = _lumped(scene, name, given)
-        except FeContactError:  # it has no answer here, which the next one may
+
+    method: str
+    bar: float | None
+    cpu_s: float | None
+    reason: str
+    taken: bool = False
+
+    def __str__(self) -> str:
+        if self.bar is None or self.cpu_s is None:
+            return f"{self.method}: {self.reason}"
+        return f"{self.method}: bar {self.bar:.1g}, {spell(self.cpu_s)}; {self.reason}"
+
+
+@dataclass(frozen=True, eq=False)
+class Weighing:
+    """All methods of a scene, those that could answer first; ``answer``: the law's that is taken, None otherwise."""
+
+    methods: tuple[Weighed, ...]
+    answer: Result | None = None
+
+    @property
+    def taken(self) -> Weighed:
+        """The method of the scene."""
+        return next(one for one in self.methods if one.taken)
+
+    def to_json(self) -> tuple[Table, ...]:
+        """What result.json says of it."""
+        return tuple(asdict(one) for one in self.methods)
+
+
+def lines_of(weighed: Iterable[Table]) -> list[str]:
+    """Of a :class:`Weighing` as result.json has it: a line for every method that could answer, one for every reason of
+    others.
+    """
+    candidates, reasons = list[str](), dict[str, list[str]]()
+    for one in (Weighed(**table) for table in weighed):
+        if one.bar is None:
+            reasons.setdefault(one.reason, []).append(one.method)
+        else:
+            candidates.append(str(one))
+    return candidates + [f"{', '.join(names)}: {reason}" for reason, names in reasons.items()]
+
+
+def weigh(scene: Scene, given: Given) -> Weighing:
+    """The cheapest method whose bar is within the tolerance, and why it is that one.
+
+    `given`: :func:`settings`. Exact laws are asked, the cheapest first, until one meets the tolerance; else it is
+    finite elements. Raises BadInput, and NotReached where a scene's own law without geometry comes to no end.
+    """
+    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    exact, weighed, answer = exact_laws(scene), list[Weighed](), None
+    for name in exact:
+        if answer is not None:
+            reason = f"as exact as {answer.method}, no cheaper"
+            weighed.append(Weighed(name, tolerance, laws.get(name).seconds, reason))
             continue
-        if result.converged:
-            return result
-    return None
+        one, answer = _asked(scene, name, given)
+        weighed.append(one)
+    weighed.append(_elements(scene, given, tolerance, answer))
+    out = [Weighed(name, None, None, why_not(scene, name)) for name in laws.available() if name not in exact]
+    found = Weighing((*weighed, *out), answer)
+    return found if answer is None else replace(found, answer=replace(answer, weighed=found.to_json()))
+
+
+def exact_laws(scene: Scene) -> tuple[str, ...]:
+    """Names of the laws that are exact for the scene's resolved model, the cheapest first; of its own without geometry.
+
+    They may still refuse a number of the scene, or not come to an end.
+    """
+    found = (name for name in laws.available() if not why_not(scene, name))
+    return tuple(sorted(found, key=lambda name: laws.get(name).seconds))
+
+
+def why_not(scene: Scene, name: str) -> str:
+    """Why a law cannot stand for the scene's model: it refuses the scene, or leaves something out; empty if it can."""
+    if not scene.has_geometry:
+        own = scene.law is not None and scene.law.name == name
+        return "" if own else "the scene has the parameters of another law"
+    kind = laws.get(name)
+    if left := kind.leaves_out(scene):
+        return f"leaves out {left}"
+    try:
+        kind.of(scene)
+    except BadInput as refused:
+        return f"refuses {'; '.join(f'{fault.key}: {fault.message}' for fault in refused.faults)}"
+    return ""
+
+
+def _asked(scene: Scene, name: str, given: Given) -> tuple[Weighed, Result | None]:
+    """An exact law's answer, None where it has none that meets the tolerance."""
+    try:
+        found = _lumped(scene, name, given)
+    except FeContactError as refused:
+        if not scene.has_geometry:
+            raise
+        return Weighed(name, None, None, f"has no answer: {refused}"), None
+    bar, cpu = largest_bar(found.quantities), laws.get(name).seconds
+    if not found.converged and scene.has_geometry:
+        followed = unmet(found.quantities, found.tolerance)  # to the end of the impact, but not finely enough
+        return Weighed(name, bar if followed else None, cpu, f"has no answer: {found.message}"), None
+    return Weighed(name, bar, cpu, "exact for this model, and the cheapest", taken=True), found
+
+
+def _elements(scene: Scene, given: Given, tolerance: float, answer: Result | None) -> Weighed:
+    """Finite elements as they are expected to be, beside a law that answers or alone."""
+    if not scene.has_geometry:
+        return Weighed(FE, None, None, "need a shape and a material")
+    if answer is not None:
+        return Weighed(FE, tolerance, LOADING, "no better, and loading them takes longer")
+    from fe_contact.reference import expected  # late: a law needs no finite elements
+
+    tolerance, seconds = expected(scene, given)
+    return Weighed(FE, tolerance, LOADING + seconds, "no exact law of this model meets the tolerance", taken=True)
+
+
+def spell(seconds: float) -> str:
+    """A processor time to a digit or two."""
+    return f"{1e3 * seconds:.0f} ms" if seconds < 1.0 else f"{seconds:.2g} s"

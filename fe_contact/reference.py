@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
 
@@ -22,17 +22,15 @@ from fe_contact.errors import faults_of
 from fe_contact.march.impacts import UNFOLLOWED
 from fe_contact.progress import Progress, silent
 from fe_contact.recovery import indentation_left, recovers
-from fe_contact.settings import Given, Numerics, check_kind
+from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, WaveNumerics, check_kind
 from fe_contact.steppers.steps import Strike
-from fe_contact.targets.base import TARGETS, struck
+from fe_contact.targets.base import TARGETS, seconds_of_impact, struck
 from lumped.errors import BadInput, Fault
 from lumped.result.result import (
-    RULED_ABSOLUTE,
-    RULED_RELATIVE,
     UNITS,
     LedgerEntry,
-    Quantity,
     Result,
+    largest_bar,
     meets,
     provenance,
     unmet,
@@ -189,6 +187,19 @@ def _too_dear(certified: Certified, finer: Numerics) -> str:
     return ""
 
 
+def expected(scene: Scene, given: Given) -> tuple[float, float]:
+    """Tolerance, and processor time, s, about, of :func:`fe` once packages are loaded. Raises NotReached, BadInput."""
+    with faults_of(scene):
+        if scene.model.inertia:
+            target, chosen = with_waves(scene), plan(scene, given).numerics
+            assert isinstance(chosen, WaveNumerics)
+            return chosen.tolerance, target.cost(scene, chosen).seconds
+        check_target(scene)
+        tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+        tighter = max(DEFAULT_TOLERANCE / tolerance, 1.0)
+        return tolerance, scene.motion.impacts * tighter * seconds_of_impact(scene.geometry)
+
+
 def check_target(scene: Scene) -> None:
     """Raise BadInput for a target which no impact is marched on, and for waves, which are marched elsewhere."""
     geometry = scene.geometry
@@ -250,17 +261,7 @@ def _missed(scene: Scene, solved: SolvedBy[Solution], found: Solution) -> list[s
         missed = [f"contact {number}: {words}" for number, words in enumerate(missed, start=1) if words]
     if not any(missed):
         return []
-    largest = max(_largest(part) for part in found.parts)
+    largest = max(largest_bar(part) for part in found.parts)
     met = 10.0 ** (math.ceil(10.0 * math.log10(largest)) / 10.0) if math.isfinite(largest) else None  # rounded up
     said = [*missed, solved.refused, "" if met is None else f"a tolerance of {met:.2g} is met", CURE]
     return [part for part in said if part]
-
-
-def _largest(quantities: Mapping[str, Quantity]) -> float:
-    """The largest bar that a tolerance rules, in terms of it; infinite where one is unknown."""
-    bars = []
-    for name in (*RULED_RELATIVE, *RULED_ABSOLUTE):
-        value, error = quantities[name].value, quantities[name].error
-        if value is not None and error is not None:
-            bars.append(error / (abs(value) or math.inf) if name in RULED_RELATIVE else error)
-    return float(np.nan_to_num(bars, nan=np.inf, posinf=np.inf).max())

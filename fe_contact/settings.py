@@ -17,6 +17,7 @@ from lumped.schema.keys import Key, keys_of
 from lumped.schema.members import available
 
 Given = Mapping[str, Any]  # values of keys, each of its own type
+DEFAULT_TOLERANCE = 1e-3  # default: relative, of every certified quantity without waves
 STATIC_SCHEMES, WAVE_SCHEMES = "fe_contact.schemes", "fe_contact.dynamics.schemes"
 OF_WAVES = ("mass", "rho")  # mean nothing without inertia
 

@@ -22,16 +22,16 @@ from fe_contact.studies.stability.bars import DEFAULT
 from fe_contact.studies.stability.base import studies
 from fe_contact.studies.table1 import limits
 from fe_contact.studies.table1 import study as table1
-from fe_contact.studies.tradeoff import bodies
+from fe_contact.studies.tradeoff import study as tradeoff
+from fe_contact.studies.tradeoff.tried import ROW
 from lumped.paper.table1 import ROWS
 
 TWO_ROWS = {name: ROWS[name] for name in ("prism", "punch")}
 PROFILES = tuple(one for one in exponents.PROFILES if one.name in ("cone", "cylinder"))
 CASES = [{**DEFAULT, "cfl": cfl, "elements": 20, "periods": 1} for cfl in (0.5, 1.0, 2.0, 3.0)]
-ROWS_OF_SPRINGS = tuple((bodies.ROW, {"elements": count}) for count in (25, 50))
-STILL = replace(bodies.STILL, variations=lambda *_: iter(()), lumped=lambda quick: ROWS_OF_SPRINGS)
+ROWS_OF_SPRINGS = tuple((ROW, {"elements": count}) for count in (25, 50))
 FEW_STEPS = ({"steps": 100}, {"steps": 200})
-ROD = replace(bodies.ROD, variations=lambda *_: iter(FEW_STEPS), lumped=lambda quick: (("hertz", {"tolerance": 1e-6}),))
+FEW_LAWS = (("hertz", {"tolerance": 1e-6}),)
 COMMANDS = {
     "table1": ["table1"],
     "exponents": ["exponents", "--quick"],
@@ -46,7 +46,8 @@ SMALLER: dict[ModuleType, dict[str, Any]] = {
     limits: {"WIDTHS": limits.WIDTHS[::4]},
     exponents: {"PROFILES": PROFILES, "FEW_POINTS": 6} | {"SUPPORTS": ("free",), "SHARES": exponents.SHARES[::3]},
     rings: {"PACKAGED": ("rod-in-ring", "polymer-washer"), "STRAINS": rings.STRAINS[::4], "STRUCK_STRAINS": ()},
-    bodies: {"STILL": STILL, "ROD": ROD, "EXACT_TOLERANCE": 1e-5},
+    tradeoff: {"TIGHTEST": 1e-5, "variations": lambda scene, *_: iter(FEW_STEPS if scene.model.inertia else ())}
+    | {"asked_laws": lambda scene, _: FEW_LAWS if scene.model.inertia else ROWS_OF_SPRINGS},
 }
 
 

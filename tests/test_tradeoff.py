@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,35 +16,44 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fe_contact.cli import main
-from fe_contact.studies.tradeoff import bodies, study
-from fe_contact.studies.tradeoff.bodies import LAW_TOLERANCES, ROW_ELEMENTS, still_variations
+from fe_contact.methods import exact_laws
+from fe_contact.reference import plan
+from fe_contact.settings import Numerics
+from fe_contact.studies.tradeoff import study
 from fe_contact.studies.tradeoff.chart import plot_tradeoff
-from fe_contact.studies.tradeoff.point import Point
-from fe_contact.studies.tradeoff.study import (
-    MARKED,
+from fe_contact.studies.tradeoff.point import REFERENCE, Point
+from fe_contact.studies.tradeoff.study import Tradeoff, tradeoff, varied
+from fe_contact.studies.tradeoff.tried import LAW_TOLERANCES, ROW, ROW_ELEMENTS, asked_laws, variations
+from fe_contact.studies.tradeoff.verdict import (
     NEAR,
-    defaults,
-    excess,
+    advice,
+    brief,
     finite_elements,
     front,
-    tradeoff,
-    varied,
+    judged,
+    known_to,
+    serves,
     verdict,
 )
 from fe_contact.targets import half_space
 from lumped.scene.scene import Scene
+from lumped.schema.files import SCENES
+
+SETTINGS = {"order": 4, "elements_per_contact": 3.2, "steps": 40, "enforcement": "corrected", "penalty": 1e3}
+TRUTH = Point(REFERENCE, {"from": "ting"}, 0.1, bar=1e-8)
 
 
-def point(cpu: float, error: float, bar: float = 1e-9, default_for: float | None = None) -> Point:
-    return Point("fe", {}, cpu, {"peak_force": error}, bar, default_for=default_for)
+def point(cpu: float, error: float, bar: float = 1e-9, method: str = "fe", **more: Any) -> Point:
+    settings = SETTINGS | more.pop("settings", {})
+    return Point(method, settings, cpu, {"peak_force": error}, bar, **more)
 
 
-def nothing(*_: object) -> tuple[()]:
-    return ()
+def silent(message: str) -> None:
+    pass
 
 
-NOTHING_VARIED = replace(bodies.STILL, variations=lambda base, quick: iter(()))
-DEFAULTS_ALONE = replace(NOTHING_VARIED, lumped=nothing)
+def numerics(scene: Scene, **given: object) -> Numerics:
+    return plan(scene, given).numerics
 
 
 @pytest.fixture(scope="module")
@@ -51,75 +62,124 @@ def scene() -> Scene:
 
 
 @pytest.fixture(scope="module")
-def points(scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> tuple[Point, ...]:
-    """The defaults, the exact laws and the models."""
+def found(scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> Tradeoff:
+    """The default, the exact laws and all others."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(bodies, "STILL", NOTHING_VARIED)
-        return tradeoff(scene, {}, True, tmp_path_factory.mktemp("tradeoff"), lambda message: None)
+        patch.setattr(study, "variations", lambda *_: iter(()))
+        return tradeoff(scene, {}, True, tmp_path_factory.mktemp("tradeoff"), silent)
 
 
 @given(st.lists(st.tuples(st.floats(1e-3, 1e3), st.floats(1e-9, 1.0)), min_size=1, max_size=30))
 def test_the_front_holds_the_points_that_nothing_beats(pairs: list[tuple[float, float]]) -> None:
+    """By comparing every point with every other: those that no other one beats in one sense and equals in the other."""
     tried = [point(cpu, error) for cpu, error in pairs]
     best = front(tried, lambda p: p.cpu, lambda p: p.error)
-    for one in tried:
-        beaten = any(o.cpu <= one.cpu and o.error <= one.error and o != one for o in tried)
-        assert one in best or beaten
+    unbeaten = {
+        (cpu, error)
+        for cpu, error in pairs
+        if not any(c <= cpu and e <= error and (c, e) != (cpu, error) for c, e in pairs)
+    }
+    assert {(p.cpu, p.error) for p in best} == unbeaten
     assert all(a.cpu < b.cpu and a.error > b.error for a, b in pairwise(best))
-
-
-def test_excess_is_the_price_over_the_cheapest_equal() -> None:
-    tried = [point(1.0, 1e-2), point(2.0, 1e-3), point(6.0, 1e-3)]
-    assert excess(tried[2], tried, lambda p: p.error, 1e-3) == 3.0
-    assert np.isnan(excess(tried[2], tried, lambda p: p.error, 1e-6))
 
 
 @pytest.mark.parametrize(
     ("cpu", "bar", "phrase"),
     [
-        (1.0, 5e-4, ": on the front"),
-        (1.9, 5e-4, f"within a factor {NEAR:g} of the front"),
-        (5.0, 5e-4, ": off the front"),
+        (1.0, 5e-4, "on the front"),
+        (1.4, 5e-4, f"within {NEAR:g} of the front"),
+        (5.0, 5e-4, "5.00 times the cheapest whose bar meets the tolerance: off the front"),
         (1.0, 2e-3, "misses the tolerance"),
     ],
 )
-def test_the_verdict_follows_from_the_points(cpu: float, bar: float, phrase: str) -> None:
-    tried = [point(1.0, 1e-4, 9e-4), point(cpu, 1e-4, bar, default_for=1e-3)]
-    assert phrase in verdict(tried)[0]
+def test_the_distance_of_a_default_follows_from_the_points(cpu: float, bar: float, phrase: str) -> None:
+    tried = [TRUTH, point(1.0, 1e-4, 9e-4), point(cpu, 1e-4, bar, default_for=1e-3)]
+    assert phrase in verdict(tried, 1e-3)[1]
 
 
-def test_the_verdict_counts_the_bars_that_cover() -> None:
-    tried = [point(1.0, 1e-4, 2e-4), point(1.0, 1e-4, 5e-5), replace(point(1.0, 1.0), failure="no contact")]
-    assert verdict(tried)[-1] == "the claimed bar covers the error in 1 of 2 settings"
+def test_what_claims_too_much_is_no_front_for_a_default() -> None:
+    """A setting whose bar is untrue serves nobody, however cheap; nor does one that fails."""
+    untrue = point(0.1, 5e-3, 1e-5)
+    failed = replace(point(0.1, 1e-9), failure="no contact")
+    tried = [TRUTH, untrue, failed, point(1.0, 1e-4, 5e-4, default_for=1e-3)]
+    assert not serves(untrue, tried, 1e-3)
+    assert "on the front" in verdict(tried, 1e-3)[1]
+    assert verdict(tried, 1e-3)[-1].endswith("covers the error in 1 of 2 settings of finite elements")
+
+
+def test_advice_names_the_cheapest_that_serves_and_the_cheapest_finite_elements() -> None:
+    """Fake laws: one slow, one fast and inexact, one of another model, one that claims nothing.
+
+    The default's settings are said shortly, another enforcement is named.
+    """
+    elements = point(0.09, 1e-5, 2e-4)
+    slow, inexact = point(0.5, 1e-9, method="slow"), point(1e-4, 0.1, method="inexact")
+    another = point(1e-4, 1e-9, method="another model", leaves_out="waves")  # near by chance
+    silent_one = Point("estimate", {}, 1e-4, {"peak_force": 1e-9})
+    exact = point(8e-3, 1e-7, 1e-6, method="ting")
+    said = "order 4, 3.2 elements, 40 steps, 90 ms, bar 2e-4"
+    others = [TRUTH, slow, inexact, another, silent_one, elements]
+    assert advice([*others, exact], 1e-3) == f"use ting (8 ms, 1e-6); if finite elements: {said}"
+    assert advice(others, 1e-3) == f"use finite elements: {said}"
+    assert advice([TRUTH, exact], 1e-3) == "use ting (8 ms, 1e-6); finite elements need a geometry"
+    assert advice([TRUTH, exact, elements], 1e-5) == "use ting (8 ms, 1e-6); no finite elements tried meet 1e-05"
+    assert advice([TRUTH, inexact], 1e-3) == "nothing that was tried meets 0.001"
+    cheaper = point(0.05, 1e-5, 2e-4, settings={"enforcement": "penalty", "penalty": 1e4})
+    default = replace(elements, default_for=1e-3)
+    assert "40 steps, enforcement penalty, penalty 1e+04, 50 ms" in advice([TRUTH, default, cheaper], 1e-3)
+
+
+@given(st.floats(1e-12, 0.1))
+def test_a_bar_is_said_by_one_digit(bar: float) -> None:
+    assert float(brief(bar)) == pytest.approx(bar, rel=0.5)
+    assert re.fullmatch(r"\de-\d+", brief(bar))
+
+
+def test_a_point_within_the_bar_of_the_truth_is_not_held_against_a_setting() -> None:
+    wide = replace(TRUTH, bar=1e-3)
+    tried = [wide, point(1.0, 9e-4, 1e-5)]
+    assert known_to(tried) == 1e-3
+    assert serves(tried[1], tried, 1e-4)
+    assert not serves(tried[1], [TRUTH, *tried[1:]], 1e-4)
 
 
 @pytest.mark.parametrize("quick", [True, False])
 def test_the_design_tries_each_setting_once_and_keeps_what_is_given(scene: Scene, quick: bool) -> None:
     given_settings = {"order": 3, "penalty": 500.0}
-    planned = defaults(scene, given_settings)
-    assert set(planned) == set(MARKED)
-    chosen = varied(planned[1e-3], given_settings, still_variations(planned[1e-3], quick))
+    base = numerics(scene, **given_settings)
+    chosen = varied(base, given_settings, variations(scene, base, quick))
     assert len(set(chosen)) == len(chosen)
     assert {(n.order, n.penalty) for n in chosen} == {(3, 500.0)}
-    assert {n.contact_time for n in chosen} == {planned[1e-3].contact_time}
+    assert {n.contact_time for n in chosen} == {base.contact_time}
 
 
-def test_the_full_design_holds_the_quick_one_in_kind(scene: Scene) -> None:
-    base = defaults(scene, {})[1e-3]
-    quick, full = (varied(base, {}, still_variations(base, quick)) for quick in (True, False))
-    assert 10 <= len(quick) <= 20 < 50 <= len(full) <= 70
+def test_the_full_design_holds_the_quick_one(scene: Scene) -> None:
+    base = numerics(scene)
+    quick, full = (varied(base, {}, variations(scene, base, quick)) for quick in (True, False))
+    assert 8 <= len(quick) <= 20 < 50 <= len(full) <= 75
+    assert set(quick) < set(full)
     for key in ("order", "elements_per_contact", "steps", "enforcement", "penalty"):
         assert len({getattr(n, key) for n in quick}) > 1
     assert all(n.steps % 4 == 0 for n in full)
 
 
-def test_every_default_keeps_its_promise(points: tuple[Point, ...]) -> None:
-    marked = [p for p in points if p.default_for is not None]
-    assert [p.default_for for p in marked] == list(MARKED)
-    for one in marked:
-        assert one.bar is not None
-        assert one.error <= one.bar <= (one.default_for or 0.0)
-        assert one.cpu > 0.0
+def test_every_packaged_scene_has_something_to_try() -> None:
+    """Laws or finite elements that have an answer, whatever the kind; a law's own scene is asked of that law alone."""
+    for name in SCENES.names:
+        one = Scene.load(name)
+        asked = {method for method, _ in asked_laws(one, True)}
+        assert asked >= set(exact_laws(one))
+        if not one.has_geometry:
+            assert one.law is not None
+            assert asked == {one.law.name}
+
+
+def test_the_default_keeps_its_promise(found: Tradeoff) -> None:
+    (default,) = [p for p in found.points if p.default_for is not None]
+    assert default.default_for == found.tolerance == 1e-3
+    assert default.bar is not None
+    assert default.error <= default.bar <= found.tolerance
+    assert default.cpu > 0.0
 
 
 def test_every_point_builds_its_operators_again(scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -132,42 +192,91 @@ def test_every_point_builds_its_operators_again(scene: Scene, tmp_path: Path, mo
 
     original = half_space.surface_operator
     monkeypatch.setattr(half_space, "surface_operator", counted)
-    monkeypatch.setattr(bodies, "STILL", DEFAULTS_ALONE)
+    monkeypatch.setattr(study, "variations", lambda *_: iter([{"steps": 24}]))
+    monkeypatch.setattr(study, "asked_laws", lambda *_: ())
     monkeypatch.setattr(study, "BRIEF", np.inf)
-    found = finite_elements(tradeoff(scene, {}, True, tmp_path, lambda message: None))
-    assert len(built) == study.REPEATS * sum(p.work["factorizations"] for p in found)
+    points = finite_elements(tradeoff(scene, {}, True, tmp_path, silent).points)
+    assert len(points) == 2
+    assert len(built) == study.REPEATS * sum(p.work["factorizations"] for p in points)
 
 
-def test_the_row_of_springs_converges_with_order_two(points: tuple[Point, ...]) -> None:
-    errors = [p.error for p in points if p.method == "mdr row"]
+def test_the_row_of_springs_converges_with_order_two(found: Tradeoff) -> None:
+    errors = [p.error for p in found.points if p.method == ROW]
     rates = np.diff(np.log(errors)) / -np.diff(np.log(ROW_ELEMENTS))
     assert rates[1:].min() > 1.7
 
 
-def test_exact_laws_keep_their_bars_and_models_do_not_converge(points: tuple[Point, ...]) -> None:
+def test_exact_laws_keep_their_bars_and_models_do_not_converge(found: Tradeoff) -> None:
+    """Each exact law judged by the other one."""
     for name in ("mdr", "ting"):
-        own = [p for p in points if p.method == name]
+        own = [p for p in found.points if p.method == name]
         assert [p.settings["tolerance"] for p in own] == list(LAW_TOLERANCES[::2])
-        assert all(p.error <= (p.bar or 0.0) + bodies.EXACT_TOLERANCE for p in own)
-    models = {p.method: p.error for p in points if p.method in bodies.MODELS}
-    assert models["hertz"] > models["correspondence"] > 0.01
+        assert all(0.0 < p.error <= (p.bar or 0.0) + known_to(found.points) for p in own)
+    models = {p.method: p.error for p in judged(found.points) if p.method not in ("fe", "mdr", "ting", ROW)}
+    assert {"hertz", "correspondence", "jankowski"} <= set(models)
+    assert min(models.values()) > 0.01
+    assert found.verdict[0].startswith("use ting (")
+
+
+def test_several_impacts_are_judged_by_their_first_contact(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Finer elements are the truth, as no law is exact; what later contacts lag is no error of the force."""
+    monkeypatch.setattr(study, "variations", lambda *_: iter(()))
+    monkeypatch.setattr(study, "asked_laws", lambda *_: ())
+    found = tradeoff(Scene.load("ball-bouncing", {"motion.impacts": 2}), {}, True, tmp_path, silent)
+    (default,) = finite_elements(found.points)
+    (truth,) = [p for p in found.points if p.method == REFERENCE]
+    assert truth.settings["steps"] == 2 * default.settings["steps"]
+    assert truth.settings["elements_per_contact"] > default.settings["elements_per_contact"]
+    assert 0.0 < default.error <= (default.bar or 0.0) + (truth.bar or 0.0) <= found.tolerance
+
+
+def test_a_law_s_own_scene_has_no_finite_elements(tmp_path: Path) -> None:
+    found = tradeoff(Scene.load("pounding-bridge-hertzdamp"), {}, True, tmp_path, silent)
+    assert {p.method for p in found.points} == {REFERENCE, "hertzdamp"}
+    assert re.fullmatch(r"use hertzdamp \(\d+ ms, \de-\d+\); finite elements need a geometry", found.verdict[0])
+    plot_tradeoff(found, tmp_path)
+    assert (tmp_path / "tradeoff.png").is_file()
 
 
 @pytest.mark.tenth
 def test_the_command_writes_table_and_chart(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(bodies, "STILL", DEFAULTS_ALONE)
+    monkeypatch.setattr(study, "variations", lambda *_: iter(()))
     assert main(["tradeoff", "polymer-sphere", "--quick", "--json", "--quiet", "--out", str(tmp_path)]) == 0
     printed = json.loads(capsys.readouterr().out)
     assert printed == json.loads((tmp_path / "tradeoff.json").read_text(encoding="utf-8"))
+    assert printed["verdict"][0].startswith("use ting (")
     with (tmp_path / "tradeoff.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == len(printed["points"])
-    assert [float(row["error"]) for row in rows] == [p["error"] for p in printed["points"]]
+    errors = [p["error"] for p in printed["points"]]
+    assert [float(row["error"]) if row["error"] else None for row in rows] == errors
     assert {"tradeoff.svg", "tradeoff.png"} <= {path.name for path in tmp_path.iterdir()}
 
 
-def test_the_chart_is_reproducible(tmp_path: Path, scene: Scene, points: tuple[Point, ...]) -> None:
-    first, again = (plot_tradeoff(scene, points, tmp_path / name) for name in ("first", "again"))
+def test_the_chart_is_reproducible(tmp_path: Path, found: Tradeoff) -> None:
+    first, again = (plot_tradeoff(found, tmp_path / name) for name in ("first", "again"))
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
+
+
+@pytest.mark.parametrize("decades", [0.05, 0.3, 0.9, 1.4, 1.6, 4.0, 9.0])
+@pytest.mark.parametrize("low", [1.3e-9, 0.07, 0.95])
+def test_tick_labels_do_not_collide(low: float, decades: float) -> None:
+    """Whatever an axis spans: the boxes of its labels, as drawn, stay apart, and there is one at least."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    from fe_contact.studies.tradeoff.chart import ticks
+
+    figure, high = Figure(figsize=(3.4, 3.0)), low * 10.0**decades
+    canvas = FigureCanvasAgg(figure)
+    axes = figure.add_subplot()
+    axes.set(xscale="log", yscale="log", xlim=(low, high), ylim=(low, high))
+    ticks(axes)
+    canvas.draw()
+    for axis in (axes.xaxis, axes.yaxis):
+        minor, major = axis.get_ticklabels(minor=True), axis.get_ticklabels()
+        boxes = [one.get_window_extent() for one in (*minor, *major) if one.get_text() and one.get_visible()]
+        assert boxes
+        assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[i + 1 :])

@@ -41,14 +41,19 @@ class Store:
                 self._taken -= self._held.pop(next(iter(self._held)))[0]
         return answer
 
-    def forget(self, first: Hashable) -> None:
-        """Drop all keys that begin so."""
+    def forget(self, first: Hashable = None) -> None:
+        """Drop all keys that begin so, or all of them."""
         with self._lock:
-            for key in [key for key in self._held if key[0] is first]:
+            for key in [key for key in self._held if first in (None, key[0])]:
                 self._taken -= self._held.pop(key)[0]
 
 
 _BODIES = Store(BODIES)
+
+
+def forget() -> None:
+    """Whatever is at hand: what is asked next is made anew."""
+    _BODIES.forget()
 
 
 @dataclass(frozen=True)

@@ -47,13 +47,13 @@ def execute(args: argparse.Namespace) -> int:
 
 def law_names(text: str | None, scene: Scene) -> tuple[str, ...]:
     """Checked names of the laws asked for, each once; raises BadInput with every unknown one and the nearest."""
-    from fe_contact.methods import EXACT_WITH_INERTIA
     from fe_contact.studies.compare.study import DEFAULT_LAWS
     from lumped.errors import nearest, shown
     from lumped.laws import available
+    from lumped.laws.rod_waves import RodWaves
 
     if text is None:
-        return EXACT_WITH_INERTIA if scene.target.only_with_inertia else DEFAULT_LAWS
+        return (RodWaves.name,) if scene.target.only_with_inertia else DEFAULT_LAWS
     names, known = tuple(dict.fromkeys(name.strip() for name in text.split(","))), available()
     faults = [
         Fault("--laws", "", f"{shown(name)}: accepted {', '.join(known)}{nearest(name, known)}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from fe_contact.commands import base
+from fe_contact.settings import DEFAULT_TOLERANCE
 from lumped.errors import BadInput, Fault, NotReached, nearest, shown
 from lumped.indentation import Indentation
 from lumped.result.folder import publish
@@ -31,7 +32,6 @@ def execute(args: argparse.Namespace) -> int:
 
 def _indented(args: argparse.Namespace, indenter: Indenter, depths: tuple[float, ...], given: Table) -> Indentation:
     """By finite elements or by a closed form; raises BadInput for any other method."""
-    from fe_contact.budget.plan import DEFAULT_TOLERANCE
     from fe_contact.indentation import indent as by_elements
 
     progress = base.progress_of(args)

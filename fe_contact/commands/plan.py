@@ -1,15 +1,14 @@
-"""``fe-contact plan SCENE``: the cheapest method, the settings of finite elements and the model ledger."""
+"""``fe-contact plan SCENE``: the cheapest method and why, the settings of finite elements and the model ledger."""
 
 from __future__ import annotations
 
 import argparse
-import math
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from fe_contact.settings import KEYS, SCALES
 from lumped.errors import FeContactError, NotReached
-from lumped.result.result import Result, good_to
+from lumped.result.result import good_to
 from lumped.scene.scene import Scene
 from lumped.schema import Table
 
@@ -19,33 +18,34 @@ if TYPE_CHECKING:  # finite elements are loaded when they are needed
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Print method, settings, ledger, what waves take, why finite elements refuse the scene; 3 where that is too much.
+    """Print the methods, settings, ledger, what waves take, why finite elements refuse the scene; 3 where too much.
 
     An exact law is asked, in milliseconds; no finite elements.
     """
-    from fe_contact.methods import exact, settings
+    from fe_contact.methods import lines_of, settings, weigh
     from fe_contact.reference import plan
 
     scene, table = base.read_scene(args)
     progress, given = base.progress_of(args), settings(table, None, scene.source)
     progress("plan")
-    answer = exact(scene, given)
-    method = {"name": "fe"} if answer is None else _bar_and_cost(answer)
-    title = f"{scene.name}: {_words(answer)}"
+    weighing = weigh(scene, given)
+    taken, weighed = weighing.taken, weighing.to_json()
+    method = {"name": taken.method, "bar": taken.bar, "cpu_s": taken.cpu_s, "reason": taken.reason}
+    title, methods = f"{scene.name}: {taken}", {"method": method, "weighed": weighed}
+    lines = ["weighed:", *(f"  {line}" for line in lines_of(weighed))]
     if not scene.has_geometry:
         nothing: Table = {"numerics": None, "model_ledger": [], "cost": None, "refused": None}
-        base.say(args, {"method": method} | nothing, [], title)
+        base.say(args, methods | nothing, lines, title)
         return base.DONE
     chosen = plan(scene, given)
     takes, refused = _takes(scene, chosen)
     ledger = [entry.to_json(float(chosen.numerics.tolerance)) for entry in chosen.ledger]
-    content = {
-        "method": method,
+    content = methods | {
         "numerics": chosen.numerics.as_dict(),
         "model_ledger": ledger,
         "cost": takes and takes.as_dict(),
     }
-    base.say(args, content | {"refused": refused and str(refused)}, _lines(chosen, takes), title)
+    base.say(args, content | {"refused": refused and str(refused)}, [*lines, *_lines(chosen, takes)], title)
     if refused and not args.json:
         base.complain(str(refused))
     return base.NOT_REACHED if isinstance(refused, NotReached) else base.DONE  # what only laws can follow is a plan too
@@ -65,21 +65,6 @@ def _lines(chosen: Plan, takes: Cost | None) -> list[str]:
         size += f"{entry.estimate:.2g}, " if entry.estimate is not None else ""
         lines.append(f"  {entry.effect} ({entry.treated}): {size}{entry.verdict(tolerance)}")
     return [*lines, good_to(chosen.ledger)]
-
-
-def _bar_and_cost(answer: Result) -> Table:
-    """What an exact answer says of itself: its bar, relative to the peak force, and its processor time, s."""
-    peak = answer.quantities["peak_force"]
-    bar = (peak.error or 0.0) / (peak.value or math.inf)
-    return {"name": answer.method, "bar": bar, "cpu_s": answer.timing["cpu_s"]}
-
-
-def _words(answer: Result | None) -> str:
-    """The same in words."""
-    if answer is None:
-        return "finite elements; no exact law of this model meets the tolerance"
-    costs = _bar_and_cost(answer)
-    return f"{costs['name']} answers, bar {costs['bar']:.1g} of the peak force, in {1e3 * costs['cpu_s']:.0f} ms"
 
 
 def _takes(scene: Scene, chosen: Plan) -> tuple[Cost | None, FeContactError | None]:

@@ -59,7 +59,14 @@ def _lines(result: Result) -> list[str]:
     lines += [_contact(number, contact) for number, contact in enumerate(result.contacts, start=1)]
     if result.contacts and result.converged and result.message:
         lines.append(result.message)
-    return [*lines, *filter(None, [good_to(result.model_ledger)])]
+    return [*_weighed(result), *lines, *filter(None, [good_to(result.model_ledger)])]
+
+
+def _weighed(result: Result) -> list[str]:
+    """The methods that were weighed, where the cheapest was asked for."""
+    from fe_contact.methods import lines_of
+
+    return [f"weighed: {line}" for line in lines_of(result.weighed)]
 
 
 def _contact(number: int, contact: Mapping[str, float | None]) -> str:

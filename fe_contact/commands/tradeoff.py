@@ -9,20 +9,21 @@ from fe_contact.commands import base
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Measure, write, say where the defaults lie; 0."""
+    """Measure, write, say what to use and where the defaults lie; 0."""
     from fe_contact.methods import settings
     from fe_contact.studies.tradeoff.chart import plot_tradeoff
-    from fe_contact.studies.tradeoff.study import tradeoff, verdict, write_tradeoff
+    from fe_contact.studies.tradeoff.study import tradeoff, write_tradeoff
 
     scene, table = base.read_scene(args)
     run = base.StudyRun.of(args, "tradeoff", scene.name)
-    points = tradeoff(scene, settings(table, None, scene.source), args.quick, run.where, run.progress)
-    write, plot = partial(write_tradeoff, scene, points), partial(plot_tradeoff, scene, points)
-    return run.finish("tradeoff.json", verdict(points), write, plot, f"{scene.name}: {len(points)} points")
+    found = tradeoff(scene, settings(table, None, scene.source), args.quick, run.where, run.progress)
+    write, plot = partial(write_tradeoff, found), partial(plot_tradeoff, found)
+    advice, *lines = found.verdict
+    return run.finish("tradeoff.json", lines, write, plot, f"{scene.name}: {advice}")
 
 
 MEMBER = base.Command(
     "error over processor time and counted work, by every method; where the defaults lie",
-    (*base.SCENE, *base.OUTPUT, base.quick("a quarter of the settings")),
+    (*base.SCENE, *base.OUTPUT, base.quick("a quarter of the settings; ten times the tolerance where no law is exact")),
     execute,
 )

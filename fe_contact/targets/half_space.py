@@ -153,4 +153,4 @@ def _upwards(basis: Basis, depth: float) -> Matrix:
     return sparse.csr_matrix(entries, shape=(1, 2 * basis.N))
 
 
-MEMBER = MeshedTarget(still, struck=struck, whole=whole)
+MEMBER = MeshedTarget(still, struck=struck, whole=whole, seconds=0.1)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
 import scipy.sparse.linalg as linalg
 
 import meshes
+from fe_contact.assembly.cache import cached
 from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.forms import Array, isotropic, stiffness
 from fe_contact.assembly.operators import basis_on, made
@@ -58,7 +58,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     return replace(unit, stiffness=radius * unit.stiffness, radius=radius)
 
 
-@lru_cache(maxsize=32)
+@cached
 @on_disk
 def _unit_block(poisson: float, elements: float, order: int, half_height: float, sides: str, faces: str) -> BlockStill:
     """A block of unit radius and unit modulus, that of its sides, by one half of it."""

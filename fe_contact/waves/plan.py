@@ -31,6 +31,10 @@ PENALTY = 120.0  # default: the contact penalty, before stiffness and dashpots r
 STIFF = 16.0  # times as much there
 MUCH = 0.5  # share of dashpots in the stiffness until the force peaks, below which FINER and STIFF count in part
 STEPS = 320  # along a contact, shorter ones about an early peak
+# Both beyond the default tolerance, as `fe-contact tradeoff` has it: the steps' error, of order two, is a tenth of the
+# bar there, so that it may grow first; meshes err by more at once.
+LOOSER = {"elements": 0.75, "steps": 1.0}
+FEWEST = {"elements": 2.5, "steps": 64}  # safety: halved, they still show an order
 TRAVEL = 0.5  # of the contact time: an echo from the far radius returns after the contact
 SPREAD = 3.0  # lengths over which a dashpot in parallel, which has no wave speed, spreads a motion in a contact
 DEFAULTS: Given = {
@@ -68,16 +72,18 @@ def placed(
     ``wide``: the contact radius to be ready for over the estimated one; ``stiff``: the body over a half-space under it.
     """
     tolerance, duration = float(given.get("tolerance", DEFAULT_TOLERANCE)), contact_time(scene, scales)
-    finer = max(1.0, DEFAULT_TOLERANCE / tolerance)
+    finer, looser = max(1.0, DEFAULT_TOLERANCE / tolerance), min(1.0, DEFAULT_TOLERANCE / tolerance)
+    elements = max(ELEMENTS * looser ** LOOSER["elements"], FEWEST["elements"])
+    steps = max(STEPS * looser ** LOOSER["steps"], FEWEST["steps"])
     peak_share = min(max(scales.peak_time / duration, SOONEST_PEAK), 1.0)
     viscous = min(viscous_share(scene.contact_modulus, peak_share * duration) / MUCH, 1.0)
     chosen = {
         **DEFAULTS,
         "tolerance": tolerance,
-        "elements_per_contact": ELEMENTS * math.sqrt(finer),
+        "elements_per_contact": elements * math.sqrt(finer),
         "finer": 1.0 + (FINER - 1.0) * viscous,
         "penalty": PENALTY * stiff * (1.0 + (STIFF - 1.0) * viscous),
-        "steps": 4 * math.ceil(STEPS * math.sqrt(finer) / 4),
+        "steps": 4 * math.ceil(steps * math.sqrt(finer) / 4),
         "far_radius": far_radius,
         "contact_radius": wide * scales.contact_radius,
         "contact_time": duration,

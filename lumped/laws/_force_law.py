@@ -53,6 +53,7 @@ class ForceLaw(PointLaw):
     name: ClassVar[str]
     # Where the loss belongs among the energies of a Result.
     loss: ClassVar[str] = "viscous"
+    needs_mass: ClassVar[bool] = True
     # Whether the force depends on the path, not only on where it turned.
     remembers: ClassVar[bool] = False
 

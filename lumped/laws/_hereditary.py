@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,6 +96,8 @@ class Solve(Protocol):
 
 class HereditaryLaw(ABC):
     """A law that says of a load curve and a modulus how the force follows the depth."""
+
+    needs_mass: ClassVar[bool] = True
 
     @property
     @abstractmethod

@@ -20,7 +20,7 @@ from lumped.errors import FeContactError
 from lumped.laws._force_law import ForceLaw
 from lumped.laws._hereditary import Course, HereditaryLaw, Solve, once, simulate
 from lumped.laws._parameters import EXIT_KEY
-from lumped.laws.base import LawKind, check_geometry
+from lumped.laws.base import LawKind, check_load_curve, waves
 from lumped.laws.mdr import ImpactScales
 from lumped.numbers import Array, Real
 from lumped.result.history import End
@@ -120,6 +120,17 @@ class HereditaryForce(ForceLaw):
         return self.within_step
 
 
+def leaves_out(scene: Scene) -> str:
+    """Nothing but waves where nothing has to be remembered, or the same area always bears the load."""
+    if scene.contact_modulus.is_elastic:
+        return waves(scene)
+    if scene.law is not None and scene.law.name == Correspondence.name and of(scene) != Correspondence():
+        return "that no surface pulls, and that it recovers between impacts"
+    if scene.geometry.target.fixed_radius(scene.geometry.shape) is not None:
+        return waves(scene)
+    return "that a surface remembers a contact which shrinks otherwise than one which grows"
+
+
 def law_of(scene: Scene, exit: str = "force", rule: str = "recovering") -> HereditaryForce:
     """The law for a scene, on the load curve of its target. Raises BadInput where no load curve is known."""
     curve = scene.load_curve
@@ -153,8 +164,8 @@ class Correspondence(HereditaryLaw):
 
 
 def of(scene: Scene) -> Correspondence:
-    """The law for a scene, with the choices of `[law]`. Raises BadInput for a scene without geometry."""
-    check_geometry(scene, Correspondence.name)
+    """The law for a scene, with the choices of `[law]`. Raises BadInput for a target without a load curve."""
+    check_load_curve(scene, Correspondence.name)
     law = scene.law
     return Correspondence(**(law.values if law is not None and law.name == Correspondence.name else {}))
 
@@ -196,4 +207,4 @@ def _phase(path: Path) -> HereditaryPhase:
     return HereditaryPhase(path, SinceTouch(), DEPTH, DEPTH)
 
 
-MEMBER = LawKind(of, __doc__, (keys_of(Correspondence),))
+MEMBER = LawKind(of, __doc__, (keys_of(Correspondence),), leaves_out=leaves_out, seconds=0.005)

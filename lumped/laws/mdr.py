@@ -10,7 +10,7 @@ import numpy as np
 
 from lumped.errors import BadInput, Fault
 from lumped.laws._assembly import Answer, assemble, bars, values_of
-from lumped.laws.base import LawKind, check
+from lumped.laws.base import LawKind, check, waves
 from lumped.numbers import Array, Clock, local, peak
 from lumped.result.history import End
 from lumped.result.result import Result, meets
@@ -52,6 +52,7 @@ class SpringRow:
     """The row of springs as a law; everything it needs is in the scene."""
 
     name: ClassVar[str] = "mdr"
+    needs_mass: ClassVar[bool] = True
 
     def simulate(self, scene: Scene, tolerance: float) -> Result:
         """One impact, the steps cut until every bar is within the tolerance. Raises NotReached."""
@@ -177,4 +178,4 @@ def _energy(scene: Scene, level: Level) -> dict[str, float | None]:
     return {"in": given, "out": out, "viscous": spent, "stored": held, "residual": given - out - spent - held}
 
 
-MEMBER = LawKind(of, __doc__)
+MEMBER = LawKind(of, __doc__, leaves_out=waves, seconds=0.015)

@@ -33,6 +33,7 @@ class RodWaves:
     """The law; everything it needs is in the scene."""
 
     name: ClassVar[str] = "rod_waves"
+    needs_mass: ClassVar[bool] = True
 
     def simulate(self, scene: Scene, tolerance: float) -> Result:
         """One impact to this tolerance. Raises NotReached."""
@@ -141,4 +142,4 @@ def _energy(
     return {"in": given, "out": out, "stored": held, "viscous": 0.0, "radiated": radiated, "residual": residual}
 
 
-MEMBER = LawKind(of, __doc__)
+MEMBER = LawKind(of, __doc__, leaves_out=lambda scene: "", seconds=0.01)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.laws._hereditary import Course, HereditaryLaw, Solve, simulate
-from lumped.laws.base import LawKind, check_geometry
+from lumped.laws.base import LawKind, check_load_curve, waves
 from lumped.result.history import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
@@ -37,8 +37,8 @@ class Ting(HereditaryLaw):
 
 
 def of(scene: Scene) -> Ting:
-    """The law for a scene: every half-space has it. Raises BadInput for a scene without geometry."""
-    check_geometry(scene, Ting.name)
+    """The law for a scene: every target with a load curve has it. Raises BadInput for one without."""
+    check_load_curve(scene, Ting.name)
     scene.check_single(Ting.name)
     return Ting()
 
@@ -55,4 +55,4 @@ def solve(problem: Hereditary, end_time: float, settings: Settings, before: Cour
     return Course((growing, shrinking), outward.end, inward.steps + outward.steps, inward, outward)
 
 
-MEMBER = LawKind(of, __doc__)
+MEMBER = LawKind(of, __doc__, leaves_out=waves, seconds=0.008)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
@@ -127,7 +128,8 @@ class Result:
     `model` is the model as resolved, to which every claimed error refers. Energies, and their bars where they are told,
     in J. `contacts`: start, duration, velocity, restitution, peak_force, peak_time, peak_depth of each, where several
     were asked for; duration and restitution among the quantities are the first one's. `recovery`: of the surface after
-    separation, None where it is not told.
+    separation, None where it is not told. `weighed`: every method with its bar, cost, s, and why it was taken or not,
+    where the cheapest was asked for.
     """
 
     method: str
@@ -150,6 +152,7 @@ class Result:
     message: str = ""
     contacts: tuple[Mapping[str, float | None], ...] = ()
     recovery: IndentationLeft | None = None
+    weighed: tuple[Table, ...] = ()
 
     @property
     def model_sufficient(self) -> bool:
@@ -162,6 +165,7 @@ class Result:
         content = {
             "schema": SCHEMA,
             "method": self.method,
+            "weighed": self.weighed,
             "converged": self.converged,
             "separated": self.separated,
             "model_sufficient": self.model_sufficient,
@@ -236,6 +240,16 @@ def unmet(quantities: Mapping[str, Quantity], tolerance: float) -> str:
             reached = f"{quantity.error / scale:.2g}" if scale else f"{quantity.error:.2g} {quantity.unit}"
             found.append(f"{name} to {reached}")
     return f"tolerance {tolerance:g} not reached: {', '.join(found)}" if found else ""
+
+
+def largest_bar(quantities: Mapping[str, Quantity]) -> float:
+    """The largest bar that a tolerance rules, in terms of it; infinite where one is unknown."""
+    bars = [0.0]
+    for name in (*RULED_RELATIVE, *RULED_ABSOLUTE):
+        value, error = quantities[name].value, quantities[name].error
+        if value is not None and error is not None:
+            bars.append(error / (abs(value) or math.inf) if name in RULED_RELATIVE else error)
+    return max(math.inf if math.isnan(bar) else bar for bar in bars)
 
 
 def sufficient(ledger: Sequence[LedgerEntry], tolerance: float) -> bool:

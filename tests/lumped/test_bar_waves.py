@@ -9,6 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lumped import BadInput, Scene, simulate
+from lumped.laws import bar_waves
 from lumped.solvers.bar import Bounces, StraightBar, bounces
 
 # Doyen, Ern and Piperno 2011, doi:10.1137/100791440: L = 10, E = 900, density 1, area 1; transit time 1/3
@@ -101,3 +103,47 @@ def test_pressure_only_where_the_gap_is_closed_and_never_tension(seed: int) -> N
     assert np.all(found.force(times) >= -1e-9 * found.bar.impedance * found.fall(found.end))
     assert all(piece.gap >= 0.0 and (piece.gap == 0.0 or not piece.closed) for piece in found.pieces)
     assert found.contacts
+
+
+def test_the_law_of_a_bar_is_the_rectangle_of_one_echo() -> None:
+    """density c v for 2 L/c, all of which it gives back, whatever the tolerance."""
+    scene = Scene.load("bar-impact")
+    found = simulate(bar_waves.of(scene), scene, 1e-3)
+    values = {name: quantity.value for name, quantity in found.quantities.items()}
+    assert values["peak_force"] == pytest.approx(300.0, rel=1e-12)
+    assert values["duration"] == pytest.approx(2 / 3, rel=1e-12)
+    assert values["restitution"] == pytest.approx(1.0, rel=1e-12)
+    assert values["impulse"] == pytest.approx(200.0, rel=1e-12)
+    assert values["peak_depth"] == pytest.approx(10.0 / 6.0, rel=1e-12)  # half of it under half of its momentum
+    places = np.linspace(0.0, 0.66, 100)
+    np.testing.assert_allclose(np.interp(places, found.history.time, found.history.force), 300.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("gravity", [0.0, 3.0, 10.0, 25.0])
+def test_the_centre_of_a_bar_moves_by_its_force_and_no_energy_is_lost(gravity: float) -> None:
+    """M dv/dt = M g - F and dx/dt = v from the rows alone, by the trapezium rule; energy from the waves themselves."""
+    scene = Scene.load("bar", {"model.gravity": gravity, "motion.impacts": 3})
+    found = simulate(bar_waves.of(scene), scene, 1e-4)
+    time, force, mass = found.history.time, found.history.force, 10.0
+    step = np.diff(time)
+    passed = np.append(0.0, np.cumsum(0.5 * (force[1:] + force[:-1]) * step))
+    velocity = scene.velocity + gravity * time - passed / mass
+    depth = np.append(0.0, np.cumsum(0.5 * (velocity[1:] + velocity[:-1]) * step))
+    np.testing.assert_allclose(found.history.velocity, velocity, atol=2e-4 * scene.velocity)
+    np.testing.assert_allclose(found.history.depth, depth, atol=2e-3 * np.abs(depth).max())
+    energy = {name: value or 0.0 for name, value in found.energy.items()}
+    assert abs(energy["residual"]) <= 1e-10 * abs(energy["in"])
+    assert energy["stored"] >= -1e-10 * abs(energy["in"])
+    deepest = found.quantities["peak_depth"].value or 0.0  # between two rows, which are as dense as the force asks for
+    assert found.history.depth.max() <= deepest * (1.0 + 1e-12) <= 1.005 * found.history.depth.max()
+
+
+def test_the_law_of_a_bar_refuses_what_is_no_elastic_bar() -> None:
+    for name, overrides, key in (
+        ("bar", {"striker.mass": 5.0}, "striker.mass"),
+        ("polymer-prism-waves", {}, "striker.material.law"),
+        ("polymer-prism", {}, "striker.shape"),
+        ("steel-ball", {}, "striker.shape"),
+    ):
+        with pytest.raises(BadInput, match=key):
+            bar_waves.of(Scene.load(name, overrides))

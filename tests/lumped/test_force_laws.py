@@ -18,7 +18,7 @@ from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE
 from lumped.scene.tables import LawChoice, Model
 from lumped.solvers.point.bodies import Bodies, Stage
 
-OF_GEOMETRY = {"correspondence", "ting", "mdr", "rod_waves"}
+OF_GEOMETRY = {"correspondence", "ting", "mdr", "rod_waves", "bar_waves"}
 NAMES = sorted(set(laws.available()) - OF_GEOMETRY)
 DAMPED = [name for name in NAMES if "e" in laws.get(name).keys]
 FREE = [name for name in NAMES if "alpha" in laws.get(name).keys]

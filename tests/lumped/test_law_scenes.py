@@ -17,7 +17,7 @@ BARE: dict[str, Any] = {
     "striker": {"mass": 1.0, "velocity": 1.0},
     "law": {"name": "jankowski", "k": 1e6, "e": 0.6, "alpha": 1.4, "gap": 1e-12, "exit": "force"},
 }
-FORCE_LAWS = sorted(set(laws.available()) - {"correspondence", "ting", "mdr", "rod_waves"})
+FORCE_LAWS = sorted(set(laws.available()) - {"correspondence", "ting", "mdr", "rod_waves", "bar_waves"})
 DAMPED = [name for name in FORCE_LAWS if "e" in laws.get(name).keys]
 
 

@@ -1,54 +1,73 @@
 """The chart of a trade-off: error over processor time and over counted work, the front, the planned defaults.
 
-The signs of a trade-off's chart: colours for schemes or orders, markers for masses, one each for every law.
+Colours tell schemes or orders apart, markers masses; every exact law has a sign of its own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogFormatterMathtext, LogLocator, NullFormatter
 
 from fe_contact.studies import style
 from fe_contact.studies.history_chart import caption
 from fe_contact.studies.style import Look
 from fe_contact.studies.tradeoff.point import Point
-from fe_contact.studies.tradeoff.study import Measure, finite_elements, front, known_to, verdict
-from lumped.scene.scene import Scene
+from fe_contact.studies.tradeoff.study import Tradeoff
+from fe_contact.studies.tradeoff.tried import ROW
+from fe_contact.studies.tradeoff.verdict import Measure, finite_elements, front, judged, known_to
 
 PANELS = 3.9  # height of the panels, in
 TITLE_WIDTH = 130  # characters
 LEAST, MOST = 1e-9, 1.0  # what lies beyond is drawn at the ends of the error axis
-COLUMNS, ROW = 4, 0.185  # of the legend; height of a row, in
+COLUMNS, ROW_HEIGHT = 4, 0.185  # of the legend; height of a row, in
+FEW_DECADES = 1.5  # of an axis below which powers of ten are too few ticks
 COLOURS = (style.BLUE, style.GREEN, style.ORANGE, style.SKY, style.BLACK, style.VERMILION)
 MARKERS = ("o", "s", "^", "v")
 STAR: Look = {"color": "#F0E442", "markeredgecolor": style.BLACK, "markeredgewidth": 0.7}
-LAWS: dict[str, Look] = {
-    "mdr row": {"color": style.PURPLE, "marker": "D", "label": "row of springs, 25 to 400"},
-    "mdr": {"color": style.PURPLE, "marker": "s", "label": "mdr, to its bar"},
-    "ting": {"color": style.BLACK, "marker": "^", "label": "ting, to its bar"},
-    "rod_waves": {"color": style.PURPLE, "marker": "s", "label": "rod_waves, to its bar"},
-    "hertz": {"color": style.VERMILION, "marker": "X", "label": "hertz"},
-    "correspondence": {"color": style.VERMILION, "marker": "P", "label": "correspondence"},
+EXACT: tuple[Look, ...] = (
+    {"color": style.BLACK, "marker": "^"},
+    {"color": style.PURPLE, "marker": "s"},
+    {"color": style.VERMILION, "marker": "v"},
+)
+SPRINGS: Look = {"color": style.PURPLE, "marker": "D", "label": "row of springs, 25 to 400"}
+OTHERS: Look = {
+    "color": style.VERMILION,
+    "marker": "x",
+    "label": "laws that leave something out",
+    "markeredgewidth": 0.9,
 }
 
 
-def plot_tradeoff(scene: Scene, points: Sequence[Point], where: Path) -> tuple[Path, Path]:
+def plot_tradeoff(found: Tradeoff, where: Path) -> tuple[Path, Path]:
     """Write ``tradeoff.svg`` and ``tradeoff.png`` into the folder ``where``; their paths."""
-    lines, signs = list(verdict(points)), Signs.of(points)
-    legend = signs.legend(points)
-    title, room = f"What accuracy costs: {scene.name}", {"above": 0.3, "below": 0.61 + ROW * -(-len(legend) // COLUMNS)}
+    scene, points, lines = found.scene, found.points, list(found.verdict)
+    signs, laws = Signs.of(points), looks(points)
+    legend = [
+        *signs.legend(points),
+        *(_sign(**look) for look in {look["label"]: look for look in laws.values()}.values()),
+    ]
+    title = f"What accuracy costs: {scene.name}"
+    room = {"above": 0.3, "below": 0.61 + ROW_HEIGHT * -(-len(legend) // COLUMNS)}
     with style.sheet(where, "tradeoff", title, lines, PANELS, width=TITLE_WIDTH, **room) as sheet:
-        left, right = sheet.panels(1, 2, 0.082, 0.985, wspace=0.24, width_ratios=(1.3, 1.0))
-        _every_method(left, points, signs)
-        _finite_elements(right, points, signs, lambda point: point.work["operations"])
-        right.set(xlabel="counted work, operations", ylabel="error")
-        style.label(right, "b", "finite elements: error over counted work")
+        if finite_elements(points):
+            left, right = sheet.panels(1, 2, 0.082, 0.985, wspace=0.24, width_ratios=(1.3, 1.0))
+            _finite_elements(right, points, signs, lambda point: point.work["operations"])
+            right.set(xlabel="counted work, operations", ylabel="error")
+            ticks(right)
+            style.label(right, "b", "finite elements: error over counted work")
+        else:
+            (left,) = sheet.panels(1, 1, 0.082, 0.985)
+        _every_method(left, points, signs, laws)
         place = 0.075, 0.24 / sheet.figure.get_figheight()
         sheet.figure.legend(handles=legend, loc="lower left", bbox_to_anchor=place, ncols=COLUMNS, columnspacing=1.6,
                             handletextpad=0.5, labelspacing=0.55, borderaxespad=0.0)  # fmt: skip
@@ -56,14 +75,54 @@ def plot_tradeoff(scene: Scene, points: Sequence[Point], where: Path) -> tuple[P
     return sheet.paths
 
 
-def _every_method(axes: Axes, points: Sequence[Point], signs: Signs) -> None:
-    for method, look in LAWS.items():
-        own = [point for point in points if point.method == method and not point.failure]
+def looks(points: Sequence[Point]) -> dict[str, Look]:
+    """Of every law: an exact one, which was asked for several tolerances, has its own; all others share one."""
+    counts = Counter(point.method for point in judged(points) if point.method != "fe")
+    exact = [name for name, count in counts.items() if count > 1 and name != ROW]
+    own = {name: {**look, "label": f"{name}, to its bar"} for name, look in zip(exact, EXACT, strict=False)}
+    return {name: SPRINGS if name == ROW else own.get(name, OTHERS) for name in counts}
+
+
+def _every_method(axes: Axes, points: Sequence[Point], signs: Signs, laws: Mapping[str, Look]) -> None:
+    _finite_elements(axes, points, signs, _processor_time)
+    for method, look in laws.items():
+        own = [point for point in judged(points) if point.method == method]
         cost, error = [point.cpu for point in own], [_drawn(point.error) for point in own]
-        axes.plot(cost, error, linestyle="-", linewidth=0.7, markersize=4.0, markeredgewidth=0.0, **look)
-    _finite_elements(axes, points, signs, lambda point: point.cpu)
+        axes.plot(cost, error, linestyle="-", linewidth=0.7, **{"markersize": 4.0, "markeredgewidth": 0.0, **look})
+    _front(axes, judged(points), _processor_time, color=style.BLACK, linestyle="--")
     axes.set(xlabel="processor time, s", ylabel="error (the largest of peak, duration, restitution, history)")
+    ticks(axes)
     style.label(axes, "a", "every method: error over processor time")
+
+
+def _processor_time(point: Point) -> float:
+    return point.cpu
+
+
+def _front(axes: Axes, points: Sequence[Point], cost: Measure, **look: Any) -> None:
+    """The steps below which no point lies."""
+    best = front(points, cost, lambda point: _drawn(point.error))
+    steps = [cost(p) for p in best], [_drawn(p.error) for p in best]
+    axes.step(*steps, where="post", zorder=2, **{"linewidth": 0.9, **look})
+
+
+def ticks(axes: Axes) -> None:
+    """Powers of ten, about eight at most; where an axis spans few of them, plain numbers far enough from each other."""
+    for axis, (low, high) in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        axis.set_minor_formatter(NullFormatter())
+        if np.log10(high / low) < FEW_DECADES:
+            axis.set_major_locator(FixedLocator(_round_numbers(low, high)))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.2g}"))
+        else:
+            axis.set_major_locator(LogLocator(numticks=8))
+            axis.set_major_formatter(LogFormatterMathtext())
+
+
+def _round_numbers(low: float, high: float) -> list[float]:
+    """1, 2 and 5 of every power of ten between two numbers; where there are no two of them, their middle."""
+    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    found = [one for one in (digit * 10.0**power for power in powers for digit in (1, 2, 5)) if low <= one <= high]
+    return found if len(found) > 1 else [float(f"{math.sqrt(low * high):.2g}")]
 
 
 def _finite_elements(axes: Axes, points: Sequence[Point], signs: Signs, cost: Measure) -> None:
@@ -74,11 +133,8 @@ def _finite_elements(axes: Axes, points: Sequence[Point], signs: Signs, cost: Me
         if point.bar is not None:
             axes.vlines(cost(point), error, _drawn(point.bar), color=look["color"], linewidth=0.7, alpha=0.4, zorder=1)
         axes.plot([cost(point)], [error], linestyle="", markersize=3.6, markeredgewidth=0.8, zorder=3, **look)
-    best = front(tried, cost, lambda point: _drawn(point.error))
-    steps = [cost(p) for p in best], [_drawn(p.error) for p in best]
-    axes.step(*steps, where="post", color=style.GREY, linewidth=0.9, zorder=2)
-    if known_to(points):
-        axes.axhline(known_to(points), color=style.BLACK, linewidth=0.7, linestyle=":", zorder=1)
+    _front(axes, tried, cost, color=style.GREY)
+    axes.axhline(_drawn(known_to(points)), color=style.BLACK, linewidth=0.7, linestyle=":", zorder=1)
     for point in tried:
         if point.default_for is not None:
             _default(axes, cost(point), _drawn(point.error), point.default_for)
@@ -133,29 +189,27 @@ class Signs:
         return {"marker": self.markers[point.settings.get("mass")], "color": colour, "markerfacecolor": face}
 
     def legend(self, points: Sequence[Point]) -> list[Line2D]:
-        """What all signs mean, finite elements first."""
-        names = {value: f"elements of order {value}" if self.key == "order" else _said(value) for value in self.colours}
-        found = [_sign("o", colour, names[value]) for value, colour in self.colours.items()]
-        if len(self.markers) > 1:
-            found += [_sign(marker, style.GREY, f"mass: {_said(mass)}") for mass, marker in self.markers.items()]
-        if any(point.settings["enforcement"] == "penalty" for point in finite_elements(points)):
-            found.append(_sign("o", style.GREY, "raw penalty", markerfacecolor="white"))
-        found.append(Line2D([], [], color=style.GREY, linewidth=0.9, label="front of finite elements"))
-        found.append(_sign("|", style.GREY, "up to the claimed error bar", markersize=9.0))
-        found.append(_sign("*", STAR["color"], "default for a tolerance", markersize=9.0, **_edge()))
-        if known_to(points):
-            found.append(Line2D([], [], color=style.BLACK, linewidth=0.7, linestyle=":", label="bar of the reference"))
-        present = {point.method for point in points if not point.failure}
-        return found + [_sign(look["marker"], look["color"], look["label"]) for n, look in LAWS.items() if n in present]
-
-
-def _edge() -> Look:
-    return {key: value for key, value in STAR.items() if key != "color"}
+        """What the signs of finite elements mean, the fronts and the bar of what errors are measured from."""
+        found, line = list[Line2D](), partial(Line2D, [], [])
+        if tried := finite_elements(points):
+            for value, colour in self.colours.items():
+                name = f"elements of order {value}" if self.key == "order" else _said(value)
+                found.append(_sign("o", colour, name))
+            if len(self.markers) > 1:
+                found += [_sign(marker, style.GREY, f"mass: {_said(mass)}") for mass, marker in self.markers.items()]
+            if any(point.settings["enforcement"] == "penalty" for point in tried):
+                found.append(_sign("o", style.GREY, "raw penalty", markerfacecolor="white"))
+            found.append(line(color=style.GREY, linewidth=0.9, label="front of finite elements"))
+            found.append(_sign("|", style.GREY, "up to the claimed error bar", markersize=9.0))
+            found.append(_sign("*", label="default for a tolerance", markersize=9.0, **STAR))
+        found.append(line(color=style.BLACK, linewidth=0.9, linestyle="--", label="front of all methods"))
+        found.append(line(color=style.BLACK, linewidth=0.7, linestyle=":", label="bar of the truth"))
+        return found
 
 
 def _said(name: object) -> str:
     return str(name).replace("_", " ")
 
 
-def _sign(marker: str, colour: str, name: str, **look: Any) -> Line2D:
-    return Line2D([], [], linestyle="", marker=marker, color=colour, label=name, **{"markersize": 4.5, **look})
+def _sign(marker: str, color: str, label: str, **look: Any) -> Line2D:
+    return Line2D([], [], linestyle="", marker=marker, color=color, label=label, **{"markersize": 4.5, **look})

@@ -9,11 +9,12 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.settings import Given
-from lumped.result.result import Result
+from lumped.result.result import Result, largest_bar
 from lumped.result.score import distance
 
 MEASURED = ("peak_force", "duration", "restitution")
-REFERENCE = "reference"  # the method of the point that errors are measured from, where it has a bar of its own
+ROUNDING = 1e-12  # of a time
+REFERENCE = "reference"  # the method of the point that errors are measured from
 
 
 @dataclass(frozen=True)
@@ -21,8 +22,9 @@ class Point:
     """One method with one choice of settings.
 
     ``errors`` of peak force and duration (relative), restitution (absolute) and history (norm over norm), where
-    defined; ``bar`` the largest of the error bars claimed for them; ``cpu``, s; ``work`` counted;
-    ``default_for`` the tolerance for which the settings are planned; ``failure`` why there is no answer.
+    defined; ``bar`` the largest of the error bars that a tolerance rules; ``cpu``, s; ``work`` counted;
+    ``default_for`` the tolerance for which the settings are planned; ``failure`` why there is no answer;
+    ``leaves_out`` what a law does not follow of the scene's model: its bar is its own, not that model's.
     """
 
     method: str
@@ -33,6 +35,7 @@ class Point:
     work: Mapping[str, float] = field(default_factory=dict)
     default_for: float | None = None
     failure: str = ""
+    leaves_out: str = ""
 
     @property
     def error(self) -> float:
@@ -55,16 +58,6 @@ def values_of(result: Result) -> dict[str, float | None]:
     return {name: quantity.value for name, quantity in result.quantities.items()}
 
 
-def largest_bar(result: Result) -> float:
-    """The largest bar of the measured quantities and of the history."""
-    bars = [result.quantities["history_l2"].error or 0.0]
-    for name in MEASURED:
-        quantity = result.quantities[name]
-        if quantity.value is not None and quantity.error is not None:
-            bars.append(quantity.error / (1.0 if name == "restitution" else abs(quantity.value)))
-    return max(bars)
-
-
 NONE: Array = np.zeros(0)
 
 
@@ -84,9 +77,14 @@ class Answer:
 
     @classmethod
     def of(cls, result: Result, **counted: float) -> Answer:
-        """Of an impact, and what else was counted."""
+        """Of an impact, and what else was counted; of several contacts the force of the first, as all others come late
+        or early by what those before them err.
+        """
         work, history = {**result.work, **counted}, result.history
-        return cls(result.numerics, values_of(result), largest_bar(result), work, history.time, history.force)
+        first = (result.contacts[0]["duration"] if result.contacts else None) or np.inf
+        rows = history.time <= first * (1.0 + ROUNDING)
+        bar = largest_bar(result.quantities)
+        return cls(result.numerics, values_of(result), bar, work, history.time[rows], history.force[rows])
 
     def force_at(self, time: Array) -> Array:
         """Force at other times, N: linear between the rows, zero outside them."""
@@ -95,31 +93,31 @@ class Answer:
 
 @dataclass(frozen=True, eq=False)
 class Truth:
-    """Quantities by name, the force, N, at times (n,), s, linear between ``knots`` (k,), s; ``bar``, how far it is off.
-
-    ``bar`` is the largest of the relative ones, as in :class:`Point`. A ``smooth`` force is compared at the rows of
-    what is judged, any other between all knots, at which it may jump.
+    """What errors are measured from: quantities by name, the force, N, at times (n,), s, linear between ``knots``
+    (k,), s; ``bar``, how far it is off, the largest of the relative ones, as in :class:`Point`.
     """
 
     values: Mapping[str, float | None]
     knots: Array
     force_at: Callable[[Array], Array]
     bar: float = 0.0
-    smooth: bool = False
 
     @classmethod
-    def of(cls, answer: Answer, smooth: bool = False) -> Truth:
+    def of(cls, answer: Answer) -> Truth:
         """What a run says, its bars the truth's own."""
-        return cls(answer.values, answer.time, answer.force_at, answer.bar or 0.0, smooth)
+        return cls(answer.values, answer.time, answer.force_at, answer.bar or 0.0)
 
-    def errors(self, answer: Answer) -> dict[str, float]:
-        """Of the measured quantities that both define, and of the history where there is one."""
+    def errors(self, answer: Answer, smooth: bool) -> dict[str, float]:
+        """Of the measured quantities that both define, and of the history where there is one.
+
+        A ``smooth`` force is compared at its rows, any other between all knots, at which it may jump.
+        """
         found = errors_of(self.values, answer.values)
-        return found | {"history": self._distance(answer)} if answer.time.size else found
+        return found | {"history": self._distance(answer, smooth)} if answer.time.size else found
 
-    def _distance(self, answer: Answer) -> float:
+    def _distance(self, answer: Answer, smooth: bool) -> float:
         """Norm of the force's error over the norm of the force."""
-        if not self.smooth:
+        if not smooth:
             return distance(self.force_at, answer.force_at, np.union1d(answer.time, self.knots))
         times = np.concatenate([answer.time, self.knots[self.knots > answer.time[-1]]])
         known = self.force_at(times)

@@ -1,39 +1,46 @@
 """What accuracy costs: error against the exact impact over processor time and counted work, by every method.
 
 A finite-element point is what a user gets who fixes all settings: the impact with its error bars, from nothing but
-loaded modules, so every operator is built again for every point. The default of a body with inertia is what a user gets
-who fixes none, its refinements paid for. Where no exact impact is known a reference is asked for a quarter of the
-tolerance, and what lies within its bar cannot be told from it. The verdict, in words: how near to the Pareto front of
-all settings the planned defaults lie.
+loaded modules, so every operator is built again for every point. A default is what a user gets who fixes none, its
+refinements paid for. Errors are measured from the exact law of the scene's model where there is one, itself judged by
+another one where there are two; else from finite elements finer than the default's in steps and mesh, and what lies
+within their bar cannot be told from them.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from fe_contact.methods import exact_laws, why_not
 from fe_contact.progress import Progress
 from fe_contact.reference import plan
-from fe_contact.settings import RANGES, Given, Numerics, WaveNumerics
+from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, WaveNumerics
 from fe_contact.studies import journal
 from fe_contact.studies.files import Line, write_study
-from fe_contact.studies.tradeoff.bodies import Settings, lumped, tried
 from fe_contact.studies.tradeoff.point import MEASURED, REFERENCE, Answer, Point, Truth
+from fe_contact.studies.tradeoff.tried import ROW, Settings, asked_laws, by_elements, by_law, fixed, variations
+from fe_contact.studies.tradeoff.verdict import WIDEST, verdict
 from lumped.errors import FeContactError, NotReached
 from lumped.scene.scene import Scene
 from lumped.schema import Table
 
-MARKED = (1e-3, 1e-4)  # tolerances whose defaults are marked
-SHARE = 0.25  # of the tolerance, asked of a reference
+# Finite elements that stand for the truth: times as many of each as the default has, which leaves a quarter of the
+# error of steps of order two, and no more of a mesh of order four; all else is the default's.
+FINER = {"steps": 2, "elements_per_contact": 1.5}
+TIGHTEST = 1e-8  # asked of laws that do
+LOOSER = 10.0  # times the tolerance: what is marked too; tighter by as much where a law is the truth
 KEPT = "tradeoff.jsonl"
-BRIEF, REPEATS = 1.0, 3  # s; what takes less is run so often, and the least time counts
-NEAR = 2.0  # a default that costs at most this multiple of the cheapest setting that does as well is near the front
-WIDEST = RANGES["tolerance"][1]  # the loosest tolerance that is accepted
+BRIEF, REPEATS = 0.4, 3  # s; what takes less is run so often, and the least time counts
+# Work, s: of a quick study for settings beside the default's, and the fewest of them. Without an exact law it weighs
+# a looser tolerance too, as the finer elements that stand for one take several times as long as the default.
+QUICK, FEWEST = 4.0, 1
 SCHEMA = "fe-contact/tradeoff/1"
 SETTING_COLUMNS = (
     "tolerance", "elements", "order", "elements_per_contact", "steps", "enforcement", "penalty", "far_radius",
@@ -44,8 +51,6 @@ COUNTED = (
     "iterations",
 )  # fmt: skip
 WORK = {"steps": "steps_taken"}  # columns of what is counted, where a setting has its name
-
-Measure = Callable[[Point], float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,50 +69,117 @@ class Attempt:
         return self.answer
 
 
-def tradeoff(scene: Scene, given: Given, quick: bool, where: Path, progress: Progress) -> tuple[Point, ...]:
+class Tried(NamedTuple):
+    """Settings of finite elements, what came of them, and the tolerance for which they are the plan's, if for one."""
+
+    settings: Given
+    attempt: Attempt
+    default_for: float | None = None
+
+
+class Attempts(Protocol):
+    """Measures calls by their names, or takes what is kept of them."""
+
+    def __call__(self, calls: dict[str, partial[Attempt]], /) -> dict[str, Attempt]: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Tradeoff:
+    """The points of a scene, and the ``tolerance`` for which it is weighed."""
+
+    scene: Scene
+    tolerance: float
+    points: tuple[Point, ...]
+
+    @property
+    def verdict(self) -> tuple[str, ...]:
+        """In words, advice first."""
+        return verdict(self.points, self.tolerance)
+
+
+def tradeoff(scene: Scene, given: Given, quick: bool, where: Path, progress: Progress) -> Tradeoff:
     """Measure every point of the study; what runs give is kept, with the time they took, in the folder `where`.
 
-    Raises BadInput for a target whose waves have no trade-off, NotReached where default or reference have no answer.
+    Raises BadInput for a scene that finite elements refuse, NotReached where default or reference have no answer.
     """
-    body, attempts = tried(scene), partial(journal.rows, where / KEPT, progress=progress)
-    known: dict[Numerics, Attempt] = {}
-    if body.planned is None:
-        plans = defaults(scene, given)
-        base = next(iter(plans.values()))
-        marked = {numerics.varied(tolerance=base.tolerance): tolerance for tolerance, numerics in plans.items()}
+    attempts: Attempts = partial(journal.rows, where / KEPT, progress=progress)
+    laws, exact = asked_laws(scene, quick), _exact(scene, attempts)
+    asked = {f"law {place} of {len(laws)}: {one[0]}": partial(_law, scene, *one) for place, one in enumerate(laws, 1)}
+    answers = attempts(asked)
+    tolerance = _tolerance(scene, given, loose=quick and not exact)
+    if scene.has_geometry:
+        defaults = _defaults(scene, given, _marked(tolerance, quick, bool(exact)), attempts)
+        base = _base(scene, defaults)
+        exact = exact or _finer(scene, base, attempts)
+        elements = [*defaults, *_around(scene, given, base, quick, defaults[0].attempt.cpu, attempts)]
     else:
-        (default,) = attempts({"finite elements as planned": partial(_planned, scene, given)}).values()
-        base = WaveNumerics(**default.reached.settings)
-        marked, known = {base: base.tolerance}, {base: default}
-    truth, points = body.exact(scene), list[Point]()
-    if truth is None:
-        finer = {**given, "tolerance": SHARE * base.tolerance}
-        (reference,) = attempts({"what errors are measured from": partial(_planned, scene, finer)}).values()
-        truth = Truth.of(reference.reached)
-        points.append(_reference(reference))
-    chosen = tuple(dict.fromkeys((*marked, *varied(base, given, body.variations(base, quick)))))
-    elements = {
-        f"finite elements {place} of {len(chosen)}": partial(_fixed, scene, numerics)
-        for place, numerics in enumerate(chosen, 1)
-        if numerics not in known
-    }
-    asked = body.lumped(quick)
-    others = {
-        f"law {place} of {len(asked)}: {one[0]}": partial(_lumped, scene, *one) for place, one in enumerate(asked, 1)
-    }
-    found = attempts(elements | others)
-    left = [numerics for numerics in chosen if numerics not in known]
-    known |= {numerics: found[name] for numerics, name in zip(left, elements, strict=True)}
-    points += [_of_elements(numerics, known[numerics], truth, marked.get(numerics)) for numerics in chosen]
-    judges = {method: exact(scene) for method, exact in body.others.items()}
-    laws = zip(asked, others, strict=True)
-    return (*points, *(_point(*one, found[name], judges.get(one[0], truth)) for one, name in laws))
+        elements = []
+    truths = {name: Truth.of(one.reached) for name, one in exact.items()}
+    points = [_reference(*one) for one in exact.items()]
+    points += [_of_elements(scene, one, truths) for one in elements]
+    points += [_of_law(scene, *one, attempt, truths) for one, attempt in zip(laws, answers.values(), strict=True)]
+    return Tradeoff(scene, tolerance, tuple(points))
 
 
-def defaults(scene: Scene, given: Given) -> dict[float, Numerics]:
-    """The planned settings of the marked tolerances, and of the one given. Raises NotReached."""
-    asked = dict.fromkeys((*MARKED, float(given.get("tolerance", MARKED[0]))))
-    return {tolerance: plan(scene, {**given, "tolerance": tolerance}).numerics for tolerance in asked}
+def _tolerance(scene: Scene, given: Given, loose: bool) -> float:
+    """That for which a scene is weighed: the one given, else that of its plan; a ``loose`` study is content with more.
+
+    Raises NotReached, BadInput.
+    """
+    asked = given.get("tolerance")
+    if asked is None:
+        asked = plan(scene, given).numerics.tolerance if scene.has_geometry else DEFAULT_TOLERANCE
+    return float(min(LOOSER * asked, WIDEST) if loose else asked)
+
+
+def _marked(tolerance: float, quick: bool, exact: bool) -> tuple[float, ...]:
+    """The tolerances whose defaults are measured, that of the study first."""
+    if quick:
+        return (tolerance,)
+    looser = min(LOOSER * tolerance, WIDEST)
+    return tuple(dict.fromkeys((tolerance, looser, tolerance / LOOSER) if exact else (tolerance, looser)))
+
+
+def _exact(scene: Scene, attempts: Attempts) -> dict[str, Attempt]:
+    """The impact by every law that is exact for the scene's model, and has an answer. Raises NotReached without any
+    for a scene of a law's own parameters.
+    """
+    tightest = {"tolerance": TIGHTEST}
+    found = attempts({name: partial(_law, scene, name, tightest) for name in exact_laws(scene)})
+    known = {name: attempt for name, attempt in found.items() if attempt.answer is not None}
+    if not known and not scene.has_geometry:
+        raise NotReached("; ".join(attempt.failure for attempt in found.values()))
+    return known
+
+
+def _defaults(scene: Scene, given: Given, marked: Sequence[float], attempts: Attempts) -> list[Tried]:
+    """Of so many tolerances."""
+    plans = {f"finite elements as planned for {one:g}": {**given, "tolerance": one} for one in marked}
+    found = attempts({name: partial(_by_elements, scene, asked) for name, asked in plans.items()})
+    return [Tried(plans[name], found[name], one) for name, one in zip(plans, marked, strict=True)]
+
+
+def _base(scene: Scene, defaults: Sequence[Tried]) -> Numerics:
+    """The settings with which the first default ended; raises NotReached where it has no answer."""
+    kind = WaveNumerics if scene.model.inertia else Numerics
+    return kind(**defaults[0].attempt.reached.settings)
+
+
+def _finer(scene: Scene, base: Numerics, attempts: Attempts) -> dict[str, Attempt]:
+    """The impact by finite elements that nobody weighs."""
+    finer = base.varied(**{key: getattr(base, key) * times for key, times in FINER.items()})
+    name = f"finite elements of {finer.steps} steps and {finer.elements_per_contact:.3g} elements"
+    return attempts({name: partial(_by_elements, scene, fixed(finer))})
+
+
+def _around(scene: Scene, given: Given, base: Numerics, quick: bool, cpu: float, attempts: Attempts) -> Iterator[Tried]:
+    """Settings around the default's, all fixed; of a quick study as many as it has time for, at ``cpu``, s, each."""
+    chosen = varied(base, given, variations(scene, base, quick))
+    chosen = chosen[: max(FEWEST, int(QUICK / cpu))] if quick else chosen
+    names = (f"finite elements {place} of {len(chosen)}" for place in range(1, len(chosen) + 1))
+    calls = {name: partial(_by_elements, scene, fixed(one)) for name, one in zip(names, chosen, strict=True)}
+    for one, attempt in zip(chosen, attempts(calls).values(), strict=True):
+        yield Tried(one.as_dict(), attempt)
 
 
 def varied(base: Numerics, given: Given, changes: Iterable[Settings]) -> tuple[Numerics, ...]:
@@ -116,21 +188,14 @@ def varied(base: Numerics, given: Given, changes: Iterable[Settings]) -> tuple[N
     return tuple(numerics for numerics in dict.fromkeys(base.varied(**change) for change in kept) if numerics != base)
 
 
-def _planned(scene: Scene, given: Given) -> Attempt:
-    """An impact with the settings that a user gives, refined."""
-    planned = tried(scene).planned
-    assert planned is not None
-    return _attempt(partial(planned, scene, given), NotReached)
+def _by_elements(scene: Scene, given: Given) -> Attempt:
+    """An impact with the settings that a user gives, refined where some are left open."""
+    return _attempt(partial(by_elements, scene, given), NotReached)
 
 
-def _fixed(scene: Scene, numerics: Numerics) -> Attempt:
-    """An impact with all settings fixed, so that nothing is refined."""
-    return _attempt(partial(tried(scene).run, scene, numerics), NotReached)
-
-
-def _lumped(scene: Scene, method: str, settings: Settings) -> Attempt:
+def _law(scene: Scene, method: str, settings: Settings) -> Attempt:
     """A law that answers: what it leaves out is an error however finely it is integrated."""
-    return _attempt(partial(lumped, scene, method, settings), FeContactError)
+    return _attempt(partial(by_law, scene, method, settings), FeContactError)
 
 
 def _attempt(run: Callable[[], Answer], named: type[FeContactError]) -> Attempt:
@@ -146,90 +211,45 @@ def _attempt(run: Callable[[], Answer], named: type[FeContactError]) -> Attempt:
         return Attempt(None, failure=str(failure))
 
 
-def _of_elements(numerics: Numerics, attempt: Attempt, truth: Truth, default_for: float | None) -> Point:
-    """A choice of settings; ``default_for`` the tolerance for which it is planned."""
-    settings = numerics.as_dict() if attempt.answer is None else attempt.answer.settings
-    return _point("fe", {**settings, "tolerance": default_for}, attempt, truth, default_for)
-
-
-def _point(method: str, settings: Settings, attempt: Attempt, truth: Truth, default_for: float | None = None) -> Point:
-    answer = attempt.answer
+def _of_elements(scene: Scene, one: Tried, truths: Mapping[str, Truth]) -> Point:
+    """A choice of settings; waves may make the force jump."""
+    answer, truth = one.attempt.answer, next(iter(truths.values()))
     if answer is None:
-        return Point(method, settings, default_for=default_for, failure=attempt.failure)
-    return Point(method, settings, attempt.cpu, truth.errors(answer), answer.bar, answer.work, default_for)
+        return Point("fe", one.settings, default_for=one.default_for, failure=one.attempt.failure)
+    errors = truth.errors(answer, smooth=not scene.model.inertia)
+    settings = {**answer.settings, "tolerance": one.default_for}
+    return Point("fe", settings, one.attempt.cpu, errors, answer.bar, answer.work, one.default_for)
 
 
-def _reference(attempt: Attempt) -> Point:
-    """What errors are measured from, as a point of its own."""
+def _of_law(scene: Scene, method: str, settings: Settings, attempt: Attempt, truths: Mapping[str, Truth]) -> Point:
+    """A law's point, which another truth judges where one is known: the one that has least in common with it."""
+    missing = "" if method == ROW else why_not(scene, method)
+    if attempt.answer is None:
+        return Point(method, settings, failure=attempt.failure, leaves_out=missing)
+    answer, names = attempt.answer, [name for name in truths if name != method]
+    truth = truths[names[-1] if names else method]
+    errors = truth.errors(answer, smooth=True)
+    return Point(method, settings, attempt.cpu, errors, answer.bar, answer.work, leaves_out=missing)
+
+
+def _reference(name: str, attempt: Attempt) -> Point:
+    """What errors are measured from, as a point of its own; between its rows it is known to what it was asked for."""
     answer = attempt.reached
-    work = {name: count for name, count in answer.work.items() if name != "operations"}
-    return Point(REFERENCE, answer.settings, attempt.cpu, bar=answer.bar, work=work)
+    bar, work = max(answer.bar or 0.0, TIGHTEST), {n: count for n, count in answer.work.items() if n != "operations"}
+    return Point(REFERENCE, {**answer.settings, "from": name}, attempt.cpu, bar=bar, work=work)
 
 
-def finite_elements(points: Iterable[Point]) -> tuple[Point, ...]:
-    """The finite-element points that have an answer."""
-    return tuple(point for point in points if point.method == "fe" and not point.failure)
-
-
-def front(points: Iterable[Point], cost: Measure, merit: Measure) -> tuple[Point, ...]:
-    """Points than which none is at once cheaper and better, the cheapest first."""
-    best, found = np.inf, []
-    for point in sorted(points, key=lambda p: (cost(p), merit(p))):
-        if merit(point) < best:
-            best = merit(point)
-            found.append(point)
-    return tuple(found)
-
-
-def excess(point: Point, points: Iterable[Point], merit: Measure, wanted: float) -> float:
-    """Processor time of a point over the least of those whose merit is at most ``wanted``; nan if there is none."""
-    equals = [other.cpu for other in points if merit(other) <= wanted]
-    return point.cpu / min(equals) if equals else np.nan
-
-
-def verdict(points: Iterable[Point]) -> tuple[str, ...]:
-    """A sentence a default: what it costs beside the cheapest setting that does as well; whether bars cover."""
-    tried, known = finite_elements(points), known_to(points)
-    sentences = [_sentence(point, tried) for point in tried if point.default_for is not None]
-    return (*sentences, *([f"the reference is known to {known:.1g}"] if known else []), _covered(tried, known))
-
-
-def known_to(points: Iterable[Point]) -> float:
-    """The bar of the reference that errors are measured from; 0 where that is exact."""
-    return max((point.bar or 0.0 for point in points if point.method == REFERENCE), default=0.0)
-
-
-def _covered(tried: tuple[Point, ...], known: float) -> str:
-    """Of the settings that claim anything: a bar beyond every accepted tolerance says that nothing is known."""
-    claiming = [point for point in tried if (point.bar or 0.0) <= WIDEST]
-    covered = sum(point.error <= (point.bar or 0.0) + known for point in claiming)
-    said = f"the claimed bar covers the error in {covered} of {len(claiming)} settings"
-    silent = len(tried) - len(claiming)
-    return f"{said}; {silent} claim nothing below {WIDEST:g}" if silent else said
-
-
-def _sentence(point: Point, tried: tuple[Point, ...]) -> str:
-    assert point.default_for is not None
-    start = f"default for {point.default_for:g}: error {point.error:.1g}, bar {point.bar:.1g}"
-    if (point.bar or 0.0) > point.default_for:
-        return f"{start}; misses the tolerance, so that a run refines it"
-    claimed = excess(point, tried, lambda p: p.bar or np.inf, point.default_for)
-    true = excess(point, tried, lambda p: p.error, point.error)
-    worst = max(claimed, true)
-    place = "on" if worst == 1.0 else f"within a factor {NEAR:g} of" if worst <= NEAR else "off"
-    return f"{start}; {_times(claimed)} whose bar meets the tolerance, {_times(true)} as accurate: {place} the front"
-
-
-def _times(factor: float) -> str:
-    """Cost beside the least."""
-    return "the cheapest" if factor == 1.0 else f"{factor:.2f} times the cheapest"
-
-
-def write_tradeoff(scene: Scene, points: Sequence[Point], where: Path) -> Table:
+def write_tradeoff(found: Tradeoff, where: Path) -> Table:
     """Write ``tradeoff.csv`` and ``tradeoff.json`` into a folder, made when it is not there; the latter's content."""
-    described = [vars(point) | {"error": point.error} for point in points]
-    content = {"schema": SCHEMA, "scene": scene.to_dict(), "verdict": verdict(points), "points": described}
-    return write_study(where, "tradeoff", content, {"tradeoff": [_line(point) for point in points]})
+    described = [vars(point) | {"error": point.error} for point in found.points]
+    content = {
+        "schema": SCHEMA,
+        "scene": found.scene.to_dict(),
+        "tolerance": found.tolerance,
+        "verdict": found.verdict,
+        "points": described,
+    }
+    return write_study(where, "tradeoff", content, {"tradeoff": [_line(point) for point in found.points]})
 
 
 def _line(point: Point) -> Line:
@@ -243,4 +263,5 @@ def _line(point: Point) -> Line:
         **{f"{name}_error": point.errors.get(name) for name in (*MEASURED, "history")},
         **{WORK.get(key, key): point.work.get(key) for key in COUNTED},
         "failure": point.failure or None,
+        "leaves_out": point.leaves_out or None,
     }
