@@ -34,11 +34,12 @@ from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.path import HereditaryPhase, Path, SinceTouch, UntilEnd
 from lumped.solvers.hereditary.problem import Hereditary
 from lumped.solvers.point.bodies import TINY, Bodies, Stage, State, Step
-from lumped.solvers.point.memory import RULES, HereditaryLoad, StepLoad, rule_of
+from lumped.solvers.point.memory import RULES, FreeSurface, HereditaryLoad, StepLoad, rule_of
 from lumped.solvers.point.phase import NODES
 from lumped.solvers.radau import through_zero
 
 ROUGH, FINE = 1e-3, 1e-6  # tolerances of scales
+FORGOTTEN = 1e-12  # rounding: of its load where contact ended, what a surface has still to creep back
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,6 +110,20 @@ class HereditaryForce(ForceLaw):
     def returned(self, bodies: Bodies, last: State) -> tuple[float, State] | None:
         """As the rule has it."""
         return rule_of(self.rule)(self.load, bodies, last)
+
+    def resistance(self, depth: Array, rate: Array, stage: Stage, last: State, since: Array) -> Array:
+        """By how much the load of the depth is above that of the surface, which creeps back freely, m2."""
+        surface = FreeSurface.of(self.load, last)
+        return np.array([self.load.load(d) - surface.at(t)[0] for d, t in zip(depth, since, strict=True)])
+
+    def recalled(self, last: State, since: float) -> tuple[float, ...]:
+        """The memories of the surface that creeps back."""
+        return tuple(FreeSurface.of(self.load, last).at(since)[1:].tolist())
+
+    def forgotten(self, last: State, since: float) -> bool:
+        """At once by the rule "reset", else when the surface has crept back."""
+        surface = FreeSurface.of(self.load, last)
+        return self.rule == "reset" or bool(surface.at(since)[0] <= FORGOTTEN * surface.at(0.0)[0])
 
     def resolved(self, scene: Scene) -> Model:
         """The scene's own profile."""

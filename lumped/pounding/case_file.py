@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +16,7 @@ from lumped.pounding.ground import STILL, GroundMotion, GroundRecord, Sine
 from lumped.scene.tables import LAWS, TableReader
 from lumped.schema import Table
 from lumped.schema.csv_file import read_columns, read_header
-from lumped.schema.files import Packaged, overridden, parsed
+from lumped.schema.files import SCENES, Packaged, overridden, parsed
 from lumped.schema.keys import Choice, File, Key, Number, keys_of, written
 from lumped.schema.members import Anything, Member, alternatives
 
@@ -37,6 +37,7 @@ GROUNDS: Mapping[str, Mapping[str, Key]] = {
     },
     "pulse": {"amplitude": ACCELERATION, "duration": Key(TIME, "of half a sine")},
 }
+SCENE_KEY = Key(File(), "scene file, or packaged scene: shapes and materials where storeys meet", required=False)
 MOTION_KEYS: Mapping[str, Key] = {"end_time": Key(TIME, "when to stop")}
 
 
@@ -181,11 +182,21 @@ class PoundingReader(TableReader):
         table = self.table("law") or {}
         known = len(self.faults)
         (own,) = alternatives(LAWS, table.get("name"))
-        keys = {"name": Key(Member(LAWS.package)), **own, "velocity": keys_of(GapLaw)["velocity"]}
+        keys = {"name": Key(Member(LAWS.package)), **own, "velocity": keys_of(GapLaw)["velocity"], "scene": SCENE_KEY}
         values = self.checked("law", table, {key: one for key, one in keys.items() if key != "gap"})
         if len(self.faults) > known:
             return None
-        return GapLaw(values.pop("name"), velocity=values.pop("velocity", None), values=values, source=self.source)
+        name, velocity, scene = values.pop("name"), values.pop("velocity", None), values.pop("scene", None)
+        return GapLaw(name, values, velocity, {} if scene is None else self.scene(scene), self.source)
+
+    def scene(self, path: Path) -> Table:
+        """The tables of a scene, of a file beside this one or of a packaged name; none with a fault noted."""
+        packaged = path.suffix != ".toml" and path.name == str(path)
+        try:
+            return parsed(SCENES.path(path.name) if packaged else self.folder / path)
+        except BadInput as bad:
+            self.faults += [replace(fault, source=self.source, key="law.scene") for fault in bad.faults]
+            return {}
 
     def ground(self) -> tuple[Table, GroundMotion]:
         """What the file says of the ground's motion, and the motion; at rest without a table or with a fault noted."""

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Annotated
 
+from lumped import laws
 from lumped.errors import BadInput, Fault
 from lumped.laws._force_law import ForceLaw, between_masses
 from lumped.laws._power_law import PowerLaw, spring_of_peak
+from lumped.laws.correspondence import Correspondence, law_of
 from lumped.pounding.frames import Gap, PoundingFrames
 from lumped.scene.scene import Scene
 from lumped.scene.tables import LAWS, SPEED
@@ -24,12 +26,14 @@ ALPHA = 1.5  # physics: Hertz's, of a law without an exponent of its own
 @dataclass(frozen=True)
 class GapLaw:
     """A law by its name and the `values` of its keys. `velocity`: a typical speed at touch, m/s, for laws that take
-    their numbers from it; `source`: the file.
+    their numbers from it; `scene`: tables of a scene whose shapes and materials the storeys have there; `source`: the
+    file.
     """
 
     name: str
     values: Table = field(default_factory=dict)
     velocity: Annotated[float | None, Key(SPEED, "typical speed at touch", required=False)] = None
+    scene: Table = field(default_factory=dict)
     source: str = "pounding"
 
     def at(self, frames: PoundingFrames, gap: Gap) -> ForceLaw:
@@ -44,19 +48,24 @@ class GapLaw:
 
     def _made(self, frames: PoundingFrames, gap: Gap, velocity: float) -> ForceLaw:
         left, right = frames.masses_at(gap)
-        target: Table = {} if right is None else {"mass": right}
+        striker: Table = {**self.scene.get("striker", {}), "mass": left, "velocity": velocity}
+        target: Table = {**self.scene.get("target", {}), "mass": right}
+        if right is None:
+            del target["mass"]
         law = {"name": self.name, **self.values}
-        table: Table = {"striker": {"mass": left, "velocity": velocity}, "target": target, "law": law}
         try:
-            return between_masses(self.name, Scene.from_dict(table, self.source))
+            scene = Scene.from_dict({"striker": striker, "target": target, "law": law}, self.source)
+            return force_of(self.name, scene)
         except BadInput as bad:
             raise BadInput(self._said_here(fault) for fault in bad.faults) from bad
 
     def _said_here(self, fault: Fault) -> Fault:
-        """A fault of the scene that stands for two storeys, which have no shape."""
-        if not fault.key.startswith("striker"):
+        """A fault of the scene that stands for two storeys."""
+        if fault.key == "striker.velocity":
+            return Fault(self.source, "law.scene", f"two storeys meet there: {fault.message}")
+        if fault.key != "striker.shape":
             return fault
-        reason = f"{self.name} follows from a shape and a material; accepted: a law with numbers of its own, as kelvin"
+        reason = f"{self.name} follows from a shape and a material; accepted: with law.scene, or another, as kelvin"
         return Fault(self.source, "law.name", reason)
 
     def like(self, name: str, frames: PoundingFrames, gap: Gap) -> GapLaw:
@@ -83,6 +92,17 @@ class GapLaw:
         bodies = Bodies(frames.reduced_mass(gap), self.velocity)
         peak = peak_of_spring(float(values["k"]), alpha, bodies)
         return replace(other, values={**values, "k": spring_of_peak(peak, own, bodies)})
+
+
+def force_of(name: str, scene: Scene) -> ForceLaw:
+    """The law called so as a force between two masses, whatever it remembers. Raises BadInput where it is none."""
+    law = laws.get(name).of(scene)
+    if not isinstance(law, Correspondence):
+        return between_masses(name, scene)
+    if law.memory == "continuous":
+        reason = "continuous: followed in free flight alone; accepted here: recovering, reset"
+        raise BadInput(Fault(scene.source, "law.memory", reason))
+    return law_of(scene, law.exit, law.memory)
 
 
 def exponent(law: GapLaw, frames: PoundingFrames, gap: Gap) -> float:

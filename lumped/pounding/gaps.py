@@ -14,8 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lumped.laws._force_law import ForceLaw
 from lumped.numbers import Array
-from lumped.solvers.point.bodies import TINY, Bodies, PointLaw, Stage
+from lumped.solvers.point.bodies import Bodies, Stage, State
 from lumped.solvers.point.contact import following
 from lumped.solvers.radau import Nodes
 
@@ -71,7 +72,8 @@ class GapState:
     """A gap where a step begins. `stage` counts while it is pressed or leaving, `corners` are those still ahead.
 
     `touched`: when it was touched, s, while the force still grows from depth zero, else None; `passed`: the closest
-    approach has just been here; `memory`: the law's.
+    approach has just been here; `memory`: the law's; `parted`: how the last contact ended, and when, s, as long as a
+    dent is left.
     """
 
     mode: Mode
@@ -80,12 +82,13 @@ class GapState:
     touched: float | None = None
     passed: bool = False
     memory: tuple[float, ...] = ()
+    parted: tuple[State, float] | None = None
 
 
 OPEN = GapState(Mode.APART)
 
 
-def pressed(law: PointLaw, depth: float, rate: float, slowest: float, time: float) -> GapState:
+def pressed(law: ForceLaw, depth: float, rate: float, slowest: float, time: float) -> GapState:
     """Pressed from `time`, s, on, at a depth, m, and a rate, m/s, of which no law is told less than `slowest`."""
     speed = max(abs(rate), slowest)
     stage = Stage(rate > 0.0 or depth <= 0.0, depth, speed, depth)
@@ -110,19 +113,20 @@ class GapEvent(NamedTuple):
         return int(fallen.argmax()) if fallen.any() else None
 
 
-def events_of(gap: int, state: GapState, law: PointLaw, exit_rule: str, depth: float, noise: float) -> list[GapEvent]:
-    """What can end a step for a gap that begins at `depth`, m; `noise`: a depth that is zero but for rounding."""
+def events_of(gap: int, state: GapState, law: ForceLaw, depth: float, noise: float, time: float) -> list[GapEvent]:
+    """What can end a step of a gap from `time`, s, and `depth`, m, on; `noise`: a depth that is rounding."""
     if state.mode is Mode.APART:
         return [_touch(gap, depth, noise), _nearest(gap, state, noise)]
-    if state.mode is Mode.LEAVING:
-        return [_left(gap), _again(gap, state, law)]
+    if state.parted is not None:
+        again = _again(gap, state, law, *state.parted, time)
+        return [again, GapEvent(gap, Happening.LEFT, lambda step: step.depth[gap])] if depth > 0.0 else [again]
     sign = 1.0 if state.stage.approaching else -1.0
     found = [GapEvent(gap, Happening.TURN, lambda step: sign * step.rate[gap])]
     if state.corners:
         corner = state.corners[0]
         found.append(GapEvent(gap, Happening.CORNER, lambda step: sign * (corner - step.depth[gap])))
     if not state.stage.approaching:
-        by_force = law.tensile and exit_rule == "force"
+        by_force = law.tensile and law.exit == "force"
         value = _force_left(gap) if by_force else lambda step: step.depth[gap]
         found.append(GapEvent(gap, Happening.EXIT, value, surfaces=not by_force))
     return found
@@ -151,17 +155,12 @@ def _nearest(gap: int, state: GapState, noise: float) -> GapEvent:
     return GapEvent(gap, Happening.NEAREST, lambda step: step.rate[gap], suspicious)
 
 
-def _left(gap: int) -> GapEvent:
-    return GapEvent(gap, Happening.LEFT, lambda step: step.depth[gap])
-
-
-def _again(gap: int, state: GapState, law: PointLaw) -> GapEvent:
+def _again(gap: int, state: GapState, law: ForceLaw, last: State, parted: float, time: float) -> GapEvent:
     """The law, which does not act here, would press again."""
 
     def value(step: FrameStep) -> Array:
-        depth = np.maximum(step.depth[gap], TINY)
-        force = np.asarray(law.force(depth, step.rate[gap], state.stage))
-        return np.asarray(np.where(step.depth[gap] > 0.0, -force, 1.0))
+        since = time - parted + step.length * step.nodes.points
+        return -law.resistance(step.depth[gap], step.rate[gap], state.stage, last, since)
 
     return GapEvent(gap, Happening.AGAIN, value)
 
@@ -178,7 +177,7 @@ def _force_left(gap: int) -> Callable[[FrameStep], Array]:
 
 
 def after(
-    event: GapEvent, state: GapState, law: PointLaw, depth: float, rate: float, slowest: float, time: float
+    event: GapEvent, state: GapState, law: ForceLaw, depth: float, rate: float, slowest: float, time: float
 ) -> tuple[GapState, float]:
     """The gap after what happened to it at a depth, m, and at a rate, m/s; and its depth, zero at the surface."""
     match event.happening:
@@ -191,9 +190,18 @@ def after(
             return replace(state, stage=stage, corners=law.corners(stage), touched=None), depth
         case Happening.CORNER:
             return replace(state, corners=state.corners[1:]), depth
-        case Happening.EXIT if not event.surfaces:
-            return replace(state, mode=Mode.LEAVING, corners=(), touched=None), depth
-        case Happening.AGAIN:
-            return pressed(law, depth, rate, slowest, time), depth
+        case Happening.AGAIN if state.parted is not None:
+            last, parted = state.parted
+            return replace(pressed(law, depth, rate, slowest, time), memory=law.recalled(last, time - parted)), depth
+        case Happening.EXIT if not event.surfaces or not law.forgotten(State(depth, rate, 0.0, state.memory), 0.0):
+            parted_now = State(depth, rate, 0.0, state.memory), time
+            return replace(state, mode=Mode.LEAVING, corners=(), touched=None, parted=parted_now), depth
         case _:
-            return OPEN, 0.0
+            return surfaced(replace(state, mode=Mode.LEAVING), law, 0.0, time), 0.0
+
+
+def surfaced(state: GapState, law: ForceLaw, depth: float, time: float) -> GapState:
+    """The gap apart, where it has left a dent, at a depth, m, that is forgotten; else as it is."""
+    if state.mode is not Mode.LEAVING or depth > 0.0:
+        return state
+    return OPEN if state.parted is None or law.forgotten(state.parted[0], time - state.parted[1]) else state

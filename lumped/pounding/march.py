@@ -12,7 +12,7 @@ from lumped.errors import BadInput, Fault, NotReached
 from lumped.numbers import Array
 from lumped.pounding.flow import TERMS, longest_row
 from lumped.pounding.frames import PoundingFrames
-from lumped.pounding.gaps import OPEN, FrameStep, GapEvent, GapState, Mode, after, pressed
+from lumped.pounding.gaps import OPEN, FrameStep, GapEvent, GapState, Mode, after, pressed, surfaced
 from lumped.pounding.ground import GroundMotion
 from lumped.pounding.trial import NODES, FramesAt, FrameTrial, Rules
 from lumped.solvers.point.bodies import Bodies
@@ -32,7 +32,7 @@ def rows(frames: PoundingFrames, ground: GroundMotion, end_time: float) -> tuple
     longest = longest_row(frames, ground)
     kinks = ground.kinks[(ground.kinks > 0.0) & (ground.kinks < end_time)]
     stops = np.unique(np.concatenate([[0.0], kinks, [end_time]]))
-    counts = np.ceil(np.diff(stops) / longest).astype(int)
+    counts = np.maximum(np.ceil(np.diff(stops) / longest).astype(int), 1)
     if counts.sum() > MOST_ROWS:
         most = end_time * MOST_ROWS / counts.sum()
         reason = f"more than {MOST_ROWS} rows of {longest:.2g} s; accepted: at most {most:.3g} s for these structures"
@@ -119,6 +119,7 @@ class FrameMarch:
             gaps[i], depths[i] = after(event, before, law, depth, rate, self.rules.flow.slowest(trial.free), time)
             if gaps[i].mode is Mode.PRESSED and before.mode is not Mode.PRESSED:
                 length = min(length, self._first_length(i, gaps[i]))
+        gaps = [surfaced(*one, time) for one in zip(gaps, self.rules.laws, depths.tolist(), strict=True)]
         if not any(gap.mode is Mode.PRESSED for gap in gaps):
             length = math.inf
         return FramesAt(time, state, depths, tuple(gaps)), length

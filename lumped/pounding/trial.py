@@ -79,7 +79,7 @@ class FrameTrial:
     def _of(self, i: int) -> list[GapEvent]:
         """By one gap."""
         law, noise = self.rules.laws[i], float(self._noise[i])
-        return events_of(i, self.at.gaps[i], law, law.exit, float(self.at.depths[i]), noise)
+        return events_of(i, self.at.gaps[i], law, float(self.at.depths[i]), noise, self.at.time)
 
     @cached_property
     def _noise(self) -> Array:

@@ -159,6 +159,21 @@ class PointLaw(ABC):
         _, time = bisected(apart, 0.0, -last.rate / gravity)
         return time, flown(last, gravity, time)
 
+    def resistance(self, depth: Array, rate: Array, stage: Stage, last: State, since: Array) -> Array:
+        """Above zero where a dent presses again; the contact ended as `last`, in a `stage`, `since` s ago; each (n,).
+
+        Without memory: where the force would push.
+        """
+        return np.where(depth > 0.0, self.force(np.maximum(depth, TINY), rate, stage), -1.0)
+
+    def recalled(self, last: State, since: float) -> tuple[float, ...]:
+        """The memory when a dent is pressed again, `since` s after the contact ended as `last`."""
+        return ()
+
+    def forgotten(self, last: State, since: float) -> bool:
+        """Whether a dent counts as gone where nothing lies in it any more."""
+        return True
+
     def carried(self, depth: float, stage: Stage) -> float:
         """The weight, N, under which a striker stays at rest at a depth; NaN of what creeps under every one."""
         return float(self.force(depth, 0.0, stage))
