@@ -145,3 +145,45 @@ def test_what_is_not_reached_is_written_as_such(
     assert "no R1 gives the measured peak" in capsys.readouterr().err
     written = json.loads((where / "fit.json").read_text(encoding="utf-8"))
     assert (written["converged"], written["parameters"]) == (False, None)
+
+
+@pytest.mark.tenth
+def test_all_laws_are_ranked_the_true_one_first(
+    curve: Path, body: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of a curve of Jankowski's law that law leaves nothing; what has no fit says why."""
+    where = tmp_path / "all"
+    assert main(["fit", str(curve), "--law", "all", "--scene", str(body), "--out", str(where), "--json"]) == 0
+    first, *others = json.loads(capsys.readouterr().out)["laws"]
+    assert (first["law"], first["criterion"]) == ("jankowski", 0.0)
+    assert first["parameters"]["xi"]["value"] == pytest.approx(0.2, rel=1e-5)
+    fitted = [one for one in others if "criterion" in one]
+    assert {one["law"] for one in [first, *others]} == set(laws.available())
+    assert all(one["criterion"] > 10.0 for one in fitted)
+    assert not any(one["left"]["noise"] for one in fitted)
+    assert all(one["reason"] for one in others if "criterion" not in one)
+    header, *rows = (where / "fits.csv").read_text(encoding="utf-8").splitlines()
+    assert header.startswith("rank,law,normalized_error")
+    assert len(rows) == len(laws.available())
+    names = {f"fits.{kind}" for kind in ("json", "csv", "svg", "png")} | {"forces.csv"}
+    assert {path.name for path in where.iterdir()} == names
+
+
+def test_all_laws_have_their_own_parameters(curve: Path, body: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["fit", str(curve), "--law", "all", "--scene", str(body), "--free", "k", "--peak"]) == 2
+    assert "--peak: with --law all each law has its own; accepted: --free touch, --fix" in capsys.readouterr().err
+
+
+def test_the_gap_of_the_scene_stays_in_every_line(
+    curve: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It belongs to the bodies, and not to the law that the scene happens to name."""
+    body = tmp_path / "gap.toml"
+    body.write_text(BODY + LAW + "gap = 0.004\n", encoding="utf-8")
+    for law in ("jankowski", "kelvin", "hunt_crossley", "impact_bilinear"):
+        out = ["--out", str(tmp_path / law), "--opensees"]
+        assert main(["fit", str(curve), "--law", law, "--scene", str(body), *out]) == 0
+        said = capsys.readouterr().out.splitlines()
+        names = [line for line in said if line.startswith(f"# {law}: ")][-1].split()[4:]
+        values = dict(zip(names, said[-1].split()[3:], strict=True))
+        assert float(values["gap"]) == -0.004

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,8 +15,10 @@ from lumped.schema import Table
 
 if TYPE_CHECKING:
     from lumped.fit import Estimate, Fit
+    from lumped.fit.ranking import RankedFit
 
 WIDTH = 12  # of a parameter's name
+EVERY = "all"
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -26,6 +29,8 @@ def execute(args: argparse.Namespace) -> int:
     from lumped.result.curve_file import read_curve
     from lumped.result.gate import check_curve
 
+    if args.law == EVERY:
+        return _rank(args)
     _check_opensees(args)
     scene, curve = base.read_scene_for_fit(args), read_curve(args.curve)
     free = None if args.free is None else tuple(name.strip() for name in args.free.split(","))
@@ -50,6 +55,44 @@ def execute(args: argparse.Namespace) -> int:
     for remark in remarks:
         base.complain(remark)
     return base.DONE if found.result.converged else base.NOT_REACHED
+
+
+def _rank(args: argparse.Namespace) -> int:
+    """Fit every law, write, say the ranking; 0."""
+    from fe_contact.studies.ranking_chart import plot_ranking
+    from lumped.fit.ranking import RECORD, rank, write_ranking
+    from lumped.fit.space import TOUCH
+    from lumped.result.curve_file import read_curve
+    from lumped.result.gate import check_curve
+
+    given = {"--bounds": args.bounds, "--peak": args.peak, "--opensees": args.opensees}
+    chosen = [name for name, value in given.items() if value]
+    if chosen or args.free not in (None, TOUCH):
+        reason = f"with --law {EVERY} each law has its own; accepted: --free {TOUCH}, --fix"
+        raise BadInput(Fault(name, "", reason) for name in chosen or ["--free"])
+    scene, curve = base.read_scene_for_fit(args), read_curve(args.curve)
+    fixed = {name: base.number(value, "--fix") for name, value in _pairs(args.fix, "--fix")}
+    run = base.StudyRun.of(args, "fit", scene.name)
+    remarks = check_curve(curve, scene, str(args.curve), args.free is None and TOUCH not in fixed)
+    run.progress("fits of every law")
+    with addressed(str(args.curve), {"fixed": "--fix", "curve": "force_N"}), scene.addressed():
+        ranked = rank(curve, scene, fixed, args.free == TOUCH)
+    lines = [_ranking_line(i, one) for i, one in enumerate(ranked, start=1)]
+    code = run.finish(
+        RECORD, lines, partial(write_ranking, ranked, curve), partial(plot_ranking, ranked, curve), "law by law"
+    )
+    for remark in remarks:
+        base.complain(remark)
+    return code
+
+
+def _ranking_line(rank: int, one: RankedFit) -> str:
+    if one.fit is None or one.whiteness is None:
+        return f" -  {one.law:16s} {one.reason}"
+    left = "noise is left" if one.whiteness.noise else "more than noise is left"
+    values = ", ".join(f"{name} {_shown(estimate)}" for name, estimate in one.fit.parameters.items())
+    known = f"{100.0 * one.fit.normalized_error:7.3g} %, AICc +{one.criterion:.4g}, {left}"
+    return f"{rank:2d}  {one.law:16s} {known}: {values}"
 
 
 def _report(args: argparse.Namespace, found: Fit, content: Table, where: Path) -> None:
@@ -117,9 +160,9 @@ MEMBER = base.Command(
     "parameters of a law from a force history, with 95 % confidence intervals",
     (
         base.option("curve", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N"),
-        base.option("--law", required=True, metavar="NAME", help="a lumped law: fe-contact laws"),
+        base.option("--law", required=True, metavar="NAME", help="a lumped law (fe-contact laws), or all, ranked"),
         base.option("--scene", required=True, help="scene (file or packaged name) with mass, velocity, geometry"),
-        base.option("--free", metavar="a,b,...", help="parameters to find; default: stiffness and damping"),
+        base.option("--free", metavar="a,b,...", help="default: stiffness and damping; touch: when the bodies meet, s"),
         base.option("--fix", default="", metavar="a=v,...", help="parameters held at a value"),
         base.option("--bounds", default="", metavar="a=low:high,...", help="bounds of free parameters"),
         base.option("--peak", action="store_true", help="least error at equal peak force, (26)"),

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault
 from lumped.numbers import peak
+from lumped.result.gate import MeasuredPulse
 from lumped.result.history import History
 from lumped.result.score import POINTS, Curve
 
@@ -63,8 +65,17 @@ class Measured:
         own, force = self.time[: self.points], self.force[: self.points]
         if not self.ended:
             return float(2.0 * own[int(np.argmax(force))]) or float(own[-1])
-        pressed = own[force > ENDED * self.peak]
-        return float(pressed[-1] - pressed[0]) or float(own[-1])
+        return self._pulse.width
+
+    @property
+    def begin(self) -> float:
+        """About when the bodies touch, s."""
+        return self._pulse.start if self.ended else 0.0
+
+    @cached_property
+    def _pulse(self) -> MeasuredPulse:
+        own = slice(0, self.points)
+        return MeasuredPulse(self.time[own], self.force[own])
 
     @property
     def impulse(self) -> float:

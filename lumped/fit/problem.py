@@ -47,6 +47,7 @@ UNFELT, ALIKE = 1e-9, 1e8
 CORRELATED = 0.99  # two parameters whose correlation lies beyond are named in a warning
 SYSTEMATIC = "neighbouring residuals are alike: what is left is the law's own error, and no interval holds it"
 AT_BOUND = 1e-6  # rounding: of the value, or for the touch of the duration: as near to its bound it lies on it
+SAYS_NOTHING = 100.0  # times the value: an interval as wide is the linearization's, and tells no more than none
 FORCE = Number(-math.inf, math.inf, "N")
 
 
@@ -197,8 +198,10 @@ def certainty_of(problem: FitProblem, values: Mapping[str, float], guess: Mappin
     spread = every @ inverse @ every.T * float(error @ error) / freedom
     widths = _student(freedom) * np.sqrt(np.diag(spread)) if told and felt.any() else np.full(len(names) + 1, np.nan)
     unfelt = {name for name, known in zip(problem.searched, felt, strict=True) if not known}
+    unknown = unfelt | {name for name in names if _at_bound(problem, name, values[name], guess)}
+    scales = {name: problem.measured.duration if name == TOUCH else max(values[name], guess[name]) for name in names}
     parameters = {
-        name: _estimate(values[name], math.nan if name in unfelt else width, problem.space.free[name])
+        name: _estimate(values[name], math.nan if name in unknown else width, problem.space.free[name], scales[name])
         for name, width in zip(names, widths.tolist(), strict=False)
     }
     covariance = spread[:-1, :-1]
@@ -207,7 +210,8 @@ def certainty_of(problem: FitProblem, values: Mapping[str, float], guess: Mappin
         *_pair_warnings(problem, covariance, told),
         *((SYSTEMATIC,) if problem.measured.systematic(error) else ()),
     ]
-    return Certainty(covariance, parameters, depth, _estimate(force, float(widths[-1]), FORCE), tuple(warnings))
+    of_force = _estimate(force, float(widths[-1]), FORCE, found.peak)
+    return Certainty(covariance, parameters, depth, of_force, tuple(warnings))
 
 
 def correlation_of(covariance: Array) -> Array:
@@ -276,24 +280,31 @@ def _student(freedom: int) -> float:
     return float(stdtrit(freedom, 0.5 + 0.5 * CONFIDENCE))
 
 
-def _estimate(value: float, width: float, key: Number) -> Estimate:
-    """A value with its interval, cut where the parameter ends; none of a width that is not known."""
-    if not math.isfinite(width):
+def _estimate(value: float, width: float, key: Number, scale: float) -> Estimate:
+    """A value with its interval, cut where the parameter ends; none of a width that is not known, or says nothing."""
+    if not width <= SAYS_NOTHING * scale:
         return Estimate(value, None, None, key.unit)
     return Estimate(value, max(value - width, key.low), min(value + width, key.high), key.unit)
+
+
+def _at_bound(problem: FitProblem, name: str, value: float, guess: Mapping[str, float]) -> bool:
+    """Whether a free parameter lies where the search may go no further."""
+    low, high = problem.space.limits(name, guess[name])
+    near = AT_BOUND * (problem.measured.duration if name == TOUCH else abs(value))
+    return min(value - low, high - value) <= near
 
 
 def _parameter_warnings(
     problem: FitProblem, parameters: Mapping[str, Estimate], guess: Mapping[str, float], unfelt: Set[str]
 ) -> Iterator[str]:
     for name, estimate in parameters.items():
-        low, high = problem.space.limits(name, guess[name])
-        near = AT_BOUND * (problem.measured.duration if name == TOUCH else abs(estimate.value))
         if name in unfelt:
             yield f"{name} does not change the force around {estimate.value:.6g}: the curve does not tell it"
-        elif min(estimate.value - low, high - estimate.value) <= near:
-            yield f"{name} is at its bound, {estimate.value:.6g}: its interval is not one"
-        elif estimate.low is not None and estimate.low <= problem.space.free[name].low:
+        elif _at_bound(problem, name, estimate.value, guess):
+            yield f"{name} is at its bound, {estimate.value:.6g}: it has no interval"
+        elif estimate.low is None:
+            yield f"{name} has no interval: the curve hardly tells it"
+        elif estimate.low <= problem.space.free[name].low:
             yield f"the interval of {name} reaches the least value it can have: the curve does not tell it from none"
 
 

@@ -188,7 +188,7 @@ class CurvePulse:
         for k, share in product((of_peak, of_time), LOSSES if "e" in own else (1.0,)):
             loss = min(share * self.loss, 1.0 - LEAST_RESTITUTION)
             loop = self._loop(k, 1.0 - loss) if "k1" in names else {}
-            springs = {TOUCH: 0.0, "alpha": alpha, "e": 1.0 - loss, "k": k, **loop, **held}
+            springs = {TOUCH: self.measured.begin, "alpha": alpha, "e": 1.0 - loss, "k": k, **loop, **held}
             yield springs | {name: share * self._damping(name, springs, depth) for name in dampers}
 
     def _loop(self, k: float, e: float) -> Values:
@@ -300,12 +300,19 @@ class Descent:
     def _limits(self) -> Array:
         """Lowest and highest place, shape (q, 2)."""
         names, guess = self.problem.searched, self.start.guess
-        limits = {name: self.problem.space.limits(name, guess[name]) for name in names}
+        limits = {name: self._own_limits(name, guess[name]) for name in names}
         ends = np.array([self._plain({name: limits[name][i] for name in names}) for i in (0, 1)]).T
         if self._straight:
             rows = [names.index(name) for name in SOLID]
             ends[rows] = self._place(self.start.values)[rows, None] + np.log(REACH) * np.array([-1.0, 1.0])
         return ends
+
+    def _own_limits(self, name: str, guess: float) -> tuple[float, float]:
+        """Those asked for; a touch that nobody has bounded lies within a contact's length of where the force begins."""
+        if name != TOUCH or name in self.problem.space.bounds:
+            return self.problem.space.limits(name, guess)
+        begin, length = self.problem.measured.begin, self.problem.measured.duration
+        return begin - length, begin + length
 
     def _place(self, values: Mapping[str, float]) -> Array:
         if not self._straight:

@@ -29,7 +29,8 @@ REACH = 1e8
 FAMILIES = ("elastic", "kelvin_voigt", "maxwell", "sls")
 # Parts of a fit that know no option: see :func:`lumped.errors.addressed`.
 FREE, FIXED, BOUNDS = "free", "fixed", "bounds"
-UNSEEN = {"gap": "no force tells it, for time starts at touch; accepted: fixed"}
+GAP = "gap"
+UNSEEN = {GAP: "no force tells it, for time starts at touch; accepted: fixed"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,9 +115,13 @@ def default_free(law: str, scene: Scene, fixed: Mapping[str, float]) -> tuple[st
 
 
 def _said(scene: Scene, law: str, chosen: Mapping[str, float]) -> Table:
-    """What the scene's own [law] says, without another name of a damping that is chosen here."""
+    """What the scene's own [law] says, without another name of a damping that is chosen here.
+
+    Of another law the gap alone, which belongs to the bodies.
+    """
     if scene.law is None or scene.law.name != law:
-        return {}
+        known = {} if scene.law is None else scene.law.values
+        return {GAP: known[GAP]} if GAP in known and GAP in own_keys(law) else {}
     dampings = {"e", "damping", *damping_names(law)}
     dropped = dampings if dampings & chosen.keys() else set()
     return {name: value for name, value in scene.law.values.items() if name not in dropped}

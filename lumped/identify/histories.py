@@ -14,8 +14,8 @@ import numpy as np
 
 from lumped.errors import BadInput, NotReached
 from lumped.fit.measured import means
+from lumped.fit.noise import whitened
 from lumped.identify.keys import FreeKey, SceneFile
-from lumped.identify.noise import whitened
 from lumped.laws import ting
 from lumped.laws._hereditary import once
 from lumped.numbers import Array
@@ -93,7 +93,7 @@ class Impact:
 
 @dataclass(frozen=True, eq=False)
 class Noise:
-    """Of one curve: the deviation of what is new in every row, N, and the colour, see :mod:`lumped.identify.noise`."""
+    """Of one curve: the deviation of what is new in every row, N, and the colour, see :mod:`lumped.fit.noise`."""
 
     deviation: float
     colour: Array

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lumped.identify.noise import Whiteness
+from lumped.fit.noise import Whiteness
 from lumped.numbers import Array
 from lumped.schema import Table
 from lumped.schema.csv_file import write_csv

@@ -16,16 +16,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault, NotReached
+from lumped.fit.noise import Whiteness, autocovariance, colour_of, colour_of_corner, memory, whiteness
 from lumped.identify.histories import Histories, Impact, Noise, Samples
 from lumped.identify.keys import FREE, FreeKey, SceneFile, free_keys, starting_places
-from lumped.identify.noise import Whiteness, autocovariance, colour_of, colour_of_corner, memory, whiteness
 from lumped.identify.record import LEVEL, FittedCurve, Identified, Interval
 from lumped.laws import ting
 from lumped.numbers import Array
 from lumped.result.score import Curve
 
 TOLERANCE, MOST_STEPS = 1e-6, 60  # of the least squares: relative changes that end it; work
-FOLLOWED = 3  # work: of the starts, the nearest to the curves first; one is enough that leaves noise alone
+# Work: of the starts, the nearest to the curves first; two are enough where the last leaves noise alone: a first can
+# end in a valley of its own that noise hides.
+FOLLOWED = 3
 TIMES = (0.1, 1.0, 10.0)  # relaxation times of the starts, over the pulse's width
 EARLIEST, LATEST, SHIFTS = -0.6, 0.3, 91  # where a touch is looked for first, in widths from where the pulse begins
 FARTHEST = 1.5  # safety: of a touch from there, in widths
@@ -86,7 +88,7 @@ def _most_likely(histories: Histories, corner: float | None) -> tuple[Histories,
     for start in _starts(histories)[:FOLLOWED]:
         sought = _descended(histories, start)
         ended.append((float(np.sum(histories.residuals(sought) ** 2)), sought))
-        if whiteness(histories.whitened(histories.differences(sought))).noise:
+        if len(ended) > 1 and whiteness(histories.whitened(histories.differences(sought))).noise:
             break
     if not ended:
         raise NotReached("no impact of the scene is near the curves; cure: nearer values in the scene file")

@@ -320,3 +320,12 @@ def test_parameters_of_two_networks_do_not_mix(polymer: Scene) -> None:
 def test_curves_that_tell_nothing_are_named(time: list[float], force: list[float], message: str) -> None:
     with pytest.raises(BadInput, match=message):
         fit(Curve(np.array(time), np.array(force)), "jankowski", BODY)
+
+
+def test_an_interval_that_says_nothing_is_none() -> None:
+    """A contact of 50 us does not tell the ratio R1 of a solid that relaxes within 14 ms."""
+    scene = Scene.load("steel-ball-sls")
+    curve = noisy(simulate(laws.get("ting").of(scene), scene, 1e-6).history, 0.02, np.random.default_rng(7))
+    found = fit(curve, "ting", scene, free=("E0", "R1", "R2"))
+    assert [found.parameters[name].low for name in ("R1", "R2")] == [None, None]
+    assert {warning.split()[0] for warning in found.warnings if "no interval" in warning} == {"R1", "R2"}

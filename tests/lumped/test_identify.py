@@ -16,8 +16,8 @@ from scipy.optimize import brentq, minimize_scalar
 from scipy.special import stdtrit
 
 from lumped import BadInput, Scene, identify, laws, simulate
+from lumped.fit.noise import colour_of, memory, whitened, whiteness
 from lumped.identify.histories import Impact
-from lumped.identify.noise import colour_of, memory, whitened, whiteness
 from lumped.numbers import Array
 from lumped.result.score import Curve
 
