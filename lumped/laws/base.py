@@ -29,12 +29,14 @@ class LawKind:
     """A member of this folder: how its Law is made `of` a scene, what it `says`, the `groups` of its `[law]` keys.
 
     `family`: its own damping against the coefficient of restitution; None: without damping, or with another law's.
+    `elastic`: whether it is for an elastic material alone.
     """
 
     of: Callable[[Scene], Law]
     says: str | None
     groups: Sets = ()
     family: Family | None = None
+    elastic: bool = False
 
     @cached_property
     def keys(self) -> Mapping[str, Key]:

@@ -141,4 +141,4 @@ def _energy(
     return {"in": given, "out": out, "stored": held, "viscous": 0.0, "radiated": radiated, "residual": residual}
 
 
-MEMBER = LawKind(of, __doc__)
+MEMBER = LawKind(of, __doc__, elastic=True)
