@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 Real = Any  # a float of floats, an array of arrays, of their shape: what numpy's functions return has no better type
 POINTS = 4  # rows around a place through which a polynomial is laid
 FITTED, DEGREE = 13, 4  # places around a peak, and the degree of the polynomial fitted to them
+JUMP = 10.0  # safety: over the slopes beside it, that of an interval in which no rows tell a smooth curve
 EQUAL = 1e-12  # of all the rows: two as close as that are one, and no slope lies between them but rounding's
 # Steps of false position and of bisection, more than either takes; two places as near, relatively, are one.
 ROOT_STEPS, BISECTIONS, ROUNDING = 100, 200, 4e-16
@@ -38,10 +39,39 @@ def local(x: Array, y: Array, at: Array, points: int = POINTS) -> Array:
 
 
 def peak(x: Array, y: Array) -> tuple[float, float]:
-    """Place and height of the highest point of a smooth curve given by rows, x ascending; of equal x the highest."""
+    """Place and height of the highest point of a curve given by rows, x ascending; of equal x the highest.
+
+    Between rows by their polynomial, where a curve that goes on through them may have a peak like that. Else the
+    highest row: beside a jump, and where rows crowd so that a polynomial tells their rounding.
+    """
     new = np.flatnonzero(np.diff(x, prepend=-np.inf) > EQUAL * (x[-1] - x[0]))
     rows, values = x[new], np.maximum.reduceat(y, new)
-    return highest(lambda at: local(rows, values, at), rows)
+    top = int(np.argmax(values))
+    least, most = _peaks_beside(rows, values, top)
+    if least < most:
+        place, height = highest(lambda at: local(rows, values, at), rows)
+        if least <= height <= most:
+            return place, height
+    return float(rows[top]), float(values[top])
+
+
+def _peaks_beside(x: Array, y: Array, top: int) -> tuple[float, float]:
+    """The lowest and the highest peak of a curve that goes on through these rows, the highest of them the one at `top`.
+
+    Where such a curve is bent downwards it stays below the secants of the next intervals, prolonged over this one. An
+    interval far steeper than those beside it is a jump: the row itself is the peak.
+    """
+    steps = np.diff(x)
+    slopes = np.diff(y) / steps
+    before, after = np.append(np.inf, slopes), np.append(slopes, -np.inf)  # nothing is known beyond the ends
+    least = most = float(y[top])
+    for k in range(max(top - 1, 0), min(top + 1, steps.size)):
+        beside = np.abs(slopes[[j for j in (k - 1, k + 1) if 0 <= j < steps.size]])
+        if beside.size and np.abs(slopes[k]) > JUMP * beside.max():
+            return least, least
+        ends = y[k] + max(before[k], 0.0) * steps[k], y[k + 1] - min(after[k + 1], 0.0) * steps[k]
+        least, most = min(least, float(y[k] if k < top else y[k + 1])), max(most, float(min(ends)))
+    return least, most
 
 
 def highest(curve: Callable[[Array], Array], places: Array) -> tuple[float, float]:

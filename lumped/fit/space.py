@@ -106,7 +106,9 @@ def damping_names(law: str) -> tuple[str, ...]:
 def default_free(law: str, scene: Scene, fixed: Mapping[str, float]) -> tuple[str, ...]:
     """Stiffness and damping; of a law without numbers of its own those of the material, E0 held as in "(26)"."""
     own, dampers = own_keys(law), damping_names(law)
-    if not own:
+    if laws.get(law).elastic:
+        names: tuple[str, ...] = ("E",)
+    elif not own:
         names = ("R1", "R2") if scene.geometry.material.young.relaxed else ("E", "eta")
     else:
         springs = [name for name in own if name not in {*STIFFNESS, *EXPONENT, *RESTITUTION, *COMMON, *dampers}]

@@ -42,8 +42,8 @@ class ForceLaw(PointLaw):
 
     `exit`: contact ends when the force returns to zero ("force", no tension) or at depth zero ("depth").
     `gap`: distance before touch, m; time starts at touch. `load_curve`: that of the scene the law was
-    made for, whose contact radius the history shows; None: without geometry it shows zero. `source`: in words,
-    what was taken of the scene.
+    made for, whose contact radius the history shows; None: without geometry, and in plane strain, it shows zero.
+    `source`: in words, what was taken of the scene.
     """
 
     exit: str = "force"

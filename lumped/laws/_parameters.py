@@ -67,8 +67,10 @@ class Parameters:
 
     @property
     def load_curve(self) -> LoadCurve | None:
-        """The load curve of the scene's parabola."""
-        return self.scene.geometry.shape.resolved("parabola").load_curve if self.scene.has_geometry else None
+        """The load curve of the scene's parabola; None in plane strain, where a half-space has none."""
+        if not self.scene.has_geometry or self.scene.geometry.shape.plane:
+            return None
+        return self.scene.geometry.shape.resolved("parabola").load_curve
 
     def get(self, key: str, default: T) -> T:
         """A number with a default."""

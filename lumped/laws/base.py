@@ -37,6 +37,7 @@ class LawKind:
     `family`: its own damping against the coefficient of restitution; None: without damping, or with another law's.
     `leaves_out`: what it does not follow of the resolved model of a scene with a geometry that it answers, in words;
     empty where it is the exact impact of that model. `seconds`: processor time, s, of an impact to 1e-3, about.
+    `elastic`: whether it is for an elastic material alone.
     """
 
     of: Callable[[Scene], Law]
@@ -45,6 +46,7 @@ class LawKind:
     family: Family | None = None
     leaves_out: Callable[[Scene], str] = own_spring
     seconds: float = 0.005  # as measured of the packaged scenes that name such a law: it ranks methods, no more
+    elastic: bool = False
 
     @cached_property
     def keys(self) -> Mapping[str, Key]:

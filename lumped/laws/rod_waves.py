@@ -142,4 +142,4 @@ def _energy(
     return {"in": given, "out": out, "stored": held, "viscous": 0.0, "radiated": radiated, "residual": residual}
 
 
-MEMBER = LawKind(of, __doc__, leaves_out=lambda scene: "", seconds=0.01)
+MEMBER = LawKind(of, __doc__, leaves_out=lambda scene: "", seconds=0.01, elastic=True)

@@ -329,3 +329,31 @@ def test_an_interval_that_says_nothing_is_none() -> None:
     found = fit(curve, "ting", scene, free=("E0", "R1", "R2"))
     assert [found.parameters[name].low for name in ("R1", "R2")] == [None, None]
     assert {warning.split()[0] for warning in found.warnings if "no interval" in warning} == {"R1", "R2"}
+
+
+STIFF = {name: truth for name, truth in TRUTHS.items() if name not in ("linear_spring", "hertz")}
+BODIES = ("rod-in-ring", "polymer-layer", "two-spheres", "two-cylinders", "polymer-prism", "polymer-punch", "rod")
+
+
+@pytest.mark.family
+@pytest.mark.parametrize("body", BODIES)
+@pytest.mark.parametrize("law", STIFF)
+def test_a_law_with_a_stiffness_is_fitted_on_every_geometry(law: str, body: str) -> None:
+    """A made impact of the law itself, its numbers in proportion to those of the scene's bodies."""
+    scene = Scene.load(body)
+    alpha = 1.5 if law in ("kuwabara_kono", "khatiwada", "hertzdamp", "hunt_crossley", "jankowski", "tsuji") else 1.0
+    k = 2.0 * scene.reduced_mass * scene.velocity**2 / (1e-3 * scene.velocity) ** (alpha + 1.0)
+    truth = replace(scene, law=LawChoice(law, {"k": k, "e": 0.7}))
+    found = fit(history(law, truth), law, scene)
+    assert found.normalized_error < 1e-6
+    assert found.result.quantities["restitution"].value == pytest.approx(0.7, abs=1e-6)
+
+
+@pytest.mark.parametrize(("body", "share", "known"), [("rod", 1.0, 1e-3), ("concrete-pole", 0.8, 1e-5)])
+def test_the_waves_of_a_rod_are_fitted_by_its_modulus(body: str, share: float, known: float) -> None:
+    """Under a flat end the force jumps with every echo, whose time tells the modulus no better than the rows lie."""
+    scene = Scene.load(body)
+    assert scene.material is not None
+    slow = replace(scene, material=replace(scene.material, young=scene.material.young.scaled(share)))
+    found = fit(history("rod_waves", slow), "rod_waves", scene)
+    assert found.values == pytest.approx({"E": share * scene.material.young.relaxed}, rel=known)

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 
 from lumped import BadInput, History, Scene, laws, simulate
-from lumped.numbers import highest, local, peak
+from lumped.numbers import Array, highest, local, peak
 from lumped.result.history import COLUMNS, LEAST_ROWS, densified
 from lumped.result.result import UNITS
+from lumped.targets.rod import Rod
 
 HEADER = "time_s,depth_m,velocity_m_per_s,force_N,contact_radius_m,force_error_N"
 
@@ -47,6 +50,47 @@ def test_peaks_of_a_half_sine_are_its_own() -> None:
     history = half_sine()
     assert peak(history.time, history.force) == (pytest.approx(0.5, abs=1e-6), pytest.approx(3.0, rel=1e-9))
     assert peak(history.time, history.depth)[1] == pytest.approx(1.0 / np.pi, rel=1e-9)
+
+
+@pytest.mark.parametrize("spread", ["evenly", "crowded", "twice"])
+def test_a_jump_makes_no_peak(spread: str) -> None:
+    """The peak of two branches is an end or a top of either, whatever rows stand at the jump between them."""
+    generator = np.random.default_rng(5)
+    even = np.linspace(0.0, 1.0, 102)
+    for _ in range(60):
+        jump, rise, bend, level = generator.uniform((0.2, -2.0, 0.5, -3.0), (0.8, 2.0, 2.0, 3.0))
+        force = partial(two_branches, jump, rise, bend, level)
+        rows = densified(even, force, 1e-2) if spread == "crowded" else even
+        values = force(rows)
+        if spread == "twice":
+            place = int(np.searchsorted(rows, jump))
+            rows, values = np.insert(rows, place, [jump, jump]), np.insert(values, place, force([jump, jump + 1e-15]))
+        known = force(np.append(np.linspace(0.0, 1.0, 20_001), np.nextafter(jump, 1.0))).max()
+        steepest = abs(rise) + 2.0 * bend  # within a branch: a row may stand as far below its end as a step of that
+        assert known - 0.01 * steepest <= peak(rows, values)[1] <= known + 0.01 * steepest
+        if spread != "evenly":
+            assert peak(rows, values)[1] == pytest.approx(known, abs=1e-4)
+
+
+def two_branches(jump: float, rise: float, bend: float, level: float, time: ArrayLike) -> Array:
+    """5 + rise t - bend t^2, and `level` more after the jump."""
+    t = np.asarray(time)
+    return np.asarray(5.0 + rise * t - bend * t**2 + np.where(t > jump, level, 0.0))
+
+
+def test_the_peak_of_a_rod_is_that_of_its_echo() -> None:
+    """St Venant: a flat end meets the first echo of the fixed end with twice the first force, less what the mass lost.
+
+    At t = 2 l/c the force jumps to its highest, rho c A v (2 + exp(-2 rho A l/m)).
+    """
+    scene = Scene.load("rod")
+    history, rod, material = simulate(laws.rod_waves.of(scene), scene, 1e-6).history, scene.target, scene.material
+    assert isinstance(rod, Rod)
+    assert material is not None
+    density = material.density or 0.0
+    mass = density * rod.area * rod.length
+    echo = density * np.sqrt(material.young.relaxed / density) * rod.area * scene.velocity
+    assert peak(history.time, history.force)[1] == pytest.approx(echo * (2.0 + np.exp(-2.0 * mass / scene.mass)))
 
 
 def test_local_interpolation_is_of_fourth_order() -> None:
