@@ -177,7 +177,7 @@ def impact_exponents(
     scene = impact.scene
     result = simulate(scene, method, {}, TOLERANCES[method])
     history = result.history
-    samples = Samples.of(history, scene.mass, impact.factor)
+    samples = Samples.of(history, result.quantities["history_l2"].error or 0.0, scene.mass, impact.factor)
     times = scene.material.young.times if scene.material else ()
     return ImpactExponents(
         impact,

@@ -14,7 +14,7 @@ from fe_contact.studies.exponents.layers import Profile
 
 PANEL = 1.75  # height of a panel, in
 TITLE_WIDTH = 132  # characters
-COLOURS = (style.SKY, style.BLUE, style.VERMILION, style.PURPLE)
+COLOURS = (style.BLUE, style.VERMILION, style.GREEN)
 LINES = [
     "What is read less the exponent of Table 1's row. Rows: ln F over ln depth while loading; Hunt-Crossley's law; the "
     "correspondence law, each with its exponent free. Lines: exact histories (Ting); circles: finite elements with "
@@ -30,7 +30,7 @@ def plot_impacts(found: Sequence[ImpactExponents], where: Path) -> tuple[Path, P
     title = "Exponents read from impacts on a viscoelastic body"
     height = len(READERS) * PANEL
     with style.sheet(where, "exponents_from_impacts", title, LINES, height, width=TITLE_WIDTH) as sheet:
-        panels = sheet.panels(len(READERS), len(columns), 0.075, 0.985, wspace=0.26, hspace=0.3)
+        panels = sheet.panels(len(READERS), len(columns), 0.08, 0.985, wspace=0.28, hspace=0.3)
         for place, axes in enumerate(panels):
             reader, (name, own) = list(READERS)[place // len(columns)], list(columns.items())[place % len(columns)]
             _biases(axes, own, reader)

@@ -23,7 +23,7 @@ FIRST = 0.1  # share of the greatest depth from which the logarithms are fitted:
 # Guesses: relaxation times over the contact's, and what share of the modulus is lost within it.
 SOLIDS = ((0.05, 0.5), (0.3, 0.5), (3.0, 0.1), (30.0, 0.01))
 DIFFERENCE = 1e-6  # of a free number, for slopes: the force errs by rounding alone
-STEEPEST = 3.0  # safety: exponent with which a force answers to a depth that is off: more than those of the study
+BETWEEN = 1e-7  # rounding: of a force between rows that lie densely, over its peak or in the norm
 SEARCH = 1e-12  # tolerance of a search: rounding
 RANK = 1e-7  # share of the largest singular value below which a direction is one that nothing tells
 SAFETY = 1.5  # safety: of slopes at a fit that leaves residuals, which its curvature changes; of a rule's change
@@ -33,10 +33,11 @@ MOST_LOST = 0.999  # safety: share of the modulus that may be lost within the co
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """A contact at even times: `depth` over the greatest, its `rate` per contact time, `force` over the peak and the
-    half-width `error` of its bar, that of the depth counted as the force which it changes; all of shape (n,).
+    """A contact at even times: `depth` over the greatest, its `rate` per contact time, `force` and the half-width
+    `error` of its bar over the peak, all of shape (n,); `bar`: the same in the norm of the history over the force's.
 
     `factor`: the elastic load at each depth over a power of it, 1 on a half-space, as who knows the thickness knows.
+    `inertia`: peak force over what stops the mass within the depth in the contact time.
     """
 
     depth: Array
@@ -44,10 +45,12 @@ class Samples:
     force: Array
     error: Array
     factor: Array
+    bar: float
+    inertia: float
 
     @classmethod
-    def of(cls, history: History, mass: float, factor: Callable[[Array], Array]) -> Samples:
-        """Of a history of one impact of a free mass, kg; `factor` maps depths, m, to that of the load."""
+    def of(cls, history: History, bar: float, mass: float, factor: Callable[[Array], Array]) -> Samples:
+        """Of one impact of a free mass, kg, known to `bar`; `factor` maps depths, m, to that of the load."""
         # what samples need is imported with the first ones
         from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 
@@ -57,11 +60,16 @@ class Samples:
         course = CubicHermiteSpline(time, history.depth[rows], history.velocity[rows])
         rise = PchipInterpolator(time, history.force[rows])
         depth, force = np.maximum(course(at), 0.0), np.maximum(rise(at), 0.0)
-        bar, deepest, peak = np.interp(at, time, history.force_error[rows]), depth.max(), force.max()
-        astray = _twice_integrated(bar, at) / mass
-        stiffness = STEEPEST * force / np.maximum(depth, FIRST * deepest)
-        return cls(depth / deepest, course(at, 1) * duration / deepest, force / peak,
-                   (bar + stiffness * astray) / peak, factor(depth))  # fmt: skip
+        deepest, peak = depth.max(), force.max()
+        return cls(
+            depth / deepest,
+            course(at, 1) * duration / deepest,
+            force / peak,
+            np.interp(at, time, history.force_error[rows]) / peak + BETWEEN,
+            factor(depth),
+            bar + BETWEEN,
+            float(peak * duration**2 / (mass * deepest)),
+        )
 
     @cached_property
     def turn(self) -> int:
@@ -76,7 +84,8 @@ class Samples:
     @property
     def half(self) -> Samples:
         """Every second sample: what a rule of second order errs by is a third of what this changes."""
-        return Samples(self.depth[::2], self.rate[::2], self.force[::2], self.error[::2], self.factor[::2])
+        columns = {name: getattr(self, name)[::2] for name in ("depth", "rate", "force", "error", "factor")}
+        return replace(self, **columns)
 
     def load(self, alpha: float) -> Array:
         """The elastic load at every depth."""
@@ -87,11 +96,17 @@ class Samples:
         """What a reader who knows of no thickness takes it for."""
         return replace(self, factor=np.ones_like(self.factor))
 
+    def moved(self, answer: Array, alpha: float) -> float:
+        """How far the bar moves an exponent `alpha` that answers so to the forces, shape (n,).
 
-def _twice_integrated(values: Array, time: Array) -> Array:
-    step = time[1] - time[0]
-    once = np.cumsum(values) * step
-    return np.asarray(np.cumsum(once) * step)
+        A force that is off puts the depth off, too, whose load then is: by alpha F/depth. Both bars
+        of the force hold, each is off in its own worst shape: the smaller result counts.
+        """
+        earlier = np.maximum(self.time[:, None] - self.time, 0.0) * self.time[1]
+        slope = alpha * self.force / np.maximum(self.depth, FIRST)
+        whole = answer + self.inertia * (answer * slope) @ earlier
+        in_norm = np.linalg.norm(whole) * self.bar * np.linalg.norm(self.force)
+        return float(min(in_norm, np.abs(whole) @ self.error))
 
 
 @dataclass(frozen=True)
@@ -116,8 +131,10 @@ def log_log(samples: Samples) -> ReadExponent:
     loading = np.flatnonzero((samples.depth >= FIRST) & (np.arange(samples.depth.size) <= samples.turn))
     depth, force = np.log(samples.depth[loading]), np.log(samples.force[loading])
     weights = (depth - depth.mean()) / np.sum((depth - depth.mean()) ** 2)
-    moved = samples.error[loading] / samples.force[loading]
-    return ReadExponent(float(weights @ force), float(np.abs(weights) @ moved))
+    answer = np.zeros_like(samples.force)
+    answer[loading] = weights / samples.force[loading]
+    alpha = float(weights @ force)
+    return ReadExponent(alpha, samples.moved(answer, alpha))
 
 
 def hunt_crossley(samples: Samples) -> ReadExponent:
@@ -213,13 +230,13 @@ def _with_rule(law_of: Callable[[Samples], ForceLaw], samples: Samples, starts: 
 
 
 def _fitted(law: ForceLaw, samples: Samples, starts: Sequence[Array]) -> ReadExponent:
-    """The best fit, and how far bars of the force, each of the worst sign, move its exponent."""
+    """The best fit, and how far the history's bar moves its exponent."""
     free = _nearest(law, samples, starts)
     columns, steps = law(free), DIFFERENCE * np.eye(free.size)
     shares = np.linalg.lstsq(columns, samples.force, rcond=None)[0]
     slopes = [(law(free + step) - law(free - step)) @ shares / (2.0 * DIFFERENCE) for step in steps]
     answer = np.linalg.pinv(np.column_stack([*slopes, columns]), rcond=RANK)[0]
-    return ReadExponent(float(free[0]), SAFETY * float(np.abs(answer) @ samples.error))
+    return ReadExponent(float(free[0]), SAFETY * samples.moved(answer, float(free[0])))
 
 
 def _nearest(law: ForceLaw, samples: Samples, starts: Sequence[Array]) -> Array:
