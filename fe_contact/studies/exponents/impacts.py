@@ -48,6 +48,7 @@ TIMES = tuple(np.geomspace(1e-3, 1e2, 13).tolist())  # relaxation times over the
 WIDE = (0.3, 1.0, 3.0)  # contact radii over a layer's thickness, were it relaxed
 FEW_TIMES = (0.1, 1.0)  # in quick
 ON_LAYER = 3.0  # E_i over E_inf on a layer, and of what finite elements prove
+FIRST_DEPTH = 1e-4  # rounding: share of the greatest depth below which the load is the row's
 
 
 class Impact(NamedTuple):
@@ -95,9 +96,6 @@ class Impact(NamedTuple):
     @property
     def _target(self) -> HalfSpace | Layer:
         return HalfSpace() if self.wide is None else Layer(1.0, "bonded")
-
-
-FIRST_DEPTH = 1e-4  # rounding: share of the greatest depth below which the load is the row's
 
 
 @dataclass(frozen=True)

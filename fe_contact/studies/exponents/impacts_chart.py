@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from fe_contact.methods import FE
 from fe_contact.studies import style
-from fe_contact.studies.exponents.impacts import EXACT, READERS, ImpactExponents
+from fe_contact.studies.exponents.impacts import EXACT, ON_LAYER, READERS, ImpactExponents
 from fe_contact.studies.exponents.layers import Profile
 
 PANEL = 1.75  # height of a panel, in
@@ -20,7 +20,7 @@ LINES = [
     "correspondence law, each with its exponent free. Lines: exact histories (Ting); circles: finite elements with "
     "their bars. Grey: Ting's law with its exponent free.",
     "Slow and fast relaxation alike leave an elastic contact, and no bias, on a half-space. On a layer the thickness "
-    "adds its own, which Ting's law on the layer's load curve takes away too.",
+    f"adds its own, which Ting's law on the layer's load curve takes away too; there E_i/E_inf = {ON_LAYER:g}.",
 ]
 
 

@@ -83,7 +83,7 @@ class Samples:
 
     @property
     def half(self) -> Samples:
-        """Every second sample: what a rule of second order errs by is a third of what this changes."""
+        """Every second sample."""
         columns = {name: getattr(self, name)[::2] for name in ("depth", "rate", "force", "error", "factor")}
         return replace(self, **columns)
 
