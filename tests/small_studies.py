@@ -17,7 +17,8 @@ from typing import Any
 
 from fe_contact.cli import main
 from fe_contact.commands import base
-from fe_contact.studies import exponents, rings
+from fe_contact.studies import rings
+from fe_contact.studies.exponents import layers, spheres
 from fe_contact.studies.stability.bars import DEFAULT
 from fe_contact.studies.stability.base import studies
 from fe_contact.studies.table1 import limits
@@ -27,7 +28,7 @@ from fe_contact.studies.tradeoff.tried import ROW
 from lumped.paper.table1 import ROWS
 
 TWO_ROWS = {name: ROWS[name] for name in ("prism", "punch")}
-PROFILES = tuple(one for one in exponents.PROFILES if one.name in ("cone", "cylinder"))
+PROFILES = tuple(one for one in layers.PROFILES if one.name in ("cone", "cylinder"))
 CASES = [{**DEFAULT, "cfl": cfl, "elements": 20, "periods": 1} for cfl in (0.5, 1.0, 2.0, 3.0)]
 ROWS_OF_SPRINGS = tuple((ROW, {"elements": count}) for count in (25, 50))
 FEW_STEPS = ({"steps": 100}, {"steps": 200})
@@ -40,11 +41,20 @@ COMMANDS = {
     "waves": ["tradeoff", "rod", "--quick"],
     "stability": ["stability", "--quick"],
 }
+CHARTS = {
+    "table1.chart": "plot_table1",
+    "exponents.layers_chart": "plot_layers",
+    "exponents.impacts_chart": "plot_impacts",
+    "rings_chart": "plot_rings",
+    "tradeoff.chart": "plot_tradeoff",
+    "stability._chart": "plot_stability",
+}
 SMALLER: dict[ModuleType, dict[str, Any]] = {
     table1: {"ROWS": TWO_ROWS, "RATIOS": (0.0, 0.45), "SHALLOW": table1.SHALLOW[::2], "DEEP": table1.DEEP[::8]}
     | {"power_law_impacts": lambda *_: None},
     limits: {"WIDTHS": limits.WIDTHS[::4]},
-    exponents: {"PROFILES": PROFILES, "FEW_POINTS": 6} | {"SUPPORTS": ("free",), "SHARES": exponents.SHARES[::3]},
+    layers: {"PROFILES": PROFILES, "FEW_POINTS": 6},
+    spheres: {"SUPPORTS": ("free",), "SHARES": spheres.SHARES[::3]},
     rings: {"PACKAGED": ("rod-in-ring", "polymer-washer"), "STRAINS": rings.STRAINS[::4], "STRUCK_STRAINS": ()},
     tradeoff: {"TIGHTEST": 1e-5, "variations": lambda scene, *_: iter(FEW_STEPS if scene.model.inertia else ())}
     | {"asked_laws": lambda scene, _: FEW_LAWS if scene.model.inertia else ROWS_OF_SPRINGS},
@@ -66,10 +76,9 @@ for module, changes in SMALLER.items():
         setattr(module, key, value)
 
 if __name__ == "__main__":
-    for place in ("table1.chart", "exponents_chart", "rings_chart", "tradeoff.chart", "stability._chart"):
-        name = place.replace(".", "_").partition("_")[0]  # charts follow from the rows
+    for place, name in CHARTS.items():  # charts follow from the rows
         chart = sys.modules[f"fe_contact.studies.{place}"] = ModuleType(name)
-        setattr(chart, f"plot_{name}", lambda *_: ())
+        setattr(chart, name, lambda *_: ())
     base.folder = begun
     asked = zip(sys.argv[1::2], sys.argv[2::2], strict=True)
     sys.exit(max([main([*COMMANDS[study], "--out", where, "--quiet"]) for study, where in asked]))

@@ -1,15 +1,15 @@
 """From the half-space to the thin layer: local exponent and D over contact radius, by profile, base and nu.
 
 Lengths count in thicknesses h, depths and forces in the profile's height at r = h: where strains are small, one curve
-speaks for every steepness. Finite elements check points on the curves, and tell how far two equal spheres of their true
-size are from Hertz's half-spaces: F/F_Hertz - 1 goes as a/R.
+speaks for every steepness. Finite elements check points on the curves. Every exponent here is local, the slope
+d ln F/d ln depth at a point.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -19,8 +19,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.studies import journal
-from fe_contact.studies.files import Line, lines_of, write_study
-from lumped.indentation import FiniteSize
+from fe_contact.studies.files import Line, lines_of
 from lumped.load_curves.half_space import HalfSpaceCurve
 from lumped.load_curves.layer import LayerCurve, LayerPunch, LineLayer, PointLayer
 from lumped.load_curves.plane_contact import ParabolaProfile
@@ -36,9 +35,7 @@ from lumped.shapes.cylinder import Cylinder
 from lumped.shapes.power import PowerProfile
 from lumped.shapes.punch import Punch
 from lumped.shapes.sphere import Sphere
-from lumped.targets._round import SUPPORTS
 from lumped.targets.layer import Layer
-from lumped.targets.sphere import SphereTarget
 
 INCOMPRESSIBLE = 0.5  # physics: Poisson's ratio
 FULL, QUICK = (0.0, 0.3, 0.45, 0.49, INCOMPRESSIBLE), (0.3, INCOMPRESSIBLE)  # Poisson's ratios of bonded layers
@@ -52,10 +49,7 @@ ANY = 0.3  # nu on a sliding base, where it does not count
 TRIED = (0.1, 1.0, 5.0)  # contact radii over thickness at which finite elements check the row
 PLACES = {("bonded", 0.3): TRIED, ("bonded", 0.49): TRIED[1:], ("sliding", None): TRIED[1:2]}
 QUICK_PLACES = {("bonded", 0.3): TRIED[1:2]}
-RATIOS, FEW_RATIOS = (0.0, 0.3, 0.49), (0.3,)  # Poisson's ratios of two spheres, in full and quick
-SHARES = np.geomspace(0.01, 0.1, 7)  # a/R of two spheres
 KEPT = "exponents.jsonl"
-SCHEMA = "fe-contact/exponents/1"
 
 
 @dataclass(frozen=True)
@@ -329,76 +323,3 @@ def _exact(profile: Profile, layer: PointLayer, ratio: float) -> tuple[float, fl
         return SMALL, float(LayerPunch(ratio, layer).stiffness) * SMALL, 1.0
     here = profile.on(layer).at(np.asarray(ratio))
     return float(here.depth), float(here.force), float(here.stiffness * here.depth / here.force)
-
-
-@dataclass(frozen=True, eq=False)
-class Pair:
-    """Two equal spheres, the struck one `support`-ed; `size`: how far their force is from Hertz's over a/R."""
-
-    support: str
-    nu: float
-    size: FiniteSize
-    converged: bool
-
-    def to_dict(self) -> Table:
-        """Its part of exponents.json."""
-        return {"support": self.support, "nu": self.nu, "converged": self.converged, **self.size.to_dict()}
-
-    @property
-    def lines(self) -> list[Line]:
-        """Its lines of finite_spheres.csv."""
-        size = self.size
-        numbers = {"a_over_R": size.share, "F_over_Hertz_minus_1": size.deviation, "error": size.error}
-        return lines_of({"support": self.support, "nu": self.nu, **numbers})
-
-    @property
-    def told(self) -> str:
-        """One line for a person."""
-        slope, terms = asdict(self.size.slope), self.size.terms
-        formula = f"{terms['c'].value:.4f} {terms['k'].value:+.4f} ln x {terms['d'].value:+.4f} x"
-        return (
-            f"two spheres  {self.support}, nu = {self.nu:g}: F/F_Hertz - 1 = x ({formula}), x = a/R; "
-            f"slope {slope['value']:.4f} +- {slope['error']:.0e} up to x = {self.size.share.max():.2g}"
-        )
-
-
-def pairs(quick: bool, where: Path, progress: Progress = silent) -> tuple[Pair, ...]:
-    """Both supports with each nu; rows are kept in the folder `where`. Raises NotReached."""
-    calls = {
-        f"finite spheres, {support}, nu = {nu:g}": partial(pair, support, nu)
-        for support in SUPPORTS
-        for nu in (FEW_RATIOS if quick else RATIOS)
-    }
-    return tuple(journal.rows(where / KEPT, calls, progress).values())
-
-
-def pair(support: str, nu: float) -> Pair:
-    """Two unit spheres of one material at contact radii `SHARES`; raises NotReached."""
-    alike = Material(Relaxation(1.0), nu)
-    scene = Indenter(Sphere(1.0), alike, target=SphereTarget(1.0, support), striker_material=alike)
-    found = indent(scene, tuple(map(float, 2.0 * SHARES**2)), {"tolerance": TOLERANCE})
-    assert found.finite_size is not None
-    return Pair(support, nu, found.finite_size, found.converged)
-
-
-def write_exponents(
-    curves: Sequence[ExponentCurve], checks: Sequence[Check], pairs: Sequence[Pair], where: Path
-) -> Table:
-    """Write ``exponents.csv``, ``finite_spheres.csv`` and ``exponents.json`` into a folder; the content of the last."""
-    content = {
-        "schema": SCHEMA,
-        "curves": [curve.to_dict() for curve in curves],
-        "checks": [asdict(check) | {"covered": check.covered} for check in checks],
-        "finite_spheres": [pair.to_dict() for pair in pairs],
-        "all_covered": all(check.covered for check in checks),
-    }
-    points = [line for curve in curves for line in curve.lines] + [check.line for check in checks]
-    spheres = [line for pair in pairs for line in pair.lines]
-    return write_study(where, "exponents", content, {"exponents": points, "finite_spheres": spheres})
-
-
-def missed(checks: Sequence[Check], pairs: Sequence[Pair]) -> str:
-    """How often finite elements missed their tolerance; empty where never."""
-    reached = [*(check.converged for check in checks), *(pair.converged for pair in pairs)]
-    count = reached.count(False)
-    return f"tolerance not reached at {count} of {len(reached)} places checked by finite elements" if count else ""

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from fe_contact.studies import style
-from fe_contact.studies.exponents import Check, ExponentCurve
+from fe_contact.studies.exponents.layers import Check, ExponentCurve
 from fe_contact.studies.style import Look
 
 PANEL = 2.35  # height of a panel, in
@@ -34,7 +34,7 @@ LINES = [
 ]
 
 
-def plot_exponents(curves: Sequence[ExponentCurve], checks: Sequence[Check], where: Path) -> tuple[Path, Path]:
+def plot_layers(curves: Sequence[ExponentCurve], checks: Sequence[Check], where: Path) -> tuple[Path, Path]:
     """Write ``exponents.svg`` and ``exponents.png`` into the folder ``where``; their paths."""
     rows = len(ROWS) + 1
     title = "Exponents between half-space and thin layer"
