@@ -46,14 +46,18 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The layer at rest; ``radii``, m: between which the contacts will end."""
     target = indenter.target
     assert isinstance(target, Layer)
-    rim = indenter.shape.fixed_radius
-    zone = Zone.of(radii) if rim is None else Zone(rim, 1.0)
-    thickness = thickness_over(zone.reference, target.thickness)
+    reference, smallest = _pressed(indenter.shape.fixed_radius, Zone.of(radii))
+    thickness = thickness_over(reference, target.thickness)
     refinement = LINE_REFINEMENT if indenter.shape.plane else REFINEMENT
     elements, width = refinement * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
-    sizes, bonded = (elements, zone.smallest if rim is None else None, thickness, width), target.base == "bonded"
+    sizes, bonded = (elements, smallest, thickness, width), target.base == "bonded"
     surface = on_mesh(_body.recipe(sizes, numerics.order, bonded, indenter.shape.plane), indenter.material.nu)
-    return FixedStill(surface, indenter, numerics, zone.reference, zone.reference, thickness)
+    return FixedStill(surface, indenter, numerics, reference, reference, thickness)
+
+
+def _pressed(rim: float | None, zone: Zone) -> tuple[float, float | None]:
+    """The largest contact radius, m, and the smallest over it; of an end with a ``rim``, m, that alone."""
+    return (zone.reference, zone.smallest) if rim is None else (rim, None)
 
 
 def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from lumped import BadInput, Motion, Scene, laws, restitution
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE
 from lumped.scene.tables import LawChoice, Model
-from lumped.solvers.point.bodies import Bodies, Stage
+from lumped.solvers.point.bodies import TINY, Bodies, Stage
 from lumped.solvers.point.contact import motion
 from lumped.solvers.point.track import FIVE, _top
 
@@ -267,6 +267,22 @@ def test_other_units_say_the_same(name: str, mass: float, length: float, time: f
     assert other["duration"] == pytest.approx(one["duration"] * time, rel=1e-11)
     assert other["restitution"] == pytest.approx(one["restitution"], rel=1e-11)
     assert newton_steps(there) == newton_steps(here)
+    bars, others = (laws.get(name).of(case).simulate(case, 1e-3).quantities for case in (here, there))
+    units = {"peak_force": force, "peak_time": time, "duration": time, "restitution": 1.0}
+    for key, unit in (units | {"peak_depth": length, "impulse": mass * length / time}).items():
+        assert others[key].error == pytest.approx(bars[key].error * unit, rel=0.1), key
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_long_steps_too_balance_their_forces(name: str) -> None:
+    """m a + F = m g at every point of every step, to rounding."""
+    law, bodies = laws.get(name).of(scene(name, **OWN[name])), Bodies(MASS, VELOCITY, 9.81)
+    found = motion(law, bodies, "force", 1, 10.0, 0.1)
+    steps = [(phase.stage, step) for phase in found.contacts[0].phases for step in phase.steps]
+    peak = max(step.force.max() for _, step in steps)
+    for stage, step in steps:
+        force = law.force(np.maximum(step.depth, TINY), step.rate, stage)
+        assert step.force == pytest.approx(force, rel=0.0, abs=1e-12 * peak)
 
 
 def newton_steps(case: Scene) -> int:
