@@ -46,7 +46,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The layer at rest; ``radii``, m: between which the contacts will end."""
     target = indenter.target
     assert isinstance(target, Layer)
-    reference, smallest = _pressed(indenter.shape.fixed_radius, Zone.of(radii))
+    reference, smallest = _pressed(indenter.shape.fixed_radius, radii)
     thickness = thickness_over(reference, target.thickness)
     refinement = LINE_REFINEMENT if indenter.shape.plane else REFINEMENT
     elements, width = refinement * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
@@ -55,9 +55,12 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     return FixedStill(surface, indenter, numerics, reference, reference, thickness)
 
 
-def _pressed(rim: float | None, zone: Zone) -> tuple[float, float | None]:
-    """The largest contact radius, m, and the smallest over it; of an end with a ``rim``, m, that alone."""
-    return (zone.reference, zone.smallest) if rim is None else (rim, None)
+def _pressed(rim: float | None, radii: Array) -> tuple[float, float | None]:
+    """The largest of contact ``radii``, m, and the smallest over it; of an end with a ``rim``, m, that alone."""
+    if rim is not None:
+        return rim, None
+    zone = Zone.of(radii)
+    return zone.reference, zone.smallest
 
 
 def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:
