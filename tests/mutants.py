@@ -100,6 +100,9 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/runs.py", "Runs.placed", ""): BEGINS,
     ("fe_contact/budget/plan.py", "_answer", ""): BEGINS,
     ("fe_contact/budget/plan.py", "half_space_stiffness", ""): BEGINS,
+    ("fe_contact/budget/plan.py", "plan", "1.0 ->"): BEGINS,
+    ("fe_contact/budget/runs.py", "PLACINGS", ""): BEGINS,
+    ("fe_contact/indentation.py", "settings", "ELEMENTS *"): BEGINS,
     # a guess that Newton's method, a secant or a check of every step corrects
     ("fe_contact/contact/problem.py", "_answered", "springs * lifted -> springs"): GUESS,
     ("fe_contact/contact/problem.py", "_Point.towards", ""): GUESS,
@@ -127,7 +130,10 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/steppers/scaled_surface.py", "Stepper._guesses", "1.0 ->"): GUESS,
     ("fe_contact/steppers/struck.py", "FixedContact._by_secants", "steps[-1].force if steps"): GUESS,
     ("lumped/solvers/point/memory.py", "StepLoad.tangents", ""): GUESS,
+    ("fe_contact/steppers/struck.py", "FixedContact._guesses", ""): GUESS,
     # how much work is done, or told, before the same answer
+    ("fe_contact/waves/line.py", "STEP", ""): WORK,
+    ("lumped/solvers/point/phase.py", "solved", "size <= ROUNDING * scale or"): WORK,
     ("fe_contact/budget/refine.py", "dominant", ""): WORK,
     ("fe_contact/budget/refine.py", "DOMINANT", ""): WORK,
     ("fe_contact/budget/refine.py", "FACTOR", ""): WORK,
@@ -173,6 +179,18 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("lumped/paper/table1.py", "ConeRow.length", ""): "a length that a cone does not have",
     ("lumped/paper/table1.py", "ROWS", ""): "the body that a study takes where a file names none",
     # the same but for rounding, or a bar that is wider and never narrower
+    ("fe_contact/waves/line.py", "_largest", "2.0 "): "how far beside a row, in rounding",
+    ("fe_contact/waves/line.py", "_largest", "1.0 ->"): "how far beside a row, in rounding",
+    (
+        "fe_contact/waves/line.py",
+        "_largest",
+        "ROUNDING * end * np",
+    ): "either side of a row, which its neighbour looks at",
+    ("fe_contact/waves/line.py", "_largest", "np.stack"): "either side of a row, which its neighbour looks at",
+    ("fe_contact/waves/line.py", "_largest", "COMPARED - 1 -> COMPARED + 1"): "the place beside, well within AWAY",
+    ("fe_contact/waves/line.py", "_largest", "1 ->"): "the place beside, well within AWAY",
+    ("fe_contact/budget/certify.py", "_time_steps", "FALLS *"): "under which cause a jitter stands in the same bar",
+    ("fe_contact/waves/certify.py", "_smoothed", "rows[min(number + REACH"): "another smoothing, about as wide",
     ("fe_contact/steppers/stacked.py", "stacked", "if shares"): "the same forces, found at nodes instead of points",
     ("fe_contact/steppers/stacked.py", "_together", "1.0 ->"): "the unit of moduli that are divided again",
     (

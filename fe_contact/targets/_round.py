@@ -134,7 +134,7 @@ _operator = cached(operator_of)
 @cached
 def _meshed(elements: float, order: int, smallest: float, contact: float, support: bool, in_plane: bool) -> ElasticBody:
     """Of unit radius, points and ``contact`` in rad from the pole; ``support``: whether it is held."""
-    mesh = made(meshes.cylinder if in_plane else meshes.sphere, elements, smallest, contact, order)
+    mesh = made(meshes.cylinder if in_plane else meshes.sphere, elements, smallest, contact, order, support)
     basis = basis_on(mesh, order)
     around = 1.0 if in_plane else 2.0 * np.pi * np.asarray(basis.global_coordinates())[0]
     return ElasticBody(

@@ -46,14 +46,21 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The layer at rest; ``radii``, m: between which the contacts will end."""
     target = indenter.target
     assert isinstance(target, Layer)
-    rim = indenter.shape.fixed_radius
-    zone = Zone.of(radii) if rim is None else Zone(rim, 1.0)
-    thickness = thickness_over(zone.reference, target.thickness)
+    reference, smallest = _pressed(indenter.shape.fixed_radius, radii)
+    thickness = thickness_over(reference, target.thickness)
     refinement = LINE_REFINEMENT if indenter.shape.plane else REFINEMENT
     elements, width = refinement * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
-    sizes, bonded = (elements, zone.smallest if rim is None else None, thickness, width), target.base == "bonded"
+    sizes, bonded = (elements, smallest, thickness, width), target.base == "bonded"
     surface = on_mesh(_body.recipe(sizes, numerics.order, bonded, indenter.shape.plane), indenter.material.nu)
-    return FixedStill(surface, indenter, numerics, zone.reference, zone.reference, thickness)
+    return FixedStill(surface, indenter, numerics, reference, reference, thickness)
+
+
+def _pressed(rim: float | None, radii: Array) -> tuple[float, float | None]:
+    """The largest of contact ``radii``, m, and the smallest over it; of an end with a ``rim``, m, that alone."""
+    if rim is not None:
+        return rim, None
+    zone = Zone.of(radii)
+    return zone.reference, zone.smallest
 
 
 def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:

@@ -7,6 +7,7 @@ import json
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,7 +16,7 @@ import pytest
 
 import fe_contact
 from fe_contact.cli import main
-from fe_contact.waves.targets._block import PAUSE
+from fe_contact.waves.targets._block import PAUSE, plan, run
 from lumped import Scene
 from lumped.errors import BadInput
 from lumped.result.result import Result
@@ -253,3 +254,24 @@ def test_an_end_before_the_separation_is_no_separation() -> None:
     assert not result.separated
     assert result.quantities["duration"].value is None
     assert result.history.time[-1] == pytest.approx(0.3, abs=0.01)
+
+
+@pytest.mark.parametrize("pace", [1.0, 10.0])
+def test_contacts_a_short_flight_apart_are_two(pace: float) -> None:
+    """Less than an echo apart, the second where the exact waves have it, also of a bar with a faster clock."""
+    faster = {"striker.material.E": 900.0 * pace**2, "striker.velocity": 10.0 * pace, "model.gravity": 25.0 * pace**2}
+    scene, echo = Scene.load("bar", faster), ECHO / pace
+    found = run(scene, plan(scene, {}).numerics)
+    exact = bounces(StraightBar(10.0, 30.0 * pace, 30.0 * pace), 10.0 * pace, 25.0 * pace**2, 0.0, 3.0 * echo)
+    touches = [piece.start for before, piece in pairwise(exact.pieces) if piece.closed and not before.closed]
+    assert [one["start"] for one in found.contacts] == pytest.approx([0.0, *touches], abs=0.02 * echo)
+    first = found.contacts[0]["duration"] or 0.0
+    assert 0.5 * echo < touches[0] - first < 0.9 * echo
+
+
+def test_a_march_of_one_contact_ends_with_it() -> None:
+    scene = Scene.load("bar-impact")
+    numerics = plan(scene, {}).numerics
+    found = run(scene, numerics)
+    duration = found.reading.quantities["duration"] or 0.0
+    assert found.steps <= 1.02 * numerics.steps * duration / ECHO

@@ -17,7 +17,7 @@ from fe_contact.bodies.memory import SurfaceMemory, area_weights
 from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs
 from fe_contact.cli import main
-from fe_contact.march.impacts import Released
+from fe_contact.march.impacts import Released, _fallen
 from fe_contact.steppers.steps import Strike
 from lumped.laws import mdr
 from lumped.materials import Relaxation
@@ -264,3 +264,11 @@ def test_the_packaged_ball_bounces_on_the_command_line(tmp_path: Path, capsys: p
     assert [contact["restitution"] is not None for contact in content["contacts"]] == [True] * 4
     assert "contact 4 at " in capsys.readouterr().out
     assert not (tmp_path / "recovery.csv").exists(), "that is told of a surface which is left alone"
+
+
+@pytest.mark.parametrize("height", [1e-9, 1.0, 1e3])
+@pytest.mark.parametrize("close", [1.5, 2.0, 9.0])
+def test_a_flight_ends_where_the_gap_closes_after_its_top(height: float, close: float) -> None:
+    """Also long after twice the time of the top, where the surface goes on to recover."""
+    assert _fallen(lambda time: height * time * (close - time), 1.0) == pytest.approx(close, rel=1e-12)
+    assert _fallen(lambda time: -height, 1.0) is None

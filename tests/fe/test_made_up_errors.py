@@ -14,7 +14,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, Causes
 from fe_contact.budget.certify import _rows, _time_steps, trust
 from fe_contact.budget.curve import Curve, extrapolated
-from fe_contact.budget.several import _error
+from fe_contact.budget.several import _error, _late
 from fe_contact.budget.variation import SAFETY, Softening, Variation
 from fe_contact.settings import Numerics
 from fe_contact.steppers.steps import Strike
@@ -336,3 +336,13 @@ def test_the_steps_that_count_are_seconds_however_long_the_contact(settings: Num
         found = _time_steps(lambda one, runs=runs: runs[one.steps], settings.varied(contact_time=unit), False)
         errors.append([change.errors["peak_force"] if change else np.inf for change in found.changes])
     assert errors[1] == pytest.approx(errors[0], rel=1e-6)
+
+
+def test_a_later_contact_that_comes_late_moves_its_own_force() -> None:
+    """By what the force changes in that time, counted from its own touch."""
+    touched, late, share = 2.0, 0.01, np.linspace(0.05, 0.95, 181)
+    curve = replace(TRUTH, strike=replace(STRIKE, touched_at=touched))
+    force = [(4.0 * moved * (1.0 - moved)) ** 1.5 for moved in (share - late, share, share + late)]
+    expected = np.maximum(abs(force[0] - force[1]), abs(force[2] - force[1]))
+    assert _late(curve, touched + share, late) == pytest.approx(expected, abs=1e-3)
+    assert expected.max() > 0.02

@@ -14,9 +14,13 @@ import numpy as np
 import pytest
 
 import fe_contact
+from fe_contact.budget.certify import MESH_ORDER_ANYWHERE, other_mesh
+from fe_contact.budget.plan import plan
 from fe_contact.fields import felt, peak_step
 from fe_contact.reference import solve
+from fe_contact.steppers.struck import Deformable
 from fe_contact.studies.compare.study import known
+from fe_contact.targets.base import struck
 from lumped import Material, Relaxation, Result, Scene, Sphere, laws, simulate
 from lumped.shapes.cylinder import Cylinder as Roller
 from lumped.shapes.punch import Punch
@@ -107,6 +111,33 @@ def test_two_materials_of_different_nu_agree_with_finer_settings(
         scene = Scene(shape, 0.01, 0.05, solid(rng, 5e-3), target=target, striker_material=solid(rng, 5e-3))
         finer = {"elements_per_contact": 3.3, "penalty": 4e3, "steps": 80, "tolerance": 0.1}
         agree(fe_contact.run(scene, TOLERANCE), fe_contact.run(scene, numerics=finer))
+
+
+@pytest.mark.parametrize("order", [3, 4])
+@pytest.mark.parametrize("shape", [Roller(0.01, 0.02), Sphere(0.01)])
+def test_half_as_many_elements_tell_what_the_rim_of_a_support_adds(shape: Roller | Sphere, order: int) -> None:
+    """There stresses have no bound, least of all those of a nearly incompressible body. A fiftieth of the tolerance
+    is left to the other bars.
+    """
+    target = Ball(0.015, "held") if isinstance(shape, Sphere) else CylinderTarget(0.015, "held")
+    scene = Scene(shape, 0.02, 0.05, Material(Relaxation(YOUNG), 0.49), target=target)
+    numerics = plan(scene, {"order": order, "elements_per_contact": 2.0, "tolerance": TOLERANCE}).numerics
+    half, trusted = other_mesh(numerics, MESH_ORDER_ANYWHERE)
+    found = []
+    for settings in (half, numerics, numerics.varied(order=4, elements_per_contact=4.0)):
+        surface = struck(scene.geometry, settings)
+        assert isinstance(surface, Deformable)
+        found.append(work(surface, 0.25 * numerics.contact_radius / target.radius))
+    coarse, own, fine = found
+    assert abs(own - fine) <= trusted * abs(own - coarse) + TOLERANCE / 50 * fine
+
+
+def work(surface: Deformable, width: float) -> float:
+    """Of a smooth pressure over about such an angle, on the displacement that it causes, over its force squared."""
+    operator = surface.operator
+    pressure = operator.weights * np.exp(-((operator.points / width) ** 2))
+    load = operator.trace.T @ pressure
+    return float(load @ operator.response[: load.size] @ load) / float(pressure.sum()) ** 2
 
 
 def test_action_is_reaction(uncovered: Callable[..., dict[str, float]]) -> None:

@@ -146,6 +146,19 @@ def test_the_cost_of_waves_is_known_before(name: str, monkeypatch: pytest.Monkey
     assert 0.5 < share < 2.0
 
 
+def test_the_foretold_work_grows_with_unknowns_but_a_step_has_its_own() -> None:
+    """And with every contact that is expected."""
+    numerics = WAVES.get("rod").plan(Scene.load("rod"), {}).numerics
+    few, twice = (plan.Cost.of(unknowns, numerics, 1) for unknowns in (200, 400))
+    assert 0.0 < few.work < twice.work < 2.0 * few.work
+    assert few.steps >= numerics.steps
+    assert plan.Cost.of(200, numerics, 3).work > 3.0 * few.work
+    assert plan.Cost.of(200, numerics, 1000).work == plan.Cost.of(200, numerics, 100).work
+    judged = plan.Cost.of(200, numerics, 1, 300)
+    assert (judged.unknowns, judged.work > few.work) == (300, True)
+    assert plan.Cost.of(200, numerics.varied(peak_share=1e-3), 1).steps > numerics.steps
+
+
 def test_waves_that_cost_too_much_are_refused_before_the_first_step(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(plan, "MOST_WORK", 1e3)
     monkeypatch.setattr(WaveRuns, "follow", lambda *_: pytest.fail("marched"))

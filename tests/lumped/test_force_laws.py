@@ -16,7 +16,9 @@ from hypothesis import strategies as st
 from lumped import BadInput, Motion, Scene, laws, restitution
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE
 from lumped.scene.tables import LawChoice, Model
-from lumped.solvers.point.bodies import Bodies, Stage
+from lumped.solvers.point.bodies import TINY, Bodies, Stage
+from lumped.solvers.point.contact import motion
+from lumped.solvers.point.track import FIVE, _top
 
 OF_GEOMETRY = {"correspondence", "ting", "mdr", "rod_waves", "bar_waves"}
 NAMES = sorted(set(laws.available()) - OF_GEOMETRY)
@@ -247,9 +249,9 @@ def test_the_force_s_own_impulse_is_the_change_of_momentum(name: str, exit: str)
     assert result.quantities["impulse"].value == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.parametrize(("mass", "length", "time"), [(1e3, 1e-2, 60.0), (1e-3, 1e2, 1e11)])
 @pytest.mark.parametrize("name", NAMES)
-def test_other_units_say_the_same(name: str) -> None:
-    mass, length, time = 1e3, 1e-2, 60.0
+def test_other_units_say_the_same(name: str, mass: float, length: float, time: float) -> None:
     law = laws.get(name).of(scene(name, **OWN[name]))
     alpha, force = getattr(law, "alpha", 1.5), mass * length / time**2
     dimension = {
@@ -259,11 +261,35 @@ def test_other_units_say_the_same(name: str) -> None:
         "c": force * time / length ** (alpha + 1.0) if name == "khatiwada" else mass / time,
     }
     values = {key: value * dimension.get(key, 1.0) for key, value in {"k": K, **OWN[name]}.items()}
-    one = quantities(scene(name, **OWN[name]), 1e-6)
-    other = quantities(scene(name, MASS * mass, VELOCITY * length / time, **values), 1e-6)
+    here, there = scene(name, **OWN[name]), scene(name, MASS * mass, VELOCITY * length / time, **values)
+    one, other = quantities(here, 1e-6), quantities(there, 1e-6)
     assert other["peak_force"] == pytest.approx(one["peak_force"] * force, rel=1e-11)
     assert other["duration"] == pytest.approx(one["duration"] * time, rel=1e-11)
     assert other["restitution"] == pytest.approx(one["restitution"], rel=1e-11)
+    assert newton_steps(there) == newton_steps(here)
+    bars, others = (laws.get(name).of(case).simulate(case, 1e-3).quantities for case in (here, there))
+    units = {"peak_force": force, "peak_time": time, "duration": time, "restitution": 1.0}
+    for key, unit in (units | {"peak_depth": length, "impulse": mass * length / time}).items():
+        assert others[key].error == pytest.approx(bars[key].error * unit, rel=0.1), key
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_long_steps_too_balance_their_forces(name: str) -> None:
+    """m a + F = m g at every point of every step, to rounding."""
+    law, bodies = laws.get(name).of(scene(name, **OWN[name])), Bodies(MASS, VELOCITY, 9.81)
+    found = motion(law, bodies, "force", 1, 10.0, 0.1)
+    steps = [(phase.stage, step) for phase in found.contacts[0].phases for step in phase.steps]
+    peak = max(step.force.max() for _, step in steps)
+    for stage, step in steps:
+        force = law.force(np.maximum(step.depth, TINY), step.rate, stage)
+        assert step.force == pytest.approx(force, rel=0.0, abs=1e-12 * peak)
+
+
+def newton_steps(case: Scene) -> int:
+    """Of all steps of an impact."""
+    bodies = Bodies(case.reduced_mass, case.velocity)
+    found = motion(laws.get(case.law.name).of(case), bodies, "force", 1, case.end_time, 1e-6)
+    return sum(step.iterations for contact in found.contacts for phase in contact.phases for step in phase.steps)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -370,7 +396,6 @@ def test_one_contact_is_cheap(name: str, spent: Callable[..., int]) -> None:
 @pytest.fixture
 def spent(monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
     from lumped.solvers.point import phase
-    from lumped.solvers.point.contact import motion
 
     count, solve = [0], phase.solved
 
@@ -463,3 +488,16 @@ def test_a_striker_come_to_rest_under_gravity_has_an_impulse(name: str, damping:
     history, impulse = result.history, result.quantities["impulse"].value
     assert impulse == pytest.approx(MASS * (0.3 + 9.81 * history.time[-1]), rel=1e-6)
     assert impulse == pytest.approx(np.trapezoid(history.force, history.time), rel=1e-4)
+
+
+@pytest.mark.parametrize("lean", [-1.1, 0.4, 1.1])
+@pytest.mark.parametrize("top", [0.02, 0.31, 0.5, 0.83, 0.98])
+def test_the_peak_of_a_quartic_force_is_its_top(top: float, lean: float) -> None:
+    away = FIVE - top
+    assert _top(3.0 - away**2 * (2.0 + lean * away + 0.9 * away**2)) == pytest.approx((top, 3.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("force", [FIVE, FIVE**2, 1.0 - (1.2 - FIVE) ** 3, -((FIVE - 1.02) ** 4)])
+def test_a_force_that_only_rises_or_falls_peaks_at_an_end(force: np.ndarray) -> None:
+    for place, values in ((1.0, force), (0.0, force[::-1])):
+        assert _top(values) == pytest.approx((place, force[-1]), abs=1e-13)

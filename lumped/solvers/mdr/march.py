@@ -27,6 +27,7 @@ from lumped.solvers.mdr.row import (
     followed,
     followed_bend,
     left,
+    none,
     stretched,
     yielding,
 )
@@ -164,19 +165,19 @@ def grown(row: SpringsInRow, now: Instant, h: float) -> RowStep:
     faded = fadings(modulus, h)
     rate, width, pressed = _rate(row, now, h, faded)
     rest = now.depth + rate * (h - pressed)
-    shortly, fresh = fadings(modulus, pressed), [0.0] * len(faded)
+    shortly, fresh = fadings(modulus, pressed), none(modulus).kept
     even, own = stretched(modulus, row.even, faded, rate), stretched(modulus, fresh, shortly, rate)
     joined = Springs.one(width, rest, [z - mine for z, mine in zip(even, own, strict=True)])
     springs = row.springs.aged([fade.left for fade in faded]).plus(joined)
     spent = row.springs.spent(modulus, row.even, faded, h, rate)
-    spent += Springs(width, 0.0, 0.0, fresh, fresh).spent(modulus, fresh, shortly, pressed, rate)
+    spent += Springs.one(width, rest, fresh).spent(modulus, fresh, shortly, pressed, rate)
     velocity, depth, edge = 2.0 * rate - now.velocity, now.depth + h * rate, now.edge + width
     axis = followed(modulus, row.axis, faded, now.velocity, velocity, h)
     kept = _kept(row, now, (velocity, edge, now.edge * rate + width * (depth - rest) / h), axis, faded, h)
     lately = [k - before * fade.left for k, before, fade in zip(kept, row.kept, faded, strict=True)]
     instant = row.instant(now.time + h, depth, velocity, edge, springs, axis, kept)
     place = Place(instant.time, depth, edge, axis, joined, lately)
-    return RowStep(instant, springs, even, axis, kept, spent, 0.0, place)
+    return RowStep(instant, springs, even, axis, kept, spent, place=place)
 
 
 def _kept(

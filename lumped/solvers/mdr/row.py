@@ -202,7 +202,7 @@ class RowStep(NamedTuple):
     axis: Values
     kept: Values
     spent: float
-    released: float
+    released: float = 0.0
     place: Place | None = None
 
 

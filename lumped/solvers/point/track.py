@@ -25,7 +25,7 @@ EARLY = 1e-6
 # Half the widths of the quartics through which a peak is found, in that of its surroundings, and their points.
 CLOSER = (0.5, 0.1, 0.03)
 FIVE = np.linspace(0.0, 1.0, 5)  # places through which the quartic is laid
-QUARTIC = np.linalg.inv(np.vander(FIVE, increasing=True))
+QUARTIC = np.linalg.inv(np.vander(FIVE))
 NEWTONS = 8  # work: steps to the top of a quartic
 
 
@@ -221,13 +221,18 @@ def _vertex(track: PointTrack, phase: PointPhase, places: Array) -> tuple[float,
 
 def _top(values: Array) -> tuple[float, float]:
     """The place in [0, 1] and the height of the top of the quartic with these values at FIVE, by Newton's method."""
-    c = (QUARTIC @ values).tolist()
-    place, height = float(FIVE[values.argmax()]), float(values.max())
+    quartic, place = (QUARTIC @ values).tolist(), float(FIVE[values.argmax()])
     for _ in range(NEWTONS):
-        tilt = c[1] + place * (2.0 * c[2] + place * (3.0 * c[3] + place * 4.0 * c[4]))
-        bent = 2.0 * c[2] + place * (6.0 * c[3] + place * 12.0 * c[4])
-        following = min(max(place - tilt / bent, 0.0), 1.0) if bent < 0.0 else place
-        if following == place:
-            break
-        place = following
-    return place, max(height, c[0] + place * (c[1] + place * (c[2] + place * (c[3] + place * c[4]))))
+        _, tilt, bent = _horner(quartic, place)
+        place = min(max(place - tilt / bent, 0.0), 1.0) if bent < 0.0 else place
+    return place, _horner(quartic, place)[0]
+
+
+def _horner(polynomial: list[float], place: float) -> tuple[float, float, float]:
+    """Value, slope and curvature of a polynomial, highest power first: Horner's scheme and its derivatives."""
+    value, slope, half_bent = 0.0, 0.0, 0.0
+    for coefficient in polynomial:
+        half_bent = half_bent * place + slope
+        slope = slope * place + value
+        value = value * place + coefficient
+    return value, slope, 2.0 * half_bent

@@ -1,0 +1,132 @@
+"""Marches of waves along a line that are made up: the truth is known, and how their steps err, also by chance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.variation import SAFETY
+from fe_contact.waves.line import AWAY, Line, Run
+from fe_contact.waves.line_reading import FORCE, TIME, RodReading
+from fe_contact.waves.targets._block import plan
+from lumped import Scene
+
+END = 1e-6  # s: no step, no front and no rounding may count in seconds
+MASS, SPEED, PUSH = 2.0, 3.0, 5.0
+GAP = 0.25  # of END, between two contacts
+
+
+def reading(rows: Array) -> RodReading:
+    """What these rows say; the force is all that moves the mass."""
+    time, force = rows[TIME], rows[FORCE]
+    impulse = float(np.trapezoid(force, time))
+    quantities = {
+        "peak_force": float(force.max()),
+        "peak_time": float(time[force.argmax()]),
+        "peak_depth": float(rows[1].max()),
+        "duration": float(time[-1]),
+        "restitution": float(-rows[2, -1] / SPEED),
+        "impulse": impulse,
+        "history_l2": 0.0,
+    }
+    return RodReading(rows, MASS, True, quantities)
+
+
+def pushed(time: Array, force: Array) -> Run:
+    """A march that ends with its one contact."""
+    passed = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (force[1:] + force[:-1]))])
+    speed = SPEED - passed / MASS
+    depth = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (speed[1:] + speed[:-1]))])
+    rows = np.array([time, depth, speed, force, np.zeros_like(time)])
+    return Run(reading(rows), {}, time.size - 1, time.size, ({"start": 0.0, "duration": END},))
+
+
+def swelling(error: Callable[[Array], Array] = np.zeros_like) -> Run:
+    """A smooth push, wrong by so much at shares of its time."""
+    share = np.linspace(0.0, 1.0, 401)
+    return pushed(END * share, PUSH * (np.sin(np.pi * share) + error(share)))
+
+
+def falling(late: float) -> Run:
+    """A push that stops between two rows of one time, a share of the end too ``late``, and goes on by half."""
+    share = np.array([0.0, 0.2, 0.5 + late, 0.5 + late, 0.8, 1.0])
+    return pushed(END * share, PUSH * np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5]))
+
+
+def line(fine: Run, half: Run, quarter: Run, **others: Run) -> Line:
+    """Judged as those of a scene whose contact radius is fixed."""
+    scene = Scene.load("bar-impact")
+    return Line(scene, plan(scene, {}).numerics, fine, {"time_step": half, **others}, quarter)
+
+
+def test_the_band_holds_an_error_that_halves_with_the_steps() -> None:
+    """Wherever it is, and no wider than its safety asks for."""
+    for place in (0.02, 0.3, 0.7, 0.98):
+
+        def error(size: float, place: float = place) -> Run:
+            return swelling(lambda share: size * np.exp(-(((share - place) / 0.01) ** 2)))
+
+        history = line(error(0.01), error(0.02), error(0.04)).history()
+        exact = np.interp(history.time, swelling().reading.rows[TIME], swelling().reading.rows[FORCE])
+        assert np.all(np.abs(history.force - exact) <= history.force_error * (1.0 + 1e-9))
+        assert history.force_error.max() <= 1.001 * SAFETY * 0.01 * PUSH
+        far = np.abs(history.time / END - place) > 0.05 + AWAY
+        assert history.force_error[far].max() <= 1e-6 * PUSH
+
+
+@pytest.mark.parametrize("late", [1e-6, 1e-4])
+def test_the_band_holds_a_jump_however_little_it_is_displaced(late: float) -> None:
+    history = line(falling(late), falling(2.0 * late), falling(4.0 * late)).history()
+    near = np.abs(history.time / END - 0.5) < 0.5 * AWAY
+    assert near.any()
+    assert history.force_error[near].min() >= 0.5 * PUSH
+    assert history.force_error[~near & (np.abs(history.time / END - 0.5) > 2.0 * AWAY)].max(initial=0.0) <= 1e-9 * PUSH
+
+
+def test_the_band_at_the_end_holds_what_goes_on_in_the_other_march() -> None:
+    fine = falling(0.0)
+    longer = pushed(END * np.array([0.0, 0.5, 0.5, 1.0, 1.1]), PUSH * np.array([1.0, 1.0, 0.5, 0.5, 2.0]))
+    assert line(fine, longer, longer).history().force_error[-1] >= 1.5 * PUSH
+
+
+def test_steps_that_agree_by_chance_make_no_bar_too_small() -> None:
+    """Half the steps change nothing, a quarter does: half of that is the bar. Another cause is not to blame for it."""
+    fine, wrong = falling(0.0), falling(0.1)
+    late = Run(replace(wrong.reading, quantities={**wrong.reading.quantities, "duration": 1.2 * END}), {}, 5, 5)
+    found = line(fine, fine, late, mesh=fine)
+    assert 0.1 * END <= found.error("duration", "time_step") <= SAFETY * 0.1 * END * (1.0 + 1e-6)
+    assert found.error("duration", "mesh") <= 1e-6 * END
+
+
+def test_another_method_that_agrees_at_one_instant_makes_no_bar_too_small() -> None:
+    """Two histories cross at the top: about it they do not."""
+    crossing = swelling(lambda share: 0.05 * (share - 0.5))
+    found = line(swelling(), swelling(), swelling(), mesh=crossing)
+    assert abs((crossing.reading.quantities["peak_force"] or 0.0) - PUSH) < 1e-3 * PUSH
+    assert found.error("peak_force", "mesh") >= 3e-3 * PUSH
+
+
+def bouncing(gap: float) -> Run:
+    """Two contacts; between them a surface ``gap`` m away at most."""
+    share = np.linspace(0.0, 2.0 + GAP, 901)
+    flown = np.clip((share - 1.0) / GAP, 0.0, 1.0)
+    inside = np.where(share <= 1.0, share, np.maximum(share - 1.0 - GAP, 0.0))
+    force = PUSH * np.sin(np.pi * inside)
+    speed = np.interp(share, [0.0, 1.0, 1.0 + GAP, 2.0 + GAP], [SPEED, -SPEED, SPEED, -SPEED])
+    rows = np.array([END * share, np.zeros_like(share), speed, force, -4.0 * gap * flown * (1.0 - flown)])
+    contacts = tuple({"start": start * END, "duration": END} for start in (0.0, 1.0 + GAP))
+    return Run(reading(rows), {}, share.size - 1, share.size, contacts)
+
+
+def test_a_contact_may_go_on_while_the_gap_is_smaller_than_its_error() -> None:
+    """The gap 4 h x (1 - x) of one march is half of the other's where the other's change is as large: all the way."""
+    found = line(bouncing(1e-3), bouncing(1.5e-3), bouncing(2e-3), mesh=bouncing(2.5e-3))
+    assert found.error("duration", "time_step") <= 1e-6 * END
+    assert found.error("duration", "mesh") >= 0.5 * GAP * END
+    assert found.quantities["duration"].error == pytest.approx(
+        found.error("duration", "mesh") + found.error("duration", "time_step")
+    )
