@@ -21,6 +21,8 @@ from lumped.identify.histories import Histories, Impact, Noise, Samples
 from lumped.identify.keys import FREE, FreeKey, SceneFile, free_keys, starting_places
 from lumped.identify.record import LEVEL, FittedCurve, Identified, Interval
 from lumped.laws import ting
+from lumped.laws._hereditary import problem_of
+from lumped.laws.base import check_mass
 from lumped.numbers import Array
 from lumped.result.score import Curve
 
@@ -53,8 +55,10 @@ def search(
     _check_own(keys, own)
     samples = tuple(Samples.of(curve, own.get(name, {})) for name, curve in curves.items())
     for one in samples:  # what no law of the scene can answer is said before anything is sought
-        ting.of(file.scene(keys, starting_places(keys), one.own))
-        file.scene(keys, starting_places(keys), one.own).check_memory()
+        scene = file.scene(keys, starting_places(keys), one.own)
+        check_mass(scene)
+        ting.of(scene)
+        problem_of(scene)
     begun = Histories(file, keys, samples, tuple(_first_noise(one, corner) for one in samples))
     if begun.rows <= begun.size:
         reason = f"{begun.rows} rows for {begun.size} numbers; accepted: more rows than numbers sought"

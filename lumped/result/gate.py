@@ -158,6 +158,13 @@ def _single(scene: Scene) -> bool:
     return scene.motion.impacts == 1 and not scene.model.inertia
 
 
+def _contact(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
+    largest = float(np.abs(pulse.smooth).max())
+    if largest < DEVIATIONS * pulse.noise:
+        said = f"no contact: the force stays within {largest:.3g} N, and its noise is {pulse.noise:.3g} N"
+        yield Finding(f"{said}; cure: a record that holds the impact")
+
+
 def _sign(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
     lowest, highest = float(pulse.smooth.min()), float(pulse.smooth.max())
     if -lowest > 2.0 * highest:
@@ -314,4 +321,4 @@ def _duration(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
         yield Finding(f"{said}; are time and force both in other units? else the material is far off", False)
 
 
-OF_THE_CURVE: tuple[Check, ...] = (_sign, _missing, _rate, _clipped, _other_contact, _zero)
+OF_THE_CURVE: tuple[Check, ...] = (_contact, _sign, _missing, _rate, _clipped, _other_contact, _zero)
