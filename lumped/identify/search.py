@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.fit.noise import Whiteness, autocovariance, colour_of, colour_of_corner, memory, whiteness
+from lumped.fit.noise import Whiteness, autocovariance, colour_of, colour_of_corner, memory, whitened, whiteness
 from lumped.identify.histories import Histories, Impact, Noise, Samples
 from lumped.identify.keys import FREE, FreeKey, SceneFile, free_keys, starting_places
 from lumped.identify.record import LEVEL, FittedCurve, Identified, Interval
@@ -109,9 +109,8 @@ def _reweighed(histories: Histories, sought: Array, corner: float | None) -> His
     impacts = histories.impacts(sought[: len(histories.keys)]) or ()
     every = zip(histories.samples, histories.differences(sought), histories.touches(sought), impacts, strict=True)
     for one, left, touch, impact in every:
-        outside = _outside(one, touch, impact)
-        colour = _colour(one, left[outside], corner)
-        new = left[colour.size :] - sum(a * left[colour.size - k : left.size - k] for k, a in enumerate(colour, 1))
+        colour = _colour(one, left[~_pressed(one, touch, impact)], corner)
+        new = whitened(left, colour)
         share = histories.size * one.time.size / histories.rows / len(histories.samples)  # of what is sought
         freedom = max(new.size - share, 1.0)
         deviation = math.sqrt(float(new @ new) / freedom)
@@ -119,10 +118,10 @@ def _reweighed(histories: Histories, sought: Array, corner: float | None) -> His
     return replace(histories, noises=tuple(noises))
 
 
-def _outside(one: Samples, touch: float, impact: Impact) -> NDArray[np.intp]:
-    """The rows of silence, before touch and after the end of the contact, (k,)."""
+def _pressed(one: Samples, touch: float, impact: Impact) -> NDArray[np.bool_]:
+    """Which rows lie in the contact, or nearly, (n,): in the others is silence."""
     since, margin = one.time - touch, MARGIN * one.width
-    return np.flatnonzero((since < -margin) | (since > impact.end + margin))
+    return (since >= -margin) & (since <= impact.end + margin)
 
 
 def _starts(histories: Histories) -> list[Array]:
@@ -216,15 +215,11 @@ def _told(histories: Histories, sought: Array, names: Sequence[str]) -> Identifi
     return Identified(histories.file.source, parameters, correlation, curves, tested, widened, table, warnings)
 
 
-def _inside(histories: Histories, sought: Array, whitened: Sequence[Array]) -> list[Array]:
+def _inside(histories: Histories, sought: Array, columns: Sequence[Array]) -> list[Array]:
     """The rows during the contact: where no force is, no law errs."""
-    impacts, found = histories.impacts(sought[: len(histories.keys)]) or (), list[Array]()
-    every = zip(histories.samples, histories.touches(sought), impacts, whitened, strict=True)
-    for one, touch, impact, column in every:
-        outside = set(_outside(one, touch, impact).tolist())
-        first = one.time.size - column.size
-        found.append(np.array([value for i, value in enumerate(column.tolist(), first) if i not in outside]))
-    return found
+    impacts = histories.impacts(sought[: len(histories.keys)]) or ()
+    every = zip(histories.samples, histories.touches(sought), impacts, columns, strict=True)
+    return [column[_pressed(one, touch, impact)[-column.size :]] for one, touch, impact, column in every]
 
 
 def _quantile(histories: Histories) -> float:
@@ -299,8 +294,7 @@ def _fitted(histories: Histories, sought: Array, i: int, name: str) -> FittedCur
     one, noise, touch = histories.samples[i], histories.noises[i], histories.touches(sought)[i]
     left = histories.differences(sought)[i]
     impacts = histories.impacts(sought[: len(histories.keys)]) or ()
-    inside = np.setdiff1d(np.arange(one.time.size), _outside(one, touch, impacts[i]))
-    error = math.sqrt(max(float(autocovariance(left[inside], 1)[1]), 0.0)) if inside.size > 1 else 0.0
+    error = math.sqrt(max(float(autocovariance(left[_pressed(one, touch, impacts[i])], 1)[1]), 0.0))
     deviation = float(np.sqrt(np.mean(left**2)))
     fitted = one.force - left
     return FittedCurve(name, one.time, one.force, fitted, touch, deviation, noise.colour, one.peak, error / one.peak)

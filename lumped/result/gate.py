@@ -55,7 +55,8 @@ def check_curve(curve: Curve, scene: Scene, source: str, touch_at_zero: bool = T
     for check in checks:
         for finding in check(pulse, scene):
             if finding.fatal:
-                raise BadInput(Fault(source, "", finding.message))
+                read = f" ({'; '.join(curve.remarks)})" if curve.remarks else ""
+                raise BadInput(Fault(source, "", finding.message + read))
             warnings.append(f"{source}: {finding.message}")
     return tuple(warnings)
 
