@@ -63,8 +63,8 @@ def search(
     if begun.rows <= begun.size:
         reason = f"{begun.rows} rows for {begun.size} numbers; accepted: more rows than numbers sought"
         raise BadInput(Fault(next(iter(curves)), "", reason))
-    histories, sought = _most_likely(begun, corner)
-    return _told(histories, sought, tuple(curves))
+    histories, sought, limits = _most_likely(begun, corner)
+    return _told(histories, sought, limits, tuple(curves))
 
 
 def _check_own(keys: Sequence[FreeKey], own: Mapping[str, Mapping[str, object]]) -> None:
@@ -86,21 +86,22 @@ def _colour(one: Samples, silent: Array | None, corner: float | None) -> Array:
     return np.zeros(0) if silent is None or silent.size < SILENT else colour_of(silent)
 
 
-def _most_likely(histories: Histories, corner: float | None) -> tuple[Histories, Array]:
-    """The best of the searches, the noise told from its own residuals. Raises NotReached."""
-    ended = list[tuple[float, Array]]()
+def _most_likely(histories: Histories, corner: float | None) -> tuple[Histories, Array, Array]:
+    """The best of the searches, the noise told from its own residuals; the limits of the search. Raises NotReached."""
+    ended = list[tuple[float, Array, Array]]()
     for start in _starts(histories)[:FOLLOWED]:
-        sought = _descended(histories, start)
-        ended.append((float(np.sum(histories.residuals(sought) ** 2)), sought))
+        limits = _limits(histories, start)
+        sought = _descended(histories, start, limits)
+        ended.append((float(np.sum(histories.residuals(sought) ** 2)), sought, limits))
         if len(ended) > 1 and whiteness(histories.whitened(histories.differences(sought))).noise:
             break
     if not ended:
         raise NotReached("no impact of the scene is near the curves; cure: nearer values in the scene file")
-    sought = min(ended, key=lambda found: found[0])[1]
+    _, sought, limits = min(ended, key=lambda found: found[0])
     for _ in range(REWEIGHED):
         histories = _reweighed(histories, sought, corner)
-        sought = _descended(histories, sought)
-    return _reweighed(histories, sought, corner), sought
+        sought = _descended(histories, sought, limits)
+    return _reweighed(histories, sought, corner), sought, limits
 
 
 def _reweighed(histories: Histories, sought: Array, corner: float | None) -> Histories:
@@ -182,11 +183,11 @@ def _limits(histories: Histories, around: Array) -> Array:
     return np.array([*limits, *[(-FARTHEST, FARTHEST)] * len(histories.samples)]).T
 
 
-def _descended(histories: Histories, start: Array) -> Array:
+def _descended(histories: Histories, start: Array, limits: Array) -> Array:
     """Where least squares end from a start, (size,)."""
     from scipy.optimize import least_squares
 
-    low, high = _limits(histories, start)
+    low, high = limits
     found = least_squares(
         histories.residuals,
         np.clip(start, low + TOLERANCE, high - TOLERANCE),
@@ -200,14 +201,14 @@ def _descended(histories: Histories, start: Array) -> Array:
     return np.asarray(found.x)
 
 
-def _told(histories: Histories, sought: Array, names: Sequence[str]) -> Identified:
+def _told(histories: Histories, sought: Array, limits: Array, names: Sequence[str]) -> Identified:
     """Everything that the curves say at the most likely place."""
     p = len(histories.keys)
     left = histories.differences(sought)
     tested = whiteness(_inside(histories, sought, histories.whitened(left)))
     widened = 1.0 if tested.noise else max(map(memory, histories.whitened(left)))
     bound = _quantile(histories) * widened
-    parameters = dict(_intervals(histories, sought, bound))
+    parameters = dict(_intervals(histories, sought, limits, bound))
     correlation = _correlation(histories.slopes(sought))[:p, :p]
     curves = tuple(_fitted(histories, sought, i, name) for i, name in enumerate(names))
     table = histories.file.with_values(histories.keys, sought[:p])
@@ -229,8 +230,8 @@ def _quantile(histories: Histories) -> float:
     return float(stdtrit(histories.rows - histories.size, 0.5 + 0.5 * LEVEL)) ** 2
 
 
-def _intervals(histories: Histories, sought: Array, bound: float) -> Iterator[tuple[str, Interval]]:
-    limits, slopes = _limits(histories, sought), histories.slopes(sought)
+def _intervals(histories: Histories, sought: Array, limits: Array, bound: float) -> Iterator[tuple[str, Interval]]:
+    slopes = histories.slopes(sought)
     for i, one in enumerate(histories.keys):
         ends = [_end(histories, sought, slopes, limits, i, side, bound) for side in (-1.0, 1.0)]
         low, high = (None if end is None else one.at(end) for end in ends)
@@ -291,13 +292,17 @@ def _correlation(slopes: Array) -> Array:
 
 
 def _fitted(histories: Histories, sought: Array, i: int, name: str) -> FittedCurve:
-    one, noise, touch = histories.samples[i], histories.noises[i], histories.touches(sought)[i]
+    one, colour, touch = histories.samples[i], histories.noises[i].colour, histories.touches(sought)[i]
     left = histories.differences(sought)[i]
     impacts = histories.impacts(sought[: len(histories.keys)]) or ()
-    error = math.sqrt(max(float(autocovariance(left[_pressed(one, touch, impacts[i])], 1)[1]), 0.0))
-    deviation = float(np.sqrt(np.mean(left**2)))
-    fitted = one.force - left
-    return FittedCurve(name, one.time, one.force, fitted, touch, deviation, noise.colour, one.peak, error / one.peak)
+    pressed = _pressed(one, touch, impacts[i])
+    (power, alike), silence = autocovariance(left[pressed], 1).tolist(), left[~pressed]
+    # white noise is in the power of the rows alone, and not in what neighbours have alike; silence tells a coloured one
+    noise = power - alike if not colour.size else float(np.mean(silence**2)) if silence.size else power
+    error, deviation = math.sqrt(max(power - noise, 0.0)), math.sqrt(min(noise, power))
+    return FittedCurve(
+        name, one.time, one.force, one.force - left, touch, deviation, colour, one.peak, error / one.peak
+    )
 
 
 def _warnings(parameters: Mapping[str, Interval], correlation: Array) -> Iterator[str]:
