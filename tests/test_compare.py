@@ -192,7 +192,7 @@ def test_no_law_named_is_a_fault() -> None:
 
 def test_an_unreadable_measurement_writes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     where, curve = tmp_path / "none", tmp_path / "curve.csv"
-    curve.write_text("time_s,pressure_Pa\n0,1\n1,2\n", encoding="utf-8")
+    curve.write_text("time_s,push\n0,1\n1,2\n", encoding="utf-8")
     assert main(["compare", "polymer-sphere", "--measured", str(curve), "--out", str(where)]) == 2
     assert "force_N" in capsys.readouterr().err
     assert not where.exists()
