@@ -101,7 +101,24 @@ def _most_likely(histories: Histories, corner: float | None) -> tuple[Histories,
     for _ in range(REWEIGHED):
         histories = _reweighed(histories, sought, corner)
         sought = _descended(histories, sought, limits)
-    return _reweighed(histories, sought, corner), sought, limits
+    return _softened(_reweighed(histories, sought, corner), sought, limits)
+
+
+def _softened(histories: Histories, sought: Array, limits: Array) -> tuple[Histories, Array, Array]:
+    """The same where a branch without a modulus is near: the likeliest place, and limits as they were."""
+    p, one = len(histories.keys), histories.samples[0]
+    scene = histories.file.scene(histories.keys, sought[:p], one.own)
+    keys = tuple(key.softened(scene.contact_modulus.glassy, one.width) for key in histories.keys)
+    softer = replace(histories, keys=keys, known={})
+
+    def moved(places: Array) -> Array:
+        pairs = zip(histories.keys, keys, places[:p].tolist(), strict=True)
+        return np.append([new.to_place(old.at(place)) for old, new, place in pairs], places[p:])
+
+    low, high = map(moved, limits)
+    low[:p] = [key.to_place(key.kind.low) if key.beside else end for key, end in zip(keys, low, strict=False)]
+    ends = np.array([low, high])
+    return softer, _descended(softer, moved(sought), ends), ends
 
 
 def _reweighed(histories: Histories, sought: Array, corner: float | None) -> Histories:
@@ -248,7 +265,7 @@ def _end(
     sought, residuals, fresh = best, histories.residuals(best), True
     least = float(residuals @ residuals)
     for _ in range(MOST_ENDS):
-        step = _step_to_end(residuals, slopes, i, side, least + bound)
+        step = _step_inside(residuals, slopes, i, side, least + bound, sought, limits)
         if step is None:
             return None
         there = np.clip(sought + step * min(1.0, LONGEST / float(np.abs(step).max())), *limits)
@@ -266,6 +283,25 @@ def _end(
         elif gone.any():
             slopes = slopes + np.outer(residuals - before - slopes @ gone, gone) / float(gone @ gone)
     return None
+
+
+def _step_inside(
+    residuals: Array, slopes: Array, i: int, side: float, most: float, sought: Array, limits: Array
+) -> Array | None:
+    """The step to the end, without what stands at a limit and would leave it; None where there is none."""
+    held = np.zeros(sought.size, dtype=bool)
+    while True:
+        moving = np.flatnonzero(~held)
+        part = _step_to_end(residuals, slopes[:, moving], int(np.searchsorted(moving, i)), side, most)
+        if part is None:
+            return None
+        step = np.zeros(sought.size)
+        step[moving] = part
+        leaving = ((sought <= limits[0]) & (step < 0.0)) | ((sought >= limits[1]) & (step > 0.0))
+        leaving[i] = False
+        if not leaving.any():
+            return step
+        held |= leaving
 
 
 def _step_to_end(residuals: Array, slopes: Array, i: int, side: float, most: float) -> Array | None:
