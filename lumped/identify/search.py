@@ -38,8 +38,9 @@ GUESSED = 0.02  # of the peak: a noise to begin with
 REWEIGHED = 2  # times that the noise is told from the residuals and the search goes on from there
 SILENT, MARGIN = 40, 0.1  # rows that tell a noise's colour; of the width, before touch and after the end left out
 REACHED, LONGEST, MOST_ENDS = 0.02, 0.7, 60  # of the bound; of a step in logarithms; work
-# A combination of parameters told so many times worse than the best is not told; the least share in it that counts.
-ALIKE, MIXED = 1e6, 1e-3
+# Rounding: differences tell the slopes to about 1e-4; what is told worse than the best by that is not told. Safety: the
+# share of a parameter in such a combination that counts.
+ALIKE, MIXED = 1e4, 0.03
 CORRELATED = 0.95  # named in a warning
 
 
@@ -264,6 +265,8 @@ def _end(
     """
     sought, residuals, fresh = best, histories.residuals(best), True
     least = float(residuals @ residuals)
+    if _step_to_end(residuals, slopes, i, side, least + bound) is None:
+        return None
     for _ in range(MOST_ENDS):
         step = _step_inside(residuals, slopes, i, side, least + bound, sought, limits)
         if step is None:

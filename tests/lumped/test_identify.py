@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq, least_squares, minimize_scalar
 from scipy.special import stdtrit
 
 from lumped import BadInput, Scene, identify, laws, simulate
@@ -178,6 +178,36 @@ def test_an_interval_is_that_of_the_whole_profile() -> None:
     for end, side in ((found.low, 0.9), (found.high, 1.1)):
         other = brentq(lambda young: least(young) - most, found.value, side * found.value, rtol=1e-6)
         assert abs(end - other) < 0.02 * (found.high - found.low)
+
+
+@pytest.mark.tenth
+def test_at_an_end_all_others_are_chosen_anew() -> None:
+    """Of the 3-parameter solid: with the ratio held there, least squares in all the rest grow by the quantile."""
+    rng = np.random.default_rng(SEED)
+    true = {"E0": 1e6, "R1": 1.0, "R2": 0.01}
+    table = scene(STRIKERS[0], {"law": "sls", **true})
+    curve = curve_of(rng, *history_by_springs(table, {}), 0.01 * rng.normal(size=ROWS))
+    free = [f"target.material.{name}" for name in true]
+    ratio = identify({"curve": curve}, table, free).parameters["target.material.R1"]
+    assert ratio.low is not None
+    assert ratio.high is not None
+    begin = float(curve.time[0]) + 0.25 * float(np.ptp(curve.time))
+    width = 0.5 * float(np.ptp(curve.time))
+    guess = [np.log(true["E0"]), np.log(true["R2"]), 0.0]
+
+    def least(R1: float | None) -> float:
+        def left(x: Array) -> Array:
+            material = {"law": "sls", "E0": np.exp(x[0]), "R2": np.exp(x[1]), "R1": R1 or float(np.exp(x[3]))}
+            impact = Impact.of(Scene.from_dict(scene(STRIKERS[0], material)))
+            return curve.force - impact.force(curve.time - begin - width * x[2])
+
+        start = guess if R1 else [*guess, np.log(true["R1"])]
+        return 2.0 * float(least_squares(left, start, diff_step=1e-5, xtol=1e-8).cost)
+
+    best, freedom = least(None), ROWS - 4
+    for end in (ratio.low, ratio.high):
+        growth = (least(end) / best - 1.0) * freedom
+        assert growth == pytest.approx(stdtrit(freedom, 0.95) ** 2, rel=0.1)
 
 
 @pytest.mark.tenth
