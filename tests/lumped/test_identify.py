@@ -107,7 +107,10 @@ def guessed(rng: np.random.Generator, table: dict[str, Any], free: tuple[str, ..
 
 @pytest.mark.family
 def test_intervals_cover_as_often_as_they_say(campaign_size: Callable[..., int]) -> None:
-    """Of 200 cases 85 to 95 % of the 90 % intervals hold the truth; of fewer as chance has it."""
+    """Of 200 cases 85 to 95 % of the 90 % intervals hold the truth; of fewer as chance has it.
+
+    The middle of what the values are off by is below a tenth of an interval.
+    """
     rng, cases = np.random.default_rng(SEED), campaign_size(200)
     every, inside, off, adequate = truths(rng), list[bool](), list[float](), 0
     for _ in range(cases):
@@ -121,7 +124,7 @@ def test_intervals_cover_as_often_as_they_say(campaign_size: Callable[..., int])
                 off.append(np.log(one.value / truth.value(name)) / np.log(one.high / one.low))
     chance = 0.0 if cases >= 200 else 2.5 * 0.3 / np.sqrt(cases)
     assert 0.85 - chance <= np.mean(inside) <= 0.95 + chance
-    assert abs(np.mean(off)) < 0.1 + chance
+    assert abs(np.median(off)) < 0.1 + chance
     assert adequate >= 0.97 * cases - 3.0 * np.sqrt(0.03 * cases)
 
 
