@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fe_contact import run
 from fe_contact.cli import main
-from lumped import Scene, laws, simulate
+from lumped import Scene, identify, laws, simulate
+from lumped.result.score import Curve
 
 FREE = "target.material.E1,target.material.E2,target.material.C1"
 TRUTH = {"E1": 1.8e6, "E2": 0.9e6, "C1": 1.8e4}
@@ -92,3 +94,34 @@ def test_bad_options_write_nothing(
     assert message in said
     assert len(said.splitlines()) == 1
     assert not where.exists()
+
+
+@pytest.mark.tenth
+@pytest.mark.parametrize("name", ["polymer-layer", "rod-in-ring"])
+def test_a_finite_element_impact_tells_its_material(name: str) -> None:
+    """A mesh and steps of time on one side, the layer's or ring's own load curve and Ting's law on the other.
+
+    Without noise what is left is the reference's own error, well inside its bar; the glassy spring is told best.
+    """
+    history = run(Scene.load(name), tolerance=1e-3).history
+    time = np.linspace(-0.3, 1.5, 500) * history.time[-1]
+    found = identify({"reference": Curve(time + 7.0, history.force_at(time))}, name, FREE.split(","))
+    for key, true in TRUTH.items():
+        assert abs(found.parameters[f"target.material.{key}"].value / true - 1.0) < 3e-3
+    assert found.curves[0].error < 1e-3
+    assert found.curves[0].touch == pytest.approx(7.0, abs=1e-3 * history.time[-1])
+
+
+@pytest.mark.tenth
+def test_a_layer_tells_poisson_s_ratio() -> None:
+    """Bonded to its base it cannot give way sideways, which a half-space can: there E and nu are one number."""
+    history = run(Scene.load("polymer-layer"), tolerance=1e-3).history
+    time = np.linspace(-0.3, 1.5, 500) * history.time[-1]
+    noise = 0.01 * history.force.max() * np.random.default_rng(2).normal(size=time.size)
+    free = [*FREE.split(","), "target.material.nu"]
+    found = identify({"reference": Curve(time, history.force_at(time) + noise)}, "polymer-layer", free)
+    one = found.parameters["target.material.nu"]
+    assert one.low is not None
+    assert one.high is not None
+    assert one.low < 0.45 < one.high
+    assert one.high - one.low < 0.1

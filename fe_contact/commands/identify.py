@@ -28,7 +28,7 @@ def execute(args: argparse.Namespace) -> int:
     from lumped.result.gate import check_curve
     from lumped.scene.scene import Scene
 
-    overrides, own = base.overrides_of(args), dict(map(_curve_of, args.curves))
+    overrides, own = base.overrides_of(args), _curves(args.curves)
     name = Path(SCENES.resolved(args.scene)).stem
     where = base.folder(args, "identify", name)
     _check_written(args.write)
@@ -54,6 +54,15 @@ def execute(args: argparse.Namespace) -> int:
     for warning in (*warnings, *found.warnings):
         base.complain(warning)
     return base.DONE
+
+
+def _curves(texts: list[str]) -> dict[str, dict[str, object]]:
+    """By its path, what each curve has of its own. Raises BadInput for one that is given twice."""
+    found = [_curve_of(text) for text in texts]
+    paths = [path for path, _ in found]
+    if twice := sorted({path for path in paths if paths.count(path) > 1}):
+        raise BadInput(Fault(path, "", "given twice; accepted: every curve once") for path in twice)
+    return dict(found)
 
 
 def _curve_of(text: str) -> tuple[str, dict[str, object]]:

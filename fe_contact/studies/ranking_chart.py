@@ -26,7 +26,7 @@ def plot_ranking(ranked: Sequence[RankedFit], curve: Curve, where: Path) -> tupl
     lines += [f"without a fit: {left_out}"] if left_out else []
     size = rows * HEIGHT
     with style.sheet(where, "fits", "every law, fitted", lines, size, width=TITLE_WIDTH, above=0.34) as sheet:
-        panels = sheet.panels(rows, COLUMNS, 0.065, 0.985, hspace=0.55, wspace=0.12)
+        panels = sheet.panels(rows, COLUMNS, 0.085, 0.985, hspace=0.62, wspace=0.12)
         for i, (axes, one) in enumerate(zip(panels, shown, strict=False)):
             _panel(axes, one, curve)
             axes.tick_params(labelleft=i % COLUMNS == 0, labelbottom=i + COLUMNS >= len(shown))

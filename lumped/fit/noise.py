@@ -65,30 +65,35 @@ def whitened(series: Array, colour: Array) -> Array:
 
 @dataclass(frozen=True)
 class Whiteness:
-    """Ljung and Box's test, doi 10.1093/biomet/65.2.297: Q, lags, and how probable as much is of noise, a ratio."""
+    """Ljung and Box's test, doi 10.1093/biomet/65.2.297: Q, lags, and how probable as much is of noise, a ratio.
+
+    `neighbours`: the correlation of neighbouring rows.
+    """
 
     statistic: float
     lags: int
     probability: float
+    neighbours: float
 
     @property
     def noise(self) -> bool:
-        """Whether the residuals may be noise."""
-        return self.probability >= REJECTED
+        """Whether the residuals may be noise: what a law leaves is smooth, and neighbours are alike in it."""
+        return self.probability >= REJECTED or self.neighbours <= 0.0
 
 
 def whiteness(residuals: Sequence[Array]) -> Whiteness:
     """Whether the residuals of several curves, each (n,), hang together: Q = sum n (n + 2) rho_k^2/(n - k)."""
     from scipy.special import chdtrc
 
-    total, lags = 0.0, 0
+    total, lags, neighbours = 0.0, 0, list[float]()
     for series in residuals:
         n, most = series.size, min(LAGS, series.size // ROWS_PER_LAG)
         covariance = autocovariance(series - series.mean(), most)
         if most and covariance[0] > 0.0:
             shares = (covariance[1:] / covariance[0]) ** 2 / (n - np.arange(1, most + 1))
             total, lags = total + n * (n + 2) * float(shares.sum()), lags + most
-    return Whiteness(total, lags, float(chdtrc(lags, total)) if lags else 1.0)
+            neighbours.append(float(covariance[1] / covariance[0]))
+    return Whiteness(total, lags, float(chdtrc(lags, total)) if lags else 1.0, max(neighbours, default=0.0))
 
 
 def memory(series: Array) -> float:

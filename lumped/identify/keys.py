@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +25,7 @@ from lumped.targets import TARGETS
 FREE = "--free"
 # What is sought lies within this factor of the scene's own value, or of what the curves' peak and duration say.
 REACH = 1e4
+SMALL = 0.02  # of the whole modulus: a spring as weak is hardly told from none
 BODIES = {"striker": (SHAPES, STRIKER_KEYS), "target": (TARGETS, TARGET_KEYS)}
 
 
@@ -32,13 +33,15 @@ BODIES = {"striker": (SHAPES, STRIKER_KEYS), "target": (TARGETS, TARGET_KEYS)}
 class FreeKey:
     """A number of a scene file: `key`, its dotted name, `place` in a list if it stands in one; its value, its kind.
 
-    It is sought in its logarithm, or as it is where it may be zero or less, as Poisson's ratio.
+    It is sought in its logarithm, or as it is where it may be zero or less, as Poisson's ratio. `beside`, in its unit:
+    what is added before the logarithm, so that a branch that the curves do without is not infinitely far away.
     """
 
     key: str
     place: int | None
     value: float
     kind: Number
+    beside: float = 0.0
 
     @property
     def name(self) -> str:
@@ -65,15 +68,21 @@ class FreeKey:
         if not self.in_logarithm:
             hair = 1e-9 * (self.kind.high - self.kind.low) if self.kind.above else 0.0  # rounding
             return self.kind.low + hair, self.kind.high
-        return math.log(max(self.kind.low, value / REACH)), math.log(min(self.kind.high, value * REACH))
+        low, high = max(self.kind.low, value / REACH), min(self.kind.high, value * REACH)
+        return self.to_place(self.kind.low if self.beside else low), self.to_place(high)
 
     def to_place(self, value: float) -> float:
         """Where a value is sought."""
-        return math.log(value) if self.in_logarithm else value
+        return math.log(value + self.beside) if self.in_logarithm else value
 
     def at(self, place: float) -> float:
         """The value at a place."""
-        return math.exp(place) if self.in_logarithm else place
+        return max(math.exp(place) - self.beside, self.kind.low) if self.in_logarithm else place
+
+    def softened(self, modulus: float, width: float) -> FreeKey:
+        """The same beside a share of what the bodies have at once, a modulus, Pa, for a pulse as wide, s."""
+        sizes = {"Pa": modulus, "Pa s": modulus * width, "": 1.0}
+        return replace(self, beside=SMALL * sizes.get(self.kind.unit, 0.0) if self.in_logarithm else 0.0)
 
 
 @dataclass(frozen=True)

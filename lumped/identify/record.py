@@ -36,7 +36,7 @@ class Interval:
 class FittedCurve:
     """One measured curve: times, s, forces, N, and the identified law's, (n,); its touch, s.
 
-    `deviation` is that of the noise, N, of all rows; `colour`: the coefficients of its recursion, (order,);
+    `deviation` is that of the noise, N; `colour`: the coefficients of its recursion, (order,);
     `peak`: the highest force, N; `error`: of the law beyond the noise, over the peak.
     """
 

@@ -16,11 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.fit.noise import Whiteness, autocovariance, colour_of, colour_of_corner, memory, whiteness
+from lumped.fit.noise import Whiteness, autocovariance, colour_of, colour_of_corner, memory, whitened, whiteness
 from lumped.identify.histories import Histories, Impact, Noise, Samples
 from lumped.identify.keys import FREE, FreeKey, SceneFile, free_keys, starting_places
 from lumped.identify.record import LEVEL, FittedCurve, Identified, Interval
 from lumped.laws import ting
+from lumped.laws._hereditary import problem_of
+from lumped.laws.base import check_mass
 from lumped.numbers import Array
 from lumped.result.score import Curve
 
@@ -36,8 +38,9 @@ GUESSED = 0.02  # of the peak: a noise to begin with
 REWEIGHED = 2  # times that the noise is told from the residuals and the search goes on from there
 SILENT, MARGIN = 40, 0.1  # rows that tell a noise's colour; of the width, before touch and after the end left out
 REACHED, LONGEST, MOST_ENDS = 0.02, 0.7, 60  # of the bound; of a step in logarithms; work
-# A combination of parameters told so many times worse than the best is not told; the least share in it that counts.
-ALIKE, MIXED = 1e6, 1e-3
+# Rounding: differences tell the slopes to about 1e-4; what is told worse than the best by that is not told. Safety: the
+# share of a parameter in such a combination that counts.
+ALIKE, MIXED = 1e4, 0.03
 CORRELATED = 0.95  # named in a warning
 
 
@@ -53,14 +56,16 @@ def search(
     _check_own(keys, own)
     samples = tuple(Samples.of(curve, own.get(name, {})) for name, curve in curves.items())
     for one in samples:  # what no law of the scene can answer is said before anything is sought
-        ting.of(file.scene(keys, starting_places(keys), one.own))
-        file.scene(keys, starting_places(keys), one.own).check_memory()
+        scene = file.scene(keys, starting_places(keys), one.own)
+        check_mass(scene)
+        ting.of(scene)
+        problem_of(scene)
     begun = Histories(file, keys, samples, tuple(_first_noise(one, corner) for one in samples))
     if begun.rows <= begun.size:
         reason = f"{begun.rows} rows for {begun.size} numbers; accepted: more rows than numbers sought"
         raise BadInput(Fault(next(iter(curves)), "", reason))
-    histories, sought = _most_likely(begun, corner)
-    return _told(histories, sought, tuple(curves))
+    histories, sought, limits = _most_likely(begun, corner)
+    return _told(histories, sought, limits, tuple(curves))
 
 
 def _check_own(keys: Sequence[FreeKey], own: Mapping[str, Mapping[str, object]]) -> None:
@@ -82,21 +87,39 @@ def _colour(one: Samples, silent: Array | None, corner: float | None) -> Array:
     return np.zeros(0) if silent is None or silent.size < SILENT else colour_of(silent)
 
 
-def _most_likely(histories: Histories, corner: float | None) -> tuple[Histories, Array]:
-    """The best of the searches, the noise told from its own residuals. Raises NotReached."""
-    ended = list[tuple[float, Array]]()
+def _most_likely(histories: Histories, corner: float | None) -> tuple[Histories, Array, Array]:
+    """The best of the searches, the noise told from its own residuals; the limits of the search. Raises NotReached."""
+    ended = list[tuple[float, Array, Array]]()
     for start in _starts(histories)[:FOLLOWED]:
-        sought = _descended(histories, start)
-        ended.append((float(np.sum(histories.residuals(sought) ** 2)), sought))
+        limits = _limits(histories, start)
+        sought = _descended(histories, start, limits)
+        ended.append((float(np.sum(histories.residuals(sought) ** 2)), sought, limits))
         if len(ended) > 1 and whiteness(histories.whitened(histories.differences(sought))).noise:
             break
     if not ended:
         raise NotReached("no impact of the scene is near the curves; cure: nearer values in the scene file")
-    sought = min(ended, key=lambda found: found[0])[1]
+    _, sought, limits = min(ended, key=lambda found: found[0])
     for _ in range(REWEIGHED):
         histories = _reweighed(histories, sought, corner)
-        sought = _descended(histories, sought)
-    return _reweighed(histories, sought, corner), sought
+        sought = _descended(histories, sought, limits)
+    return _softened(_reweighed(histories, sought, corner), sought, limits)
+
+
+def _softened(histories: Histories, sought: Array, limits: Array) -> tuple[Histories, Array, Array]:
+    """The same where a branch without a modulus is near: the likeliest place, and limits as they were."""
+    p, one = len(histories.keys), histories.samples[0]
+    scene = histories.file.scene(histories.keys, sought[:p], one.own)
+    keys = tuple(key.softened(scene.contact_modulus.glassy, one.width) for key in histories.keys)
+    softer = replace(histories, keys=keys, known={})
+
+    def moved(places: Array) -> Array:
+        pairs = zip(histories.keys, keys, places[:p].tolist(), strict=True)
+        return np.append([new.to_place(old.at(place)) for old, new, place in pairs], places[p:])
+
+    low, high = map(moved, limits)
+    low[:p] = [key.to_place(key.kind.low) if key.beside else end for key, end in zip(keys, low, strict=False)]
+    ends = np.array([low, high])
+    return softer, _descended(softer, moved(sought), ends), ends
 
 
 def _reweighed(histories: Histories, sought: Array, corner: float | None) -> Histories:
@@ -105,9 +128,8 @@ def _reweighed(histories: Histories, sought: Array, corner: float | None) -> His
     impacts = histories.impacts(sought[: len(histories.keys)]) or ()
     every = zip(histories.samples, histories.differences(sought), histories.touches(sought), impacts, strict=True)
     for one, left, touch, impact in every:
-        outside = _outside(one, touch, impact)
-        colour = _colour(one, left[outside], corner)
-        new = left[colour.size :] - sum(a * left[colour.size - k : left.size - k] for k, a in enumerate(colour, 1))
+        colour = _colour(one, left[~_pressed(one, touch, impact)], corner)
+        new = whitened(left, colour)
         share = histories.size * one.time.size / histories.rows / len(histories.samples)  # of what is sought
         freedom = max(new.size - share, 1.0)
         deviation = math.sqrt(float(new @ new) / freedom)
@@ -115,10 +137,10 @@ def _reweighed(histories: Histories, sought: Array, corner: float | None) -> His
     return replace(histories, noises=tuple(noises))
 
 
-def _outside(one: Samples, touch: float, impact: Impact) -> NDArray[np.intp]:
-    """The rows of silence, before touch and after the end of the contact, (k,)."""
+def _pressed(one: Samples, touch: float, impact: Impact) -> NDArray[np.bool_]:
+    """Which rows lie in the contact, or nearly, (n,): in the others is silence."""
     since, margin = one.time - touch, MARGIN * one.width
-    return np.flatnonzero((since < -margin) | (since > impact.end + margin))
+    return (since >= -margin) & (since <= impact.end + margin)
 
 
 def _starts(histories: Histories) -> list[Array]:
@@ -179,11 +201,11 @@ def _limits(histories: Histories, around: Array) -> Array:
     return np.array([*limits, *[(-FARTHEST, FARTHEST)] * len(histories.samples)]).T
 
 
-def _descended(histories: Histories, start: Array) -> Array:
+def _descended(histories: Histories, start: Array, limits: Array) -> Array:
     """Where least squares end from a start, (size,)."""
     from scipy.optimize import least_squares
 
-    low, high = _limits(histories, start)
+    low, high = limits
     found = least_squares(
         histories.residuals,
         np.clip(start, low + TOLERANCE, high - TOLERANCE),
@@ -197,14 +219,14 @@ def _descended(histories: Histories, start: Array) -> Array:
     return np.asarray(found.x)
 
 
-def _told(histories: Histories, sought: Array, names: Sequence[str]) -> Identified:
+def _told(histories: Histories, sought: Array, limits: Array, names: Sequence[str]) -> Identified:
     """Everything that the curves say at the most likely place."""
     p = len(histories.keys)
     left = histories.differences(sought)
     tested = whiteness(_inside(histories, sought, histories.whitened(left)))
     widened = 1.0 if tested.noise else max(map(memory, histories.whitened(left)))
     bound = _quantile(histories) * widened
-    parameters = dict(_intervals(histories, sought, bound))
+    parameters = dict(_intervals(histories, sought, limits, bound))
     correlation = _correlation(histories.slopes(sought))[:p, :p]
     curves = tuple(_fitted(histories, sought, i, name) for i, name in enumerate(names))
     table = histories.file.with_values(histories.keys, sought[:p])
@@ -212,15 +234,11 @@ def _told(histories: Histories, sought: Array, names: Sequence[str]) -> Identifi
     return Identified(histories.file.source, parameters, correlation, curves, tested, widened, table, warnings)
 
 
-def _inside(histories: Histories, sought: Array, whitened: Sequence[Array]) -> list[Array]:
+def _inside(histories: Histories, sought: Array, columns: Sequence[Array]) -> list[Array]:
     """The rows during the contact: where no force is, no law errs."""
-    impacts, found = histories.impacts(sought[: len(histories.keys)]) or (), list[Array]()
-    every = zip(histories.samples, histories.touches(sought), impacts, whitened, strict=True)
-    for one, touch, impact, column in every:
-        outside = set(_outside(one, touch, impact).tolist())
-        first = one.time.size - column.size
-        found.append(np.array([value for i, value in enumerate(column.tolist(), first) if i not in outside]))
-    return found
+    impacts = histories.impacts(sought[: len(histories.keys)]) or ()
+    every = zip(histories.samples, histories.touches(sought), impacts, columns, strict=True)
+    return [column[_pressed(one, touch, impact)[-column.size :]] for one, touch, impact, column in every]
 
 
 def _quantile(histories: Histories) -> float:
@@ -230,8 +248,8 @@ def _quantile(histories: Histories) -> float:
     return float(stdtrit(histories.rows - histories.size, 0.5 + 0.5 * LEVEL)) ** 2
 
 
-def _intervals(histories: Histories, sought: Array, bound: float) -> Iterator[tuple[str, Interval]]:
-    limits, slopes = _limits(histories, sought), histories.slopes(sought)
+def _intervals(histories: Histories, sought: Array, limits: Array, bound: float) -> Iterator[tuple[str, Interval]]:
+    slopes = histories.slopes(sought)
     for i, one in enumerate(histories.keys):
         ends = [_end(histories, sought, slopes, limits, i, side, bound) for side in (-1.0, 1.0)]
         low, high = (None if end is None else one.at(end) for end in ends)
@@ -247,8 +265,10 @@ def _end(
     """
     sought, residuals, fresh = best, histories.residuals(best), True
     least = float(residuals @ residuals)
+    if _step_to_end(residuals, slopes, i, side, least + bound) is None:
+        return None
     for _ in range(MOST_ENDS):
-        step = _step_to_end(residuals, slopes, i, side, least + bound)
+        step = _step_inside(residuals, slopes, i, side, least + bound, sought, limits)
         if step is None:
             return None
         there = np.clip(sought + step * min(1.0, LONGEST / float(np.abs(step).max())), *limits)
@@ -266,6 +286,25 @@ def _end(
         elif gone.any():
             slopes = slopes + np.outer(residuals - before - slopes @ gone, gone) / float(gone @ gone)
     return None
+
+
+def _step_inside(
+    residuals: Array, slopes: Array, i: int, side: float, most: float, sought: Array, limits: Array
+) -> Array | None:
+    """The step to the end, without what stands at a limit and would leave it; None where there is none."""
+    held = np.zeros(sought.size, dtype=bool)
+    while True:
+        moving = np.flatnonzero(~held)
+        part = _step_to_end(residuals, slopes[:, moving], int(np.searchsorted(moving, i)), side, most)
+        if part is None:
+            return None
+        step = np.zeros(sought.size)
+        step[moving] = part
+        leaving = ((sought <= limits[0]) & (step < 0.0)) | ((sought >= limits[1]) & (step > 0.0))
+        leaving[i] = False
+        if not leaving.any():
+            return step
+        held |= leaving
 
 
 def _step_to_end(residuals: Array, slopes: Array, i: int, side: float, most: float) -> Array | None:
@@ -292,14 +331,17 @@ def _correlation(slopes: Array) -> Array:
 
 
 def _fitted(histories: Histories, sought: Array, i: int, name: str) -> FittedCurve:
-    one, noise, touch = histories.samples[i], histories.noises[i], histories.touches(sought)[i]
+    one, colour, touch = histories.samples[i], histories.noises[i].colour, histories.touches(sought)[i]
     left = histories.differences(sought)[i]
     impacts = histories.impacts(sought[: len(histories.keys)]) or ()
-    inside = np.setdiff1d(np.arange(one.time.size), _outside(one, touch, impacts[i]))
-    error = math.sqrt(max(float(autocovariance(left[inside], 1)[1]), 0.0)) if inside.size > 1 else 0.0
-    deviation = float(np.sqrt(np.mean(left**2)))
-    fitted = one.force - left
-    return FittedCurve(name, one.time, one.force, fitted, touch, deviation, noise.colour, one.peak, error / one.peak)
+    pressed = _pressed(one, touch, impacts[i])
+    (power, alike), silence = autocovariance(left[pressed], 1).tolist(), left[~pressed]
+    # white noise is in the power of the rows alone, and not in what neighbours have alike; silence tells a coloured one
+    noise = power - alike if not colour.size else float(np.mean(silence**2)) if silence.size else power
+    error, deviation = math.sqrt(max(power - noise, 0.0)), math.sqrt(min(noise, power))
+    return FittedCurve(
+        name, one.time, one.force, one.force - left, touch, deviation, colour, one.peak, error / one.peak
+    )
 
 
 def _warnings(parameters: Mapping[str, Interval], correlation: Array) -> Iterator[str]:

@@ -115,6 +115,8 @@ def read_curve(path: Path) -> Curve:
     if np.any(back := np.diff(time) < 0.0):
         reason = f"decreases after row {int(np.argmax(back)) + 1}; accepted: times in order; cure: sort the rows"
         raise BadInput(Fault(source, header.time.header, reason))
+    if not time[-1] > time[0]:
+        raise BadInput(Fault(source, header.time.header, f"every row is at {time[0]:g} s; accepted: times that grow"))
     if force.max() <= 0.0:
         reason = "never above zero; accepted: compression positive; cure: multiply it by -1"
         raise BadInput(Fault(source, header.force.header, reason))

@@ -55,7 +55,8 @@ def check_curve(curve: Curve, scene: Scene, source: str, touch_at_zero: bool = T
     for check in checks:
         for finding in check(pulse, scene):
             if finding.fatal:
-                raise BadInput(Fault(source, "", finding.message))
+                read = f" ({'; '.join(curve.remarks)})" if curve.remarks else ""
+                raise BadInput(Fault(source, "", finding.message + read))
             warnings.append(f"{source}: {finding.message}")
     return tuple(warnings)
 
@@ -156,6 +157,13 @@ Check = Callable[[MeasuredPulse, Scene], Iterator[Finding]]
 def _single(scene: Scene) -> bool:
     """Whether the force is one smooth pulse: waves hold a force still, let it go, and bring it back."""
     return scene.motion.impacts == 1 and not scene.model.inertia
+
+
+def _contact(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
+    largest = float(np.abs(pulse.smooth).max())
+    if largest < DEVIATIONS * pulse.noise:
+        said = f"no contact: the force stays within {largest:.3g} N, and its noise is {pulse.noise:.3g} N"
+        yield Finding(f"{said}; cure: a record that holds the impact")
 
 
 def _sign(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
@@ -314,4 +322,4 @@ def _duration(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
         yield Finding(f"{said}; are time and force both in other units? else the material is far off", False)
 
 
-OF_THE_CURVE: tuple[Check, ...] = (_sign, _missing, _rate, _clipped, _other_contact, _zero)
+OF_THE_CURVE: tuple[Check, ...] = (_contact, _sign, _missing, _rate, _clipped, _other_contact, _zero)

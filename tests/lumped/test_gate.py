@@ -81,6 +81,7 @@ SPOILED: tuple[tuple[str, Spoil, float, str], ...] = (
     ("half a hertz", lambda time, force: (time[::40], force[::40]), 0.0, "sample rate"),
     ("offset", lambda time, force: (time, force + 0.08 * force.max()), 1.0, "offset"),
     ("drift", drift, 1.0, "drift"),
+    ("silence", lambda time, force: (time[time.size // 2 :], force[time.size // 2 :]), 0.0, "no contact"),
     ("a heavier striker", scaled(1.0, 0.3), 0.0, "< 0"),
 )
 SPOILED_SCENES = ("steel-ball-sls", "polymer-layer")

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq, least_squares, minimize_scalar
 from scipy.special import stdtrit
 
 from lumped import BadInput, Scene, identify, laws, simulate
@@ -107,7 +107,10 @@ def guessed(rng: np.random.Generator, table: dict[str, Any], free: tuple[str, ..
 
 @pytest.mark.family
 def test_intervals_cover_as_often_as_they_say(campaign_size: Callable[..., int]) -> None:
-    """Of 200 cases 85 to 95 % of the 90 % intervals hold the truth; of fewer as chance has it."""
+    """Of 200 cases 85 to 95 % of the 90 % intervals hold the truth; of fewer as chance has it.
+
+    The middle of what the values are off by is below a tenth of an interval.
+    """
     rng, cases = np.random.default_rng(SEED), campaign_size(200)
     every, inside, off, adequate = truths(rng), list[bool](), list[float](), 0
     for _ in range(cases):
@@ -121,7 +124,7 @@ def test_intervals_cover_as_often_as_they_say(campaign_size: Callable[..., int])
                 off.append(np.log(one.value / truth.value(name)) / np.log(one.high / one.low))
     chance = 0.0 if cases >= 200 else 2.5 * 0.3 / np.sqrt(cases)
     assert 0.85 - chance <= np.mean(inside) <= 0.95 + chance
-    assert abs(np.mean(off)) < 0.1 + chance
+    assert cases < 20 or abs(np.median(off)) < 0.1 + chance, "two cases have no middle"
     assert adequate >= 0.97 * cases - 3.0 * np.sqrt(0.03 * cases)
 
 
@@ -143,8 +146,8 @@ def test_a_wrong_law_is_called_wrong(law: str, campaign_size: Callable[..., int]
         table = scene(truth.table["striker"], own)
         found = identify(truth.curves, table, [f"target.material.{name}" for name in names], truth.own)
         noise = [np.std(np.diff(curve.force, 2)) / np.sqrt(6.0) for curve in truth.curves.values()]
-        left = [np.sqrt(max(curve.deviation**2 - own**2, 0.0)) for curve, own in zip(found.curves, noise, strict=True)]
-        if any(error > 2.0 * own for error, own in zip(left, noise, strict=True)):
+        left = [float(np.mean((curve.force - curve.fitted) ** 2)) for curve in found.curves]
+        if any(power > 5.0 * own**2 for power, own in zip(left, noise, strict=True)):  # 2^2 the law's, 1 the noise's
             called.append(not found.adequate)
             assert any("not to be trusted" in one for one in found.warnings) == (not found.adequate)
     assert np.mean(called) >= 0.95
@@ -181,6 +184,36 @@ def test_an_interval_is_that_of_the_whole_profile() -> None:
 
 
 @pytest.mark.tenth
+def test_at_an_end_all_others_are_chosen_anew() -> None:
+    """Of the 3-parameter solid: with the ratio held there, least squares in all the rest grow by the quantile."""
+    rng = np.random.default_rng(SEED)
+    true = {"E0": 1e6, "R1": 1.0, "R2": 0.01}
+    table = scene(STRIKERS[0], {"law": "sls", **true})
+    curve = curve_of(rng, *history_by_springs(table, {}), 0.01 * rng.normal(size=ROWS))
+    free = [f"target.material.{name}" for name in true]
+    ratio = identify({"curve": curve}, table, free).parameters["target.material.R1"]
+    assert ratio.low is not None
+    assert ratio.high is not None
+    begin = float(curve.time[0]) + 0.25 * float(np.ptp(curve.time))
+    width = 0.5 * float(np.ptp(curve.time))
+    guess = [np.log(true["E0"]), np.log(true["R2"]), 0.0]
+
+    def least(R1: float | None) -> float:
+        def left(x: Array) -> Array:
+            material = {"law": "sls", "E0": np.exp(x[0]), "R2": np.exp(x[1]), "R1": R1 or float(np.exp(x[3]))}
+            impact = Impact.of(Scene.from_dict(scene(STRIKERS[0], material)))
+            return curve.force - impact.force(curve.time - begin - width * x[2])
+
+        start = guess if R1 else [*guess, np.log(true["R1"])]
+        return 2.0 * float(least_squares(left, start, diff_step=1e-5, xtol=1e-8).cost)
+
+    best, freedom = least(None), ROWS - 4
+    for end in (ratio.low, ratio.high):
+        growth = (least(end) / best - 1.0) * freedom
+        assert growth == pytest.approx(stdtrit(freedom, 0.95) ** 2, rel=0.1)
+
+
+@pytest.mark.tenth
 def test_what_the_curves_do_not_tell_is_said() -> None:
     """On the half-space E0 and nu are one number, E*; on a bonded layer they are two."""
     rng = np.random.default_rng(SEED)
@@ -210,6 +243,25 @@ def test_coloured_noise_widens_the_intervals_as_its_memory_asks() -> None:
     assert of_coloured.curves[0].colour == pytest.approx([0.8], abs=0.1)
     widths = [np.log(one.high / one.low) for found in (of_white, of_coloured) for one in found.parameters.values()]
     assert widths[1] / widths[0] == pytest.approx(3.0, rel=0.3), "sqrt((1 + 0.8)/(1 - 0.8)) for a slow signal"
+
+
+def test_the_corner_of_a_low_pass_stands_in_for_the_silence() -> None:
+    """A record of the contact alone: RC noise looks like an error of the law until its corner is named."""
+    rng = np.random.default_rng(SEED)
+    table = scene(STRIKERS[0], {"law": "elastic", "E": 1e6})
+    time, force = history_by_springs(table, {})
+    rows = np.linspace(0.0, float(time[-1]), ROWS)
+    corner = 0.05 / (rows[1] - rows[0])
+    passed, past = np.zeros(ROWS), 0.0
+    for i, white in enumerate(rng.normal(size=ROWS)):
+        past = passed[i] = np.exp(-2.0 * np.pi * 0.05) * past + white
+    noise = 0.01 * force.max() * passed / passed.std()
+    curves = {"curve": Curve(rows, np.interp(rows, time, force) + noise)}
+    untold, told = (identify(curves, table, ["target.material.E"], corner=one) for one in (None, corner))
+    assert (untold.adequate, told.adequate) == (False, True)
+    one = told.parameters["target.material.E"]
+    assert (one.low or np.inf) < 1e6 < (one.high or 0.0)
+    assert told.curves[0].deviation == pytest.approx(0.01 * force.max(), rel=0.15)
 
 
 def test_colour_and_whiteness_of_known_series() -> None:
