@@ -199,6 +199,7 @@ BAD: list[tuple[str, object, str]] = [
     ("gap.floor.right", None, "gap.floor.right: missing; accepted: 1 to 1"),
     ("gap.floor.distance", -0.1, "gap.floor.distance"),
     ("gap.floor", 0.1, "gap.floor: not a table"),
+    ("gap.$a$", {"left": 1, "right": 1}, r"gap.\$a\$: accepted: a name"),
     ("gap", [], "gap: not a table"),
     ("law", None, "law: missing"),
     ("law.name", "kelvn", "did you mean kelvin"),
