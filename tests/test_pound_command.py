@@ -22,7 +22,7 @@ from lumped.pounding import march
 from lumped.pounding import study as studies
 from lumped.pounding.case_file import CASES, GRAVITY, load, read
 from lumped.pounding.ground import GroundRecord
-from lumped.pounding.study import APART, study
+from lumped.pounding.study import NO_CONTACT, study
 from lumped.schema.csv_file import read_columns
 
 SHORT = ["--set", "motion.end_time=2.0", "--quiet"]
@@ -199,6 +199,7 @@ BAD: list[tuple[str, object, str]] = [
     ("gap.floor.right", None, "gap.floor.right: missing; accepted: 1 to 1"),
     ("gap.floor.distance", -0.1, "gap.floor.distance"),
     ("gap.floor", 0.1, "gap.floor: not a table"),
+    ("gap.$a$", {"left": 1, "right": 1}, r"gap.\$a\$: accepted: a name"),
     ("gap", [], "gap: not a table"),
     ("law", None, "law: missing"),
     ("law.name", "kelvn", "did you mean kelvin"),
@@ -276,4 +277,4 @@ def test_a_refused_command_writes_nothing(
 
 
 def test_the_variant_without_contact_is_named() -> None:
-    assert APART not in load("two-frames").frames.gaps
+    assert NO_CONTACT not in load("two-frames").frames.gaps

@@ -9,7 +9,7 @@ from pathlib import Path
 from fe_contact.studies.files import Line, lines_of, write_study
 from lumped.pounding.case_file import PoundingCase
 from lumped.pounding.result import FrameContact, FramesResult
-from lumped.pounding.study import APART, Pounding, PoundStudy
+from lumped.pounding.study import NO_CONTACT, Pounding, PoundStudy
 from lumped.result.folder import publish
 from lumped.result.result import provenance
 from lumped.schema import Table
@@ -42,7 +42,7 @@ def write_pound(study: PoundStudy, where: Path) -> Table:
         "message": study.message,
         "case": study.case.to_dict(),
         "laws": {name: _motion(study.case, motion) for name, motion in study.motions.items()},
-        APART.replace(" ", "_"): {
+        NO_CONTACT.replace(" ", "_"): {
             "measures": {name: {"value": value, "unit": UNITS[name]} for name, value in study.apart.measures().items()},
             "storeys": _storeys(study.apart),
             "energy": study.apart.energy.to_dict(),
@@ -127,7 +127,7 @@ def told(study: PoundStudy) -> list[str]:
     for name, result in motions_of(study).items():
         m = result.measures()
         said = f"{name:17s} peak drift {1e3 * m['peak_drift']:.4g} mm, acceleration {m['peak_acceleration']:.4g} m/s2"
-        if name != APART:
+        if name != NO_CONTACT:
             said += f", {m['contacts']} contacts, peak force {1e-3 * m['peak_force']:.4g} kN"
             said += f", impulse {1e-3 * m['impulse']:.4g} kN s"
         lines.append(said)
@@ -141,4 +141,4 @@ def told(study: PoundStudy) -> list[str]:
 
 def motions_of(study: PoundStudy) -> dict[str, FramesResult]:
     """All motions by their names, that without contact last."""
-    return {name: motion.result for name, motion in study.motions.items()} | {APART: study.apart}
+    return {name: motion.result for name, motion in study.motions.items()} | {NO_CONTACT: study.apart}

@@ -13,7 +13,7 @@ from fe_contact.studies.pound import motions_of
 from fe_contact.studies.style import Look, prefixed, readable
 from lumped.pounding.frames import Gap
 from lumped.pounding.result import FramesResult
-from lumped.pounding.study import APART, PoundStudy
+from lumped.pounding.study import NO_CONTACT, PoundStudy
 
 PANEL, BETWEEN = 1.45, 0.62  # heights of a panel and of what is between two, in
 TITLE_WIDTH = 130  # characters
@@ -45,7 +45,7 @@ def looks(study: PoundStudy) -> dict[str, Look]:
     found: dict[str, Look] = {
         name: {"color": style.CYCLE[i % len(style.CYCLE)], "linewidth": 1.1} for i, name in enumerate(study.motions)
     }
-    return found | {APART: WITHOUT}
+    return found | {NO_CONTACT: WITHOUT}
 
 
 def _lines(study: PoundStudy) -> list[str]:
@@ -54,7 +54,7 @@ def _lines(study: PoundStudy) -> list[str]:
     for name, result in motions_of(study).items():
         m = result.measures()
         said = f"{name}: peak drift {readable(m['peak_drift'], 'm', 3)}, acceleration {m['peak_acceleration']:.3g} m/s²"
-        if name != APART:
+        if name != NO_CONTACT:
             said += f", {m['contacts']} contacts, peak force {readable(m['peak_force'], 'N', 3)}"
         lines.append(said)
     return lines
@@ -71,7 +71,7 @@ def _storeys(axes: Axes, study: PoundStudy) -> None:
     axes.plot(time, metre * result.motion.displacement[:, gap.left - 1], color=style.BLUE, label=f"left {gap.left}")
     if gap.right is not None:
         right = result.motion.displacement[:, frames.left.size + gap.right - 1] + gap.distance
-        axes.plot(time, metre * right, color=style.ORANGE, label=f"right {gap.right}, and the gap")
+        axes.plot(time, metre * right, color=style.ORANGE, label=f"right {gap.right}, a gap away")
     elif name:
         axes.axhline(metre * gap.distance, color=style.ORANGE, linewidth=0.8, label="wall")
     axes.set(ylabel=f"place, {unit}", xlim=(0.0, time[-1]))
@@ -107,9 +107,9 @@ def _profile(axes: Axes, study: PoundStudy, side: str, what: str, letter: str) -
     axes.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=6))
     if letter in "bc" and what == "drift":
         axes.set_ylabel("storey")
-    style.label(axes, letter, f"{side}")
-    if letter in "bc" and APART in motions_of(study):
-        axes.text(0.02, 0.02, f"- - {APART}", transform=axes.transAxes, fontsize=6.2, color="#4d4d4d")
+    style.label(axes, letter, f"{side} structure")
+    if letter in "bc" and NO_CONTACT in motions_of(study):
+        axes.text(0.02, 0.02, f"- - {NO_CONTACT}", transform=axes.transAxes, fontsize=6.2, color="#4d4d4d")
 
 
 def _peaks(result: FramesResult, side: str, what: str) -> list[float]:

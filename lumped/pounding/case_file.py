@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -24,6 +25,7 @@ CASES = Packaged("pound", "case")
 GRAVITY = 9.80665  # physics: m/s2, what an acceleration_g counts in
 COLUMNS = {"acceleration_m_per_s2": 1.0, "acceleration_g": GRAVITY}  # by the header of a record: in m/s2
 MOST_GAPS = 50  # work: of one file
+GAP_NAME = re.compile(r"[\w -]{1,40}")  # it heads a column and a panel of the chart
 TIME, ACCELERATION = Number(1e-9, 1e9, "s"), Key(Number(0.0, 1e6, "m/s2"), "the largest")
 GROUNDS: Mapping[str, Mapping[str, Key]] = {
     "record": {
@@ -165,7 +167,10 @@ class PoundingReader(TableReader):
             return {}
         for name, table in tables.items():
             known = len(self.faults)
-            if isinstance(table, Mapping):
+            if not GAP_NAME.fullmatch(name):
+                reason = "accepted: a name of 1 to 40 letters, digits, spaces, - and _"
+                self.faults.append(Fault(self.source, f"gap.{name}", reason))
+            elif isinstance(table, Mapping):
                 values = self.checked(f"gap.{name}", dict(table), keys_of(Gap))
             else:
                 self.faults.append(

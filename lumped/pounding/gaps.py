@@ -46,15 +46,15 @@ class Happening(Enum):
 class FrameStep(NamedTuple):
     """One step, `length` s long: states (s, 2 n), and depths, rates and forces of all gaps, (m, s), at its points.
 
-    `gain`, N, is the force times the pace of the nodes; `starts` and `leaving` are depths and rates where it begins,
-    (m,); `memories`: what the laws remember at its end.
+    `gain`, N, is the force times the pace of the nodes; `first_depth` and `first_rate` are those where it begins, (m,);
+    `memories`: what the laws remember at its end.
     """
 
     length: float
     nodes: Nodes
     states: Array
-    starts: Array
-    leaving: Array
+    first_depth: Array
+    first_rate: Array
     depth: Array
     rate: Array
     force: Array
@@ -143,8 +143,8 @@ def _nearest(gap: int, state: GapState, noise: float) -> GapEvent:
     """The depth turns between two points so near to zero that its tangents there reach it."""
 
     def suspicious(step: FrameStep) -> NDArray[np.bool_]:
-        rate = np.append(step.leaving[gap], step.rate[gap])
-        depth = np.append(step.starts[gap], step.depth[gap])
+        rate = np.append(step.first_rate[gap], step.rate[gap])
+        depth = np.append(step.first_depth[gap], step.depth[gap])
         apart = step.length * np.diff(step.nodes.points, prepend=0.0)
         turned = (rate[:-1] > 0.0) & (rate[1:] < 0.0)
         reach = np.maximum(depth[:-1], depth[1:]) + apart * np.maximum(rate[:-1], -rate[1:])

@@ -64,7 +64,7 @@ class FrameMarch:
         """To the end of a row; the length proposed for the next step, s."""
         for _ in range(MOST_STEPS):
             free = self._free(at)
-            start = self._touched(self._placed(at, free), free, until - at.time)
+            start = self._begun(at, free, until - at.time)
             fresh = [i for i, gap in enumerate(start.gaps) if gap.mode is not at.gaps[i].mode]
             length = min([length, *(self._first_length(i, start.gaps[i]) for i in fresh)])
             trial = FrameTrial(self.rules, start, free)
@@ -82,28 +82,26 @@ class FrameMarch:
     def _free(self, at: FramesAt) -> Array:
         return self.rules.flow.series(at.state, self.ground.series(at.time, self.rules.flow.unit, TERMS))
 
-    def _placed(self, at: FramesAt, free: Array) -> FramesAt:
-        """With the depths of the gaps that are apart, which the state tells: zero where they are but for rounding."""
-        flow, frames = self.rules.flow, self.rules.flow.frames
-        depths = frames.rows @ at.state[: flow.size] - frames.distances
-        depths[depths >= -2.0 * flow.noise(free)] = 0.0
-        apart = [gap.mode is Mode.APART for gap in at.gaps]
-        return at._replace(depths=np.where(apart, depths, at.depths))
+    def _begun(self, at: FramesAt, free: Array, length: float) -> FramesAt:
+        """With the depths of the gaps that are apart, which the state tells: zero where they are but for rounding.
 
-    def _touched(self, at: FramesAt, free: Array, length: float) -> FramesAt:
-        """With the gaps pressed that lie at depth zero and close from here on: at rest, their first motion tells."""
-        zero = [i for i, gap in enumerate(at.gaps) if gap.mode is Mode.APART and at.depths[i] == 0.0]
-        if not zero:
+        Those that lie at depth zero and close from here on are pressed: at rest, their first motion tells.
+        """
+        apart = [i for i, gap in enumerate(at.gaps) if gap.mode is Mode.APART]
+        if not apart:
             return at
-        flow = self.rules.flow
-        noise, slowest = flow.noise(free), flow.slowest(free)
-        first = (length / flow.unit * NODES.points[0]) ** np.arange(1.0, TERMS + 1.0)
-        moved = flow.frames.rows @ (first @ free[1:, : flow.size])
-        rates, gaps = flow.frames.rows @ at.state[flow.size :], list(at.gaps)
-        for i in zero:
-            if moved[i] > 2.0 * noise[i] and rates[i] >= 0.0:
-                gaps[i] = pressed(self.rules.laws[i], 0.0, float(rates[i]), slowest, at.time)
-        return at._replace(gaps=tuple(gaps))
+        flow, frames = self.rules.flow, self.rules.flow.frames
+        depths, gaps, noise = at.depths.copy(), list(at.gaps), flow.noise(free)
+        depths[apart] = (frames.rows @ at.state[: flow.size] - frames.distances)[apart]
+        zero = [i for i in apart if depths[i] >= -2.0 * noise[i]]
+        depths[zero] = 0.0
+        if zero:
+            first = (length / flow.unit * NODES.points[0]) ** np.arange(1.0, TERMS + 1.0)
+            moved = frames.rows @ (first @ free[1:, : flow.size])
+            rates = frames.rows @ at.state[flow.size :]
+            for i in (i for i in zero if moved[i] > 2.0 * noise[i] and rates[i] >= 0.0):
+                gaps[i] = pressed(self.rules.laws[i], 0.0, float(rates[i]), flow.slowest(free), at.time)
+        return at._replace(depths=depths, gaps=tuple(gaps))
 
     def _after(
         self, trial: FrameTrial, step: FrameStep, event: GapEvent | None, time: float, length: float

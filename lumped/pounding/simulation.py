@@ -132,7 +132,7 @@ class Account:
         self.peaks.see(self._values(step), step.nodes)
         for i in pressed:
             if i not in self.open:
-                self.open[i] = OpenContact(at.time, float(step.leaving[i]))
+                self.open[i] = OpenContact(at.time, float(step.first_rate[i]))
                 self.lost -= self._stored(i, at.gaps[i], float(at.depths[i]))
             self.open[i].see(at.time, step, i)
             if to.gaps[i].mode is not Mode.PRESSED:
@@ -152,7 +152,7 @@ class Account:
         self.input -= float(weights @ (ground * (speeds @ frames.mass)))
         self.damping += float(weights @ np.einsum("si,ij,sj->s", speeds, frames.damping, speeds))
         for i in pressed:
-            known = State(float(at.depths[i]), float(step.leaving[i]), 0.0, at.gaps[i].memory)
+            known = State(float(at.depths[i]), float(step.first_rate[i]), 0.0, at.gaps[i].memory)
             law = self.march.rules.laws[i].within(known, step.length)
             depth = np.maximum(step.depth[i], TINY)
             self.lost += float(weights @ (law.lost(depth, step.rate[i], at.gaps[i].stage) * step.rate[i]))

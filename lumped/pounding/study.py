@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from lumped.errors import addressed
 from lumped.laws._force_law import ForceLaw
 from lumped.pounding.case_file import PoundingCase
 from lumped.pounding.frames import PoundingFrames
 from lumped.pounding.result import FramesResult
 from lumped.pounding.simulation import simulate
 
-APART = "no contact"  # the variant whose structures pass through each other
+NO_CONTACT = "no contact"  # the variant whose structures pass through each other
 COARSE, FINE = 1e-6, 1e-8  # step tolerances of the two marches
 SAFETY = 2.0  # safety: two marches may agree by chance
 ROUNDING = 1e-12  # rounding: of a sum over thousands of steps, relative
@@ -67,11 +68,13 @@ def study(
     own = case.law.name if case.law and case.frames.gaps else None
     laws = {name: case.laws(None if name == own else name) for name in dict.fromkeys([own, *names]) if name and own}
     motions = {}
-    for name, one in laws.items():
-        progress(name)
-        motions[name] = pounding(case, one)
-    free = PoundingFrames(case.frames.left, case.frames.right)
-    return PoundStudy(case, motions, simulate(free, (), case.ground, case.end_time))
+    with addressed(case.source, {"motion": "motion"}):
+        for name, one in laws.items():
+            progress(name)
+            motions[name] = pounding(case, one)
+        progress(NO_CONTACT)
+        free = PoundingFrames(case.frames.left, case.frames.right)
+        return PoundStudy(case, motions, simulate(free, (), case.ground, case.end_time))
 
 
 def pounding(case: PoundingCase, laws: tuple[ForceLaw, ...]) -> Pounding:

@@ -87,7 +87,7 @@ class FrameTrial:
 
     def _near(self, step: FrameStep) -> list[GapEvent]:
         """The events that can lie in a step: gaps that stay far apart have none."""
-        reach = np.maximum(step.starts, step.depth.max(axis=1, initial=-np.inf))
+        reach = np.maximum(step.first_depth, step.depth.max(axis=1, initial=-np.inf))
         reach += step.length * np.abs(step.rate).max(axis=1, initial=0.0)
         near = (i for i in np.flatnonzero(reach >= 0.0).tolist() if self.at.gaps[i].mode is Mode.APART)
         return [*self._events, *(event for i in near for event in self._touches[i])]

@@ -51,7 +51,9 @@ def test_any_command_line_ends_with_one_line_a_fault(
     assert not wrong, "\n".join(wrong)
 
 
-@pytest.mark.parametrize("command", ["run", "compare", "tradeoff", "indent", "fit", "ptmd", "paper", "ring", "table1"])
+@pytest.mark.parametrize(
+    "command", ["run", "compare", "tradeoff", "indent", "fit", "ptmd", "pound", "paper", "ring", "table1"]
+)
 @pytest.mark.parametrize("out", ["/proc/none", "/dev/null/x", "a\x1b[31mb"])
 def test_a_folder_that_cannot_be_written_is_refused_before_the_work(
     tmp_path: Path, command: str, out: str, run: Callable[[Sequence[str]], Any]
@@ -61,6 +63,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_the_work(
     own = {
         "fit": [str(curve), "--law", "hertz", "--scene", "steel-ball"],
         "indent": ["steel-ball", "--depths", "1e-6"],
+        "pound": ["two-frames"],
     }
     scene = [] if command in ("ptmd", "paper", "ring", "table1") else ["steel-ball"]
     ended = run([command, *own.get(command, scene), "--out", out])

@@ -76,7 +76,7 @@ def test_a_hostile_scene_is_refused_by_name(
 ) -> None:
     scene = tmp_path / "scene.toml"
     scene.write_bytes(BYTES[name] if name in BYTES else TEXTS[name].encode("utf-8"))
-    for command in (["plan", str(scene)], ["ptmd", str(scene)]):
+    for command in (["plan", str(scene)], ["ptmd", str(scene)], ["pound", str(scene)]):
         ended = run(command)
         assert not faults_of(ended, LINE)
         assert ended.code == 2
@@ -84,7 +84,7 @@ def test_a_hostile_scene_is_refused_by_name(
 
 
 @pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("command", [["plan"], ["ptmd"], ["fit", "--law", "hertz", "--scene", "steel-ball"]])
+@pytest.mark.parametrize("command", [["plan"], ["ptmd"], ["pound"], ["fit", "--law", "hertz", "--scene", "steel-ball"]])
 def test_what_is_no_regular_file_is_refused(
     place: str, command: list[str], run: Callable[[Sequence[str]], Any], faults_of: Callable[..., list[str]]
 ) -> None:

@@ -35,6 +35,9 @@ REFUSED = [
     ("fit CURVE --scene steel-ball --law correspondence --free R1", "--free: R2: missing"),
     ("fit CURVE --scene bar-impact --law hertz", "bar-impact.toml: striker.mass: 0: a lumped law moves"),
     ("ptmd --set motion.end_time=1e9", "paper.toml: motion.end_time: more than 300000 rows"),
+    ("pound two-frames --set motion.end_time=1e9", "two-frames.toml: motion.end_time: more than 300000 rows"),
+    ("pound two-frames --set gap.first.left=4", "two-frames.toml: gap.first.left: 4; accepted: 1 to 3"),
+    ("pound two-frames --set law.e=0", "two-frames.toml: law.e: 0 is not accepted"),
     ("ptmd --set motion.displacement=0", "paper.toml: motion.displacement: nothing moves"),
 ]
 # What once was a defect of ours: a surface drawn out by its weight, depths near the least number there is.
