@@ -25,7 +25,7 @@ MOST = 300.0  # %, what lies beyond is drawn at the end of the axis
 TICKS = (-100.0, -10.0, -1.0, 0.0, 1.0, 10.0, 100.0)  # look: %
 ALIKE = 0.012  # look: of the axis, by which curves may differ that share a name
 LINE = 0.072  # look: of the axis, between two names
-NAMES, WIDE = 5.6, 25  # look: size of a name; characters beside a panel
+NAMES, WIDE = 5.6, 22  # look: size of a name; characters beside a panel
 BROAD = {0.1: 0.22, 0.05: 0.5, 0.01: 1.0}  # look: how strong the bar of each level is
 
 
@@ -47,7 +47,7 @@ def _plot(study: TransferStudy, key: str, where: Path, name: str) -> tuple[Path,
     height = count * PANEL + (count - 1) * BETWEEN
     title = f"{study.name}: laws used at another {key}"
     with style.sheet(where, name, title, lines, height, width=TITLE_WIDTH, above=0.3) as sheet:
-        panels = sheet.panels(count, COLUMNS, 0.075, 0.865, wspace=0.66, hspace=BETWEEN / PANEL)
+        panels = sheet.panels(count, COLUMNS, 0.07, 0.87, wspace=0.68, hspace=BETWEEN / PANEL)
         for i, (axes, quantity) in enumerate(zip(panels, QUANTITIES, strict=False)):
             _deviations(axes, [row for row in rows if row.quantity == quantity])
             style.label(axes, chr(ord("a") + i), quantity.replace("_", " "))
@@ -79,7 +79,8 @@ def _deviations(axes: Axes, rows: Sequence[TransferRow]) -> None:
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:+g}" if value else "0"))
     known = np.concatenate([deviation for _, deviation in curves.values()] or [np.zeros(1)])
     most = min(1.5 * max(float(np.nanmax(np.abs(known), initial=0.0)), 1.2 * LINEAR), MOST)
-    axes.set(ylim=(-most, most), ylabel="deviation, %")
+    absolute = any(row.quantity == "restitution" for row in rows)
+    axes.set(ylim=(-most, most), ylabel="difference, hundredths" if absolute else "deviation, %")
     for level in LEVELS:
         for sign in (-1.0, 1.0):
             axes.axhline(sign * 100.0 * level, color=style.GREY, linewidth=0.35, alpha=0.6, zorder=0)
@@ -110,14 +111,16 @@ def _bars(rows: Sequence[TransferRow]) -> tuple[Array, Array]:
 
 def _name(axes: Axes, curves: dict[str, tuple[Array, Array]]) -> None:
     """Names at the right of a panel, each as near to the end of its curve as the others leave room for."""
-    ends = [(law, _height(axes, deviation)) for law, (_, deviation) in curves.items() if np.isfinite(deviation).any()]
+    drawn = reversed(curves.items())  # of curves that are one the last is seen, and gives the name its colour
+    ends = [(law, _height(axes, deviation)) for law, (_, deviation) in drawn if np.isfinite(deviation).any()]
     groups: list[tuple[list[str], Array]] = []
-    for law, heights in sorted(ends, key=lambda end: float(end[1][-1])):
+    for law, heights in ends:
         known = next((one for one in groups if _alike(one[1], heights)), None)
         if known is None:
             groups.append(([law], heights))
         else:
             known[0].append(law)
+    groups.sort(key=lambda group: float(group[1][-1]))
     wanted = np.array([heights[-1] for _, heights in groups])
     for (names, heights), place in zip(groups, spread(wanted, LINE), strict=True):
         look: Look = {"color": style.law_colour(names[0]), "linewidth": 0.4, "clip_on": False}

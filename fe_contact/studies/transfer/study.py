@@ -122,7 +122,7 @@ class TransferStudy:
     @property
     def at(self) -> str:
         """The state of calibration, in words."""
-        return ", ".join(f"{key} = {value:.4g}" for key, value in self.start.items())
+        return ", ".join(f"{key} = {value:.5g}" for key, value in self.start.items())
 
     @property
     def sentences(self) -> tuple[str, ...]:

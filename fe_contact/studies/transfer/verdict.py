@@ -129,34 +129,34 @@ def sentence(law: str, refused: str | None, rows: Sequence[TransferRow], start: 
         return f"{law}: refused: {reason}"
     if all(row.verdict is TransferVerdict.INSIDE for row in known):
         return f"{law} holds at every state within the error bars{_left_out(rows)}"
-    parts = [_range(key, [row for row in known if row.key == key], start[key]) for key in start]
-    return f"{law} {'; '.join(part for part in parts if part)}{_worst(known)}{_left_out(rows)}"
+    begin = [row for row in known if row.value == start[row.key]]
+    if all(is_good(row, LEVELS[-1]) for row in begin):
+        ranges = [_range(key, own, start[key]) for key in start if (own := [row for row in known if row.key == key])]
+        said = f"{law} holds {'; '.join(ranges)}; it errs most in {_most(known)}"
+    else:
+        said = f"{law} errs in {_most(begin)} even where it was calibrated; at most in {_most(known)}"
+    return said + _left_out(rows)
 
 
 def _range(key: str, rows: Sequence[TransferRow], start: float) -> str:
     """The finest level that it holds to away from the start, else where it is calibrated, and the range."""
-    if not rows:
-        return ""
-    coarsest = percent(LEVELS[-1])
     reaches = [(level, reach) for level in LEVELS if (reach := _reach(rows, start, level))]
-    wide = [(level, reach) for level, reach in reaches if reach[0] < reach[1]]
-    if wide:
-        level, (low, high) = wide[0]
-        return f"holds to {percent(level)} for {key} from {low:.3g} to {high:.3g}"
-    if reaches:
-        return f"holds to {percent(reaches[0][0])} where it was calibrated, and at no other {key} to {coarsest}"
-    return f"does not even hold to {coarsest} where it was calibrated, {key} = {start:.3g}"
+    level, (low, high) = next((one for one in reaches if one[1][0] < one[1][1]), reaches[0])
+    if low < high:
+        return f"to {percent(level)} for {key} from {low:.5g} to {high:.5g}"
+    return f"to {percent(level)} at {key} = {start:.5g} alone"
 
 
-def _worst(rows: Sequence[TransferRow]) -> str:
-    """Where it errs most."""
-    told = [(abs(row.deviation), row) for row in rows if row.deviation is not None]
+def _most(rows: Sequence[TransferRow]) -> str:
+    """The quantity that errs most, by how much, and where."""
+    told = [row for row in rows if row.deviation is not None]
     if not told:
-        return ""
-    _, most = max(told, key=lambda one: one[0])
+        return "whether the bodies part"
+    most = max(told, key=lambda row: abs(row.deviation or 0.0))
     off = most.deviation or 0.0
-    size = f"by {off:+.2g}" if most.quantity == "restitution" else f"by {100.0 * off:+.2g} %"
-    return f"; it errs most in {most.quantity.replace('_', ' ')}, {size} at {most.key} = {most.value:.3g}"
+    share = f"{100.0 * off:+.0f} %" if abs(off) >= 1.0 else f"{100.0 * off:+.2g} %"
+    size = f"{off:+.2g}" if most.quantity == "restitution" else share
+    return f"{most.quantity.replace('_', ' ')} by {size} at {most.key} = {most.value:.5g}"
 
 
 def _left_out(rows: Sequence[TransferRow]) -> str:
