@@ -19,7 +19,7 @@ from fe_contact.studies import style
 from fe_contact.studies.transfer.chart import plot_transfer, spread
 from fe_contact.studies.transfer.study import TransferStudy
 from fe_contact.studies.transfer.verdict import QUANTITIES, TransferRow, TransferVerdict, holds, row_of
-from lumped import Scene, laws
+from lumped import BadInput, Scene, laws
 from lumped.result.result import Quantity
 from lumped.scene.tables import LawChoice
 
@@ -74,6 +74,26 @@ def own_numbers(scene: Scene) -> Scene:
         "tsuji": lambda: {"alpha_t": law["c"] / np.sqrt(k * m)},
     }[name]()
     return replace(scene, law=LawChoice(name, {"k": k, **{key: float(value) for key, value in own.items()}}))
+
+
+@pytest.mark.parametrize("law", ["kelvin", "hunt_crossley", "tsuji", "impact_bilinear"])
+def test_restitution_and_peak_are_met_where_they_were_measured(law: str) -> None:
+    """And the whole history is met no better than by least squares."""
+    scene = Scene.load("polymer-sphere")
+    field, least = (
+        fe_contact.transfer(scene, (law,), over={VELOCITY: ()}, calibrate=how, method="ting")
+        for how in ("restitution", "least_squares")
+    )
+    for name in ("peak_force", "restitution"):
+        assert of(field, law, name)[0.02].verdict is TransferVerdict.INSIDE
+    assert (field.calibrations[law].error or 0.0) > (least.calibrations[law].error or 0.0)
+
+
+def test_what_python_asks_is_checked_before_any_work() -> None:
+    scene = Scene.load("polymer-sphere")
+    for wrong in ({"laws": ("tong",)}, {"calibrate": "peak"}, {"within": 2.0}, {"over": {"striker.speed": (1.0,)}}):
+        with pytest.raises(BadInput):
+            fe_contact.transfer(scene, **wrong)  # type: ignore[arg-type]
 
 
 def test_a_loop_is_carried_by_its_springs() -> None:
@@ -238,7 +258,7 @@ def test_a_state_without_a_reference_is_told_and_the_others_go_on() -> None:
         (["--laws", "tong"], "did you mean ting?"),
         (["--calibrate", "peak"], "--calibrate: 'peak': accepted least_squares, restitution"),
         (["--method", "few"], "--method"),
-        (["--within", "2"], "--within: '2': accepted a number from 0 to 1"),
+        (["--within", "2"], "--within: 2: accepted a number from 0 to 1"),
     ],
 )
 def test_bad_options_write_nothing(

@@ -25,7 +25,7 @@ PURPLE, SKY = "#CC79A7", "#56B4E9"
 CYCLE = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
 # A law has one colour in every chart; laws of one kind have neighbouring ones.
 LAWS = {
-    "linear_spring": "#7f7f7f", "kelvin": "#c3a100", "mahmoud": "#8a6d1f", "impact_bilinear": "#5b3a1e",
+    "linear_spring": "#7f7f7f", "kelvin": "#2f4b7c", "mahmoud": "#8a6d1f", "impact_bilinear": "#5b3a1e",
     "hertz": ORANGE, "jankowski": "#f06eaa", "hunt_crossley": PURPLE, "hertzdamp": "#8e44ad",
     "khatiwada": "#5e2b80", "tsuji": "#b0003a", "kuwabara_kono": "#7a9a01",
     "correspondence": VERMILION, "ting": BLUE, "mdr": GREEN, "rod_waves": "#00a3b4",

@@ -25,7 +25,7 @@ MOST = 300.0  # %, what lies beyond is drawn at the end of the axis
 TICKS = (-100.0, -10.0, -1.0, 0.0, 1.0, 10.0, 100.0)  # look: %
 ALIKE = 0.012  # look: of the axis, by which curves may differ that share a name
 LINE = 0.072  # look: of the axis, between two names
-NAMES, WIDE = 5.6, 22  # look: size of a name; characters beside a panel
+NAMES, WIDE = 5.3, 25  # look: size of a name; characters beside a panel
 BROAD = {0.1: 0.22, 0.05: 0.5, 0.01: 1.0}  # look: how strong the bar of each level is
 
 
@@ -47,7 +47,7 @@ def _plot(study: TransferStudy, key: str, where: Path, name: str) -> tuple[Path,
     height = count * PANEL + (count - 1) * BETWEEN
     title = f"{study.name}: laws used at another {key}"
     with style.sheet(where, name, title, lines, height, width=TITLE_WIDTH, above=0.3) as sheet:
-        panels = sheet.panels(count, COLUMNS, 0.07, 0.87, wspace=0.68, hspace=BETWEEN / PANEL)
+        panels = sheet.panels(count, COLUMNS, 0.078, 0.868, wspace=0.69, hspace=BETWEEN / PANEL)
         for i, (axes, quantity) in enumerate(zip(panels, QUANTITIES, strict=False)):
             _deviations(axes, [row for row in rows if row.quantity == quantity])
             style.label(axes, chr(ord("a") + i), quantity.replace("_", " "))

@@ -18,7 +18,7 @@ from fe_contact.settings import Given
 from fe_contact.studies.files import write_study
 from fe_contact.studies.transfer.verdict import QUANTITIES, TransferRow, holds, row_of, sentence
 from lumped import laws, simulate
-from lumped.errors import BadInput, Fault, FeContactError
+from lumped.errors import BadInput, Fault, FeContactError, shown
 from lumped.fit import fit
 from lumped.fit.space import damping_names, own_keys, space_of
 from lumped.laws._force_law import ForceLaw, between_masses
@@ -28,6 +28,7 @@ from lumped.scene.scene import Scene
 from lumped.scene.tables import LawChoice
 from lumped.schema import Table
 from lumped.schema.files import overridden
+from lumped.schema.keys import Number
 from lumped.solvers.point.bodies import Stage
 
 SCHEMA = "fe-contact/transfer/1"
@@ -35,7 +36,7 @@ VELOCITY = "striker.velocity"
 # Of the velocity, where nobody says over what: from a third to three times, in equal ratios.
 SHARES = tuple(3.0 ** (0.5 * i) for i in (-2, -1, 0, 1, 2))
 LAW_TOLERANCE = 1e-6  # of a law's own integration: far below any reference's bar
-WITHIN = 0.05  # the tolerance of the verdict `within`, where nobody asks for another
+WITHIN, TOLERATED = 0.05, Number(0.0, 1.0)  # of the verdict `within`: where nobody asks for another; accepted ones
 SceneWith = Callable[[Mapping[str, object]], Scene]  # the scene with dotted keys changed; raises BadInput
 
 
@@ -45,7 +46,7 @@ class Asked:
 
     ``start``: dotted keys of the state of calibration, what they leave out is the scene's. ``over``: keys and the
     values that each takes, alone; none: the velocity. ``within``: tolerance of a verdict. ``method``: of the
-    reference, see :func:`fe_contact.run`.
+    reference, see :func:`fe_contact.run`. Raises BadInput.
     """
 
     laws: tuple[str, ...] = ()
@@ -54,6 +55,15 @@ class Asked:
     calibrate: str = "least_squares"
     within: float = WITHIN
     method: str | None = None
+
+    def __post_init__(self) -> None:
+        for name in self.laws:
+            laws.get(name)
+        if self.calibrate not in CALIBRATIONS:
+            reason = f"{shown(self.calibrate)}: accepted {', '.join(CALIBRATIONS)}"
+            raise BadInput(Fault("--calibrate", "", reason))
+        if not TOLERATED.low <= self.within <= TOLERATED.high:
+            raise BadInput(Fault("--within", "", f"{self.within:g}: accepted {TOLERATED.accepted}"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,7 +257,7 @@ def _own_numbers(law: ForceLaw, scene: Scene, known: Mapping[str, float]) -> dic
     dampers = damping_names(law.name)
     if not dampers:
         own = own_keys(law.name).keys() - {"k", "e", "alpha", "gap"}
-        loop = {key: float(str(value)) for key, value in law.parameters.items() if key in own}
+        loop = {key: float(getattr(law, key)) for key in law.parameters if key in own}
         return loop or {"k": known["k"]}
     name, half = dampers[0], Stage(True, 1e-3 * scene.velocity, scene.velocity)
     of_one = replace(scene, law=LawChoice(law.name, {"k": known["k"], name: 1.0}))
