@@ -76,6 +76,7 @@ def own_numbers(scene: Scene) -> Scene:
     return replace(scene, law=LawChoice(name, {"k": k, **{key: float(value) for key, value in own.items()}}))
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("law", ["kelvin", "hunt_crossley", "tsuji", "impact_bilinear"])
 def test_restitution_and_peak_are_met_where_they_were_measured(law: str) -> None:
     """And the whole history is met no better than by least squares."""

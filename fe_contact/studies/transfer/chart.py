@@ -47,7 +47,7 @@ def _plot(study: TransferStudy, key: str, where: Path, name: str) -> tuple[Path,
     height = count * PANEL + (count - 1) * BETWEEN
     title = f"{study.name}: laws used at another {key}"
     with style.sheet(where, name, title, lines, height, width=TITLE_WIDTH, above=0.3) as sheet:
-        panels = sheet.panels(count, COLUMNS, 0.078, 0.868, wspace=0.69, hspace=BETWEEN / PANEL)
+        panels = sheet.panels(count, COLUMNS, 0.078, 0.845, wspace=0.74, hspace=BETWEEN / PANEL)
         for i, (axes, quantity) in enumerate(zip(panels, QUANTITIES, strict=False)):
             _deviations(axes, [row for row in rows if row.quantity == quantity])
             style.label(axes, chr(ord("a") + i), quantity.replace("_", " "))
