@@ -29,6 +29,7 @@ LAWS = {
     "hertz": ORANGE, "jankowski": "#f06eaa", "hunt_crossley": PURPLE, "hertzdamp": "#8e44ad",
     "khatiwada": "#5e2b80", "tsuji": "#b0003a", "kuwabara_kono": "#7a9a01",
     "correspondence": VERMILION, "ting": BLUE, "mdr": GREEN, "rod_waves": "#00a3b4",
+    "bar_waves": "#0b5d57",
 }  # fmt: skip
 
 Look = dict[str, Any]  # keywords of matplotlib, each of its own type
