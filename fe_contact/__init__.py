@@ -7,16 +7,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from fe_contact.studies.sweep.table import SweepTable
+    from fe_contact.studies.transfer.study import TransferStudy
     from lumped import Result, Scene
 
-__all__ = ["run", "sweep"]
+__all__ = ["run", "sweep", "transfer"]
 __version__ = "0.1.0"
 
 
@@ -84,3 +85,50 @@ def sweep(
     asked = load(source)
     with TemporaryDirectory() as spare:
         return run_sweep(asked, Path(out or spare) / "cases", jobs, dask, resume)
+
+
+def transfer(
+    scene: Scene,
+    laws: Sequence[str] = (),
+    start: Mapping[str, float] | None = None,
+    over: Mapping[str, Sequence[float]] | None = None,
+    calibrate: str = "least_squares",
+    tolerance: float | None = None,
+    method: str | None = None,
+    within: float = 0.05,
+) -> TransferStudy:
+    """Laws calibrated at one state of a scene and used at others.
+
+    Parameters
+    ----------
+    scene : a :class:`lumped.Scene`.
+    laws : names of lumped laws; none: all.
+    start : dotted keys of the scene file and their values at the state of calibration; what it leaves out is the
+        scene's.
+    over : keys and the values that each takes, alone; None: the velocity from a third to three times.
+    calibrate : ``least_squares`` on the whole history, or ``restitution``: that and the peak force alone.
+    tolerance, method : of the references, as for :func:`run`.
+    within : tolerance of the verdict ``within``, relative, of the restitution absolute.
+
+    Returns
+    -------
+    TransferStudy: ``rows`` (law, key, value, quantity, predicted, reference, reference_error, deviation, verdict),
+    ``states`` with their references, ``calibrations``, ``refused``, ``sentences``; ``write(folder)`` writes
+    ``transfer.csv`` and ``transfer.json``.
+
+    Raises
+    ------
+    BadInput for a state that is no scene, and what :func:`run` raises at the state of calibration. A law or a reference
+    that fails elsewhere is refused there.
+    """
+    from functools import partial
+
+    from fe_contact.methods import settings
+    from fe_contact.studies.transfer.study import Asked, changed
+    from fe_contact.studies.transfer.study import transfer as run_transfer
+    from fe_contact.threads import one_thread
+
+    values = {key: tuple(every) for key, every in (over or {}).items()}
+    asked = Asked(tuple(laws), start or {}, values, calibrate, within, method)
+    with one_thread:
+        return run_transfer(partial(changed, scene), settings({}, tolerance, scene.source), asked)

@@ -49,7 +49,7 @@ def _force(axes: Axes, curve: Curve, found: Fit) -> None:
         {"marker": ".", "markersize": 2.4, "linewidth": 0.0} if curve.time.size <= MOST_POINTS else {"linewidth": 2.6}
     )
     axes.plot(second * curve.time, newton * curve.force, color="#b0b0b0", label="curve", **look)
-    axes.plot(second * history.time, newton * history.force, color=style.VERMILION, label=found.law)
+    axes.plot(second * history.time, newton * history.force, color=style.law_colour(found.law), label=found.law)
     axes.set(ylabel=f"force, {unit}")
     axes.legend(loc="upper right")
     style.label(axes, "a", "contact force")
@@ -61,7 +61,7 @@ def _left(axes: Axes, curve: Curve, found: Fit) -> None:
     second, unit = prefixed(float(curve.time[-1]), "s")
     rest = 100.0 * (found.history.force_at(curve.time) - curve.force) / curve.force.max()
     axes.axhline(0.0, color="#4d4d4d", linewidth=0.5)
-    axes.plot(second * curve.time, rest, color=style.BLUE, linewidth=0.8)
+    axes.plot(second * curve.time, rest, color=style.law_colour(found.law), linewidth=0.8)
     largest = float(np.abs(rest).max()) or 1.0
     axes.set(xlabel=f"time, {unit}", ylabel="% of the peak", ylim=(-1.15 * largest, 1.15 * largest))
     axes.set_xlim(second * min(float(curve.time[0]), 0.0), 1.01 * second * span)

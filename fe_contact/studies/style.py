@@ -23,6 +23,14 @@ BLACK, GREY = "#1a1a1a", "#8c8c8c"
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
 PURPLE, SKY = "#CC79A7", "#56B4E9"
 CYCLE = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
+# A law has one colour in every chart; laws of one kind have neighbouring ones.
+LAWS = {
+    "linear_spring": "#7f7f7f", "kelvin": "#2f4b7c", "mahmoud": "#8a6d1f", "impact_bilinear": "#5b3a1e",
+    "hertz": ORANGE, "jankowski": "#f06eaa", "hunt_crossley": PURPLE, "hertzdamp": "#8e44ad",
+    "khatiwada": "#5e2b80", "tsuji": "#b0003a", "kuwabara_kono": "#7a9a01",
+    "correspondence": VERMILION, "ting": BLUE, "mdr": GREEN, "rod_waves": "#00a3b4",
+    "bar_waves": "#0b5d57",
+}  # fmt: skip
 
 Look = dict[str, Any]  # keywords of matplotlib, each of its own type
 RC: Any = {
@@ -55,6 +63,11 @@ RC: Any = {
     "path.simplify": False,
 }
 PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}  # by power of ten
+
+
+def law_colour(name: str) -> str:
+    """The colour of a law, black where it has none of its own."""
+    return LAWS.get(name, BLACK)
 
 
 @contextmanager

@@ -349,6 +349,7 @@ def test_a_law_with_a_stiffness_is_fitted_on_every_geometry(law: str, body: str)
     assert found.result.quantities["restitution"].value == pytest.approx(0.7, abs=1e-6)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("body", "share", "known"), [("rod", 1.0, 1e-3), ("concrete-pole", 0.8, 1e-5)])
 def test_the_waves_of_a_rod_are_fitted_by_its_modulus(body: str, share: float, known: float) -> None:
     """Under a flat end the force jumps with every echo, whose time tells the modulus no better than the rows lie."""

@@ -28,12 +28,12 @@ TITLE_WIDTH = 134  # characters
 LEAST_SHOWN = 1e-6  # of the peak: the lower end of the logarithmic panel
 LEGEND = 0.3  # in, above the panels
 MOST_TENSION = 0.6  # of the largest pressure: a viscous law's tension at the edge is singular, and cut there
-# One colour and one dash a candidate: the reference is a broad grey line below all of them.
+# A dash a candidate, beside a law's colour: the reference is a broad grey line below all of them.
 STYLES: dict[str, Look] = {
-    "hertz": {"color": style.ORANGE, "linestyle": (0, (1, 1.2))},
-    "correspondence": {"color": style.VERMILION, "linestyle": "-"},
-    "ting": {"color": style.BLUE, "linestyle": (0, (5, 2.2))},
-    "mdr": {"color": style.GREEN, "linestyle": (2.5, (2.2, 5))},
+    "hertz": {"linestyle": (0, (1, 1.2))},
+    "correspondence": {"linestyle": "-"},
+    "ting": {"linestyle": (0, (5, 2.2))},
+    "mdr": {"linestyle": (2.5, (2.2, 5))},
     "measured": {"color": style.PURPLE, "linestyle": "-", "linewidth": 0.9},
 }
 REFERENCE: Look = {"color": "#b8b8b8", "linewidth": 4.2, "solid_capstyle": "butt"}
@@ -64,7 +64,7 @@ def _candidates(comparison: Comparison) -> Iterator[tuple[History | Measured, Lo
 
 def line_of(name: str) -> Look:
     """Colour and dashes of a candidate, the same in every chart."""
-    return STYLES.get(name, {"color": style.BLACK, "linestyle": (0, (3, 1, 1, 1))})
+    return {"color": style.law_colour(name)} | STYLES.get(name, {"linestyle": (0, (3, 1, 1, 1))})
 
 
 def _legend(figure: Figure, comparison: Comparison, height: float) -> None:

@@ -1,0 +1,1 @@
+"""Laws calibrated at one state and used at others: study, verdict, chart."""

@@ -1,0 +1,177 @@
+"""The chart of a transfer: a panel a quantity, a curve a law with its name beside it; and how far each law holds.
+
+Curves that are one, to what a reader sees, share a name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+
+from fe_contact.studies import style
+from fe_contact.studies.style import Look
+from fe_contact.studies.transfer.study import TransferStudy
+from fe_contact.studies.transfer.verdict import LEVELS, QUANTITIES, TransferRow, TransferVerdict, holds, percent
+from lumped.numbers import Array
+
+COLUMNS, PANEL, BETWEEN = 2, 1.75, 0.62  # panels in a row; height of one and of what is between two, in
+TITLE_WIDTH = 128  # characters
+LINEAR = 1.0  # %, up to which the axis is linear: the finest level a law may be asked for
+MOST = 300.0  # %, what lies beyond is drawn at the end of the axis
+TICKS = (-100.0, -10.0, -1.0, 0.0, 1.0, 10.0, 100.0)  # look: %
+ALIKE = 0.012  # look: of the axis, by which curves may differ that share a name
+LINE = 0.072  # look: of the axis, between two names
+NAMES, WIDE = 5.3, 25  # look: size of a name; characters beside a panel
+BROAD = {0.1: 0.22, 0.05: 0.5, 0.01: 1.0}  # look: how strong the bar of each level is
+
+
+def plot_transfer(study: TransferStudy, where: Path) -> tuple[Path, ...]:
+    """Write ``transfer.svg`` and ``transfer.png`` into a folder; further keys have theirs in the name. The paths."""
+    paths = list[Path]()
+    for i, key in enumerate(study.keys):
+        paths += _plot(study, key, where, "transfer" if i == 0 else f"transfer-{key}")
+    return tuple(paths)
+
+
+def _plot(study: TransferStudy, key: str, where: Path, name: str) -> tuple[Path, ...]:
+    rows = [row for row in study.rows if row.key == key and row.verdict is not TransferVerdict.REFUSED]
+    lines = [
+        f"Every law calibrated by {study.asked.calibrate.replace('_', ' ')} at {study.at} (dotted): its prediction "
+        f"less the reference ({study.reference.method}), whose error bar is shaded. Lines at 1, 5 and 10 %."
+    ]
+    count = -(-(len(QUANTITIES) + 1) // COLUMNS)
+    height = count * PANEL + (count - 1) * BETWEEN
+    title = f"{study.name}: laws used at another {key}"
+    with style.sheet(where, name, title, lines, height, width=TITLE_WIDTH, above=0.3) as sheet:
+        panels = sheet.panels(count, COLUMNS, 0.078, 0.845, wspace=0.74, hspace=BETWEEN / PANEL)
+        for i, (axes, quantity) in enumerate(zip(panels, QUANTITIES, strict=False)):
+            _deviations(axes, [row for row in rows if row.quantity == quantity])
+            style.label(axes, chr(ord("a") + i), quantity.replace("_", " "))
+            _states(axes, study, key, rows)
+        _ranges(panels[len(QUANTITIES)], study, key, rows)
+        style.label(panels[len(QUANTITIES)], chr(ord("a") + len(QUANTITIES)), "every quantity held to 10, 5, 1 %")
+        _states(panels[len(QUANTITIES)], study, key, rows)
+    return sheet.paths
+
+
+def _states(axes: Axes, study: TransferStudy, key: str, rows: Sequence[TransferRow]) -> None:
+    """The axis of the states, logarithmic, a tick a state, and the one of calibration."""
+    values = sorted({state.value for state in study.states if state.key == key})
+    axes.set(xscale="log", xlabel=key)
+    axes.xaxis.set_major_locator(FixedLocator(values))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.3g}"))
+    axes.axvline(study.start[key], color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
+    if values[0] < values[-1]:
+        axes.set_xlim(values[0], values[-1])
+
+
+def _deviations(axes: Axes, rows: Sequence[TransferRow]) -> None:
+    """Deviations in %, of the restitution in hundredths."""
+    curves = {law: _curve(rows, law) for law in dict.fromkeys(row.law for row in rows)}
+    axes.set_yscale("symlog", linthresh=LINEAR)
+    axes.yaxis.set_major_locator(FixedLocator(TICKS))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:+g}" if value else "0"))
+    known = np.concatenate([deviation for _, deviation in curves.values()] or [np.zeros(1)])
+    most = min(1.5 * max(float(np.nanmax(np.abs(known), initial=0.0)), 1.2 * LINEAR), MOST)
+    absolute = any(row.quantity == "restitution" for row in rows)
+    axes.set(ylim=(-most, most), ylabel="difference, hundredths" if absolute else "deviation, %")
+    for level in LEVELS:
+        for sign in (-1.0, 1.0):
+            axes.axhline(sign * 100.0 * level, color=style.GREY, linewidth=0.35, alpha=0.6, zorder=0)
+    values, bars = _bars(rows)
+    axes.fill_between(values, -bars, bars, color=style.SKY, alpha=0.45, linewidth=0.0, zorder=1)
+    for law, (places, deviation) in curves.items():
+        axes.plot(places, np.clip(deviation, -MOST, MOST), color=style.law_colour(law), marker="o", markersize=1.8,
+                  linewidth=1.0)  # fmt: skip
+    _name(axes, curves)
+
+
+def _curve(rows: Sequence[TransferRow], law: str) -> tuple[Array, Array]:
+    """States and deviations of a law, %, NaN where there is none."""
+    own = [row for row in rows if row.law == law]
+    deviations = [np.nan if row.deviation is None else 100.0 * row.deviation for row in own]
+    return np.array([row.value for row in own]), np.array(deviations)
+
+
+def _bars(rows: Sequence[TransferRow]) -> tuple[Array, Array]:
+    """States, and the reference's bar there, %, as a deviation."""
+    bars = dict[float, float]()
+    for row in rows:
+        size = 1.0 if row.quantity == "restitution" else abs(row.reference or 0.0)
+        bars[row.value] = 100.0 * (row.reference_error or 0.0) / size if size else 0.0
+    values = sorted(bars)
+    return np.array(values), np.array([bars[value] for value in values])
+
+
+def _name(axes: Axes, curves: dict[str, tuple[Array, Array]]) -> None:
+    """Names at the right of a panel, each as near to the end of its curve as the others leave room for."""
+    drawn = reversed(curves.items())  # of curves that are one the last is seen, and gives the name its colour
+    ends = [(law, _height(axes, deviation)) for law, (_, deviation) in drawn if np.isfinite(deviation).any()]
+    groups: list[tuple[list[str], Array]] = []
+    for law, heights in ends:
+        known = next((one for one in groups if _alike(one[1], heights)), None)
+        if known is None:
+            groups.append(([law], heights))
+        else:
+            known[0].append(law)
+    groups.sort(key=lambda group: float(group[1][-1]))
+    wanted = np.array([heights[-1] for _, heights in groups])
+    for (names, heights), place in zip(groups, spread(wanted, LINE), strict=True):
+        look: Look = {"color": style.law_colour(names[0]), "linewidth": 0.4, "clip_on": False}
+        axes.plot([1.0, 1.05], [heights[-1], place], transform=axes.transAxes, **look)
+        axes.text(1.06, place, _said(names), transform=axes.transAxes, color=style.law_colour(names[0]),
+                  fontsize=NAMES, va="center", linespacing=0.9)  # fmt: skip
+
+
+def _said(names: Sequence[str]) -> str:
+    """As many names as stand in one line, and how many more."""
+    count = len(names)
+    while count > 1 and len(", ".join(names[:count])) + 4 * (count < len(names)) > WIDE:
+        count -= 1
+    return ", ".join(names[:count]) + (f" + {len(names) - count}" if count < len(names) else "")
+
+
+def _height(axes: Axes, deviation: Array) -> Array:
+    """Where deviations lie, in shares of the panel; the last one known is the end."""
+    known = np.clip(deviation[np.isfinite(deviation)], *axes.get_ylim())
+    places = axes.transData.transform(np.column_stack([np.ones_like(known), known]))
+    return np.asarray(axes.transAxes.inverted().transform(places)[:, 1])
+
+
+def _alike(one: Array, other: Array) -> bool:
+    return one.size == other.size and bool(np.abs(one - other).max() < ALIKE)
+
+
+def spread(wanted: Array, least: float) -> Array:
+    """Places at least so far apart, ascending as the wanted ones do, near them and within 0 and 1 where they fit."""
+    places = wanted.copy()
+    for i in range(1, places.size):
+        places[i] = max(places[i], places[i - 1] + least)
+    if places.size and places[-1] > 1.0:
+        places[-1] = 1.0
+        for i in range(places.size - 2, -1, -1):
+            places[i] = min(places[i], places[i + 1] - least)
+    return places
+
+
+def _ranges(axes: Axes, study: TransferStudy, key: str, rows: Sequence[TransferRow]) -> None:
+    """A line a law: the range over which all quantities are held to every level, the finest the strongest."""
+    names = list(dict.fromkeys(row.law for row in rows))
+    for place, law in enumerate(names):
+        reach = holds([row for row in rows if row.law == law], study.start[key])["all"]
+        for level in sorted(LEVELS, reverse=True):
+            ends = reach[percent(level)]
+            if ends is not None:
+                axes.plot(ends, [place, place], color=style.law_colour(law), alpha=BROAD[level], linewidth=3.4,
+                          solid_capstyle="butt")  # fmt: skip
+                axes.plot(study.start[key], place, "o", color=style.law_colour(law), markersize=1.8)
+        axes.text(1.03, place, law, transform=axes.get_yaxis_transform(), color=style.law_colour(law),
+                  fontsize=NAMES, va="center")  # fmt: skip
+    axes.set(ylim=(len(names) - 0.4, -0.6), yticks=[])
+    axes.spines["left"].set_visible(False)
