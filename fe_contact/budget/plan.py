@@ -42,7 +42,6 @@ COARSE = {"elements_per_contact": 2.0, "order": 2}
 WIDTHS = tuple(float(share) for share in np.geomspace(5e-3, 0.6, 9))
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-4: see `fe-contact tradeoff`
 LOOSER = math.log10(4.0 / 3.2)  # three and a fifth of them at 1e-3 where the mesh follows the contact
-FLATTER = math.log10(2.0)  # half as many at 1e-3 under a flat end, where no edge moves
 FIXED_ELEMENTS = 2.0  # the same on a mesh that stays, four times refined where the contact may end
 SPARE = 1.2  # such a mesh is fine beyond the largest contact, where the gap tells how wide that is
 RIM_PENALTY = 16.0  # penalty under a rim over the usual: the pressure is infinite there
@@ -115,8 +114,9 @@ def _settings(scene: Scene, tolerance: float) -> Numerics:
 def _elements(scene: Scene, tolerance: float) -> float:
     """Elements along the contact radius; a dashpot asks for more, since it differentiates the mesh's error."""
     order = VISCOUS_ORDER if scene.contact_modulus.viscosity > 0 else 0.0
-    fewest, power = (FIXED_ELEMENTS, 0.0) if _stays(scene) else (ELEMENTS, FLATTER if _flat(scene) else LOOSER)
-    fewest *= math.pow(min(max(1e-4 / tolerance, 0.1), 1.0), power)
+    fewest = FIXED_ELEMENTS if _stays(scene) else ELEMENTS
+    if not _stays(scene) and not _flat(scene):
+        fewest *= math.pow(min(max(1e-4 / tolerance, 0.1), 1.0), LOOSER)
     finer = max(1.0, math.pow(1e-4 / tolerance, 0.25), math.pow(DEFAULT_TOLERANCE / tolerance, order))
     return round(fewest * finer, 6)
 
