@@ -157,7 +157,7 @@ def test_without_exact_waves_finer_elements_are_the_truth_and_no_law_is_taken(
     found = study.tradeoff(Scene.load("steel-ball-waves"), pinned, False, tmp_path, lambda message: None)
     (truth,) = [point for point in found.points if point.method == REFERENCE]
     assert known_to(found.points) == truth.bar
-    assert (truth.settings["steps"], truth.settings["elements_per_contact"]) == (160, 6.0)
+    assert (truth.settings["steps"], truth.settings["elements_per_contact"]) == (160, 5.0)
     for point in finite_elements(found.points):
         assert 0.0 < point.error <= (point.bar or 0.0) + (truth.bar or 0.0)
     without = {point.method: point.error for point in judged(found.points) if point.method in ("mdr", "hertz")}

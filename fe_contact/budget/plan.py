@@ -42,9 +42,6 @@ COARSE = {"elements_per_contact": 2.0, "order": 2}
 WIDTHS = tuple(float(share) for share in np.geomspace(5e-3, 0.6, 9))
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-4: see `fe-contact tradeoff`
 LOOSER = math.log10(4.0 / 3.2)  # three and a fifth of them at 1e-3 where the mesh follows the contact
-# Half of them at ten times the tolerance, one at 1e-2: a mesh that stays errs by less than its bar says, and under a
-# flat end nothing moves.
-LOOSER_AT_REST = math.log10(2.0)
 FIXED_ELEMENTS = 2.0  # the same on a mesh that stays, four times refined where the contact may end
 SPARE = 1.2  # such a mesh is fine beyond the largest contact, where the gap tells how wide that is
 RIM_PENALTY = 16.0  # penalty under a rim over the usual: the pressure is infinite there
@@ -117,11 +114,9 @@ def _settings(scene: Scene, tolerance: float) -> Numerics:
 def _elements(scene: Scene, tolerance: float) -> float:
     """Elements along the contact radius; a dashpot asks for more, since it differentiates the mesh's error."""
     order = VISCOUS_ORDER if scene.contact_modulus.viscosity > 0 else 0.0
-    if _stays(scene):
-        fewest = FIXED_ELEMENTS * math.pow(min(DEFAULT_TOLERANCE / tolerance, 1.0), LOOSER_AT_REST)
-    else:
-        least, power = (0.01, LOOSER_AT_REST) if _flat(scene) else (0.1, LOOSER)
-        fewest = ELEMENTS * math.pow(min(max(1e-4 / tolerance, least), 1.0), power)
+    fewest = FIXED_ELEMENTS if _stays(scene) else ELEMENTS
+    if not _stays(scene) and not _flat(scene):
+        fewest *= math.pow(min(max(1e-4 / tolerance, 0.1), 1.0), LOOSER)
     finer = max(1.0, math.pow(1e-4 / tolerance, 0.25), math.pow(DEFAULT_TOLERANCE / tolerance, order))
     return round(fewest * finer, 6)
 
