@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -51,7 +52,8 @@ ANSWERED = (
 @pytest.fixture
 def curve(tmp_path: Path) -> str:
     path = tmp_path / "curve.csv"
-    path.write_text("time_s,force_N\n0,0\n1e-5,20\n2e-5,35\n3e-5,35\n4e-5,20\n5e-5,0\n")
+    rows = (f"{i}e-6,{15.0 * math.sin(math.pi * i / 40.0) ** 1.5}" for i in range(41))  # of a restitution below one
+    path.write_text("\n".join(["time_s,force_N", *rows]))
     return str(path)
 
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from fe_contact.methods import exact_laws, why_not
 from fe_contact.progress import Progress
-from fe_contact.reference import plan
+from fe_contact.reference import expected, plan
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, WaveNumerics
 from fe_contact.studies import journal
 from fe_contact.studies.files import Line, write_study
@@ -102,6 +102,8 @@ def tradeoff(scene: Scene, given: Given, quick: bool, where: Path, progress: Pro
 
     Raises BadInput for a scene that finite elements refuse, NotReached where default or reference have no answer.
     """
+    if scene.has_geometry:
+        expected(scene, given)  # what finite elements refuse is said before anything is written
     attempts: Attempts = partial(journal.rows, where / KEPT, progress=progress)
     laws, exact = asked_laws(scene, quick), _exact(scene, attempts)
     asked = {f"law {place} of {len(laws)}: {one[0]}": partial(_law, scene, *one) for place, one in enumerate(laws, 1)}
