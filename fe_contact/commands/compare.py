@@ -8,7 +8,6 @@ from pathlib import Path
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault
 from lumped.result.folder import publish
-from lumped.scene.scene import Scene
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -21,7 +20,7 @@ def execute(args: argparse.Namespace) -> int:
     from lumped.result.gate import check_curve
 
     scene, table = base.read_scene(args)
-    given, names = settings(table, None, scene.source), law_names(args.laws, scene)
+    given, names = settings(table, None, scene.source), law_names(args.laws)
     measured = None if args.measured is None else read_curve(args.measured)
     remarks = () if measured is None else check_curve(measured, scene, str(args.measured))
     run = base.StudyRun.of(args, "compare", scene.name)
@@ -45,15 +44,13 @@ def execute(args: argparse.Namespace) -> int:
     return base.report(args, reference, content, content["verdict"], run.where, title)
 
 
-def law_names(text: str | None, scene: Scene) -> tuple[str, ...]:
-    """Checked names of the laws asked for, each once; raises BadInput with every unknown one and the nearest."""
-    from fe_contact.studies.compare.study import DEFAULT_LAWS
+def law_names(text: str | None) -> tuple[str, ...]:
+    """Checked names of the laws asked for, each once, or of all; raises BadInput with every unknown one."""
     from lumped.errors import nearest, shown
     from lumped.laws import available
-    from lumped.laws.rod_waves import RodWaves
 
     if text is None:
-        return (RodWaves.name,) if scene.target.only_with_inertia else DEFAULT_LAWS
+        return available()
     names, known = tuple(dict.fromkeys(name.strip() for name in text.split(","))), available()
     faults = [
         Fault("--laws", "", f"{shown(name)}: accepted {', '.join(known)}{nearest(name, known)}")
@@ -70,7 +67,7 @@ MEMBER = base.Command(
     (
         *base.SCENE,
         *base.OUTPUT,
-        base.option("--laws", metavar="a,b,...", help="lumped laws; default: all that the target has"),
+        base.option("--laws", metavar="a,b,...", help="lumped laws; default: all that the scene has an answer of"),
         base.option("--measured", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N"),
     ),
     execute,

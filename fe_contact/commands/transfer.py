@@ -45,7 +45,7 @@ def asked_of(args: argparse.Namespace, scene: Scene) -> Asked:
         raise BadInput(Fault("--method", "", reason))
     start = {key: base.number(value, "--from") for key, value in _pairs(args.start, "--from", "accepted: KEY=VALUE")}
     over = {key: values_of(key, text) for key, text in _pairs(args.over, "--over", RANGE)}
-    laws = () if args.laws == "all" else law_names(args.laws, scene)
+    laws = () if args.laws == "all" else law_names(args.laws)
     return Asked(laws, start, over, args.calibrate, base.number(args.within, "--within"), args.method)
 
 

@@ -17,16 +17,16 @@ from fe_contact.reference import Solved
 from fe_contact.studies import style
 from fe_contact.studies.compare.deviations import rebound_steps, surface_radii
 from fe_contact.studies.compare.law_pressure import LawPressure
-from fe_contact.studies.compare.study import Comparison, verdicts
+from fe_contact.studies.compare.study import Comparison, judged
 from fe_contact.studies.history_chart import caption
 from fe_contact.studies.style import Look, prefixed, readable
 from lumped.result.history import History
 from lumped.result.score import Curve as Measured
 
 PANELS = 4.6  # height of the four panels with what is around them, in
-TITLE_WIDTH = 134  # characters
+TITLE_WIDTH = 122  # characters
 LEAST_SHOWN = 1e-6  # of the peak: the lower end of the logarithmic panel
-LEGEND = 0.3  # in, above the panels
+LEGEND, ROW, NAMES = 0.3, 0.17, 6  # in, above the panels; a further row of the legend, in, and names in one
 MOST_TENSION = 0.6  # of the largest pressure: a viscous law's tension at the edge is singular, and cut there
 # A dash a candidate, beside a law's colour: the reference is a broad grey line below all of them.
 STYLES: dict[str, Look] = {
@@ -41,9 +41,10 @@ REFERENCE: Look = {"color": "#b8b8b8", "linewidth": 4.2, "solid_capstyle": "butt
 
 def plot_comparison(comparison: Comparison, where: Path) -> tuple[Path, Path]:
     """Write ``compare.svg`` and ``compare.png`` into the folder ``where``; their paths."""
-    lines = list(verdicts(comparison))
+    lines = list(judged(comparison))
     scene = comparison.reference.scene
-    title, room = f"{scene.name} against finite elements", {"above": 0.55, "below": 0.65}
+    further = (len(comparison.judgements) + 1) // NAMES  # rows of the legend, beside the first
+    title, room = f"{scene.name} against finite elements", {"above": 0.55 + ROW * further, "below": 0.65}
     ratios = {"width_ratios": (1.25, 1.0), "height_ratios": (1.15, 1.0)}
     with style.sheet(where, "compare", title, lines, PANELS, width=TITLE_WIDTH, **room) as sheet:
         grid = sheet.grid(2, 2, 0.082, 0.982, hspace=0.42, wspace=0.26, **ratios)
@@ -64,7 +65,7 @@ def _candidates(comparison: Comparison) -> Iterator[tuple[History | Measured, Lo
 
 def line_of(name: str) -> Look:
     """Colour and dashes of a candidate, the same in every chart."""
-    return {"color": style.law_colour(name)} | STYLES.get(name, {"linestyle": (0, (3, 1, 1, 1))})
+    return {"color": style.law_colour(name)} | STYLES.get(name, {"linewidth": 0.8})
 
 
 def _legend(figure: Figure, comparison: Comparison, height: float) -> None:
@@ -73,7 +74,8 @@ def _legend(figure: Figure, comparison: Comparison, height: float) -> None:
     handles += [Patch(color=style.SKY, alpha=0.45, linewidth=0)]
     handles += [Line2D([], [], **line_of(name)) for name in names]
     labels = ["finite elements", "their error bar", *names]
-    figure.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.07, height - 0.012), ncols=len(labels),
+    columns = min(len(labels), NAMES)
+    figure.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.07, height - 0.012), ncols=columns,
                   columnspacing=1.5, handlelength=2.4, borderaxespad=0.0)  # fmt: skip
 
 
@@ -153,8 +155,8 @@ def _pressure(axes: Axes, comparison: Comparison) -> None:
             if values.min() < min(lowest, -0.02 * most):
                 lowest = max(float(values.min()), -MOST_TENSION * most)
                 start = metre * radii[np.argmax(values <= 0.8 * lowest)]
-                axes.set_ylim(bottom=1.15 * lowest)
     if lowest < 0.0:
+        axes.set_ylim(bottom=1.15 * lowest)
         axes.text(start, lowest, "tension  ", ha="right", style="italic", color=style.BLACK)
     axes.set(xlabel=f"radius, {length_unit}", ylabel=f"pressure, {unit}", xlim=(0.0, metre * radii[-1]))
     style.label(axes, "d", f"pressure in the rebound, at {readable(truth.time, 's', 3)}")

@@ -39,7 +39,6 @@ from lumped.scene.scene import Answered, Scene
 from lumped.schema import Table
 from lumped.schema.json_file import plain
 
-DEFAULT_LAWS = ("hertz", "correspondence", "ting", "mdr")
 LAW_TOLERANCE = 1e-6  # of a law's own integration: far below any reference's bar
 QUANTITIES = (*RULED_RELATIVE, "peak_time", "restitution")
 DISTANCES = ("work", "loss", "shape", "peak_shift")  # of the two curves, without a bar
@@ -179,13 +178,21 @@ def known(scene: Scene, depth: float) -> tuple[Scene, float]:
 
 
 def verdicts(comparison: Comparison) -> tuple[str, ...]:
-    """One line a candidate, those of equal verdict together; the areas; then the laws that gave no answer."""
+    """What :func:`judged` says; then the laws that gave no answer, those of one reason together."""
+    reasons: dict[str, list[str]] = {}
+    for name, reason in comparison.refused.items():
+        reasons.setdefault(reason.replace(name, "it"), []).append(name)
+    refused = [f"{', '.join(names)}: no answer: {reason}" for reason, names in reasons.items()]
+    return (*judged(comparison), *refused)
+
+
+def judged(comparison: Comparison) -> tuple[str, ...]:
+    """One line a candidate, those of equal verdict together; then the areas."""
     sentences: dict[str, list[str]] = {}
     for judgement in comparison.judgements:
         sentences.setdefault(_sentence(comparison, judgement), []).append(judgement.name)
     lines = [f"{', '.join(names)}: {sentence}" for sentence, names in sentences.items()]
-    lines += [] if comparison.nested is None else [_nested(comparison.nested)]
-    return (*lines, *(f"{name}: no answer: {reason}" for name, reason in comparison.refused.items()))
+    return (*lines, *([] if comparison.nested is None else [_nested(comparison.nested)]))
 
 
 def _nested(areas: NestedAreas) -> str:
