@@ -20,7 +20,6 @@ from fe_contact.methods import simulate
 from fe_contact.progress import Progress, silent
 from fe_contact.studies.files import write_study
 from lumped.errors import BadInput, Fault, FeContactError, nearest
-from lumped.numbers import Array
 from lumped.result.history import COLUMNS, History
 from lumped.result.result import Quantity, Result
 from lumped.scene.scene import Scene
@@ -160,10 +159,12 @@ def _move(scene: str, key: str, older: Quantity, newer: Quantity) -> Move:
 
 
 def _apart(older: History, newer: History) -> float:
-    """The norm of the difference of two forces over that of the older."""
-    times: Array = np.union1d(older.time, newer.time)
-    difference = newer.force_at(times) - older.force_at(times)
-    return float(np.sqrt(np.trapezoid(difference**2, times) / np.trapezoid(older.force_at(times) ** 2, times)))
+    """The norm of the difference of two forces over that of the older, but for jumps, known as they are written."""
+    times = np.union1d(older.time, newer.time)
+    lasting = np.diff(times) > ROUNDING * times[-1]
+    middle, width = (0.5 * (times[1:] + times[:-1]))[lasting], np.diff(times)[lasting]
+    force = older.force_at(middle)
+    return float(np.sqrt((width @ (newer.force_at(middle) - force) ** 2) / (width @ force**2)))
 
 
 def write_references(renewals: Sequence[Renewal], where: Path) -> None:
