@@ -55,4 +55,4 @@ def _panel(axes: Axes, one: RankedFit, curve: Curve) -> None:
     largest = newton * float(curve.force.max())
     axes.set_ylim(-0.6 * largest, 1.15 * largest)
     error = 100.0 * one.fit.normalized_error
-    axes.set_title(f"{one.law}: {error:.2g} %, +{one.criterion:.3g}", pad=3.0, fontsize=7.0)
+    axes.set_title(f"{one.law}: {error:.2g} %, +{one.criterion:.0f}", pad=3.0, fontsize=7.0)
