@@ -137,17 +137,16 @@ def renewed(names: Sequence[str], published: Path, progress: Progress = silent) 
 
 
 def moves(name: str, older: Reference | None, newer: Result) -> tuple[Move, ...]:
-    """What moved of a scene's quantities; the history by the norm of the difference over that of the force."""
+    """What moved of a scene's quantities; the history by the norm of the difference over that of the force.
+
+    Straight lines between rows, which may lie elsewhere now, miss up to the tolerance of it.
+    """
     if older is None:
         return ()
     found = {key: newer.quantities[key] for key in older.quantities if key in newer.quantities}
-    apart = _apart(older.history, newer.history)
-    return tuple(
-        _move(
-            name, key, older.quantities[key], Quantity(apart, quantity.error, "1") if key == "history_l2" else quantity
-        )
-        for key, quantity in found.items()
-    )
+    told = (found["history_l2"].error or 0.0) + newer.tolerance
+    found["history_l2"] = Quantity(_apart(older.history, newer.history), told, "1")
+    return tuple(_move(name, key, older.quantities[key], quantity) for key, quantity in found.items())
 
 
 def _move(scene: str, key: str, older: Quantity, newer: Quantity) -> Move:
