@@ -27,13 +27,14 @@ class Bent(Mixed):
 
     def height(self, r: ArrayLike) -> Array:
         """s r + sum c_k (r - t_k)_+^2/2, m."""
-        radius, curve = np.abs(np.asarray(r, dtype=float)), self.load_curve
-        beyond = np.maximum(radius[..., None] - np.array(curve.radii), 0.0)
-        return np.asarray(curve.slope * radius + 0.5 * np.square(beyond) @ np.array(curve.bends))
+        curve = self.load_curve
+        return np.asarray(curve.slope * np.abs(r) + 0.5 * np.square(self._beyond(r)) @ np.array(curve.bends))
 
     def slope(self, r: ArrayLike) -> Array:
         """s + sum c_k (r - t_k)_+."""
-        radius, curve = np.abs(np.asarray(r, dtype=float)), self.load_curve
-        return np.asarray(
-            curve.slope + np.maximum(radius[..., None] - np.array(curve.radii), 0.0) @ np.array(curve.bends)
-        )
+        return np.asarray(self.load_curve.slope + self._beyond(r) @ np.array(self.load_curve.bends))
+
+    def _beyond(self, r: ArrayLike) -> Array:
+        """(r - t_k)_+, m, the bends last."""
+        radius = np.abs(np.asarray(r, dtype=float))
+        return np.asarray(np.maximum(radius[..., None] - np.array(self.load_curve.radii), 0.0))
