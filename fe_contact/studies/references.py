@@ -168,7 +168,7 @@ def _apart(older: History, newer: History) -> float:
 
 def write_references(renewals: Sequence[Renewal], where: Path) -> None:
     """Write all that is to be published, and ``moves.csv``, what moved, into a folder."""
-    write_published(renewals, where)
+    _write_package(renewals, where)
     lines = [asdict(move) | {"agrees": move.agrees} for one in renewals for move in one.moves]
     scenes = {one.scene: {"agrees": one.agrees, "new": one.is_new, "reason": one.reason} for one in renewals}
     headers = {"moves": (*Move.__dataclass_fields__, "agrees")}
@@ -176,12 +176,18 @@ def write_references(renewals: Sequence[Renewal], where: Path) -> None:
 
 
 def write_published(renewals: Sequence[Renewal], where: Path) -> None:
-    """Write history and result of every scene that may be published, and the package's description, into a folder."""
+    """Write all that is to be published, and its names, into a folder."""
+    write_json(where / RECORD, {"schema": SCHEMA, "scenes": _write_package(renewals, where)})
+
+
+def _write_package(renewals: Sequence[Renewal], where: Path) -> list[str]:
+    """History and result of every scene that may be published, and the package's description; the scenes' names."""
     published = [one for one in renewals if one.result is not None]
     for one in published:
         _write_scene(one, where)
-    write_json(where / PACKAGE, _package([one.scene for one in published]))
-    write_json(where / RECORD, {"schema": SCHEMA, "scenes": [one.scene for one in published]})
+    names = [one.scene for one in published]
+    write_json(where / PACKAGE, _package(names))
+    return names
 
 
 def _write_scene(renewal: Renewal, where: Path) -> None:
