@@ -282,7 +282,7 @@ class Pressing:
             depth = self.depth + (self.depth_by_gain @ gain.ravel()).reshape(gain.shape)
             rate = self.rate + (self.rate_by_gain @ gain.ravel()).reshape(gain.shape)
             excess = gain - self.pace * self.forces(depth, rate)
-            correction = dgesv(self._jacobian(depth, rate), excess.ravel())[2].reshape(gain.shape)
+            correction = dgesv(self._jacobian(depth, rate), excess.reshape(-1, 1))[2].reshape(gain.shape)
             gain = gain - correction
             sizes = np.abs(gain[:, 0]) + np.abs(gain[:, -1]) + scale * (np.abs(self.rate[:, 0]) + np.abs(rate[:, -1]))
             ratio = float((np.abs(correction).max(axis=1) / sizes).max())
