@@ -119,6 +119,11 @@ class Histories:
         """How many residuals there are."""
         return sum(s.time.size - n.colour.size for s, n in zip(self.samples, self.noises, strict=True))
 
+    @property
+    def freedom(self) -> int:
+        """Residuals less what is sought."""
+        return self.rows - self.size
+
     def impacts(self, places: Array) -> tuple[Impact, ...] | None:
         """The impact of every curve with the free keys at these places, (p,); None where one does not exist."""
         key = places.tobytes()
@@ -146,6 +151,10 @@ class Histories:
     def residuals(self, sought: Array) -> Array:
         """What noise has to explain, over its deviation, of all curves one after the other, (rows,)."""
         return np.concatenate(self.whitened(self.differences(sought)))
+
+    def squares(self, sought: Array) -> float:
+        """The sum of squares of the residuals over the noise."""
+        return float(np.sum(self.residuals(sought) ** 2))
 
     def whitened(self, columns: Sequence[Array]) -> list[Array]:
         """Columns of every curve, N, (n, ...), seen as the noise is: without its colour, over its deviation."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +22,8 @@ LEVEL = 0.9  # of the intervals
 class Interval:
     """A value and the ends of its interval by profile likelihood at a `level`, a share; an end is None where open.
 
-    Open is an end which the curves do not tell, or which lies beyond what is looked at.
+    Open is an end which the curves do not tell, or which lies beyond what is looked at. `unfound`: "low" or "high",
+    where the search for that end did not converge; it is None too, and not open.
     """
 
     value: float
@@ -30,6 +31,35 @@ class Interval:
     high: float | None
     level: float
     unit: str
+    unfound: tuple[str, ...] = ()
+
+
+def hull(every: Sequence[Interval]) -> Interval:
+    """The value of the first with the ends of all."""
+    lows, highs = [one.low for one in every], [one.high for one in every]
+    low = None if None in lows else min(end for end in lows if end is not None)
+    high = None if None in highs else max(end for end in highs if end is not None)
+    unfound = tuple(dict.fromkeys(end for one in every for end in one.unfound))
+    return replace(every[0], low=low, high=high, unfound=unfound)
+
+
+@dataclass(frozen=True, eq=False)
+class ToldValley:
+    """What one valley of the likelihood says: its intervals, and the correlation, a ratio, (p, p), of the logarithms.
+
+    `growth`: of the sum of squares over the noise, from the likeliest valley to this one.
+    """
+
+    parameters: Mapping[str, Interval]
+    correlation: Array
+    growth: float
+
+    def holds(self, values: Mapping[str, float]) -> bool:
+        """Whether all values lie within the intervals; an open end lets all through."""
+        every = ((one, values[name]) for name, one in self.parameters.items())
+        return all(
+            (one.low is None or one.low <= value) and (one.high is None or value <= one.high) for one, value in every
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +91,7 @@ class FittedCurve:
 class Identified:
     """What one or several curves say of a scene.
 
-    `parameters` by dotted keys, SI units; `correlation`, a ratio, (p, p), of their logarithms, in the same order;
+    `parameters` by dotted keys, SI units, their intervals over all `valleys`, of which the likeliest is the first;
     `table`: the scene file with the values found; `whiteness` tests what is left, and `warnings` say what it means.
     `widened`: the sum of squares over the noise may grow so many times as much as of noise alone. `each`: what every
     curve says alone, where that was asked for.
@@ -69,7 +99,7 @@ class Identified:
 
     source: str
     parameters: Mapping[str, Interval]
-    correlation: Array
+    valleys: tuple[ToldValley, ...]
     curves: tuple[FittedCurve, ...]
     whiteness: Whiteness
     widened: float
@@ -92,7 +122,8 @@ class Identified:
             "scene": self.source,
             "law": "ting",
             "parameters": self._parameters,
-            "correlation": {"names": list(self.parameters), "matrix": self.correlation.tolist()},
+            "correlation": {"names": list(self.parameters), "matrix": self.valleys[0].correlation.tolist()},
+            "valleys": [asdict(one) | {"correlation": one.correlation.tolist()} for one in self.valleys],
             "model": {"adequate": self.adequate, "error": error, "widened": self.widened, **test},
             "onset_s": [curve.touch for curve in self.curves],
             "noise": [curve.noise_content() for curve in self.curves],
