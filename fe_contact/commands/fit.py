@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +17,7 @@ from lumped.schema import Table
 if TYPE_CHECKING:
     from lumped.fit import Estimate, Fit
     from lumped.fit.ranking import RankedFit
+    from lumped.scene.scene import Scene
 
 WIDTH = 12  # of a parameter's name
 EVERY = "all"
@@ -51,7 +53,7 @@ def execute(args: argparse.Namespace) -> int:
         found.write_files(folder)
         plot_fit(curve, found, folder)
 
-    _report(args, found, publish(where, write, RECORD), where)
+    _report(args, scene, found, publish(where, write, RECORD), where)
     for remark in remarks:
         base.complain(remark)
     return base.DONE if found.result.converged else base.NOT_REACHED
@@ -95,16 +97,18 @@ def _ranking_line(rank: int, one: RankedFit) -> str:
     return f"{rank:2d}  {one.law:16s} {known}: {values}"
 
 
-def _report(args: argparse.Namespace, found: Fit, content: Table, where: Path) -> None:
+def _report(args: argparse.Namespace, scene: Scene, found: Fit, content: Table, where: Path) -> None:
     """Parameters; for OpenSees the law, with the parameters as comments; warnings on stderr."""
     from lumped import laws
     from lumped.fit import opensees
 
     text = summary(found, where).splitlines()
     if args.opensees:
-        law = opensees.lines(laws.get(found.law).of(found.scene), found.scene, language=args.opensees)
-        text = [*(f"# {line}" for line in text), law]
-        content["opensees"] = law.splitlines()
+        law = laws.get(found.law).of(found.scene)
+        # what is fitted of a material stands in the fit's scene, the gap in that given
+        lines = opensees.lines(law, replace(found.scene, law=scene.law), language=args.opensees)
+        text = [*(f"# {line}" for line in text), lines]
+        content["opensees"] = lines.splitlines()
     base.say(args, content, text)
     for warning in found.warnings:
         base.complain(warning)
