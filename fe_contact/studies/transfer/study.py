@@ -20,6 +20,7 @@ from fe_contact.studies.transfer.verdict import QUANTITIES, TransferRow, holds, 
 from lumped import laws, simulate
 from lumped.errors import BadInput, Fault, FeContactError, shown
 from lumped.fit import fit
+from lumped.fit.opensees import SHARES
 from lumped.fit.space import damping_names, own_keys, space_of
 from lumped.laws._force_law import ForceLaw, between_masses
 from lumped.laws._parameters import COMMON, EXPONENT
@@ -32,8 +33,6 @@ from lumped.solvers.point.bodies import Stage
 
 SCHEMA = "fe-contact/transfer/1"
 VELOCITY = "striker.velocity"
-# Of the velocity, where nobody says over what: from a third to three times, in equal ratios.
-SHARES = tuple(3.0 ** (0.5 * i) for i in (-2, -1, 0, 1, 2))
 LAW_TOLERANCE = 1e-6  # of a law's own integration: far below any reference's bar
 WITHIN, TOLERATED = 0.05, Number(0.0, 1.0)  # of the verdict `within`: where nobody asks for another; accepted ones
 SceneWith = Callable[[Mapping[str, object]], Scene]  # the scene with dotted keys changed; raises BadInput
