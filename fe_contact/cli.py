@@ -26,7 +26,6 @@ from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
-from fe_contact import __version__
 from fe_contact.progress import clear
 from fe_contact.threads import one_thread
 
@@ -54,12 +53,22 @@ class OneLine(argparse.ArgumentParser):
         self.exit(BAD_INPUT, f"{self.prog}: {shortened(printable(message), SHOWN_OF_A_LINE)}; see {self.prog} --help\n")
 
 
+class Versions(argparse.Action):
+    """Says which versions are installed, and ends."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
+        from fe_contact.commands.doctor import version_line
+
+        print(version_line())
+        parser.exit()
+
+
 def parser() -> OneLine:
     """The parser of all commands."""
     from fe_contact.commands import COMMANDS
 
     top = OneLine(prog="fe-contact", description="Finite-element contact validation suite.")
-    top.add_argument("--version", action="version", version=f"fe-contact {__version__}")
+    top.add_argument("--version", action=Versions, nargs=0, help="versions of this suite and what it computes with")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for name, command in COMMANDS.members.items():
         says = command.summary

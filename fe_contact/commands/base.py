@@ -40,9 +40,9 @@ SETTINGS = "set a key of the scene file, as striker.velocity=0.1"
 
 @dataclass(frozen=True)
 class Command:
-    """A member of this folder: what it does, in one line; its options; and what it executes, to an exit code 0 or 3.
+    """A member of this folder: what it does, in one line; its options; and what it executes, to an exit code.
 
-    Raises named failures for the other codes.
+    That is 0 or 3, or 1 where an installation is broken. Raises named failures for the other codes.
     """
 
     summary: str
@@ -138,12 +138,12 @@ def folder(args: argparse.Namespace, command: str, name: str) -> Path:
     overrides = (text for text in getattr(args, "overrides", ()) if text.partition("=")[0].strip() != "name")
     changes = "".join(f"-{text}" for text in overrides)
     where = chosen or Path("fe-contact-out") / (f"{command}-{name}" + _part_of_a_name(changes))
-    if not _writable(where):
+    if not writable(where):
         raise BadInput(Fault("--out", str(where), "accepted: a folder that can be written, its name printable"))
     return where
 
 
-def _writable(where: Path) -> bool:
+def writable(where: Path) -> bool:
     """Whether a folder is there, or can be made, in which files can be made."""
     try:
         with suppress(FileNotFoundError):  # it can be made in the folder above it
