@@ -98,7 +98,7 @@ def scene() -> Table:
         for name, target in TARGETS.members.items()
     }
     striker, target = one_of("shape", shapes), one_of("shape", targets)
-    tables = {
+    tables: dict[str, Table] = {
         "striker": {"anyOf": [*striker["anyOf"], of_keys(STRIKER_KEYS)]},
         "target": {"anyOf": [*target["anyOf"], of_keys(TARGET_KEYS)]},
         "model": of_keys(keys_of(Model)),
@@ -121,8 +121,8 @@ def sweep() -> Table:
     count = {"type": "integer", "minimum": 1, "maximum": cases.MOST_CASES}
     ranges = [_whole({kind: pair, "count": count}) for kind in cases.RANGES]
     draws = [_whole({kind: pair}) for kind in cases.DRAWS]
-    drawn = of_keys(cases.DRAW_KEYS, {"correlation": {"type": "array", "items": {"type": "array"}}})
-    tables = {
+    drawn: Table = of_keys(cases.DRAW_KEYS, {"correlation": {"type": "array", "items": {"type": "array"}}})
+    tables: dict[str, Table] = {
         "axes": _nested("values"),
         "zipped": _nested("values"),
         "draws": drawn | {"additionalProperties": _reference("drawn")},
@@ -154,8 +154,8 @@ def pound() -> Table:
         name: [of_keys({key: one for key, one in keys.items() if key != "gap"} | shared) for keys in member.sets]
         for name, member in LAWS.members.items()
     }
-    frames = {"type": "object", "properties": {"left": frame, "right": frame}, "required": ["left"]}
-    tables = {
+    frames: Table = {"type": "object", "properties": {"left": frame, "right": frame}, "required": ["left"]}
+    tables: dict[str, Table] = {
         "structure": frames | {"additionalProperties": False},
         "gap": {"type": "object", "additionalProperties": gap, "maxProperties": pounding.MOST_GAPS},
         "law": one_of("name", laws),
@@ -186,7 +186,7 @@ RESULT: Mapping[str, tuple[Table, str]] = {
     "method": (TEXT, "fe, or the law that answered"),
     "weighed": (
         {"type": "array", "items": ANY_TABLE},
-        "every method with its bar and cost, where the cheapest was asked",
+        "every method, its bar and cost, where the cheapest was asked",
     ),
     "converged": (FLAG, "whether the tolerance was reached"),
     "separated": (FLAG, "whether the bodies parted before the end time"),
