@@ -126,4 +126,9 @@ def _tried(name: str, check: Callable[[], str]) -> Finding:
         return Finding(name, False, str(failure))
 
 
-MEMBER = base.Command("whether this installation works, and the cure where it does not", (base.JSON,), execute)
+MEMBER = base.Command(
+    "whether this installation works, and the cure where it does not",
+    (base.JSON,),
+    execute,
+    group=base.START,
+)

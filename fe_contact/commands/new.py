@@ -110,8 +110,8 @@ def commented(name: str, tables: Table) -> str:
         if "material" in tables.get(part, {}):
             material = tables[part]["material"]
             law = Key(Member(NETWORKS.package), "law")
-            keys = {"law": law, **_network_keys(material), **keys_of(Material)}
-            lines += _section(f"{part}.material", material, keys)
+            of_law = {"law": law, **_network_keys(material), **keys_of(Material)}
+            lines += _section(f"{part}.material", material, of_law)
     for part, keys in SECTIONS.items():
         lines += _section(part, tables.get(part, {}), keys)
     return "\n".join(lines) + "\n"
@@ -201,4 +201,6 @@ MEMBER = base.Command(
         base.JSON,
     ),
     execute,
+    example="fe-contact new --striker cone --target layer --material sls --out mine.toml",
+    group=base.START,
 )

@@ -91,4 +91,6 @@ MEMBER = base.Command(
         *base.OUTPUT,
     ),
     execute,
+    example="fe-contact plan polymer-sphere --tolerance 1e-2",
+    group=base.START,
 )

@@ -20,4 +20,6 @@ MEMBER = base.Command(
     "the JSON Schema of a kind of file: editors complete and check scenes by it",
     (base.option("name", metavar="NAME", help="scene, sweep, ptmd, pound or result"),),
     execute,
+    example="fe-contact schema scene",
+    group=base.KEEPING,
 )
