@@ -202,4 +202,6 @@ MEMBER = base.Command(
         *base.OUTPUT,
     ),
     execute,
+    example="fe-contact fit curve.csv --law hunt_crossley --scene polymer-sphere --opensees",
+    group=base.LAWS,
 )

@@ -114,4 +114,6 @@ MEMBER = base.Command(
         base.option("--measure", action="store_true", help="run the larger model of each effect above the tolerance"),
     ),
     execute,
+    example="fe-contact plan polymer-sphere --tolerance 1e-2",
+    group=base.START,
 )

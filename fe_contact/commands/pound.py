@@ -50,4 +50,6 @@ MEMBER = base.Command(
         *base.OUTPUT,
     ),
     execute,
+    example="fe-contact pound two-frames --laws hertzdamp",
+    group=base.LAWS,
 )

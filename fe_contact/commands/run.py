@@ -143,4 +143,6 @@ MEMBER = base.Command(
         base.option("--plot", action="store_true", help="force history and contact pressure as SVG and PNG"),
     ),
     execute,
+    example="fe-contact run polymer-sphere --plot",
+    group=base.START,
 )
