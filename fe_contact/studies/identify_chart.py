@@ -16,7 +16,9 @@ PANELS = 3.2  # height of a row of curves with their residuals, in
 COLUMNS, MOST = 3, 6  # look: curves beside each other, and in all
 TITLE_WIDTH = 128  # characters
 BAND = 2.0  # deviations of the noise
-PREDICTED = f"{100.0 * LEVEL:g} % of another record"
+ABOVE: style.Look = {"linewidth": 0.0, "zorder": 3.0}  # look: bands before the rows
+PREDICTED = {**ABOVE, "color": style.SKY, "alpha": 0.5}
+LAW = {**ABOVE, "color": style.VERMILION, "alpha": 0.6}
 
 
 def plot_identified(found: Identified, where: Path) -> tuple[Path, Path]:
@@ -26,6 +28,8 @@ def plot_identified(found: Identified, where: Path) -> tuple[Path, Path]:
     rows = -(-len(curves) // columns)
     lines = [f"{name} = {_shown(one)}" for name, one in found.parameters.items()]
     lines.append(_verdict(found))
+    if found.posterior is not None:
+        lines.append(f"red, below: where the law lies, {100.0 * LEVEL:g} %")
     title, size = f"{found.source.removesuffix('.toml')}: identified", style.COLUMN if columns == 1 else style.PAGE
     width = TITLE_WIDTH if columns > 1 else TITLE_WIDTH // 2
     law = "Ting's law" if found.by_reference is None else "Ting's law, corrected"
@@ -60,10 +64,11 @@ def _force(axes: Axes, curve: FittedCurve, law: str, letter: str) -> None:
     since = second * (curve.time - curve.touch)
     axes.plot(since, newton * curve.force, ".", color=style.GREY, markersize=2.2, label="curve")
     if curve.band.size:
-        axes.fill_between(since, *newton * curve.predicted, color=style.SKY, alpha=0.35, linewidth=0.0, label=PREDICTED)
-    axes.plot(since, newton * curve.fitted, color=style.VERMILION, label=law)
+        axes.fill_between(since, *newton * curve.predicted, label=f"{100.0 * LEVEL:g} % predicted", **PREDICTED)
+    axes.plot(since, newton * curve.fitted, color=style.VERMILION, zorder=4.0, label=law)
     axes.set(ylabel=f"force, {unit}")
-    axes.legend(loc="upper right")
+    if letter == "a":
+        axes.legend(loc="best")
     axes.tick_params(labelbottom=False)
     style.label(axes, letter, Path(curve.name).stem)
 
@@ -75,7 +80,7 @@ def _left(axes: Axes, curve: FittedCurve) -> None:
     axes.axhspan(-band, band, color="#e6e6e6", linewidth=0.0)
     if curve.band.size:
         law = 100.0 * (curve.band - curve.fitted) / curve.peak
-        axes.fill_between(second * (curve.time - curve.touch), *law, color=style.VERMILION, alpha=0.45, linewidth=0.0)
+        axes.fill_between(second * (curve.time - curve.touch), *law, **LAW)
     left = 100.0 * (curve.force - curve.fitted) / curve.peak
     axes.plot(second * (curve.time - curve.touch), left, color=style.BLUE, linewidth=0.6)
     axes.set(xlabel=f"time since touch, {unit}", ylabel="left, %")

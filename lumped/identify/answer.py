@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from lumped.fit.noise import Whiteness, autocovariance, memory, whiteness
 from lumped.identify.ensemble import posterior_of
 from lumped.identify.histories import Histories
-from lumped.identify.profile import Profile, Valley, correlation_of, quantile
+from lumped.identify.profile import LikelihoodProfile, Valley, correlation_of, quantile
 from lumped.identify.record import ByReference, FittedCurve, Identified, Interval, Posterior, ToldValley, hull
 from lumped.numbers import Array
 
@@ -33,7 +33,7 @@ def answer(
     tested = whiteness(_inside(histories, sought, whitened))
     widened = 1.0 if tested.noise else max(map(memory, whitened))
     bound, least = quantile(histories) * widened, histories.squares(sought)
-    profiles, told = _apart([Profile(histories, one, least + bound, bound) for one in valleys], least)
+    profiles, told = _apart([LikelihoodProfile(histories, one, least + bound, bound) for one in valleys], least)
     posterior, bands = posterior_of(histories, profiles, widened, sample) if sample else (None, None)
     parameters = {name: hull([one.parameters[name] for one in told]) for name in told[0].parameters}
     curves = tuple(_fitted(histories, sought, names, bands or [np.zeros(0)] * len(names)))
@@ -48,9 +48,11 @@ def answer(
     return Identified(source, parameters, told, curves, tested, widened, table, warnings, posterior, by_reference)
 
 
-def _apart(profiles: Sequence[Profile], least: float) -> tuple[list[Profile], tuple[ToldValley, ...]]:
+def _apart(
+    profiles: Sequence[LikelihoodProfile], least: float
+) -> tuple[list[LikelihoodProfile], tuple[ToldValley, ...]]:
     """The valleys, and what they say of the keys, without those that lie within the intervals of one before."""
-    apart, found = list[Profile](), list[ToldValley]()
+    apart, found = list[LikelihoodProfile](), list[ToldValley]()
     for one in profiles:
         sought, p = one.valley.sought, len(one.histories.keys)
         values = {key.name: key.at(place) for key, place in zip(one.histories.keys, sought.tolist(), strict=False)}

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from lumped.fit.noise import autocovariance
 from lumped.identify.histories import Histories
-from lumped.identify.profile import Profile
+from lumped.identify.profile import LikelihoodProfile
 from lumped.identify.record import LEVEL, Posterior
 from lumped.numbers import Array
 
@@ -94,7 +94,7 @@ def _moved(density: Density, here: Array, logs: Array, moving: Places, others: P
 
 
 def posterior_of(
-    histories: Histories, profiles: Sequence[Profile], widened: float, count: int
+    histories: Histories, profiles: Sequence[LikelihoodProfile], widened: float, count: int
 ) -> tuple[Posterior, list[Array]]:
     """At least so many draws of what is sought, and of every curve the band of the law's force, N, (2, n).
 
@@ -119,7 +119,7 @@ def posterior_of(
     return _in_units(histories, draws, walkers, burned), _bands(histories, draws)
 
 
-def _begun(density: Density, profile: Profile, low: Array, high: Array, rng: np.random.Generator) -> Array:
+def _begun(density: Density, profile: LikelihoodProfile, low: Array, high: Array, rng: np.random.Generator) -> Array:
     """A place drawn from the linearized likelihood of a valley, nearer where that is no place of the real one."""
     _, singular, axes = np.linalg.svd(profile.slopes, full_matrices=False)
     step = axes.T @ (rng.normal(size=singular.size) * np.minimum(1.0 / np.maximum(singular, 1e-300), FARTHEST))

@@ -7,7 +7,7 @@ every valley in which the curves are about as likely.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -99,8 +99,18 @@ def _most_likely(histories: Histories, corner: float | None) -> tuple[Histories,
     softer, moved = _softened(reweighed(histories, best.sought, corner), best.sought)
     ended = [descended(softer, one.sought, one.limits) for one in map(moved, (best, *near))]
     ended.sort(key=lambda one: softer.squares(one.sought))
-    most = softer.squares(ended[0].sought) + (1.0 - REACHED) * quantile(softer)
-    return softer, tuple(one for one in ended if softer.squares(one.sought) < most)
+    return softer, tuple(_distinct(softer, ended))
+
+
+def _distinct(histories: Histories, ended: Sequence[Valley]) -> Iterator[Valley]:
+    """The first, and those within the bound above it that lie beyond its interval by the slopes there."""
+    best, bound = ended[0].sought, quantile(histories)
+    least, slopes = histories.squares(best), histories.slopes(best)
+    yield ended[0]
+    for one in ended[1:]:
+        away = float(np.sum((slopes @ (one.sought - best)) ** 2))
+        if histories.squares(one.sought) - least < (1.0 - REACHED) * bound < away:
+            yield one
 
 
 def _softened(histories: Histories, sought: Array) -> tuple[Histories, Callable[[Valley], Valley]]:
