@@ -27,7 +27,7 @@ OPTIONS = {"free": "--free", "fixed": "--fix", "bounds": "--bounds", "law": "--l
 
 
 @dataclass(frozen=True, eq=False)
-class Asked:
+class FitQuestion:
     """What a command line asks: the run, the scene, the judged curve and remarks on it, free and held parameters."""
 
     run: base.StudyRun
@@ -38,7 +38,7 @@ class Asked:
     remarks: tuple[str, ...]
 
     @classmethod
-    def of(cls, args: argparse.Namespace) -> Asked:
+    def of(cls, args: argparse.Namespace) -> FitQuestion:
         """Raises BadInput, also for a curve that is no impact of the scene."""
         from lumped.fit.space import TOUCH
         from lumped.result.curve_file import read_curve
@@ -62,7 +62,7 @@ def execute(args: argparse.Namespace) -> int:
     """Fit one law or every one, write, report; 0 or 3."""
     every = args.law == EVERY
     (_check_ranking if every else _check_opensees)(args)
-    asked = Asked.of(args)
+    asked = FitQuestion.of(args)
     asked.run.progress("fits of every law" if every else f"fit of {args.law}")
     code = (_rank if every else _fit)(asked)
     for remark in asked.remarks:
@@ -70,7 +70,7 @@ def execute(args: argparse.Namespace) -> int:
     return code
 
 
-def _fit(asked: Asked) -> int:
+def _fit(asked: FitQuestion) -> int:
     """Fit a law, write, say its parameters; 0 or 3."""
     from fe_contact.studies.fit_chart import plot_fit
     from lumped.fit import RECORD, fit, write_failure
@@ -92,7 +92,7 @@ def _fit(asked: Asked) -> int:
     return base.DONE if found.result.converged else base.NOT_REACHED
 
 
-def _rank(asked: Asked) -> int:
+def _rank(asked: FitQuestion) -> int:
     """Fit every law, write, say the ranking; 0."""
     from fe_contact.studies.ranking_chart import plot_ranking
     from lumped.fit.ranking import RECORD, rank, write_ranking

@@ -6,17 +6,25 @@ of the ensemble move in turn, each along lines through the other, doi 10.1086/67
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumped.fit.noise import autocovariance
+from lumped.identify.histories import Histories
+from lumped.identify.profile import LikelihoodProfile
+from lumped.identify.record import LEVEL, Posterior
 from lumped.numbers import Array
 
 STRETCH = 2.0  # the authors' choice: a move lands between 1/2 and 2 of the distance
 FADED = 0.05  # a correlation below which a walker has forgotten where it was
+WALKERS, LEAST_BURNED = 4, 40  # work: walkers over what is sought, and four more; steps to forget the start
+FARTHEST, DEEPEST = 1.0, -10.0  # of a start: from its valley, and the logarithm of its density there at least
+SEED = 1  # of the draws: the same sample every day
+BANDS = 200  # work: draws of which the bands of the force are made
 
 Density = Callable[[Array], float]
 Places = NDArray[np.intp]
@@ -83,3 +91,60 @@ def _moved(density: Density, here: Array, logs: Array, moving: Places, others: P
     taken = chance < (size - 1) * np.log(z) + found - logs[moving]
     here[moving[taken]], logs[moving[taken]] = there[taken], found[taken]
     return int(taken.sum())
+
+
+def posterior_of(
+    histories: Histories, profiles: Sequence[LikelihoodProfile], widened: float, count: int
+) -> tuple[Posterior, list[Array]]:
+    """At least so many draws of what is sought, and of every curve the band of the law's force, N, (2, n).
+
+    The likelihood has the noise's deviation integrated out, as the bound of the profiles has, S^(-(n - p)/2); the prior
+    is flat where the search looks: in the logarithm of what is above zero. `widened`: see the record.
+    """
+    least = histories.squares(profiles[0].valley.sought)
+    every = np.array([one.valley.limits for one in profiles])
+    low, high = every[:, 0].min(axis=0), every[:, 1].max(axis=0)
+
+    def density(place: Array) -> float:
+        if np.any(place < low) or np.any(place > high):
+            return -math.inf
+        alone = replace(histories, known={})  # thousands of impacts would fill the memory
+        return -0.5 * histories.freedom / widened * math.log(max(alone.squares(place), least) / least)
+
+    rng, walkers = np.random.default_rng(SEED), WALKERS * histories.size + 4
+    start = np.array([_begun(density, profiles[i % len(profiles)], low, high, rng) for i in range(walkers)])
+    steps = -(-count // walkers)
+    burned = max(LEAST_BURNED, steps // 2)
+    draws = draws_of(density, start, steps, burned, rng)
+    return _in_units(histories, draws, walkers, burned), _bands(histories, draws)
+
+
+def _begun(density: Density, profile: LikelihoodProfile, low: Array, high: Array, rng: np.random.Generator) -> Array:
+    """A place drawn from the linearized likelihood of a valley, nearer where that is no place of the real one."""
+    _, singular, axes = np.linalg.svd(profile.slopes, full_matrices=False)
+    step = axes.T @ (rng.normal(size=singular.size) * np.minimum(1.0 / np.maximum(singular, 1e-300), FARTHEST))
+    best = profile.valley.sought
+    while True:
+        place = np.clip(best + step, low, high)
+        if density(place) > DEEPEST or float(np.abs(step).max()) < 1e-9:  # rounding: the valley itself
+            return np.asarray(place)
+        step = 0.5 * step
+
+
+def _in_units(histories: Histories, draws: Draws, walkers: int, burned: int) -> Posterior:
+    rows, p = draws.rows, len(histories.keys)
+    values = [[key.at(place) for key, place in zip(histories.keys, row, strict=False)] for row in rows[:, :p].tolist()]
+    touches = np.array([histories.touches(row) for row in rows])
+    logarithms = draws.logarithms.ravel()
+    return Posterior(np.array(values), touches, logarithms, walkers, burned, draws.taken, draws.effective)
+
+
+def _bands(histories: Histories, draws: Draws) -> list[Array]:
+    """Of every curve where the law's force lies at the level of the intervals, N, (2, n)."""
+    some = draws.rows[np.linspace(0, len(draws.rows) - 1, min(BANDS, len(draws.rows))).astype(int)]
+    forces = [list[Array]() for _ in histories.samples]
+    for row in some:
+        left = replace(histories, known={}).differences(row)
+        for column, one, rest in zip(forces, histories.samples, left, strict=True):
+            column.append(one.force - rest)
+    return [np.quantile(column, [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL], axis=0) for column in forces]

@@ -45,7 +45,7 @@ def quantile(histories: Histories) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Profile:
+class LikelihoodProfile:
     """The profile of the sum of squares over the noise, from a valley on up to `most`, by `bound` above the least."""
 
     histories: Histories

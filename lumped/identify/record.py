@@ -11,7 +11,7 @@ import numpy as np
 from lumped.fit.noise import Whiteness
 from lumped.numbers import Array
 from lumped.schema import Table
-from lumped.schema.csv_file import write_csv
+from lumped.schema.csv_file import write_columns, write_csv
 from lumped.schema.json_file import plain, write_json
 
 SCHEMA, RECORD = "fe-contact/identified/1", "identified.json"
@@ -62,12 +62,62 @@ class ToldValley:
         )
 
 
+@dataclass(frozen=True)
+class Shift:
+    """A parameter by the law alone and with the reference; its `bar`: how far the reference's own bars can move it."""
+
+    by_law: float
+    value: float
+    bar: float
+
+
+@dataclass(frozen=True)
+class ByReference:
+    """What a reference changed: parameters by their keys; the law's `error`, the largest difference over the peak.
+
+    `runs`: histories that were asked of it; `others`: valleys as likely by the law alone, where nobody asked it.
+    """
+
+    parameters: Mapping[str, Shift]
+    error: float
+    runs: int
+    others: int
+
+
+@dataclass(frozen=True, eq=False)
+class Posterior:
+    """Draws of the posterior: `values` of the parameters in their order, SI, (n, p), `touches`, s, (n, curves).
+
+    `logarithms` of the likelihood over its largest, (n,). `walkers` made them after `burned` steps each, a share
+    `taken` of the moves; they tell as much as `effective` independent ones.
+    """
+
+    values: Array
+    touches: Array
+    logarithms: Array
+    walkers: int
+    burned: int
+    taken: float
+    effective: float
+
+    def to_json(self, names: Sequence[str]) -> Table:
+        """What the record says of it."""
+        ends = np.quantile(self.values, [0.5, 0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL], axis=0).T.tolist()
+        work = {"draws": len(self.values), "walkers": self.walkers, "burned": self.burned, "taken": self.taken}
+        told = {
+            name: dict(zip(("median", "low", "high"), row, strict=True)) for name, row in zip(names, ends, strict=True)
+        }
+        correlation = np.atleast_2d(np.corrcoef(self.values, rowvar=False)).tolist()
+        return {**work, "effective": self.effective, "parameters": told, "correlation": correlation}
+
+
 @dataclass(frozen=True, eq=False)
 class FittedCurve:
     """One measured curve: times, s, forces, N, and the identified law's, (n,); its touch, s.
 
     `deviation` is that of the noise, N; `colour`: the coefficients of its recursion, (order,);
-    `peak`: the highest force, N; `error`: of the law beyond the noise, over the peak.
+    `peak`: the highest force, N; `error`: of the law beyond the noise, over the peak. `band`: the law's force by the
+    posterior, its ends at the level of the intervals, N, (2, n); empty where none was drawn.
     """
 
     name: str
@@ -79,6 +129,25 @@ class FittedCurve:
     colour: Array
     peak: float
     error: float
+    band: Array
+
+    @property
+    def predicted(self) -> Array:
+        """The band of another measurement, its noise included, N, (2, n)."""
+        from scipy.special import ndtri
+
+        noise = float(ndtri(0.5 + 0.5 * LEVEL)) * self.deviation
+        away = np.hypot(self.band - self.fitted, noise)
+        return np.asarray(self.fitted + np.array([[-1.0], [1.0]]) * away)
+
+    @property
+    def columns(self) -> dict[str, Array]:
+        """Those of identified.csv, (n,) each."""
+        found = {"time_s": self.time, "force_N": self.force, "fitted_N": self.fitted}
+        if self.band.size:
+            found |= dict(zip(("law_low_N", "law_high_N"), self.band, strict=True))
+            found |= dict(zip(("predicted_low_N", "predicted_high_N"), self.predicted, strict=True))
+        return found
 
     def noise_content(self) -> Table:
         """What the record says of the noise."""
@@ -93,8 +162,8 @@ class Identified:
 
     `parameters` by dotted keys, SI units, their intervals over all `valleys`, of which the likeliest is the first;
     `table`: the scene file with the values found; `whiteness` tests what is left, and `warnings` say what it means.
-    `widened`: the sum of squares over the noise may grow so many times as much as of noise alone. `each`: what every
-    curve says alone, where that was asked for.
+    `widened`: the sum of squares over the noise may grow so many times as much as of noise alone. `posterior`: its
+    draws, `by_reference`: what a reference changed, `each`: what every curve says alone, where these were asked for.
     """
 
     source: str
@@ -105,6 +174,8 @@ class Identified:
     widened: float
     table: Table
     warnings: tuple[str, ...]
+    posterior: Posterior | None = None
+    by_reference: ByReference | None = None
     each: Mapping[str, Identified] = field(default_factory=dict)
 
     @property
@@ -127,6 +198,8 @@ class Identified:
             "model": {"adequate": self.adequate, "error": error, "widened": self.widened, **test},
             "onset_s": [curve.touch for curve in self.curves],
             "noise": [curve.noise_content() for curve in self.curves],
+            "posterior": self.posterior and self.posterior.to_json(list(self.parameters)),
+            "by_reference": self.by_reference and asdict(self.by_reference),
             "each": alone,
             "warnings": list(self.warnings),
         }
@@ -137,11 +210,17 @@ class Identified:
         return {name: asdict(one) for name, one in self.parameters.items()}
 
     def write_files(self, folder: Path) -> None:
-        """identified.json and identified.csv, the curves with what is left of them, into a folder that is there."""
+        """identified.json, identified.csv, the curves with what is left of them, and sample.csv, the draws, into a
+        folder that is there.
+        """
         write_json(folder / RECORD, self.to_json())
         rows = [
             [curve.name, *row]
             for curve in self.curves
-            for row in np.column_stack([curve.time, curve.force, curve.fitted]).tolist()
+            for row in np.column_stack(list(curve.columns.values())).tolist()
         ]
-        write_csv(folder / "identified.csv", ("curve", "time_s", "force_N", "fitted_N"), rows)
+        write_csv(folder / "identified.csv", ("curve", *self.curves[0].columns), rows)
+        if self.posterior is not None:
+            touches = [f"touch_{i}_s" for i in range(1, len(self.curves) + 1)]
+            columns = [*self.posterior.values.T, *self.posterior.touches.T, self.posterior.logarithms]
+            write_columns(folder / "sample.csv", (*self.parameters, *touches, "log_likelihood"), columns, 9)

@@ -1,4 +1,4 @@
-"""The most likely parameters, all valleys of the likelihood that count, and whether the law explains the curves.
+"""The most likely parameters, and all valleys of the likelihood that count.
 
 One history can be told by a fast relaxation as well as by a slow one: searches begin from both, and an interval holds
 every valley in which the curves are about as likely.
@@ -9,17 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumped.errors import BadInput, Fault, NotReached
-from lumped.fit.noise import Whiteness, autocovariance, colour_of, colour_of_corner, memory, whitened, whiteness
-from lumped.identify.histories import Histories, Impact, Noise, Samples
+from lumped.fit.noise import colour_of, colour_of_corner, whitened
+from lumped.identify.histories import Histories, Noise, Samples
 from lumped.identify.keys import FREE, FreeKey, SceneFile, free_keys, starting_places
-from lumped.identify.profile import REACHED, Profile, Valley, correlation_of, quantile, untold
-from lumped.identify.record import FittedCurve, Identified, Interval, ToldValley, hull
+from lumped.identify.profile import REACHED, Valley, quantile, untold
 from lumped.laws import ting
 from lumped.laws._hereditary import problem_of
 from lumped.laws.base import check_mass
@@ -35,8 +32,7 @@ FARTHEST = 1.5  # safety: of a touch from there, in widths
 POWER = 2.5  # a peak grows as the modulus to the power 2/5, of Hertz's law; others are near
 GUESSED = 0.02  # of the peak: a noise to begin with
 REWEIGHED = 2  # times that the noise is told from the residuals and the search goes on from there
-SILENT, MARGIN = 40, 0.1  # rows that tell a noise's colour; of the width, before touch and after the end left out
-CORRELATED = 0.95  # named in a warning
+SILENT = 40  # rows that tell a noise's colour
 
 
 def search(
@@ -45,8 +41,8 @@ def search(
     free: Sequence[str],
     own: Mapping[str, Mapping[str, object]],
     corner: float | None,
-) -> Identified:
-    """See :func:`lumped.identify`."""
+) -> tuple[Histories, tuple[Valley, ...]]:
+    """The valleys of the likelihood, the likeliest first, see :func:`lumped.identify`. Raises BadInput, NotReached."""
     keys = free_keys(file, free)
     _check_own(keys, own)
     samples = tuple(Samples.of(curve, own.get(name, {})) for name, curve in curves.items())
@@ -56,11 +52,10 @@ def search(
         ting.of(scene)
         problem_of(scene)
     begun = Histories(file, keys, samples, tuple(_first_noise(one, corner) for one in samples))
-    if begun.rows <= begun.size:
+    if begun.freedom <= 0:
         reason = f"{begun.rows} rows for {begun.size} numbers; accepted: more rows than numbers sought"
         raise BadInput(Fault(next(iter(curves)), "", reason))
-    histories, valleys = _most_likely(begun, corner)
-    return _told(histories, valleys, tuple(curves))
+    return _most_likely(begun, corner)
 
 
 def _check_own(keys: Sequence[FreeKey], own: Mapping[str, Mapping[str, object]]) -> None:
@@ -93,19 +88,29 @@ def _most_likely(histories: Histories, corner: float | None) -> tuple[Histories,
     if names := untold(histories, starts):
         reason = f"the force of this scene tells only a combination of {', '.join(names)}"
         raise BadInput(Fault(FREE, "", f"{reason}; accepted: one of them held, or a geometry that tells them apart"))
-    scouted = [_descended(histories, start, _limits(histories, start), SCOUTED) for start in starts]
+    scouted = [descended(histories, start, _limits(histories, start), SCOUTED) for start in starts]
     squares = [histories.squares(one.sought) for one in scouted]
     least, best = min(squares), scouted[int(np.argmin(squares))]
     most = least * (1.0 + NEAR * quantile(histories) / histories.freedom)
     near = [one for one, found in zip(scouted, squares, strict=True) if one is not best and found < most]
     for _ in range(REWEIGHED):
-        histories = _reweighed(histories, best.sought, corner)
-        best = _descended(histories, best.sought, best.limits)
-    softer, moved = _softened(_reweighed(histories, best.sought, corner), best.sought)
-    ended = [_descended(softer, one.sought, one.limits) for one in map(moved, (best, *near))]
+        histories = reweighed(histories, best.sought, corner)
+        best = descended(histories, best.sought, best.limits)
+    softer, moved = _softened(reweighed(histories, best.sought, corner), best.sought)
+    ended = [descended(softer, one.sought, one.limits) for one in map(moved, (best, *near))]
     ended.sort(key=lambda one: softer.squares(one.sought))
-    most = softer.squares(ended[0].sought) + (1.0 - REACHED) * quantile(softer)
-    return softer, tuple(one for one in ended if softer.squares(one.sought) < most)
+    return softer, tuple(_distinct(softer, ended))
+
+
+def _distinct(histories: Histories, ended: Sequence[Valley]) -> Iterator[Valley]:
+    """The first, and those within the bound above it that lie beyond its interval by the slopes there."""
+    best, bound = ended[0].sought, quantile(histories)
+    least, slopes = histories.squares(best), histories.slopes(best)
+    yield ended[0]
+    for one in ended[1:]:
+        away = float(np.sum((slopes @ (one.sought - best)) ** 2))
+        if histories.squares(one.sought) - least < (1.0 - REACHED) * bound < away:
+            yield one
 
 
 def _softened(histories: Histories, sought: Array) -> tuple[Histories, Callable[[Valley], Valley]]:
@@ -126,25 +131,18 @@ def _softened(histories: Histories, sought: Array) -> tuple[Histories, Callable[
     return replace(histories, keys=keys, known={}), valley
 
 
-def _reweighed(histories: Histories, sought: Array, corner: float | None) -> Histories:
+def reweighed(histories: Histories, sought: Array, corner: float | None) -> Histories:
     """The same with the noise that these residuals tell of every curve."""
     noises = list[Noise]()
-    impacts = histories.impacts(sought[: len(histories.keys)]) or ()
-    every = zip(histories.samples, histories.differences(sought), histories.touches(sought), impacts, strict=True)
-    for one, left, touch, impact in every:
-        colour = _colour(one, left[~_pressed(one, touch, impact)], corner)
+    every = zip(histories.samples, histories.differences(sought), histories.pressed(sought), strict=True)
+    for one, left, pressed in every:
+        colour = _colour(one, left[~pressed], corner)
         new = whitened(left, colour)
         share = histories.size * one.time.size / histories.rows / len(histories.samples)  # of what is sought
         freedom = max(new.size - share, 1.0)
         deviation = math.sqrt(float(new @ new) / freedom)
         noises.append(Noise(max(deviation, 1e-12 * one.peak), colour))  # rounding: a computed curve has none
     return replace(histories, noises=tuple(noises))
-
-
-def _pressed(one: Samples, touch: float, impact: Impact) -> NDArray[np.bool_]:
-    """Which rows lie in the contact, or nearly, (n,): in the others is silence."""
-    since, margin = one.time - touch, MARGIN * one.width
-    return (since >= -margin) & (since <= impact.end + margin)
 
 
 def _starts(histories: Histories) -> list[Array]:
@@ -205,7 +203,7 @@ def _limits(histories: Histories, around: Array) -> Array:
     return np.array([*limits, *[(-FARTHEST, FARTHEST)] * len(histories.samples)]).T
 
 
-def _descended(histories: Histories, start: Array, limits: Array, tolerance: float = TOLERANCE) -> Valley:
+def descended(histories: Histories, start: Array, limits: Array, tolerance: float = TOLERANCE) -> Valley:
     """Where least squares end from a start, (size,), within the limits, (2, size)."""
     from scipy.optimize import least_squares
 
@@ -221,81 +219,3 @@ def _descended(histories: Histories, start: Array, limits: Array, tolerance: flo
         max_nfev=MOST_STEPS,
     )
     return Valley(np.asarray(found.x), limits)
-
-
-def _told(histories: Histories, valleys: Sequence[Valley], names: Sequence[str]) -> Identified:
-    """Everything that the curves say: at the most likely place, and in the other valleys."""
-    p, sought = len(histories.keys), valleys[0].sought
-    left = histories.differences(sought)
-    tested = whiteness(_inside(histories, sought, histories.whitened(left)))
-    widened = 1.0 if tested.noise else max(map(memory, histories.whitened(left)))
-    bound = quantile(histories) * widened
-    least = histories.squares(sought)
-    profiles = [Profile(histories, one, least + bound, bound) for one in valleys]
-    told = tuple(_apart(profiles, least))
-    parameters = {name: hull([one.parameters[name] for one in told]) for name in told[0].parameters}
-    curves = tuple(_fitted(histories, sought, i, name) for i, name in enumerate(names))
-    table = histories.file.with_values(histories.keys, sought[:p])
-    warnings = (*_warnings(parameters, told), *_of_residuals(tested, widened, curves))
-    return Identified(histories.file.source, parameters, told, curves, tested, widened, table, warnings)
-
-
-def _apart(profiles: Sequence[Profile], least: float) -> Iterator[ToldValley]:
-    """What every valley says of the keys, without those that lie within the intervals of one before."""
-    found = list[ToldValley]()
-    for one in profiles:
-        sought, p = one.valley.sought, len(one.histories.keys)
-        values = {key.name: key.at(place) for key, place in zip(one.histories.keys, sought.tolist(), strict=False)}
-        if not any(before.holds(values) for before in found):
-            growth = one.histories.squares(sought) - least
-            found.append(ToldValley(one.intervals(), correlation_of(one.slopes)[:p, :p], growth))
-    yield from found
-
-
-def _inside(histories: Histories, sought: Array, columns: Sequence[Array]) -> list[Array]:
-    """The rows during the contact: where no force is, no law errs."""
-    impacts = histories.impacts(sought[: len(histories.keys)]) or ()
-    every = zip(histories.samples, histories.touches(sought), impacts, columns, strict=True)
-    return [column[_pressed(one, touch, impact)[-column.size :]] for one, touch, impact, column in every]
-
-
-def _fitted(histories: Histories, sought: Array, i: int, name: str) -> FittedCurve:
-    one, colour, touch = histories.samples[i], histories.noises[i].colour, histories.touches(sought)[i]
-    left = histories.differences(sought)[i]
-    impacts = histories.impacts(sought[: len(histories.keys)]) or ()
-    pressed = _pressed(one, touch, impacts[i])
-    (power, alike), silence = autocovariance(left[pressed], 1).tolist(), left[~pressed]
-    # white noise is in the power of the rows alone, and not in what neighbours have alike; silence tells a coloured one
-    noise = power - alike if not colour.size else float(np.mean(silence**2)) if silence.size else power
-    error, deviation = math.sqrt(max(power - noise, 0.0)), math.sqrt(min(noise, power))
-    return FittedCurve(
-        name, one.time, one.force, one.force - left, touch, deviation, colour, one.peak, error / one.peak
-    )
-
-
-def _warnings(parameters: Mapping[str, Interval], valleys: Sequence[ToldValley]) -> Iterator[str]:
-    names, correlation = list(parameters), valleys[0].correlation
-    for name, one in parameters.items():
-        if one.unfound:
-            yield f"{name}: the search for its {' and '.join(one.unfound)} end did not converge; hold another key"
-        elif one.low is None and one.high is None:
-            yield f"{name}: the curves do not tell it; hold it, or add a history at another velocity"
-        elif one.low is None or one.high is None:
-            side = "below" if one.low is None else "above"
-            yield f"{name}: its interval is open {side}: no value there is excluded"
-    for i, j in combinations(range(len(names)), 2):
-        if abs(correlation[i, j]) > CORRELATED:
-            told = f"{names[i]} and {names[j]} are correlated by {correlation[i, j]:+.3f}"
-            yield f"{told}: hold one, or rely on both together"
-    for other in valleys[1:]:
-        values = ", ".join(f"{name} = {one.value:.4g}" for name, one in other.parameters.items())
-        cure = "the intervals hold both, and a history at another velocity decides"
-        yield f"{values} tell the curves about as well (sum of squares {other.growth:+.2g}): {cure}"
-
-
-def _of_residuals(tested: Whiteness, widened: float, curves: Sequence[FittedCurve]) -> Iterator[str]:
-    if not tested.noise:
-        worst = max(curves, key=lambda curve: curve.error)
-        told = f"what is left is no noise (Ljung-Box, p = {tested.probability:.1g}): the model errs by about"
-        cause = f"{told} {100.0 * worst.error:.2g} % of the peak, or the noise is coloured (--corner)"
-        yield f"{cause}; the intervals are {math.sqrt(widened):.2g} times as wide, and not to be trusted"
