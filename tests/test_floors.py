@@ -26,6 +26,7 @@ MESHES = STANDARD | {"meshes", "numpy", "scipy", "skfem", "meshio", "gmsh"}
 ONE_IMPORTER = {
     "distributed": "fe_contact/studies/workers.py",
     "gmsh": "meshes/session.py",
+    "markdown": "fe_contact/manual/site.py",
     "pyarrow": "fe_contact/studies/sweep/table.py",
 }
 FINITE_ELEMENTS = LUMPED | MESHES | {"fe_contact", "matplotlib", "threadpoolctl", *ONE_IMPORTER}
