@@ -33,9 +33,9 @@ def washer(elements: float, inner: float, outer: float, rim: float, bonded: bool
     MeshError for numbers outside these ranges.
     """
     n = elements_checked("the shortest length", elements, 0.5, 200.0)
-    outer = checked("outer radius over the height", outer, 1e-4, 1e4)
-    inner = checked("inner radius over the height", inner, 1e-9, outer)
     rim = checked("radius of the contact over the height", rim, inner, outer)
+    inner = checked("inner radius over the height", inner, 1e-9, outer)
+    outer = checked("outer radius over the height", outer, 1e-4, 1e4)
     sharp = ((inner, -1.0), (outer, -1.0)) if bonded else ()
     inside = rim < outer
     return rectangle(inner, outer, 1.0, (rim,) if inside else (), ((rim, 0.0),) * inside + sharp, n)

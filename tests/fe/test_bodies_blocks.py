@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+import meshes
 from fe_contact.indentation import indent, press, settings
 from lumped import BadInput, Material, Relaxation
 from lumped.load_curves.layer import LayerPunch, PointLayer
@@ -106,6 +107,13 @@ def test_a_covered_washer_on_a_sliding_base_is_strained_alike_everywhere(height:
     np.testing.assert_allclose(found.force, exact, rtol=1e-7)
     assert np.all(np.abs(found.force - exact) <= found.force_error)
     np.testing.assert_allclose(found.contact_radius, 0.01)
+
+
+def test_a_punch_may_cover_a_washer_whatever_digits_its_radius_has() -> None:
+    """Gmsh is told ten of them: the rim is the outer radius before and after."""
+    for outer in np.random.default_rng(3).uniform(1.0, 3.0, 8):
+        mesh = meshes.washer(0.5, 0.9, float(outer), float(outer), bonded=False)
+        assert mesh.p[0].max() == pytest.approx(outer, rel=1e-9)
 
 
 def test_a_bonded_washer_is_stiffer_than_a_sliding_one_and_softer_than_a_confined_one() -> None:
