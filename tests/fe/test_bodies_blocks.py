@@ -137,6 +137,15 @@ def test_the_bar_of_a_washer_covers(radius: float, nu: float, base: str) -> None
     assert found.force_error[0] < 1e-4 * found.force[0]
 
 
+def test_the_bar_of_a_washer_with_a_narrow_hole_covers() -> None:
+    """Displacements go as 1/r about it, over less than what an element elsewhere is long."""
+    scene = Indenter(Punch(0.0184), polymer(0.49), Washer(1.2e-4, 0.0211, 0.004, "bonded"))
+    given = {"order": 4, "elements_per_contact": 2.6}
+    found = indent(scene, (DEPTH,), given)
+    finest = press(scene, np.array([DEPTH]), found.contact_radius, settings({"elements_per_contact": 5.0}, scene.shape))
+    assert abs(found.force[0] - found.modulus * finest.force[0]) <= found.force_error[0]
+
+
 @pytest.mark.parametrize(("base", "outer_radius"), [("bonded", 0.1), ("sliding", 1.0)])
 def test_a_wide_washer_with_a_needle_hole_is_the_layer(base: str, outer_radius: float) -> None:
     """What a free rim far away takes falls with its distance squared if the base slides, else like e^-x."""
