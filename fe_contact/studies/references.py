@@ -122,7 +122,7 @@ def checked(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def renewed(names: Sequence[str], published: Path, progress: Progress = silent) -> Iterator[Renewal]:
-    """Every scene answered by its default method with the settings of its file, against what `published` holds of it."""
+    """Every scene by its default method with the settings of its file, against what `published` holds of it."""
     for count, name in enumerate(names):
         progress(name, count, len(names))
         older = Reference.read(published, name)

@@ -1,7 +1,7 @@
 """The defaults with inertia over ten decades of stiffness and six of speed: a true bar, or a failure with a name.
 
-Balls on half-spaces, strikers on rods, blocks on a plane. The truth is the exact law where there is one, else that which
-one march with finer settings points at.
+Balls on half-spaces, strikers on rods, blocks on a plane. The truth is the exact law where there is one, else that
+which one march with finer settings points at.
 """
 
 from __future__ import annotations
