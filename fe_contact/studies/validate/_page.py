@@ -18,7 +18,7 @@ from typing import NamedTuple
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from fe_contact import __version__
-from fe_contact.studies.validate.base import FOLDER, Chapter, Column, Figure, Listing, Report
+from fe_contact.studies.validate.base import FOLDER, NOTHING_MEASURED, Chapter, Column, Figure, Listing, Report
 
 HERE = Path(__file__).parent
 LARGE, SMALL = 1e5, 1e-3  # look: numbers beyond are written with a power of ten
@@ -60,7 +60,8 @@ def page(report: Report) -> str:
         "sparks": lambda told: list(sparks(report.folder / FOLDER / told.name / told.section.histories)),
         "text": lambda name: (HERE / name).read_text(encoding="utf-8"),
     }
-    return environment.get_template("report.html").render(report=report, version=__version__, folder=FOLDER)
+    template = environment.get_template("report.html")
+    return template.render(report=report, version=__version__, folder=FOLDER, nothing_measured=NOTHING_MEASURED)
 
 
 def figure(where: Path, told: Chapter, one: Figure) -> str:

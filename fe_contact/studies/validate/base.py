@@ -137,9 +137,9 @@ class Report:
 
     @property
     def headlines(self) -> tuple[Headline, ...]:
-        """The first screen: the sections' own lines, the worst error of all after the first, what is not said last."""
-        first, *others = [line for one in self.told for line in one.section.headlines]
-        return (first, *self._worst, *others, Headline(OPEN, NOTHING_MEASURED))
+        """The first screen: the sections' own lines, and after the first of them the worst error of all."""
+        lines = [line for one in self.told for line in one.section.headlines]
+        return (*lines[:1], *self._worst, *lines[1:])
 
     @property
     def _worst(self) -> tuple[Headline, ...]:

@@ -217,7 +217,7 @@ MEMBER = ReportPart(
     rank=10,
     title="Packaged scenes",
     question="Do finite elements give the exact answer, where there is one, within the error bar that they claim?",
-    command="fe-contact references",
+    command="fe-contact validate --sections scenes",
     make=make,
     quick="scenes that take minutes",
 )
