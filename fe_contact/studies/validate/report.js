@@ -51,6 +51,7 @@
   }
 
   // Force histories.
+  const BAND = 0.02;  // of the height: a band that is narrower is drawn magnified
   const NS = "http://www.w3.org/2000/svg";
   const PREFIXES = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"], [1e-12, "p"]];
   const prefixed = (largest, unit) => {
@@ -84,7 +85,7 @@
   for (const box of all(document, ".histories")) {
     const script = box.querySelector("script"), scenes = JSON.parse(script.textContent);
     const select = box.querySelector(".scene"), plot = box.querySelector(".plot"), svg = box.querySelector(".chart");
-    const switches = box.querySelector(".curves"), readout = box.querySelector(".readout"), files = box.querySelector("span.files");
+    const switches = box.querySelector(".curves"), readout = box.querySelector(".readout"), files = box.querySelector(".csv"), magnified = box.querySelector(".magnified");
     const margin = { left: 52, right: 14, top: 22, bottom: 40 };
     let curves = [], span = [0, 1], whole = [0, 1], cursor = null, drag = null, scale = null;
 
@@ -95,7 +96,7 @@
       const { exact } = scenes[name];
       curves = Object.entries(scenes[name].curves).map(([key, curve], place) => (
         { ...curve, name: key, said: spelled(key) + (key === exact ? " (exact)" : ""), look: place, dashed: key === exact,
-          shown: place < 2 || asked.get(key) === true }));
+          shown: place === 0 || key === exact || asked.get(key) === true }));
       switches.replaceChildren(switches.firstElementChild, ...curves.map(curve => {
         const label = document.createElement("label"), input = document.createElement("input"), sign = document.createElement("i");
         input.type = "checkbox"; input.checked = curve.shown;
@@ -104,12 +105,12 @@
         label.append(input, sign, curve.said);
         return label;
       }));
-      whole = [Math.min(...curves.map(one => one.time[0])), Math.max(...curves.slice(0, 2).map(one => one.time[one.time.length - 1]))];
+      whole = [Math.min(...curves.map(one => one.time[0])), Math.max(...curves.filter(one => one.shown).map(one => one.time[one.time.length - 1]))];
       span = [...whole]; cursor = null;
-      files.replaceChildren(...curves.map(curve => {
+      files.replaceChildren("CSV: ", ...curves.map(curve => {
         const link = document.createElement("a");
         link.href = `${script.dataset.files}${name}-${curve.name}.csv`;
-        link.textContent = `${curve.name}.csv`;
+        link.textContent = spelled(curve.name);
         return link;
       }));
       draw();
@@ -144,10 +145,13 @@
       const clip = element("clipPath", { id: "inside" }, svg);
       element("rect", { x: margin.left, y: margin.top, width: width - margin.left - margin.right, height: height - margin.top - margin.bottom }, clip);
       const inner = element("g", { "clip-path": "url(#inside)" }, svg);
+      const widest = Math.max(...shown.map(one => Math.max(...one.error)));
+      const times = widest > 0 ? Math.max(1, 10 ** Math.ceil(Math.log10(BAND * (top - bottom) / widest))) : 1;
+      magnified.textContent = times > 1 ? `Shaded: the error band, drawn ${times} times as wide.` : "Shaded: the error band.";
       for (const curve of shown) {
         const path = (times, forces) => times.map((time, i) => `${x(time).toFixed(1)} ${y(forces[i]).toFixed(1)}`);
-        const upper = path(curve.time, curve.force.map((force, i) => force + curve.error[i]));
-        const lower = path(curve.time, curve.force.map((force, i) => force - curve.error[i])).reverse();
+        const upper = path(curve.time, curve.force.map((force, i) => force + times * curve.error[i]));
+        const lower = path(curve.time, curve.force.map((force, i) => force - times * curve.error[i])).reverse();
         element("path", { d: `M${upper.join("L")}L${lower.join("L")}Z`, class: `band k${curve.look}` }, inner);
         element("path", { d: `M${path(curve.time, curve.force).join("L")}`, class: `curve k${curve.look}${curve.dashed ? " dashed" : ""}` }, inner);
       }
@@ -207,6 +211,6 @@
     for (const button of all(box, ".gallery button")) button.addEventListener("click", () => choose(button.dataset.scene));
     select.addEventListener("change", () => choose(select.value));
     new ResizeObserver(() => draw()).observe(plot);
-    choose(select.value);
+    choose(Object.keys(scenes).find(name => scenes[name].exact) ?? select.value);
   }
 })();

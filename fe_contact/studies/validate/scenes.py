@@ -37,7 +37,7 @@ from lumped.schema.files import SCENES
 SCHEMA = "fe-contact/validate-scenes/1"
 KEPT, HISTORIES = "scenes.jsonl", "histories.json"
 DIGITS = 5  # look: of a curve that is drawn
-MOST = 3  # look: scenes that the first screen names of a kind
+MOST = 2  # look: scenes that the first screen names of a kind
 TOLD = ("peak_force", "peak_depth", "duration", "restitution")
 
 
@@ -69,7 +69,7 @@ def headlines(found: Sequence[SceneAnswer]) -> tuple[Headline, ...]:
     held = [one for one in found if one.exact]
     elements = [one for one in found if one.method == FE]
     apart = [one.scene for one in held if not one.agrees]
-    names = ", ".join(sorted({one.exact for one in held}))
+    names = ", ".join(sorted({one.exact.replace("_", " ") for one in held}))
     but = f", all but {named(apart, MOST)}" if apart else ""
     said = (
         f"{len(held) - len(apart)} of {len(held)} scenes by finite elements agree with an exact answer ({names}) "
@@ -110,7 +110,9 @@ def _worst(found: Sequence[SceneAnswer]) -> Worst | None:
         return None
     one, most = max(pairs, key=lambda pair: math.inf if pair[1].moved is None else pair[1].moved)
     ratio = math.inf if most.moved is None else most.moved
-    return Worst(ratio, len(pairs), f"{one.scene}, {most.quantity.replace('_', ' ')} against {one.exact}")
+    return Worst(
+        ratio, len(pairs), f"{one.scene}, {most.quantity.replace('_', ' ')} against {one.exact.replace('_', ' ')}"
+    )
 
 
 SCENES_TABLE = Listing(

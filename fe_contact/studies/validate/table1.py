@@ -22,6 +22,13 @@ from fe_contact.studies.validate.base import (
 )
 
 TABLES = ("table1.csv", "table1-datum.csv", "table1-bonded.csv")
+SPOKEN = {
+    HOLDING: "rows hold",
+    RANGE: "hold within a range",
+    WRONG: "are wrong, and corrected",
+    UNDECIDED: "are undecided",
+    UNTRIED: "have no answer",
+}
 COLUMNS = (
     Column("number", "row"),
     Column("case", "case"),
@@ -58,12 +65,12 @@ def make(asked: Request) -> Made:
 
 def headline(trials: tuple[Trial, ...]) -> Headline:
     """How many rows hold, and which do not."""
-    rows = {word: [one.row.case for one in trials if verdict(one).word == word]
-            for word in (HOLDING, RANGE, WRONG, UNDECIDED, UNTRIED)}  # fmt: skip
-    said = [f"{len(names)} {word}" + (f" ({', '.join(names)})" if word not in (HOLDING, RANGE) else "")
-            for word, names in rows.items() if names]  # fmt: skip
+    rows = {word: [str(one.row.number) for one in trials if verdict(one).word == word] for word in SPOKEN}
+    said = ", ".join(
+        f"{len(numbers)} {SPOKEN[word]} ({', '.join(numbers)})" for word, numbers in rows.items() if numbers
+    )
     word = DIFFERS if rows[WRONG] else OPEN if rows[UNDECIDED] or rows[UNTRIED] else HOLDS
-    return Headline(word, f"Table 1, {len(trials)} rows by finite elements: {'; '.join(said)}.")
+    return Headline(word, f"Of the paper's Table 1, by finite elements: {said}.")
 
 
 MEMBER = ReportPart(
