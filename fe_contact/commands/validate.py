@@ -18,7 +18,7 @@ def execute(args: argparse.Namespace) -> int:
     report = validate(run.where, args.quick, jobs, args.resume, only, run.progress)
     content = json.loads((run.where / RECORD).read_text(encoding="utf-8"))
     lines = [f"{line.word}: {line.text}" for line in report.headlines]
-    base.say(args, content, [*lines, f"open {run.where / 'index.html'}"])
+    base.say(args, content, [*lines, f"the report: {(run.where / 'index.html').absolute().as_uri()}"])
     if report.missed:
         base.complain(report.missed)
     return base.NOT_REACHED if report.missed else base.DONE
@@ -34,4 +34,6 @@ MEMBER = base.Command(
         base.option("--sections", metavar="a,b,...", help="sections of the report; default: all"),
     ),
     execute,
+    example="fe-contact validate --quick --out report",
+    group=base.START,
 )
