@@ -140,7 +140,8 @@ def test_an_answer_that_only_one_side_has_is_apart(make: Make) -> None:
     folder, _, _ = make("undefined", [replace(one, differences=(undefined, *one.differences[1:]))])
     lines = json.loads((folder / "validate.json").read_text(encoding="utf-8"))["headlines"]
     assert lines[0]["word"] == DIFFERS
-    assert "inf of its bar" in lines[1]["text"]
+    assert "one side has none: ball, peak force" in lines[1]["text"]
+    assert make("undefined", [], "--resume")[2] == [], "and it can be read again"
 
 
 def test_made_twice_it_is_the_same_and_resumed_it_makes_the_rest_alone(make: Make) -> None:
@@ -318,7 +319,7 @@ def sorts_and_filters(browser: Any) -> None:
     words = "document.querySelector('.listing input').value = '%s';"
     heard = "document.querySelector('.listing input').dispatchEvent(new Event('input'));"
     assert browser.run(words % "ball SOFT" + heard + names) == ["soft-ball"]
-    assert browser.run("document.querySelector('.listing output').textContent") == "1 rows"
+    assert browser.run("document.querySelector('.listing output').textContent") == "1 row"
     assert len(browser.run(words % "" + heard + names)) == 3
 
 

@@ -24,6 +24,7 @@ HERE = Path(__file__).parent
 LARGE, SMALL = 1e5, 1e-3  # look: numbers beyond are written with a power of ten
 DIGITS, MOST_DIGITS = 4, 7  # look: of a number without a bar, and of one with it at most
 PLACES = 2  # look: decimals of a point that are kept of coordinates
+ONE_LINE, LONG_CELL = 34, ' class="long"'  # look: characters of a cell that is not broken
 WIDTH, HEIGHT, EDGE = 120.0, 36.0, 2.0  # look: of a small curve
 OF_ROOT = re.compile(r"<svg\b[^>]*>")
 BEFORE = re.compile(r"^.*?(?=<svg\b)", re.DOTALL)
@@ -35,10 +36,10 @@ NAMES = (re.compile(r'(?<=\bid=")'), re.compile(r'(?<=href="#)'), re.compile(r"(
 
 
 class Cell(NamedTuple):
-    """What a cell shows, and what it is sorted by."""
+    """What a cell shows, and its attributes: how it looks, and by which number it is sorted."""
 
     text: str
-    order: str
+    look: str = ""
 
 
 class Spark(NamedTuple):
@@ -104,9 +105,9 @@ def _cell(row: dict[str, str], column: Column) -> Cell:
     text = row[column.key]
     value = _number(text)
     if value is None:
-        return Cell(text, text)
+        return Cell(text, LONG_CELL) if len(text) > ONE_LINE else Cell(text)
     error = _number(row[column.error]) if column.error else None
-    return Cell(written(value, error), repr(value))
+    return Cell(written(value, error), f' class="number" data-order="{value!r}"')
 
 
 def _number(text: str) -> float | None:

@@ -18,6 +18,7 @@ SIGNS = {
     "peak_time": ("P", style.GREY),
     "history_l2": ("X", style.PURPLE),
 }
+NAMES = {"history_l2": "history"}
 LEGEND = 1.15  # look: room for the names of the signs, in
 
 
@@ -25,7 +26,9 @@ def plot_scenes(found: Sequence[SceneAnswer], where: Path) -> tuple[Path, Path]:
     """Write ``scenes.svg`` and ``scenes.png`` into the folder ``where``; their paths."""
     held = [one for one in found if one.differences]
     lines = ["Difference from the exact answer over the sum of both error bars; left of the line both can be true."]
-    with style.sheet(where, "scenes", "Error over its bar", lines, ROW * max(len(held), 3), width=120) as sheet:
+    with style.sheet(
+        where, "scenes", "Error over its bar", lines, ROW * max(len(held), 3), width=120, above=0.08
+    ) as sheet:
         axes = sheet.panels(1, 1, 0.24, 1.0 - LEGEND / style.PAGE)[0]
         axes.axvspan(LEAST, 1.0, color=style.GREEN, alpha=0.07, linewidth=0.0)
         axes.axvline(1.0, color=style.BLACK, linewidth=0.9)
@@ -33,9 +36,9 @@ def plot_scenes(found: Sequence[SceneAnswer], where: Path) -> tuple[Path, Path]:
             points = [(move.moved, place) for place, one in enumerate(held) for move in one.differences
                       if move.quantity == name and move.moved is not None]  # fmt: skip
             x, y = [max(moved, LEAST) for moved, _ in points], [place for _, place in points]
-            axes.plot(x, y, marker, color=colour, markersize=3.4, label=name.replace("_", " "), alpha=0.9)
+            axes.plot(x, y, marker, color=colour, markersize=3.4, label=NAMES.get(name, name.replace("_", " ")))
         axes.set(xscale="log", xlim=(LEAST, 3.0), ylim=(len(held) - 0.4, -0.6), xlabel="error over its bar")
-        axes.set_yticks(range(len(held)), [f"{one.scene}  ({one.exact})" for one in held])
+        axes.set_yticks(range(len(held)), [f"{one.scene}  ({one.exact.replace('_', ' ')})" for one in held])
         axes.grid(axis="y", color=style.GREY, linewidth=0.3, alpha=0.4)
         axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
     return sheet.paths

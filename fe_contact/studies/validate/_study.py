@@ -29,7 +29,7 @@ from fe_contact.studies.validate.base import (
     parts,
 )
 from lumped.errors import BadInput, CannotWrite, Fault, FeContactError, nearest
-from lumped.result.folder import publish
+from lumped.result.folder import checksum, publish
 from lumped.result.result import provenance
 from lumped.schema import Table
 from lumped.schema.json_file import decoded, encoded, plain, write_json
@@ -106,12 +106,13 @@ def _kept(part: ReportPart, where: Path, quick: bool) -> Section | None:
     """The section that stands in a folder; none where it is another suite's, another question's, or not whole."""
     try:
         asked = json.loads((where / ASKED).read_text(encoding="utf-8"))
-        content = json.loads((where / SECTION).read_text(encoding="utf-8"))["section"]
+        record = json.loads((where / SECTION).read_text(encoding="utf-8"))
+        whole = all(checksum(where / name) == known for name, known in record["files"].items())
     except (OSError, ValueError, KeyError):
         return None
-    if asked != _question(quick):
+    if asked != _question(quick) or not whole:
         return None
-    found: Section = decoded(Section, content)
+    found: Section = decoded(Section, record["section"])
     return found
 
 
@@ -127,7 +128,7 @@ def _made(name: str, part: ReportPart, request: Request) -> Chapter:
             write_json(where / SECTION, plain(content))
 
         publish(request.where, write, SECTION)
-        return Chapter(name, part, decoded(Section, json.loads(json.dumps(content["section"]))))
+        return Chapter(name, part, made.section)
     except CannotWrite:
         raise
     except (FeContactError, MeshError) as failure:

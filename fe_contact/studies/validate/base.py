@@ -6,6 +6,7 @@ its sentences are computed. ``verified`` is said of what was held against an exa
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -41,11 +42,19 @@ class Headline:
 
 @dataclass(frozen=True)
 class Worst:
-    """The largest error over its bar of a section, up to 1 where bars hold, of how many, and where."""
+    """The largest error over its bar of a section, up to 1 where bars hold, of how many, and where.
 
-    ratio: float
+    The ``ratio`` is None where one of both answers alone is defined.
+    """
+
+    ratio: float | None
     count: int
     place: str
+
+    @property
+    def size(self) -> float:
+        """The ratio, infinite where there is none."""
+        return math.inf if self.ratio is None else self.ratio
 
 
 @dataclass(frozen=True)
@@ -147,10 +156,11 @@ class Report:
         known = [one.section.worst for one in self.told if one.section.worst]
         if not known:
             return ()
-        worst, count = max(known, key=lambda one: one.ratio), sum(one.count for one in known)
-        said = (
-            f"The worst error is {worst.ratio:.2f} of its bar, of {count} numbers with an exact answer: {worst.place}."
-        )
+        worst, count = max(known, key=lambda one: one.size), sum(one.count for one in known)
+        start = f"The worst error of {count} numbers with an exact answer"
+        if worst.ratio is None:
+            return (Headline(DIFFERS, f"{start} is that one side has none: {worst.place}."),)
+        said = f"{start} is {worst.ratio:.2f} of its bar: {worst.place}."
         return (Headline(VERIFIED if worst.ratio <= 1.0 else DIFFERS, said),)
 
     @property

@@ -46,7 +46,7 @@
         row.hidden = !words.every(word => text.includes(word));
         shown += !row.hidden;
       }
-      count.textContent = `${shown} rows`;
+      count.textContent = `${shown} row${shown === 1 ? "" : "s"}`;
     });
   }
 
