@@ -22,7 +22,7 @@ from fe_contact.settings import Given, faults
 from lumped.errors import BadInput, Fault, shown
 from lumped.indentation import Indentation
 from lumped.result.folder import publish
-from lumped.result.result import NO_KEY, Result, worst
+from lumped.result.result import Result, worst
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.scene.tables import load, load_indenter
@@ -263,11 +263,7 @@ def report(
     if not result.converged:
         complain(result.message)
     if not result.model_sufficient:
-        most = worst(result.model_ledger)
-        complain(
-            f"model too small for the tolerance: {most.effect}, {most.treated}, "
-            f"about {most.estimate:.2g} of the peak force; {'; '.join(filter(None, (most.note, most.key or NO_KEY)))}"
-        )
+        complain(f"the model is too small for the tolerance: {worst(result.model_ledger).sentence}")
     return DONE if result.converged else NOT_REACHED
 
 

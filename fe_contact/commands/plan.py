@@ -66,11 +66,7 @@ def _lines(chosen: Plan, takes: Cost | None) -> list[str]:
         lines.append(f"  {key:21s} {value if not isinstance(value, float) else format(value, '.6g'):<12} {words[key]}")
     lines += [] if takes is None else [f"takes {takes}"]
     lines.append("left out, relative to the peak force:")
-    for entry in chosen.ledger:
-        size = f"{entry.spread[0]:.2g} to {entry.spread[1]:.2g}, " if entry.spread else ""
-        size += f"{entry.estimate:.2g}, " if entry.estimate is not None else ""
-        lines.append(f"  {entry.effect} ({entry.treated}): {size}{entry.verdict(tolerance)}")
-    return [*lines, good_to(chosen.ledger)]
+    return [*lines, *(f"  {entry.line(tolerance)}" for entry in chosen.ledger), good_to(chosen.ledger)]
 
 
 def _measured(args: argparse.Namespace, scene: Scene, given: Table) -> tuple[MeasuredEffect, ...] | None:

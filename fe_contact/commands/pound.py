@@ -11,8 +11,8 @@ from lumped.errors import NotReached
 
 def execute(args: argparse.Namespace) -> int:
     """Simulate, write, report; 0 or 3."""
-    from fe_contact.studies.pound import RECORD, calibrated_study, told, write_failure, write_pound
-    from fe_contact.studies.pound_chart import plot_study
+    from fe_contact.studies.pound.chart import plot_study
+    from fe_contact.studies.pound.study import RECORD, calibrated_study, told, write_failure, write_pound
     from lumped.pounding.case_file import load
     from lumped.pounding.study import study
 

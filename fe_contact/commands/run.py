@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.result.folder import publish
-from lumped.result.result import Result, good_to, write_failure
+from lumped.result.result import Result, write_failure
 from lumped.scene.scene import Scene
 from lumped.schema import Table
 
@@ -56,22 +55,8 @@ def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path, t
     else:
         solved, result = None, simulate(scene, args.method, table, progress=base.progress_of(args))
     content = publish(where, lambda folder: _write(args, solved, result, folder))
-    title = f"{scene.name}: {result.method}, tolerance {result.tolerance:g}"
-    return base.report(args, result, content, [*taken, *_lines(result)], where, title)
-
-
-def _lines(result: Result) -> list[str]:
-    """Quantities with their error bars, one a line, then every contact of several."""
-    lines = [
-        f"{name:13s} undefined: no separation"
-        if quantity.value is None
-        else f"{name:13s} {quantity.value:.6g} +- {quantity.error or 0.0:.1e} {quantity.unit}"
-        for name, quantity in result.quantities.items()
-    ]
-    lines += [_contact(number, contact) for number, contact in enumerate(result.contacts, start=1)]
-    if result.contacts and result.converged and result.message:
-        lines.append(result.message)
-    return [*_weighed(result), *lines, *filter(None, [good_to(result.model_ledger)])]
+    title, *lines = result.summary().split("\n  ")
+    return base.report(args, result, content, [*taken, *_weighed(result), *lines], where, title)
 
 
 def _weighed(result: Result) -> list[str]:
@@ -79,13 +64,6 @@ def _weighed(result: Result) -> list[str]:
     from fe_contact.methods import lines_of
 
     return [f"weighed: {line}" for line in lines_of(result.weighed)]
-
-
-def _contact(number: int, contact: Mapping[str, float | None]) -> str:
-    """One of several contacts in a line."""
-    names = {"duration": "s", "restitution": "", "peak_force": "N"}
-    told = [f"{name} {contact[name]:.6g} {unit}".rstrip() for name, unit in names.items() if contact[name] is not None]
-    return f"contact {number} at {contact['start']:.6g} s: {', '.join(told)}"
 
 
 def _write(args: argparse.Namespace, solved: Solved | None, result: Result, folder: Path) -> None:

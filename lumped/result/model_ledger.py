@@ -11,7 +11,7 @@ from numpy.polynomial import Polynomial
 from lumped.errors import FeContactError
 from lumped.materials.radiation import Pulse
 from lumped.result.history import History
-from lumped.result.result import LedgerEntry, Quantity
+from lumped.result.result import LedgerEntry, Quantity, percent
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
@@ -115,7 +115,8 @@ def gravity(scene: Scene, model: Model, force: float, mass: float) -> LedgerEntr
         return LedgerEntry(effect, "across the motion", 0.0)
     if model.direction == "down":
         return LedgerEntry(effect, "neglected", weight, "m g", "model.gravity", value=GRAVITY)
-    asked = f"model.direction: of a drop, 'down', it would be {weight:.2g}; else 'horizontal'"
+    down = f"a drop (--set model.direction=down) leaves out {percent(weight)}"
+    asked = f"{down}, a horizontal motion (--set model.direction=horizontal) nothing"
     return LedgerEntry(effect, "none assumed", None, asked)
 
 
