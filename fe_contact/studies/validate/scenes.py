@@ -113,65 +113,6 @@ def _worst(found: Sequence[SceneAnswer]) -> Worst | None:
     return Worst(most.moved, len(pairs), place)
 
 
-SCENES_TABLE, CHECKS_TABLE),
-            _worst(found),
-            HISTORIES,
-        ),
-        partial(write, found),
-    )
-
-
-def headlines(found: Sequence[SceneAnswer]) -> tuple[Headline, ...]:
-    """What was held against what and whether it held; which scenes need a larger model."""
-    held = [one for one in found if one.exact]
-    elements = [one for one in found if one.method == FE]
-    apart = [one.scene for one in held if not one.agrees]
-    names = ", ".join(sorted({one.exact.replace("_", " ") for one in held}))
-    but = f", all but {named(apart, MOST)}" if apart else ""
-    said = (
-        f"{len(held) - len(apart)} of {len(held)} scenes by finite elements agree with an exact answer ({names}) "
-        f"within both error bars{but}; {len(elements) - len(held)} more have an error bar, and no exact answer."
-    )
-    return Headline(DIFFERS if apart else VERIFIED, said), _model(found)
-
-
-def _model(found: Sequence[SceneAnswer]) -> Headline:
-    """Which scenes need a larger model, by what it would follow."""
-    needed = defaultdict[str, list[str]](list)
-    for one in sorted(found, key=lambda one: -(one.estimate or 0.0)):
-        if one.larger:
-            needed[one.larger].append(one.scene)
-    if not needed:
-        return Headline(HOLDS, "No scene needs a larger model at its tolerance.")
-    said = "; ".join(f"{effect}: {named(names, MOST)}" for effect, names in needed.items())
-    count = sum(map(len, needed.values()))
-    return Headline(LARGER, f"{count} of {len(found)} scenes need a larger model at their tolerance. {said}.")
-
-
-def sentences(found: Sequence[SceneAnswer], left_out: Sequence[str]) -> list[str]:
-    """What was asked, what failed or missed its tolerance, what moved since it was published."""
-    failed = [f"{one.scene}: no answer: {one.failure}" for one in found if one.failure]
-    missed = [f"{one.scene}: {one.missed}" for one in found if one.missed]
-    published = [one for one in found if one.published]
-    moved = [one.scene for one in published if not largest(one.published) <= 1.0]
-    said = [f"{len(published) - len(moved)} of {len(published)} answers agree with what is published of them, in "
-            f"data/references/{': all but ' + ', '.join(moved) if moved else ''}."]  # fmt: skip
-    if left_out:
-        said.append(f"Left out of a quick answer, for they take minutes: {', '.join(left_out)}.")
-    return [*said, *failed, *missed]
-
-
-def _worst(found: Sequence[SceneAnswer]) -> Worst | None:
-    pairs = [(one, move) for one in found for move in one.differences]
-    if not pairs:
-        return None
-    one, most = max(pairs, key=lambda pair: math.inf if pair[1].moved is None else pair[1].moved)
-    ratio = math.inf if most.moved is None else most.moved
-    return Worst(
-        ratio, len(pairs), f"{one.scene}, {most.quantity.replace('_', ' ')} against {one.exact.replace('_', ' ')}"
-    )
-
-
 SCENES_TABLE = Listing(
     "scenes.csv",
     "Every scene, its answer and its bars",
