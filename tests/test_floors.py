@@ -26,6 +26,7 @@ MESHES = STANDARD | {"meshes", "numpy", "scipy", "skfem", "meshio", "gmsh"}
 ONE_IMPORTER = {
     "distributed": "fe_contact/studies/workers.py",
     "gmsh": "meshes/session.py",
+    "jinja2": "fe_contact/studies/validate/_page.py",
     "markdown": "fe_contact/manual/site.py",
     "pandas": "lumped/result/history.py",
     "pyarrow": "fe_contact/studies/sweep/table.py",
