@@ -14,7 +14,7 @@ import pytest
 
 import fe_contact
 from fe_contact.cli import main
-from fe_contact.studies.pound import calibrated_study
+from fe_contact.studies.pound_calibration import calibrated_study
 from fe_contact.studies.pound_chart import plot_study
 from lumped import Scene, laws, simulate
 from lumped.errors import BadInput
