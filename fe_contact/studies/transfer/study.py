@@ -28,7 +28,6 @@ from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.scene.tables import LawChoice
 from lumped.schema import Table
-from lumped.schema.files import overridden
 from lumped.schema.keys import Number
 from lumped.solvers.point.bodies import Stage
 
@@ -205,14 +204,6 @@ def transfer(scene_with: SceneWith, given: Given, asked: Asked, progress: Progre
         row for name in names for state in states for row in _rows(name, state, calibrations, refused, asked.within)
     ]
     return TransferStudy(begin.name, asked, start, reference, states, calibrations, refused, tuple(rows))
-
-
-def changed(scene: Scene, keys: Mapping[str, object]) -> Scene:
-    """A scene with dotted keys of its tables changed; ends that nobody asked for follow. Raises BadInput."""
-    tables = scene.to_dict()
-    if scene.motion.end_time is None:
-        tables["motion"].pop("end_time", None)
-    return Scene.from_dict(overridden(tables, keys, scene.source), scene.source)
 
 
 def calibrated(name: str, scene: Scene, reference: Result, how: str) -> Calibration:

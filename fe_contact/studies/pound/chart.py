@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from fe_contact.studies import style
-from fe_contact.studies.pound import motions_of
+from fe_contact.studies.pound.study import motions_of
 from fe_contact.studies.style import Look, prefixed, readable
 from lumped.pounding.frames import Gap
 from lumped.pounding.result import FramesResult
