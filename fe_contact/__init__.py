@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from lumped import Fit, History, Result, Scene
     from lumped.indentation import Indentation
     from lumped.result.score import Curve
+    from lumped.schema import Table
 
 __all__ = ["compare", "fit", "indent", "plot", "run", "sweep", "table1", "tradeoff", "transfer"]
 __version__ = "0.1.0"
@@ -237,7 +238,7 @@ def plot(found: object, out: str | Path) -> tuple[Path, ...]:
     return charts[type(found)](found, Path(out))
 
 
-def _read(scene: Scene | str | Path) -> tuple[Scene, Mapping[str, Any]]:
+def _read(scene: Scene | str | Path) -> tuple[Scene, Table]:
     """A scene, and the settings of its file. Raises BadInput."""
     from lumped import Scene
     from lumped.scene.tables import load
@@ -318,10 +319,8 @@ def transfer(
     BadInput for a state that is no scene, and what :func:`run` raises at the state of calibration. A law or a reference
     that fails elsewhere is refused there.
     """
-    from functools import partial
-
     from fe_contact.methods import settings
-    from fe_contact.studies.transfer.study import Asked, changed
+    from fe_contact.studies.transfer.study import Asked
     from fe_contact.studies.transfer.study import transfer as run_transfer
     from fe_contact.threads import one_thread
 
@@ -329,4 +328,4 @@ def transfer(
     asked = Asked(tuple(laws), start or {}, values, calibrate, within, method)
     known, table = _read(scene)
     with one_thread:
-        return run_transfer(partial(changed, known), settings(table, tolerance, known.source), asked)
+        return run_transfer(known.changed, settings(table, tolerance, known.source), asked)

@@ -40,7 +40,6 @@ ENERGY_TERMS = ("in", "out", "stored", "viscous", "radiated", "contact", "numeri
 WITHIN, ABOVE, OPEN, UNKNOWN = "within tolerance", "above it", "open", "unknown"
 NO_KEY = "no larger model here"
 LEFT_OUT = ("neglected", "none assumed")  # how a ledger's effect is treated that is not there at all
-LARGER = {"model.inertia": "true", "model.gravity": "9.81", "target.material.constant": "bulk"}  # what selects a model
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,8 +97,9 @@ def percent(share: float) -> str:
 class LedgerEntry:
     """One thing the model leaves out, and its estimated effect relative to the peak force, None where unknown.
 
-    `key` selects the larger model, empty where there is none. `spread`: lowest and highest change of the force where
-    the scene does not decide; the estimate is then what is left out at least, None where that may be nothing.
+    `key` with `value` selects the larger model, empty where there is none. `spread`: lowest and highest change of the
+    force where the scene does not decide; the estimate is then what is left out at least, None where that may be
+    nothing.
     """
 
     effect: str
@@ -108,6 +108,7 @@ class LedgerEntry:
     note: str = ""
     key: str = ""
     spread: tuple[float, float] | None = None
+    value: bool | float | str | None = None
 
     @property
     def size(self) -> float:
@@ -136,8 +137,8 @@ class LedgerEntry:
         """How a run includes it, in words; that nothing does where there is no larger model."""
         if not self.key:
             return NO_KEY
-        key, _, value = self.key.partition(" = ")
-        return f"to include it: --set {key}={value.strip(chr(39)) or LARGER.get(key, 'VALUE')}"
+        value = str(self.value).lower() if isinstance(self.value, bool) else self.value
+        return f"to include it: --set {self.key}={value}"
 
     @property
     def sentence(self) -> str:
