@@ -132,7 +132,7 @@ ROOMS = {  # lowest first
         "restitution fit identify ptmd pounding paper __init__"
     ),
     "fe_contact": (
-        "errors settings progress threads assembly contact schemes dynamics bodies steppers march targets budget "
+        "errors settings progress threads assembly contact schemes dynamics bodies steppers march targets solids budget "
         "indentation fields recovery waves reference methods studies commands cli __main__ __init__"
     ),
 }

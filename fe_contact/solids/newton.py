@@ -1,0 +1,141 @@
+"""Equilibrium of a body that is not linear under a striker: Newton's method, made safe by a line search on the energy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fe_contact.assembly.forms import Array, Matrix
+from fe_contact.assembly.interior import factorized
+from fe_contact.solids.base import State
+from fe_contact.solids.bulk import Body, Loaded, Pattern
+from fe_contact.solids.contact import Obstacle, Skin, Touch
+from lumped.errors import NotReached
+
+MOST_ITERATIONS = 60  # work: a step that needs more is made in halves
+SETTLED = 1e-13  # of the energy: the step that changes it by no more is the last one
+ROUNDING = 1e-9  # of the energy: a trial that is higher by no more than rounding may be
+SHORTEST = 1e-4  # share of a Newton step below which the energy stands still
+
+
+class EquilibriumLost(NotReached):
+    """Newton's method found no equilibrium: the body folds, or strain left the range of its material."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(f"{reason}; cure: smaller depths, or another target.material.hyperelastic")
+
+
+@dataclass(frozen=True, eq=False)
+class Pressing:
+    """A body whose ``skin`` a striker meets; its matrix has one ``pattern``."""
+
+    body: Body
+    skin: Skin
+    pattern: Pattern
+    obstacle: Obstacle
+
+    @classmethod
+    def of(cls, body: Body, skin: Skin, obstacle: Obstacle) -> Pressing:
+        """Raises nothing: makes the pattern."""
+        blocks = [body.core.dofs, skin.dofs, body.rim[None]]
+        return cls(body, skin, Pattern.of(blocks, body.free, body.core.size), obstacle)
+
+    def at(self, displacement: Array, depth: float, stiffness: float, state: State = ()) -> Balance:
+        """Body and striker with the mesh displaced so, (2 N,), after ``state``."""
+        loaded = self.body.core.answered(displacement, self.body.response, state)
+        touch = self.skin.pressed(displacement, self.obstacle, depth, stiffness)
+        return Balance(self, displacement, loaded, touch)
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """Energy, its derivative and second derivative by the free degrees of freedom."""
+
+    pressing: Pressing
+    displacement: Array
+    loaded: Loaded
+    touch: Touch
+
+    @cached_property
+    def strain_energy(self) -> float:
+        """Of core and rest, J."""
+        body = self.pressing.body
+        rim = self.displacement[body.rim]
+        return self.loaded.energy + 0.5 * float(rim @ body.rest @ rim)
+
+    @property
+    def energy(self) -> float:
+        """With the penalty's."""
+        return self.strain_energy + self.touch.energy
+
+    @property
+    def force(self) -> float:
+        """On the striker."""
+        return self.touch.force
+
+    @cached_property
+    def residual(self) -> Array:
+        """Forces that are not balanced, (free,)."""
+        body = self.pressing.body
+        forces = self.loaded.forces + self.touch.forces
+        forces[body.rim] += body.rest @ self.displacement[body.rim]
+        return forces[body.free]
+
+    def tangent(self, convex: bool) -> Matrix:
+        """Sparse (free, free)."""
+        blocks = [self.loaded.matrices(), self.touch.matrices(convex), self.pressing.body.rest[None]]
+        return self.pressing.pattern.matrix(blocks)
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """A ``balance`` found in so many ``iterations``; ``shift``: what the last of them changed of the force, of it."""
+
+    balance: Balance
+    iterations: int
+    shift: float
+
+
+def balanced(pressing: Pressing, start: Array, depth: float, stiffness: float, state: State = ()) -> Equilibrium:
+    """From a displacement (2 N,) to begin with. Raises EquilibriumLost."""
+
+    def at(displacement: Array) -> Balance:
+        return pressing.at(displacement, depth, stiffness, state)
+
+    here = at(start)
+    if not np.isfinite(here.energy):
+        raise EquilibriumLost(f"an element is inverted at depth {depth:.3g}")
+    for iteration in range(1, MOST_ITERATIONS + 1):
+        step, slope = _step(here)
+        there = _descended(here, step, slope, at)
+        shift = abs(there.force - here.force) / max(abs(there.force), np.finfo(float).tiny)
+        if -slope <= SETTLED * there.energy:
+            return Equilibrium(there, iteration, shift)
+        here = there
+    raise EquilibriumLost(f"no equilibrium in {MOST_ITERATIONS} iterations at depth {depth:.3g}")
+
+
+def _step(here: Balance) -> tuple[Array, float]:
+    """Newton's step (2 N,) and the slope of the energy along it; along a convex model where the true one climbs."""
+    step = np.zeros_like(here.displacement)
+    for convex in (False, True):
+        found = factorized(here.tangent(convex))(-here.residual)
+        slope = float(here.residual @ found)
+        if slope <= 0.0:
+            step[here.pressing.body.free] = found
+            return step, slope
+    raise EquilibriumLost("the body is not stable")
+
+
+def _descended(here: Balance, step: Array, slope: float, at: Callable[[Array], Balance]) -> Balance:
+    """The end of the step, or the nearest place towards it of less energy."""
+    share = 1.0
+    while share > SHORTEST:
+        there = at(here.displacement + share * step)
+        if there.energy <= here.energy + 1e-4 * share * slope + ROUNDING * 1e-5 * abs(here.energy):
+            return there
+        share *= 0.5
+    raise EquilibriumLost("the energy has no descent")
