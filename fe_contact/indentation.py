@@ -67,6 +67,8 @@ def indent(
         elastic, numerics = indenter.elastic(instant), settings(given, indenter.shape)
         check_compressible(indenter)
         _check_digits(elastic)
+        if indenter.model.finite:
+            solids.check_large(indenter, numerics.enforcement)
         way = Indenting(elastic, depth, expected(elastic, depth, numerics), frozenset(given) - {"tolerance"}, progress)
         found, _ = refine(way, numerics)
         base, budget, numerics = found.base, found.budget, found.numerics
@@ -114,8 +116,8 @@ class Indenting:
         """The forces and what each setting changes of them. Raises NotReached where contact does not settle."""
         self.progress(f"{numerics.elements_per_contact:g} elements along the contact radius")
         base = press(self.elastic, self.depth, self.radii, numerics)
-        errors = self._budget(base, numerics)
-        return PressedBudget(base, {cause: np.full(self.depth.size, error) for cause, error in errors.items()}, numerics)
+        errors = {cause: np.full(self.depth.size, error) for cause, error in self._budget(base, numerics).items()}
+        return PressedBudget(base, errors, numerics)
 
     def finer(self, found: PressedBudget) -> Finer:
         """Less of what dominates, until the tolerance is met."""

@@ -1,4 +1,4 @@
-"""Equilibrium of a body that is not linear under a striker: Newton's method, made safe by a line search on the energy."""
+"""Equilibrium of a body that is not linear under a striker: Newton's method with a line search on the energy."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from fe_contact.assembly.forms import Array, Matrix
 from fe_contact.assembly.interior import factorized
 from fe_contact.solids.base import State
-from fe_contact.solids.bulk import Body, Loaded, Pattern
+from fe_contact.solids.bulk import CoredBody, Loaded, Pattern
 from fe_contact.solids.contact import Obstacle, Skin, Touch
 from lumped.errors import NotReached
 
@@ -30,16 +30,16 @@ class EquilibriumLost(NotReached):
 
 
 @dataclass(frozen=True, eq=False)
-class Pressing:
+class Encounter:
     """A body whose ``skin`` a striker meets; its matrix has one ``pattern``."""
 
-    body: Body
+    body: CoredBody
     skin: Skin
     pattern: Pattern
     obstacle: Obstacle
 
     @classmethod
-    def of(cls, body: Body, skin: Skin, obstacle: Obstacle) -> Pressing:
+    def of(cls, body: CoredBody, skin: Skin, obstacle: Obstacle) -> Encounter:
         """Raises nothing: makes the pattern."""
         blocks = [body.core.dofs, skin.dofs, body.rim[None]]
         return cls(body, skin, Pattern.of(blocks, body.free, body.core.size), obstacle)
@@ -55,7 +55,7 @@ class Pressing:
 class Balance:
     """Energy, its derivative and second derivative by the free degrees of freedom."""
 
-    pressing: Pressing
+    pressing: Encounter
     displacement: Array
     depth: float
     loaded: Loaded
@@ -121,7 +121,7 @@ class Equilibrium:
         return abs(left) / max(balance.force, np.finfo(float).tiny)
 
 
-def balanced(pressing: Pressing, start: Array, depth: float, stiffness: float, state: State = ()) -> Equilibrium:
+def balanced(pressing: Encounter, start: Array, depth: float, stiffness: float, state: State = ()) -> Equilibrium:
     """From a displacement (2 N,) to begin with. Raises EquilibriumLost."""
 
     def at(displacement: Array) -> Balance:

@@ -18,15 +18,17 @@ from fe_contact.bodies.pressing import PressedDepths, contact_end
 from fe_contact.contact.problem import ContactSolution
 from fe_contact.errors import ContactTooWide
 from fe_contact.settings import Numerics
-from fe_contact.solids.bulk import Body, Bulk
+from fe_contact.solids.bulk import Bulk, CoredBody
 from fe_contact.solids.contact import OnDeformed, Skin
 from fe_contact.solids.finite import Hyperelastic
-from fe_contact.solids.newton import Balance, Equilibrium, EquilibriumLost, Pressing, balanced
+from fe_contact.solids.newton import Balance, Encounter, Equilibrium, EquilibriumLost, balanced
 from fe_contact.targets.base import TARGETS
-from lumped.materials.energies.base import DEFAULT, ENERGIES
+from lumped.errors import BadInput, Fault
+from lumped.materials.energies.base import energy_of
 from lumped.scene.indenter import Indenter
 
 MESH_ORDER = 1.5  # of the force's error where the contact ends anywhere in an element
+CORRECTED = "corrected"
 CORE = 0.5  # of the way from the contact to the end of the mesh strains may be large
 RAMP = (0.02, 0.2, 1.0)  # shares of the penalty with which a body is pressed for the first time
 FARTHEST = 2.0  # a depth over the one before it, beyond which another is put between
@@ -40,7 +42,7 @@ class Solid:
     ``ends``: whether the mesh is all of it.
     """
 
-    pressing: Pressing
+    pressing: Encounter
     unit: float
     dimension: int
     unknowns: int
@@ -53,13 +55,13 @@ class Solid:
         assert make is not None
         body, unit = make(indenter, radii, numerics)
         bulk, shear = moduli(indenter.material.nu)
-        energy = ENERGIES.get(indenter.material.hyperelastic or DEFAULT)
+        energy = energy_of(indenter.material.hyperelastic)
         response = Hyperelastic(energy, shear, bulk - 2.0 * shear / 3.0)
         core = Bulk.of(body.basis, body.surface.dimension == 2, _core(body))
         places = body.basis.doflocs[:, body.surface.dofs]
         skin = Skin.of(body.surface, places, numerics.order, core.size)
-        whole = Body.of(core, response, body.stiffness(bulk, shear), body.fixed)
-        pressing = Pressing.of(whole, skin, OnDeformed(indenter.profile, unit))
+        whole = CoredBody.of(core, response, body.stiffness(bulk, shear), body.fixed)
+        pressing = Encounter.of(whole, skin, OnDeformed(indenter.profile, unit))
         return cls(pressing, unit, body.surface.dimension - 1, core.size, False)
 
 
@@ -70,6 +72,29 @@ def _core(body: ElasticBody) -> Indices:
     away, zone = np.hypot(*middle), body.surface.zone
     reach = zone + CORE * (np.hypot(*mesh.p).max() - zone)
     return np.asarray(np.flatnonzero(away <= reach))
+
+
+def check_large(indenter: Indenter, enforcement: str) -> None:
+    """Raise BadInput for what is not pressed with large strains in this version."""
+    shape, target, faults = indenter.shape, indenter.target, list[Fault]()
+    cure = "or model.kinematics = 'small'"
+
+    def refuse(key: str, reason: str) -> None:
+        faults.append(Fault(indenter.source, key, f"with model.kinematics = 'finite' {reason}; accepted: {cure}"))
+
+    if TARGETS.get(target.name).solid is None or shape.plane:
+        able = ", ".join(name for name, member in TARGETS.members.items() if member.solid is not None)
+        refuse("target.shape", f"a {shape.name} on a {target.name} is not built: {able} under what is axisymmetric is")
+    elif target.fixed_radius(shape) is not None:
+        refuse("striker.shape", f"the rim of a {shape.name} is not built: rounded strikers, cones and powers are")
+    if indenter.striker_material is not None:
+        refuse("striker.material", "two bodies that yield are not built")
+    if indenter.model.inertia:
+        refuse("model.inertia", "waves are not built")
+    if enforcement != CORRECTED:
+        refuse("numerics.enforcement", f"{enforcement} is not built: {CORRECTED} is")
+    if faults:
+        raise BadInput(faults)
 
 
 def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) -> PressedDepths:
@@ -89,7 +114,7 @@ def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) ->
     return PressedDepths(force, radius, work, MESH_ORDER, solid.ends, float(newton.max()))
 
 
-def advanced(pressing: Pressing, before: Equilibrium | None, depth: float, stiffness: float) -> Equilibrium:
+def advanced(pressing: Encounter, before: Equilibrium | None, depth: float, stiffness: float) -> Equilibrium:
     """From an equilibrium to that of a larger depth, by as many steps as it takes. Raises EquilibriumLost."""
     if before is None:
         return _first(pressing, depth, stiffness)
@@ -110,7 +135,7 @@ def advanced(pressing: Pressing, before: Equilibrium | None, depth: float, stiff
     return replace(before, iterations=iterations)
 
 
-def _first(pressing: Pressing, depth: float, stiffness: float) -> Equilibrium:
+def _first(pressing: Encounter, depth: float, stiffness: float) -> Equilibrium:
     """From rest: a stiff penalty pressed in at once would turn elements inside out."""
     found = balanced(pressing, np.zeros(pressing.skin.size), depth, RAMP[0] * stiffness)
     iterations = found.iterations
