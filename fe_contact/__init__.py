@@ -121,14 +121,12 @@ def transfer(
     BadInput for a state that is no scene, and what :func:`run` raises at the state of calibration. A law or a reference
     that fails elsewhere is refused there.
     """
-    from functools import partial
-
     from fe_contact.methods import settings
-    from fe_contact.studies.transfer.study import Asked, changed
+    from fe_contact.studies.transfer.study import Asked
     from fe_contact.studies.transfer.study import transfer as run_transfer
     from fe_contact.threads import one_thread
 
     values = {key: tuple(every) for key, every in (over or {}).items()}
     asked = Asked(tuple(laws), start or {}, values, calibrate, within, method)
     with one_thread:
-        return run_transfer(partial(changed, scene), settings({}, tolerance, scene.source), asked)
+        return run_transfer(scene.changed, settings({}, tolerance, scene.source), asked)

@@ -26,6 +26,7 @@ MESHES = STANDARD | {"meshes", "numpy", "scipy", "skfem", "meshio", "gmsh"}
 ONE_IMPORTER = {
     "distributed": "fe_contact/studies/workers.py",
     "gmsh": "meshes/session.py",
+    "markdown": "fe_contact/manual/site.py",
     "pyarrow": "fe_contact/studies/sweep/table.py",
 }
 FINITE_ELEMENTS = LUMPED | MESHES | {"fe_contact", "matplotlib", "threadpoolctl", *ONE_IMPORTER}
@@ -133,7 +134,8 @@ ROOMS = {  # lowest first
     ),
     "fe_contact": (
         "errors settings progress threads assembly contact schemes dynamics bodies steppers march targets solids "
-        "budget indentation fields recovery waves large_strains reference methods studies commands cli __main__ __init__"
+        "budget indentation fields recovery waves large_strains reference methods studies manual commands cli "
+        "__main__ __init__"
     ),
 }
 FILES_AT_A_ROOT = 14

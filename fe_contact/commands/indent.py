@@ -76,4 +76,6 @@ MEMBER = base.Command(
         base.option("--instant", action="store_true", help="the material against a sudden indentation"),
     ),
     execute,
+    example="fe-contact indent polymer-sphere --depths 1e-5,2e-5,5e-5",
+    group=base.START,
 )

@@ -25,15 +25,27 @@ def execute(args: argparse.Namespace) -> int:
     scene, table = base.read_scene(args)
     args.method = args.method or default(scene)
     where = base.folder(args, "run", scene.name)
+    scene, taken = _modelled(args, scene, table)
     _check(args, scene)
     try:
-        return _impact(args, scene, table, where)
+        return _impact(args, scene, table, where, taken)
     except NotReached as failure:
         write_failure(where, scene, args.method, str(failure))
         raise
 
 
-def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path) -> int:
+def _modelled(args: argparse.Namespace, scene: Scene, table: Table) -> tuple[Scene, list[str]]:
+    """The scene with the model asked for, and a line that says which effects it takes in. Raises BadInput."""
+    if args.model == "given":
+        return scene, []
+    from fe_contact.methods import settings
+    from fe_contact.studies.larger_models import sufficient
+
+    found = sufficient(scene, settings(table, None, scene.source))
+    return found.scene, [str(found)]
+
+
+def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path, taken: list[str]) -> int:
     from fe_contact.methods import settings, simulate
 
     if args.method == "fe" and not scene.model.inertia and not scene.model.finite:
@@ -45,7 +57,7 @@ def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path) -
         solved, result = None, simulate(scene, args.method, table, progress=base.progress_of(args))
     content = publish(where, lambda folder: _write(args, solved, result, folder))
     title = f"{scene.name}: {result.method}, tolerance {result.tolerance:g}"
-    return base.report(args, result, content, _lines(result), where, title)
+    return base.report(args, result, content, [*taken, *_lines(result)], where, title)
 
 
 def _lines(result: Result) -> list[str]:
@@ -125,8 +137,16 @@ MEMBER = base.Command(
         *base.SCENE,
         *base.OUTPUT,
         base.option("--method", help="fe (default without [law]), cheapest, or a lumped law"),
+        base.option(
+            "--model",
+            choices=("given", "sufficient"),
+            default="given",
+            help="sufficient: with every effect that the model ledger puts above the tolerance and has a key for",
+        ),
         base.option("--fields", action="store_true", help="VTU of the fields at peak force"),
         base.option("--plot", action="store_true", help="force history and contact pressure as SVG and PNG"),
     ),
     execute,
+    example="fe-contact run polymer-sphere --plot",
+    group=base.START,
 )

@@ -28,4 +28,9 @@ def described(scene: Scene) -> str:
     return f"law {scene.law.name}" if scene.law is not None else "two masses"
 
 
-MEMBER = base.Command("the packaged scenes, one line each", (base.JSON,), execute)
+MEMBER = base.Command(
+    "the packaged scenes, one line each",
+    (base.JSON,),
+    execute,
+    group=base.START,
+)

@@ -82,8 +82,9 @@ class Quantity:
 class LedgerEntry:
     """One thing the model leaves out, and its estimated effect relative to the peak force, None where unknown.
 
-    `key` selects the larger model, empty where there is none. `spread`: lowest and highest change of the force where
-    the scene does not decide; the estimate is then what is left out at least, None where that may be nothing.
+    `key` with `value` selects the larger model, empty where there is none. `spread`: lowest and highest change of the
+    force where the scene does not decide; the estimate is then what is left out at least, None where that may be
+    nothing.
     """
 
     effect: str
@@ -92,6 +93,7 @@ class LedgerEntry:
     note: str = ""
     key: str = ""
     spread: tuple[float, float] | None = None
+    value: bool | float | str | None = None
 
     @property
     def size(self) -> float:

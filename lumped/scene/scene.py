@@ -38,6 +38,7 @@ from lumped.scene.tables import (
     read,
 )
 from lumped.schema import Table
+from lumped.schema.files import overridden
 from lumped.schema.keys import check_fields
 from lumped.schema.members import Folder
 from lumped.shapes import Shape
@@ -183,6 +184,13 @@ class Scene:
             "law": {} if self.law is None else {"name": self.law.name, **self.law.values},
         }
         return {"name": self.name} | {key: table for key, table in given.items() if table}
+
+    def changed(self, keys: Mapping[str, object]) -> Scene:
+        """The scene with dotted keys of its tables changed; an end that nobody asked for follows. Raises BadInput."""
+        tables = self.to_dict()
+        if self.motion.end_time is None:
+            tables["motion"].pop("end_time", None)
+        return Scene.from_dict(overridden(tables, keys, self.source), self.source)
 
     def addressed(self) -> AbstractContextManager[None]:
         """Inside, what a part refuses is said of this scene's file and keys."""
