@@ -36,7 +36,7 @@ MORE = 1.2  # the same over the one reached, where that was too little
 ROUNDS = 4  # work: of such enlargements
 SAMPLES = 160  # work: depths at which the polynomials are handed on
 LEAST_SAMPLE = 1e-4  # the smallest of them over the largest depth
-SHARE = 0.8  # of the tolerance that the curve may err by: the bars of an impact are about as wide
+SHARE = 1.0  # of the tolerance that the curve may err by: the bars of an impact are about as wide
 SECONDS = 3.0  # processor time of an impact to 1e-3, about: it ranks methods, no more
 FINE_INTEGRATION = 1e-2  # of the tolerance
 
