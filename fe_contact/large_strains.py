@@ -13,10 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.polynomial import Chebyshev
 
+from fe_contact.assembly.forms import check_compressible
 from fe_contact.budget import plan as statics
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, check_kind
+from fe_contact.solids.pressing import CORRECTED, check_large
 from fe_contact.threads import one_thread
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.indentation import Indentation
@@ -41,8 +43,9 @@ SECONDS = 3.0  # processor time of an impact to 1e-3, about: it ranks methods, n
 FINE_INTEGRATION = 1e-2  # of the tolerance
 
 
-def check_impact(scene: Scene) -> None:
+def check_impact(scene: Scene, given: Given) -> None:
     """Raise BadInput for an impact with large strains that is not built."""
+    check_large(scene.source, scene.geometry, scene.model, given.get("enforcement", CORRECTED))
     faults, source = list[Fault](), scene.source
     if not scene.geometry.material.young.is_elastic:
         reason = "relaxes: an impact with model.kinematics = 'finite' is of an elastic body in this version"
@@ -61,7 +64,8 @@ def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
     Raises BadInput for what is not built, NotReached where an equilibrium is lost.
     """
     check_kind(given, False, scene.source)
-    check_impact(scene)
+    check_compressible(scene)
+    check_impact(scene, given)
     clock, tolerance = Clock(), float(given.get("tolerance", DEFAULT_TOLERANCE))
     deepest = SPARE * statics.scales(scene, statics.plan(scene, {}).numerics).peak_depth
     for _ in range(ROUNDS):

@@ -114,7 +114,8 @@ def test_a_finer_run_lies_within_both_bars() -> None:
     pressed = sphere(0.45, "yeoh")
     depths = (0.05, 0.2)
     loose, tight = (indent(pressed, depths, {"tolerance": one}) for one in (4e-3, 1e-3))
-    assert loose.converged and tight.converged
+    assert loose.converged
+    assert tight.converged
     assert np.all(np.abs(loose.force - tight.force) <= loose.force_error + tight.force_error)
     assert loose.model_sufficient
     assert np.all(loose.contact_radius < np.sqrt(np.array(depths) * 2.0))
@@ -127,7 +128,8 @@ def test_an_elastic_impact_gives_back_all_of_it() -> None:
     quantities = found.quantities
     assert quantities["restitution"].value == pytest.approx(1.0, abs=1e-6)
     assert quantities["impulse"].value == pytest.approx(2.0 * scene.mass * scene.velocity, rel=1e-6)
-    assert found.converged and found.model_sufficient
+    assert found.converged
+    assert found.model_sufficient
     assert "ln J" in str(found.to_json()["model"]["energy"])
     peak, depth = (quantities[name].value or 0.0 for name in ("peak_force", "peak_depth"))
     pressed = press_once(scene, depth)
