@@ -64,11 +64,11 @@ def indent(
         check_kind(given, False, indenter.source)
         modulus, asked = indenter.modulus(instant), len(indenter.checked(depths))
         depth = _accompanied(np.array(depths), FEWEST_LARGE if indenter.model.finite else FEWEST)
-        elastic, numerics = indenter.elastic(instant), settings(given, indenter.shape)
+        elastic, numerics = indenter.elastic(instant), settings(given, indenter.shape, indenter.model.finite)
         check_compressible(indenter)
         _check_digits(elastic)
         if indenter.model.finite:
-            solids.check_large(indenter, numerics.enforcement)
+            solids.check_large(indenter.source, indenter.geometry, indenter.model, numerics.enforcement)
         way = Indenting(elastic, depth, expected(elastic, depth, numerics), frozenset(given) - {"tolerance"}, progress)
         found, _ = refine(way, numerics)
         base, budget, numerics = found.base, found.budget, found.numerics
@@ -179,10 +179,15 @@ def _accompanied(depth: Array, fewest: int) -> Array:
     return np.concatenate([depth, np.geomspace(min(depth.min(), SPREAD * depth.max()), depth.max(), fewest)])
 
 
-def settings(given: Given, shape: Shape) -> Numerics:
-    """Settings of an indentation: those of an impact without its time; stiffer where no edge has to be found."""
+def settings(given: Given, shape: Shape, large: bool = False) -> Numerics:
+    """Settings of an indentation: those of an impact without its time; stiffer where no edge has to be found.
+
+    Of ``large`` strains, where every element is dear, no more elements than a loose tolerance asks for.
+    """
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
     elements = ELEMENTS * max(1.0, (1e-4 / tolerance) ** 0.25)
+    if large:
+        elements *= min(1.0, (DEFAULT_TOLERANCE / tolerance) ** 0.5)
     penalty = DEFAULTS["penalty"] * (1.0 if shape.fixed_radius is None else RIM_PENALTY)
     chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "penalty": penalty, "steps": 8}
     return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)

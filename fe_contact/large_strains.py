@@ -1,7 +1,7 @@
 """An elastic impact with large strains: by the body's load curve, which a few slow indentations tell.
 
 Quasi-static and without memory, the body gives back all that it takes: the force over the depth is one curve, and the
-motion one quadrature of it. ln F - n ln d is smooth in the root of the depth, and so is a polynomial in it.
+motion one quadrature of it. ln F is smooth in ln d: a polynomial, and a straight line below the least depth.
 """
 
 from __future__ import annotations
@@ -13,10 +13,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.polynomial import Chebyshev
 
+from fe_contact.assembly.forms import check_compressible
 from fe_contact.budget import plan as statics
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, check_kind
+from fe_contact.solids.pressing import CORRECTED, check_large
 from fe_contact.threads import one_thread
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.indentation import Indentation
@@ -29,20 +31,20 @@ from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Answered, Scene
 
 DEPTHS = 10  # that tell the curve
-SHALLOWEST = 0.12  # root of the least of them over the largest; below it lies a share of 2e-5 of the work
-DEGREE = 6  # of the polynomials through them
+SHALLOWEST = 0.0144  # the least of them over the largest; below it lies a share of 2e-5 of a sphere's work
+DEGREE = 7  # of the polynomials through them
 SPARE = 1.12  # largest depth over the one that small strains would have
 MORE = 1.2  # the same over the one reached, where that was too little
 ROUNDS = 4  # work: of such enlargements
 SAMPLES = 160  # work: depths at which the polynomials are handed on
-LEAST_SAMPLE = 1e-4  # the smallest of them over the largest depth
-SHARE = 0.8  # of the tolerance that the curve may err by: the bars of an impact are about as wide
+SHARE = 1.0  # of the tolerance that the curve may err by: the bars of an impact are about as wide
 SECONDS = 3.0  # processor time of an impact to 1e-3, about: it ranks methods, no more
 FINE_INTEGRATION = 1e-2  # of the tolerance
 
 
-def check_impact(scene: Scene) -> None:
+def check_impact(scene: Scene, given: Given) -> None:
     """Raise BadInput for an impact with large strains that is not built."""
+    check_large(scene.source, scene.geometry, scene.model, given.get("enforcement", CORRECTED))
     faults, source = list[Fault](), scene.source
     if not scene.geometry.material.young.is_elastic:
         reason = "relaxes: an impact with model.kinematics = 'finite' is of an elastic body in this version"
@@ -61,7 +63,8 @@ def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
     Raises BadInput for what is not built, NotReached where an equilibrium is lost.
     """
     check_kind(given, False, scene.source)
-    check_impact(scene)
+    check_compressible(scene)
+    check_impact(scene, given)
     clock, tolerance = Clock(), float(given.get("tolerance", DEFAULT_TOLERANCE))
     deepest = SPARE * statics.scales(scene, statics.plan(scene, {}).numerics).peak_depth
     for _ in range(ROUNDS):
@@ -76,30 +79,29 @@ def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
 
 @dataclass(frozen=True, eq=False)
 class KnownCurve:
-    """Slow ``pressed`` depths and polynomials in the root of the depth through ln F - n ln d and ln a - m ln d."""
+    """Slow ``pressed`` depths, and polynomials through ln F and ln a, from 0 at the least to 1 at the ``deepest``, m."""
 
     pressed: Indentation
     deepest: float
-    powers: tuple[float, float]
     force: Chebyshev
     radius: Chebyshev
 
     @property
     def errors(self) -> Mapping[str, float]:
         """Relative errors of the force by cause: those of the depths, and of what lies between them."""
-        lower = _fitted(self.pressed, self.deepest, self.powers, DEGREE - 1)[0]
-        place = np.linspace(SHALLOWEST, 1.0, 2 * SAMPLES)
+        lower = _fitted(self.pressed, self.deepest, DEGREE - 1)[0]
+        place = np.linspace(0.0, 1.0, 2 * SAMPLES)
         between = float(np.abs(self.force(place) - lower(place)).max())
         return {cause: float(error.max()) for cause, error in self.pressed.budget.items()} | {"curve": between}
 
     def impact(self, scene: Scene, tolerance: float, uniform: float = 0.0, tilted: float = 0.0) -> Result:
         """On the curve, or one that errs by these relative changes, of all alike and of shallow against deep."""
-        depth = self.deepest * np.geomspace(LEAST_SAMPLE, 1.0, SAMPLES)
-        place = np.sqrt(depth / self.deepest)
+        place = np.linspace(0.0, 1.0, SAMPLES)
+        depth = self.deepest * SHALLOWEST ** (1.0 - place)
         changed = 1.0 + uniform - tilted * np.cos(np.pi * place)
         unit = scene.contact_modulus.relaxed * scene.geometry.shape.total
-        force = np.exp(self.force(place)) * depth ** self.powers[0] * changed / unit
-        radius = np.exp(self.radius(place)) * depth ** self.powers[1]
+        force = np.exp(self.force(place)) * changed / unit
+        radius = np.exp(self.radius(place))
         curve = SampledCurve(tuple(depth.tolist()), tuple(force.tolist()), tuple(radius.tolist()))
         answered = Answered.by(scene, curve)
         return ting.MEMBER.of(answered).simulate(answered, FINE_INTEGRATION * tolerance)
@@ -110,24 +112,20 @@ def _known(scene: Scene, deepest: float, given: Given, progress: Progress) -> Kn
     geometry = scene.geometry
     indenter = Indenter(geometry.shape, geometry.material, geometry.target, geometry.striker_material, scene.model,
                         scene.name, scene.source)  # fmt: skip
-    middle, half = 0.5 * (1.0 + SHALLOWEST), 0.5 * (1.0 - SHALLOWEST)
-    place = middle - half * np.cos(np.pi * np.arange(DEPTHS) / (DEPTHS - 1))
-    pressed = indent(indenter, tuple((deepest * place**2).tolist()), given, progress=progress)
-    exponent = geometry.shape.exponent_of_force
-    powers = (exponent, exponent - 1.0)
-    return KnownCurve(pressed, deepest, powers, *_fitted(pressed, deepest, powers, DEGREE))
+    place = 0.5 - 0.5 * np.cos(np.pi * np.arange(DEPTHS) / (DEPTHS - 1))
+    depths = deepest * SHALLOWEST ** (1.0 - place)
+    pressed = indent(indenter, tuple(depths.tolist()), given, progress=progress)
+    return KnownCurve(pressed, deepest, *_fitted(pressed, deepest, DEGREE))
 
 
-def _fitted(
-    pressed: Indentation, deepest: float, powers: tuple[float, float], degree: int
-) -> tuple[Chebyshev, Chebyshev]:
-    """Polynomials in the root of the depth over the deepest."""
-    place = np.sqrt(pressed.depth / deepest)
-    found = [
-        Chebyshev.fit(place, np.log(values / pressed.depth**power), degree, domain=[0.0, 1.0])
-        for values, power in zip((pressed.force, pressed.contact_radius), powers, strict=True)
-    ]
-    return found[0], found[1]
+def _fitted(pressed: Indentation, deepest: float, degree: int) -> tuple[Chebyshev, Chebyshev]:
+    """Polynomials in the logarithm of the depth."""
+    place = 1.0 - np.log(pressed.depth / deepest) / math.log(SHALLOWEST)
+    force, radius = (
+        Chebyshev.fit(place, np.log(values), degree, domain=[0.0, 1.0])
+        for values in (pressed.force, pressed.contact_radius)
+    )
+    return force, radius
 
 
 def _result(scene: Scene, known: KnownCurve, found: Result, tolerance: float, clock: Clock) -> Result:

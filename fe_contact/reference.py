@@ -194,7 +194,7 @@ def expected(scene: Scene, given: Given) -> tuple[float, float]:
     """Tolerance, and processor time, s, about, of :func:`fe` once packages are loaded. Raises NotReached, BadInput."""
     with faults_of(scene):
         if scene.model.finite:
-            large_strains.check_impact(scene)
+            large_strains.check_impact(scene, given)
             return float(given.get("tolerance", DEFAULT_TOLERANCE)), large_strains.SECONDS
         if scene.model.inertia:
             target, chosen = with_waves(scene), plan(scene, given).numerics

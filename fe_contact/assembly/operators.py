@@ -260,6 +260,19 @@ class ElasticBody:
         return condensed(self.basis, matrix, self.fixed, poisson, self.surface, floating=self.floating, factors=factors)
 
 
+@dataclass(frozen=True, eq=False)
+class SolidMesh:
+    """A ``body`` for large strains, whose unit is ``unit``, m; ``inner_radius`` of a ring laid flat, in that unit.
+
+    ``ends``: whether the mesh is all of it.
+    """
+
+    body: ElasticBody
+    unit: float
+    inner_radius: float | None = None
+    ends: bool = False
+
+
 @on_disk
 def operator_of(body: Recipe[ElasticBody], poisson: float) -> SurfaceOperator:
     """What the contact surface knows of a body with this Poisson's ratio, for E* = 1."""

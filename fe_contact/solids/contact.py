@@ -14,6 +14,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array, Indices, vector_dofs
 from fe_contact.assembly.surface import FACET_POINTS, Surface, lagrange
+from fe_contact.solids.chart import Chart
 from lumped.shapes import Shape
 
 BEND = 1e-5  # rounding: step of the quotient that tells a profile's curvature, over the radius
@@ -21,7 +22,7 @@ BEND = 1e-5  # rounding: step of the quotient that tells a profile's curvature, 
 
 class Overlap(NamedTuple):
     """``depth`` (...) of points within the striker, m; ``normal`` (2, ...) its derivative by their displacement (r, z);
-    ``bend`` (...) its second one by the radial displacement, the only one that is not zero, 1/m.
+    ``bend`` (2, 2, ...) its second one, 1/m. A striker that moves by one is a body that moves against it.
     """
 
     depth: Array
@@ -34,6 +35,9 @@ class Obstacle(Protocol):
 
     def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
         """Of points at ``place`` (2, ...), displaced by ``displacement`` (2, ...), with the striker ``depth`` deep."""
+
+    def along(self, place: Array) -> Array:
+        """Distance of deformed places (2, ...) from the first touch, as a contact radius counts it, (...)."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +55,35 @@ class OnDeformed:
         above, below = within * (1.0 + BEND), within * (1.0 - BEND)
         with np.errstate(invalid="ignore"):
             bend = (self.profile.slope(above) - self.profile.slope(below)) / (2.0 * BEND * np.abs(radius))
-            return Overlap(depth + height - rise, np.stack([-slope, np.ones_like(slope)]), -bend)
+            none = np.zeros_like(bend)
+            curved = np.array([[-bend, none], [none, none]])
+            return Overlap(depth + height - rise, np.stack([-slope, np.ones_like(slope)]), curved)
+
+    def along(self, place: Array) -> Array:
+        """From the axis."""
+        return np.asarray(place[0])
+
+
+@dataclass(frozen=True)
+class OnRound:
+    """Distances from the middle of a circle of this ``radius``, which may fit its bed closely."""
+
+    radius: float
+
+    def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
+        """See :class:`Obstacle`."""
+        away = place + displacement
+        away[1] += depth - self.radius
+        distance = np.hypot(*away)
+        out = away / distance
+        square = place[0] + displacement[0], place[1] + displacement[1] + depth
+        within = (2.0 * self.radius * square[1] - square[0] ** 2 - square[1] ** 2) / (self.radius + distance)
+        turn = (out[:, None] * out[None] - np.eye(2)[:, :, None, None]) / distance
+        return Overlap(within, -out, turn)
+
+    def along(self, place: Array) -> Array:
+        """Arc of the circle."""
+        return np.asarray(self.radius * np.arcsin(np.clip(place[0] / self.radius, -1.0, 1.0)))
 
 
 @dataclass(frozen=True)
@@ -66,7 +98,11 @@ class OnUndeformed:
         rise = self.profile.height(self.unit * np.abs(place[0])) / self.unit
         normal = np.zeros_like(place)
         normal[1] = 1.0
-        return Overlap(depth + place[1] - rise + displacement[1], normal, np.zeros_like(rise))
+        return Overlap(depth + place[1] - rise + displacement[1], normal, np.zeros((2, 2, *rise.shape)))
+
+    def along(self, place: Array) -> Array:
+        """From the axis."""
+        return np.asarray(place[0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,8 +120,8 @@ class Skin:
     size: int
 
     @classmethod
-    def of(cls, surface: Surface, places: Array, order: int, size: int) -> Skin:
-        """Of a boundary; ``places`` (2, n_s) of its nodes. Straight facets, elements of an ``order``."""
+    def of(cls, surface: Surface, places: Array, order: int, size: int, chart: Chart | None) -> Skin:
+        """Of a boundary, straight on the ``chart``; ``places`` (2, n_s) of its nodes, of elements of an ``order``."""
         corners = surface.corners(order)
         count = corners.size - 1
         gauss, weight = np.polynomial.legendre.leggauss(order + FACET_POINTS)
@@ -95,7 +131,8 @@ class Skin:
         place = ends[:, :-1, None] + (ends[:, 1:] - ends[:, :-1])[:, :, None] * share
         coordinate = corners[:-1, None] + np.diff(corners)[:, None] * share
         weights = 0.5 * np.diff(corners)[:, None] * weight * surface.measure(coordinate)
-        return cls(place, weights, lagrange(share, order), vector_dofs(surface.dofs[nodes].T), size)
+        rolled = place if chart is None else chart.place(place)
+        return cls(rolled, weights, lagrange(share, order), vector_dofs(surface.dofs[nodes].T), size)
 
     def displacement(self, whole: Array) -> Array:
         """At the points, (2, facets, points), from that of the mesh (2 N,)."""
@@ -130,7 +167,7 @@ class Touch:
     @property
     def force(self) -> float:
         """On the striker, along its motion, N: derivative of the energy by the depth."""
-        return float(self._pushed.sum())
+        return float(np.vdot(self._pushed, self.normal[1]))
 
     @property
     def normal(self) -> Array:
@@ -140,18 +177,24 @@ class Touch:
     @cached_property
     def forces(self) -> Array:
         """Derivative of the energy by the mesh's displacement, (2 N,)."""
-        return self._along(self._pushed)
+        return self._nodal(self._pushed * self.normal)
 
     @property
     def stiffening(self) -> Array:
         """Derivative of these forces by the depth, (2 N,)."""
-        return self._along(self.stiffness * self.skin.weights)
+        springs = self.stiffness * self.skin.weights * self.normal[1]
+        return self._nodal(springs * self.normal + self._pushed * self._bend[:, 1])
 
-    def _along(self, force: Array) -> Array:
-        """Nodal forces (2 N,) of forces (facets, points) along the normals of the points that touch."""
+    @cached_property
+    def _bend(self) -> Array:
+        """Second derivative of the overlap, (2, 2, facets, points), zero where nothing touches."""
+        return np.where(self.overlap.depth > 0.0, self.overlap.bend, 0.0)
+
+    def _nodal(self, force: Array) -> Array:
+        """Nodal forces (2 N,) of forces (2, facets, points) at the points."""
         local = np.empty(self.skin.dofs.shape)
         for c in (0, 1):
-            local[:, c::2] = (force * self.normal[c]) @ self.skin.trace
+            local[:, c::2] = force[c] @ self.skin.trace
         return np.asarray(np.bincount(self.skin.dofs.ravel(), local.ravel(), self.skin.size), dtype=float)
 
     def matrices(self, convex: bool = False) -> Array:
@@ -162,7 +205,7 @@ class Touch:
         for i in (0, 1):
             for j in (0, 1):
                 value = springs * self.normal[i] * self.normal[j]
-                if not (i or j or convex):
-                    value = value + self._pushed * np.where(touching, self.overlap.bend, 0.0)
+                if not convex:
+                    value = value + self._pushed * self._bend[i, j]
                 local[:, i::2, j::2] = np.einsum("qa,fq,qb->fab", trace, value, trace, optimize=True)
         return local

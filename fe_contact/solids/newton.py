@@ -55,7 +55,7 @@ class Encounter:
 class Balance:
     """Energy, its derivative and second derivative by the free degrees of freedom."""
 
-    pressing: Encounter
+    encounter: Encounter
     displacement: Array
     depth: float
     loaded: Loaded
@@ -64,7 +64,7 @@ class Balance:
     @cached_property
     def strain_energy(self) -> float:
         """Of core and rest, J."""
-        body = self.pressing.body
+        body = self.encounter.body
         rim = self.displacement[body.rim]
         return self.loaded.energy + 0.5 * float(rim @ body.rest @ rim)
 
@@ -81,15 +81,15 @@ class Balance:
     @cached_property
     def residual(self) -> Array:
         """Forces that are not balanced, (free,)."""
-        body = self.pressing.body
+        body = self.encounter.body
         forces = self.loaded.forces + self.touch.forces
         forces[body.rim] += body.rest @ self.displacement[body.rim]
         return forces[body.free]
 
     def tangent(self, convex: bool) -> Matrix:
         """Sparse (free, free)."""
-        blocks = [self.loaded.matrices(), self.touch.matrices(convex), self.pressing.body.rest[None]]
-        return self.pressing.pattern.matrix(blocks)
+        blocks = [self.loaded.matrices(), self.touch.matrices(convex), self.encounter.body.rest[None]]
+        return self.encounter.pattern.matrix(blocks)
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,15 +117,15 @@ class Equilibrium:
     def error(self) -> float:
         """What another iteration would change of the force, of it."""
         balance = self.balance
-        left = float(self.rate[balance.pressing.body.free] @ balance.residual)
+        left = float(self.rate[balance.encounter.body.free] @ balance.residual)
         return abs(left) / max(balance.force, np.finfo(float).tiny)
 
 
-def balanced(pressing: Encounter, start: Array, depth: float, stiffness: float, state: State = ()) -> Equilibrium:
+def balanced(encounter: Encounter, start: Array, depth: float, stiffness: float, state: State = ()) -> Equilibrium:
     """From a displacement (2 N,) to begin with. Raises EquilibriumLost."""
 
     def at(displacement: Array) -> Balance:
-        return pressing.at(displacement, depth, stiffness, state)
+        return encounter.at(displacement, depth, stiffness, state)
 
     here = at(start)
     if not np.isfinite(here.energy):
@@ -133,9 +133,10 @@ def balanced(pressing: Encounter, start: Array, depth: float, stiffness: float, 
     for iteration in range(1, MOST_ITERATIONS + 1):
         solve, step = _step(here)
         slope = float(here.residual @ step)
-        there = _descended(here, step, slope, at)
-        if -slope <= SETTLED * there.energy:
-            rate = _whole(there, solve(-there.touch.stiffening[there.pressing.body.free]))
+        settled = -slope <= SETTLED * here.energy
+        there = at(here.displacement + _whole(here, step)) if settled else _descended(here, step, slope, at)
+        if settled:
+            rate = _whole(there, solve(-there.touch.stiffening[there.encounter.body.free]))
             return Equilibrium(there, rate, iteration)
         here = there
     raise EquilibriumLost(f"no equilibrium in {MOST_ITERATIONS} iterations at depth {depth:.3g}")
@@ -154,7 +155,7 @@ def _step(here: Balance) -> tuple[Callable[[Array], Array], Array]:
 def _whole(here: Balance, free: Array) -> Array:
     """Of all degrees of freedom (2 N,)."""
     found = np.zeros_like(here.displacement)
-    found[here.pressing.body.free] = free
+    found[here.encounter.body.free] = free
     return found
 
 

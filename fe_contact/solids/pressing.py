@@ -18,14 +18,20 @@ from fe_contact.bodies.pressing import PressedDepths, contact_end
 from fe_contact.contact.problem import ContactSolution
 from fe_contact.errors import ContactTooWide
 from fe_contact.settings import Numerics
+from fe_contact.solids.block import press as pressed_alike
 from fe_contact.solids.bulk import Bulk, CoredBody
-from fe_contact.solids.contact import OnDeformed, Skin
+from fe_contact.solids.chart import Chart
+from fe_contact.solids.contact import OnDeformed, OnRound, Skin
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Balance, Encounter, Equilibrium, EquilibriumLost, balanced
 from fe_contact.targets.base import TARGETS
 from lumped.errors import BadInput, Fault
 from lumped.materials.energies.base import energy_of
+from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
+from lumped.scene.tables import Model
+from lumped.shapes._block import Block
+from lumped.targets import HalfSpace
 
 MESH_ORDER = 1.5  # of the force's error where the contact ends anywhere in an element
 CORRECTED = "corrected"
@@ -42,7 +48,7 @@ class Solid:
     ``ends``: whether the mesh is all of it.
     """
 
-    pressing: Encounter
+    encounter: Encounter
     unit: float
     dimension: int
     unknowns: int
@@ -53,16 +59,22 @@ class Solid:
         """For contacts that end at these ``radii``, m, about."""
         make = TARGETS.get(indenter.target.name).solid
         assert make is not None
-        body, unit = make(indenter, radii, numerics)
+        mesh = make(indenter, radii, numerics)
+        body, unit, profile = mesh.body, mesh.unit, indenter.profile
+        chart = None if mesh.inner_radius is None else Chart(mesh.inner_radius)
         bulk, shear = moduli(indenter.material.nu)
         energy = energy_of(indenter.material.hyperelastic)
         response = Hyperelastic(energy, shear, bulk - 2.0 * shear / 3.0)
-        core = Bulk.of(body.basis, body.surface.dimension == 2, _core(body))
+        elements = np.arange(body.basis.nelems) if mesh.ends else _core(body)
+        core = Bulk.of(body.basis, body.surface.dimension == 2, elements, chart)
         places = body.basis.doflocs[:, body.surface.dofs]
-        skin = Skin.of(body.surface, places, numerics.order, core.size)
-        whole = CoredBody.of(core, response, body.stiffness(bulk, shear), body.fixed)
-        pressing = Encounter.of(whole, skin, OnDeformed(indenter.profile, unit))
-        return cls(pressing, unit, body.surface.dimension - 1, core.size, False)
+        skin = Skin.of(body.surface, places, numerics.order, core.size, chart)
+        if mesh.ends:
+            whole = CoredBody.whole(core, response, body.fixed)
+        else:
+            whole = CoredBody.of(core, response, body.stiffness(bulk, shear), body.fixed)
+        striker = OnDeformed(profile, unit) if chart is None else OnRound((profile.tip_radius or 0.0) / unit)
+        return cls(Encounter.of(whole, skin, striker), unit, body.surface.dimension - 1, core.size, mesh.ends)
 
 
 def _core(body: ElasticBody) -> Indices:
@@ -74,22 +86,25 @@ def _core(body: ElasticBody) -> Indices:
     return np.asarray(np.flatnonzero(away <= reach))
 
 
-def check_large(indenter: Indenter, enforcement: str) -> None:
+def check_large(source: str, geometry: Geometry, model: Model, enforcement: str) -> None:
     """Raise BadInput for what is not pressed with large strains in this version."""
-    shape, target, faults = indenter.shape, indenter.target, list[Fault]()
+    shape, target, faults = geometry.shape, geometry.target, list[Fault]()
     cure = "or model.kinematics = 'small'"
 
     def refuse(key: str, reason: str) -> None:
-        faults.append(Fault(indenter.source, key, f"with model.kinematics = 'finite' {reason}; accepted: {cure}"))
+        faults.append(Fault(source, key, f"with model.kinematics = 'finite' {reason}; accepted: {cure}"))
 
-    if TARGETS.get(target.name).solid is None or shape.plane:
+    meshed = not (isinstance(shape, Block) and shape.uniform)
+    if meshed and (target.name not in TARGETS.names or TARGETS.get(target.name).solid is None):
         able = ", ".join(name for name, member in TARGETS.members.items() if member.solid is not None)
-        refuse("target.shape", f"a {shape.name} on a {target.name} is not built: {able} under what is axisymmetric is")
-    elif target.fixed_radius(shape) is not None:
+        refuse("target.shape", f"a {shape.name} on a {target.name} is not built: {able} are")
+    elif shape.plane and isinstance(target, HalfSpace):
+        refuse("target.shape", "a half_space in plane strain is not built: layer and ring are")
+    elif meshed and target.fixed_radius(shape) is not None:
         refuse("striker.shape", f"the rim of a {shape.name} is not built: rounded strikers, cones and powers are")
-    if indenter.striker_material is not None:
+    if geometry.striker_material is not None:
         refuse("striker.material", "two bodies that yield are not built")
-    if indenter.model.inertia:
+    if model.inertia:
         refuse("model.inertia", "waves are not built")
     if enforcement != CORRECTED:
         refuse("numerics.enforcement", f"{enforcement} is not built: {CORRECTED} is")
@@ -99,12 +114,14 @@ def check_large(indenter: Indenter, enforcement: str) -> None:
 
 def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) -> PressedDepths:
     """Every depth, m, from the smallest on; ``radii`` of the contacts expected, m. Raises NotReached."""
+    if isinstance(indenter.shape, Block):
+        return pressed_alike(indenter, indenter.shape, depth)
     solid = Solid.of(indenter, radii, numerics)
     force, radius, newton = (np.empty_like(depth) for _ in range(3))
     reached, iterations = None, 0
     for i in np.argsort(depth):
         stiffness = numerics.penalty * solid.unit / float(radii[i])
-        reached = advanced(solid.pressing, reached, float(depth[i]) / solid.unit, stiffness)
+        reached = advanced(solid.encounter, reached, float(depth[i]) / solid.unit, stiffness)
         force[i] = solid.unit**solid.dimension * reached.rigid_force
         radius[i] = solid.unit * _contact_radius(reached.balance)
         newton[i], iterations = reached.error, iterations + reached.iterations
@@ -114,16 +131,16 @@ def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) ->
     return PressedDepths(force, radius, work, MESH_ORDER, solid.ends, float(newton.max()))
 
 
-def advanced(pressing: Encounter, before: Equilibrium | None, depth: float, stiffness: float) -> Equilibrium:
+def advanced(encounter: Encounter, before: Equilibrium | None, depth: float, stiffness: float) -> Equilibrium:
     """From an equilibrium to that of a larger depth, by as many steps as it takes. Raises EquilibriumLost."""
     if before is None:
-        return _first(pressing, depth, stiffness)
+        return _first(encounter, depth, stiffness)
     count = math.ceil(math.log(depth / before.balance.depth) / math.log(FARTHEST)) or 1
     left = list(np.geomspace(depth, before.balance.depth, count, endpoint=False))
     iterations, splits = 0, 0
     while left:
         try:
-            found = balanced(pressing, before.predicted(left[-1]), left[-1], stiffness)
+            found = balanced(encounter, before.predicted(left[-1]), left[-1], stiffness)
         except EquilibriumLost:
             splits += 1
             if splits > SPLITS:
@@ -135,12 +152,12 @@ def advanced(pressing: Encounter, before: Equilibrium | None, depth: float, stif
     return replace(before, iterations=iterations)
 
 
-def _first(pressing: Encounter, depth: float, stiffness: float) -> Equilibrium:
+def _first(encounter: Encounter, depth: float, stiffness: float) -> Equilibrium:
     """From rest: a stiff penalty pressed in at once would turn elements inside out."""
-    found = balanced(pressing, np.zeros(pressing.skin.size), depth, RAMP[0] * stiffness)
+    found = balanced(encounter, np.zeros(encounter.skin.size), depth, RAMP[0] * stiffness)
     iterations = found.iterations
     for share in RAMP[1:]:
-        found = balanced(pressing, found.balance.displacement, depth, share * stiffness)
+        found = balanced(encounter, found.balance.displacement, depth, share * stiffness)
         iterations += found.iterations
     return replace(found, iterations=iterations)
 
@@ -149,9 +166,9 @@ def _contact_radius(balance: Balance) -> float:
     """Where the surfaces part, on the deformed surface; infinite where the contact leaves the skin."""
     touch = balance.touch
     place = (touch.skin.place + touch.displacement).reshape(2, -1)
-    overlap = touch.overlap.depth.ravel()
-    edge = ContactSolution(overlap, 0, True, ()).edge(place[0])
+    overlap, along = touch.overlap.depth.ravel(), balance.encounter.obstacle.along(place)
+    edge = ContactSolution(overlap, 0, True, ()).edge(along)
     if not np.isfinite(edge):
         return edge
     rise = np.asarray(balance.depth + place[1] - overlap)
-    return contact_end(place[0], edge, -overlap, rise)
+    return contact_end(along, edge, -overlap, rise)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from fe_contact.assembly.cache import Recipe
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import ElasticBody, WholeBody
+from fe_contact.assembly.operators import ElasticBody, SolidMesh, WholeBody
 from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.pressing import Still
 from fe_contact.settings import Numerics
@@ -27,7 +27,7 @@ class MeshedTarget:
     ``struck(geometry, numerics)``: the target in an impact, whose surface alone remembers; ``relaxing``: the same of a
     bulk that relaxes. None where there is no such impact in this version. ``whole``: with its inside what ``struck``
     knows by its surface, None where no fields are written. ``solid``: as ``still``, mesh and supports for large
-    strains, with the unit, m; None where there is none in this version. ``seconds``: processor time, s, of an impact to
+    strains; None where there is none in this version. ``seconds``: processor time, s, of an impact to
     1e-3, as measured of the packaged scenes: it tells what to expect, no more.
     """
 
@@ -36,14 +36,14 @@ class MeshedTarget:
     relaxing: Callable[[Geometry, Numerics], Deformable] | None = None
     whole: Callable[[Geometry, Numerics], WholeBody] | None = None
     seconds: float = 0.8
-    solid: Callable[[Indenter, Array, Numerics], tuple[ElasticBody, float]] | None = None
+    solid: Callable[[Indenter, Array, Numerics], SolidMesh] | None = None
 
     @classmethod
     def meshed(
         cls,
         still: Callable[[Indenter, Array, Numerics], Still],
         meshed: Callable[[Geometry, Numerics], Recipe[ElasticBody]],
-        solid: Callable[[Indenter, Array, Numerics], tuple[ElasticBody, float]] | None = None,
+        solid: Callable[[Indenter, Array, Numerics], SolidMesh] | None = None,
     ) -> MeshedTarget:
         """One that is ``meshed`` for an impact alike whatever it is made of."""
 

@@ -18,6 +18,7 @@ from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.forms import Array, Basis, Matrix
 from fe_contact.assembly.operators import (
     ElasticBody,
+    SolidMesh,
     SurfaceOperator,
     WholeBody,
     basis_on,
@@ -158,11 +159,12 @@ def _upwards(basis: Basis, depth: float) -> Matrix:
     return sparse.csr_matrix(entries, shape=(1, 2 * basis.N))
 
 
-def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> tuple[ElasticBody, float]:
+def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     """The half-space for large strains, on one mesh for all contacts; ``radii`` expected of them, m."""
     zone = Zone.finite(radii)
     elements = FINITE_REFINEMENT * numerics.elements_per_contact
-    return _solid(elements, zone.smallest, numerics.far_radius, numerics.order), zone.reference
+    body = _solid(elements, zone.smallest, numerics.far_radius, numerics.order)
+    return SolidMesh(body, zone.reference)
 
 
 @cached

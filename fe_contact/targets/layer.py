@@ -15,7 +15,7 @@ import meshes
 from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.far_field import on_boundary
 from fe_contact.assembly.forms import Array, Basis, Matrix, elastic, plane_stiffness, stiffness
-from fe_contact.assembly.operators import ElasticBody, basis_on, made
+from fe_contact.assembly.operators import ElasticBody, SolidMesh, basis_on, made
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import (
     FINITE_REFINEMENT,
@@ -56,14 +56,14 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     return FixedStill(surface, indenter, numerics, reference, reference, thickness)
 
 
-def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> tuple[ElasticBody, float]:
+def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     """The layer for large strains; ``radii``, m: those of the contacts expected."""
     target, zone = indenter.target, Zone.finite(radii)
     assert isinstance(target, Layer)
     thickness = thickness_over(zone.reference, target.thickness)
     elements, width = FINITE_REFINEMENT * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
     sizes = (elements, zone.smallest, thickness, width)
-    return _body(sizes, numerics.order, target.base == "bonded", indenter.shape.plane), zone.reference
+    return SolidMesh(_body(sizes, numerics.order, target.base == "bonded", indenter.shape.plane), zone.reference)
 
 
 def _pressed(rim: float | None, radii: Array) -> tuple[float, float | None]:

@@ -9,9 +9,10 @@ import numpy as np
 import meshes
 from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.forms import Array, Matrix, elastic, polar_stiffness
-from fe_contact.assembly.operators import ElasticBody, basis_on, made
+from fe_contact.assembly.operators import ElasticBody, SolidMesh, basis_on, made
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import (
+    FINITE_REFINEMENT,
     LINE_REFINEMENT,
     MARGIN,
     STRUCK_REFINEMENT,
@@ -46,6 +47,17 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     return FixedStill(surface, indenter, numerics, zone.reference, angle, thickness)
 
 
+def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
+    """The ring for large strains; ``radii``, m of arc: those of the contacts expected."""
+    target, zone = indenter.target, Zone.finite(radii)
+    assert isinstance(target, Ring)
+    reference = min(zone.reference, WIDEST * target.inner_radius)
+    angle, thickness = reference / target.inner_radius, thickness_over(reference, target.thickness)
+    elements = FINITE_REFINEMENT * numerics.elements_per_contact
+    body = _body(elements, numerics.order, zone.smallest, thickness, angle)
+    return SolidMesh(body, reference, 1.0 / angle, ends=True)
+
+
 def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:
     """The ring in an impact whose contact grows from nothing to the arc that the settings expect."""
     target = geometry.target
@@ -69,4 +81,4 @@ def _body(elements: float, order: int, smallest: float, thickness: float, angle:
     return ElasticBody(basis, matrix, fixed, surface)
 
 
-MEMBER = MeshedTarget.meshed(still, meshed)
+MEMBER = MeshedTarget.meshed(still, meshed, solid)

@@ -1,0 +1,167 @@
+"""Large strains: patch and equilibrium of the bulk, the limit of small ones, bars of indentations and impacts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from skfem import MeshTri
+
+from fe_contact import run
+from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import basis_on
+from fe_contact.indentation import indent, settings
+from fe_contact.solids.base import PointAnswer, State
+from fe_contact.solids.bulk import Bulk, Pattern
+from fe_contact.solids.contact import OnUndeformed
+from fe_contact.solids.finite import Hyperelastic
+from fe_contact.solids.newton import Equilibrium
+from fe_contact.solids.pressing import Solid, advanced, press
+from lumped import BadInput, Scene
+from lumped.materials import Material, Relaxation
+from lumped.materials.energies.base import ENERGIES, energy_of, strained
+from lumped.result.model_ledger import ENERGY_NAMES, FIRST_ORDER
+from lumped.scene.indenter import Indenter
+from lumped.scene.tables import Model
+from lumped.shapes import Sphere
+
+COARSE = {"elements_per_contact": 2.0, "order": 3}
+
+
+def sphere(nu: float, energy: str = "neo_hooke") -> Indenter:
+    """On the half-space, E* = 1; the radius is 1."""
+    material = Material(Relaxation(1.0 - nu**2), nu, hyperelastic=energy)
+    return Indenter(Sphere(1.0), material, model=Model(kinematics="finite"))
+
+
+@dataclass(frozen=True)
+class Linear:
+    """Small strains."""
+
+    tangent: Array
+
+    def respond(self, gradient: Array, state: State) -> PointAnswer:
+        stress = np.einsum("ij,j...->i...", self.tangent, gradient)
+        tangent = np.broadcast_to(self.tangent[:, :, None, None], (5, *gradient.shape))
+        return PointAnswer(stress, tangent, 0.5 * np.sum(stress * gradient, axis=0))
+
+
+def solid(indenter: Indenter, deepest: float, linear: bool = False) -> Solid:
+    """Under contacts up to that of a depth; ``linear``: in its place the body and the gap of small displacements."""
+    numerics = settings(COARSE, indenter.shape)
+    found = Solid.of(indenter, np.array([0.7, 1.0]) * np.sqrt(deepest), numerics)
+    if not linear:
+        return found
+    encounter = found.encounter
+    response = encounter.body.response
+    assert isinstance(response, Hyperelastic)
+    at_rest = strained(response.energy, np.zeros((5, 1)), response.shear, response.lame).tangent[..., 0]
+    body = replace(encounter.body, response=Linear(at_rest))
+    return replace(found, encounter=replace(encounter, body=body, obstacle=OnUndeformed(indenter.shape, found.unit)))
+
+
+def reached(body: Solid, depth: float) -> Equilibrium:
+    return advanced(body.encounter, None, depth / body.unit, 500.0)
+
+
+@pytest.mark.parametrize("plane", [False, True])
+@pytest.mark.parametrize("name", ENERGIES.names)
+def test_a_patch_strained_alike_balances_and_its_tangent_is_a_slope(name: str, plane: bool) -> None:
+    """Alike are any affine motion in plane strain, stretches along and across the axis in a body of revolution."""
+    mesh = MeshTri.init_tensor(np.linspace(0.3, 1.0, 3), np.linspace(-0.5, 0.0, 3))
+    basis, response = basis_on(mesh, 3), Hyperelastic(energy_of(name), 1.0, 2.0)
+    core = Bulk.of(basis, plane, np.arange(mesh.nelements))
+    motion = np.array([[0.1, 0.08 * plane], [0.05 * plane, -0.2]])
+    displacement = (motion @ basis.doflocs).T.ravel()
+    loaded = core.answered(displacement, response)
+    inner = np.setdiff1d(np.arange(basis.N), basis.get_dofs(mesh.boundary_facets()).flatten())
+    scale = np.abs(loaded.forces).max()
+    assert loaded.forces.reshape(-1, 2)[inner] == pytest.approx(0.0, abs=1e-12 * scale)
+    tangent = Pattern.of([core.dofs], np.arange(core.size), core.size).matrix([loaded.matrices()])
+    way = np.random.default_rng(1).normal(size=core.size)
+    above, below = (core.answered(displacement + sign * 1e-6 * way, response) for sign in (1.0, -1.0))
+    change = tangent @ way
+    assert (above.forces - below.forces) / 2e-6 == pytest.approx(change, abs=1e-6 * np.abs(change).max())
+    assert (above.energy - below.energy) / 2e-6 == pytest.approx(float(loaded.forces @ way), abs=1e-7 * scale)
+
+
+def test_the_force_is_the_slope_of_the_energy() -> None:
+    """With the penalty as it is, of any mesh; and the energy is what the striker has brought."""
+    body = solid(sphere(0.4), 0.1)
+    below, middle, above = (reached(body, 0.1 * share) for share in (0.9999, 1.0, 1.0001))
+    slope = (above.balance.energy - below.balance.energy) / (above.balance.depth - below.balance.depth)
+    assert slope == pytest.approx(middle.balance.force, rel=1e-6)
+    assert middle.error < 1e-6
+
+
+@pytest.mark.family
+@pytest.mark.parametrize("name", ENERGY_NAMES)
+@pytest.mark.parametrize("nu", [0.3, 0.45])
+def test_small_depths_leave_small_strains_as_the_ledger_has_it(name: str, nu: float) -> None:
+    """F/F_small = 1 + c1 depth/a + ..., both on one mesh, so that what it errs by cancels."""
+    change = []
+    for depth in (0.0025, 0.01):
+        forces = [reached(solid(sphere(nu, name), depth, linear), depth).rigid_force for linear in (False, True)]
+        change.append((forces[0] / forces[1] - 1.0) / np.sqrt(depth))
+    first = 2.0 * change[0] - change[1]  # without what is of the next order, in depth
+    assert first == pytest.approx(float(FIRST_ORDER[ENERGY_NAMES[name]](nu)) / (1.0 - nu) ** 2, abs=0.02)
+
+
+@pytest.mark.tenth
+def test_a_finer_run_lies_within_both_bars() -> None:
+    """Of a deep indentation, where strains are large."""
+    pressed = sphere(0.45, "yeoh")
+    depths = (0.05, 0.2)
+    loose, tight = (indent(pressed, depths, {"tolerance": one}) for one in (4e-3, 1e-3))
+    assert loose.converged
+    assert tight.converged
+    assert np.all(np.abs(loose.force - tight.force) <= loose.force_error + tight.force_error)
+    assert loose.model_sufficient
+    assert np.all(loose.contact_radius < np.sqrt(np.array(depths) * 2.0))
+
+
+@pytest.mark.tenth
+def test_an_elastic_impact_gives_back_all_of_it() -> None:
+    scene = Scene.load("polymer-sphere-finite")
+    found = run(scene, tolerance=4e-3)
+    quantities = found.quantities
+    assert quantities["restitution"].value == pytest.approx(1.0, abs=1e-6)
+    assert quantities["impulse"].value == pytest.approx(2.0 * scene.mass * scene.velocity, rel=1e-6)
+    assert found.converged
+    assert found.model_sufficient
+    assert "ln J" in str(found.to_json()["model"]["energy"])
+    peak, depth = (quantities[name].value or 0.0 for name in ("peak_force", "peak_depth"))
+    pressed = press_once(scene, depth)
+    assert abs(pressed - peak) < 2.0 * (quantities["peak_force"].error or 0.0)
+
+
+def press_once(scene: Scene, depth: float) -> float:
+    """N, at one depth, with settings of its own."""
+    geometry = scene.geometry
+    pressed = Indenter(geometry.shape, geometry.material, geometry.target, model=scene.model)
+    radii = np.array([np.sqrt(depth * scene.profile.tip_radius)])
+    found = press(pressed, np.array([depth]), radii, settings({"elements_per_contact": 3.0}, geometry.shape))
+    return float(scene.contact_modulus.relaxed * found.force[0])
+
+
+REFUSED = {
+    "striker.shape": ("polymer-punch", {}),
+    "target.shape": ("rod-in-ring", {}),
+    "numerics.enforcement": ("polymer-sphere", {}),
+}
+
+
+@pytest.mark.parametrize("key", REFUSED)
+def test_what_is_not_built_is_refused_by_its_key(key: str) -> None:
+    name, changes = REFUSED[key]
+    pressed = Indenter.load(name, {**changes, "model.kinematics": "finite"})
+    with pytest.raises(BadInput, match=key):
+        indent(pressed, (1e-5,), {"enforcement": "exact"} if "enforcement" in key else {})
+
+
+@pytest.mark.parametrize("name", ["polymer-sphere", "polymer-sphere-waves", "polymer-punch", "two-spheres", "rod"])
+def test_impacts_that_are_not_built_are_refused(name: str) -> None:
+    scene = Scene.load(name, {"model.kinematics": "finite"})
+    with pytest.raises(BadInput, match="kinematics"):
+        run(scene)
