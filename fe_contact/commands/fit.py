@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -88,7 +88,7 @@ def _fit(asked: FitQuestion) -> int:
         found.write_files(folder)
         plot_fit(asked.curve, found, folder)
 
-    _report(args, found, publish(where, write, RECORD), where)
+    _report(args, asked.scene, found, publish(where, write, RECORD), where)
     return base.DONE if found.result.converged else base.NOT_REACHED
 
 
@@ -113,16 +113,18 @@ def _ranking_line(rank: int, one: RankedFit) -> str:
     return f"{rank:2d}  {one.law:16s} {known}: {values}"
 
 
-def _report(args: argparse.Namespace, found: Fit, content: Table, where: Path) -> None:
+def _report(args: argparse.Namespace, scene: Scene, found: Fit, content: Table, where: Path) -> None:
     """Parameters; for OpenSees the law, with the parameters as comments; warnings on stderr."""
     from lumped import laws
     from lumped.fit import opensees
 
     text = summary(found, where).splitlines()
     if args.opensees:
-        law = opensees.lines(laws.get(found.law).of(found.scene), found.scene, language=args.opensees)
-        text = [*(f"# {line}" for line in text), law]
-        content["opensees"] = law.splitlines()
+        law = laws.get(found.law).of(found.scene)
+        # what is fitted of a material stands in the fit's scene, the gap in that given
+        lines = opensees.lines(law, replace(found.scene, law=scene.law), language=args.opensees)
+        text = [*(f"# {line}" for line in text), lines]
+        content["opensees"] = lines.splitlines()
     base.say(args, content, text)
     for warning in found.warnings:
         base.complain(warning)
@@ -200,4 +202,6 @@ MEMBER = base.Command(
         *base.OUTPUT,
     ),
     execute,
+    example="fe-contact fit curve.csv --law hunt_crossley --scene polymer-sphere --opensees",
+    group=base.LAWS,
 )

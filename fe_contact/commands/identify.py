@@ -180,4 +180,6 @@ MEMBER = base.Command(
         *base.OUTPUT,
     ),
     execute,
+    example="fe-contact identify curve.csv --scene polymer-sphere --free target.material.E1",
+    group=base.LAWS,
 )

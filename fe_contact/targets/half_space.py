@@ -42,7 +42,7 @@ from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 
 ENDS = ("base", "side")  # of a box of it
-DATUM = 0.15  # size of the mesh over the datum's depth, per far radius of the settings
+DATUM = 0.6  # size of the mesh over the datum's depth, per far radius of the settings, which is 2 at least
 
 
 def surface(poisson: float, numerics: Numerics) -> ScaledSurface:

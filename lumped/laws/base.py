@@ -119,5 +119,6 @@ def check_load_curve(scene: Scene, name: str) -> None:
 def check_half_space(scene: Scene, name: str) -> None:
     """Raise BadInput for a geometry which is not that of a half-space under an axisymmetric profile."""
     if scene.shape is not None and (not isinstance(scene.target, HalfSpace) or scene.shape.plane):
-        reason = f"{scene.target.name}: {name} is for the half-space; accepted: half_space, or another method"
+        reason = f"{name} is not for this {scene.target.name}, but for the half-space"
+        reason += "; accepted: half_space, or another method"
         raise BadInput(Fault(scene.source, "target.shape", reason))

@@ -155,7 +155,7 @@ class FrameTrial:
         gap = self.at.gaps[event.gap]
         left = self.rules.laws[event.gap].grading(gap.stage) if event.surfaces else 1
         nodes = self._nodes(length)
-        return NODES.graded(left, mirrored=True) if left > 1 and nodes.power == 1 else nodes
+        return NODES.graded(left, begun=0.0, mirrored=True) if left > 1 and nodes.power == 1 else nodes
 
     def _until_event(self, step: FrameStep | None) -> tuple[FrameStep | None, GapEvent | None]:
         """The step, cut short at its first event; and again at one before that which only the shorter step shows."""

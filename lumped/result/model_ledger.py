@@ -11,7 +11,7 @@ from numpy.polynomial import Polynomial
 from lumped.errors import FeContactError
 from lumped.materials.radiation import Pulse
 from lumped.result.history import History
-from lumped.result.result import LedgerEntry, Quantity
+from lumped.result.result import LedgerEntry, Quantity, percent
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
@@ -20,7 +20,6 @@ from lumped.targets.base import Target
 from lumped.targets.rod import Rod
 
 GRAVITY = 9.81  # physics: m/s2
-INERTIA = "model.inertia"
 # c1 (1 - nu)^2, cubic in nu, of elastic energies with finite strains; tests/fe/test_finite_strain.py finds it again.
 FIRST_ORDER = {
     "St Venant-Kirchhoff": Polynomial([-0.106722, -0.244066, 0.549732, -0.354504]),
@@ -31,7 +30,6 @@ FIRST_ORDER = {
 # radius: 0.61 at nu = -0.5 to 0.66 at 0.5; tests/fe/test_rod_end.py finds it again.
 ROD_END = 0.65
 IN_AN_IMPACT = 0.5  # of the change at one depth: W = (2/5) k d^(5/2) + (1/3) k c1 d^3/sqrt(R) is what was brought
-PROFILE = "model.profile = 'exact'"
 # Hertz: the first yield, below the surface, is where the peak pressure is 1.6 Y (Johnson, ISBN 978-0-521-34796-9).
 FIRST_YIELD = 1.6
 
@@ -102,7 +100,8 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     mass, geometry = scene.reduced_mass, scene.geometry
     pulse = Pulse(peak.force, peak.duration, mass, 0.5 * mass * scene.velocity**2, peak.contact_radius)
     estimate, note = scene.target.inertia_left_out(geometry.shape, geometry.material, pulse)
-    return LedgerEntry(effect, "neglected", estimate, note, INERTIA if scene.target.waves_under(geometry.shape) else "")
+    key = "model.inertia" if scene.target.waves_under(geometry.shape) else ""
+    return LedgerEntry(effect, "neglected", estimate, note, key, value=True if key else None)
 
 
 def gravity(scene: Scene, model: Model, force: float, mass: float) -> LedgerEntry:
@@ -115,8 +114,9 @@ def gravity(scene: Scene, model: Model, force: float, mass: float) -> LedgerEntr
     if model.direction == "horizontal":
         return LedgerEntry(effect, "across the motion", 0.0)
     if model.direction == "down":
-        return LedgerEntry(effect, "neglected", weight, "m g", "model.gravity")
-    asked = f"model.direction: of a drop, 'down', it would be {weight:.2g}; else 'horizontal'"
+        return LedgerEntry(effect, "neglected", weight, "m g", "model.gravity", value=GRAVITY)
+    down = f"a drop (--set model.direction=down) leaves out {percent(weight)}"
+    asked = f"{down}, a horizontal motion (--set model.direction=horizontal) nothing"
     return LedgerEntry(effect, "none assumed", None, asked)
 
 
@@ -128,10 +128,10 @@ def profile(shape: Shape, model: Model, peak: Peak) -> LedgerEntry:
     if shape.plane:
         heights = [float(shape.resolved(name).height(peak.contact_radius)) for name in ("exact", "parabola")]
         estimate = abs(heights[1] / heights[0] - 1.0) if heights[0] > 0.0 else 0.0
-        return LedgerEntry(effect, "parabola", estimate, key=PROFILE)
+        return LedgerEntry(effect, "parabola", estimate, key="model.profile", value="exact")
     exact = float(shape.resolved("exact").load_curve.force(peak.depth))
     parabola = float(shape.resolved("parabola").load_curve.force(peak.depth))
-    return LedgerEntry(effect, "parabola", abs(parabola / exact - 1.0), key=PROFILE)
+    return LedgerEntry(effect, "parabola", abs(parabola / exact - 1.0), key="model.profile", value="exact")
 
 
 def finite_strain(nu: float, height: float | None, peak: Peak, share: float = 1.0) -> LedgerEntry:
@@ -196,12 +196,15 @@ def striker(scene: Scene) -> LedgerEntry:
 
 
 def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
-    """At most what the instantaneous stiffness changes by, to the power 2/5 of a peak force.
+    """At most what the instantaneous stiffness changes by, to the power 2/5 of a peak force; a scene of constant bulk
+    modulus has chosen.
 
     That of the half-space by 4G(3K+G)/(3K+4G) over 2G/(1-nu); a body with lengths confines, in thin layers most.
     """
     effect, material = "constant nu against constant bulk modulus", scene.geometry.material
-    treated = "constant nu" if material.constant == "poisson" else "constant bulk modulus"
+    treated, solid = "constant nu", "target" if scene.target.deformable else "striker"
+    if material.constant == "bulk":
+        return LedgerEntry(effect, "constant bulk modulus", 0.0, "as the scene says")
     if material.young.is_elastic or math.isinf(material.bulk):
         return LedgerEntry(effect, treated, 0.0, "elastic or incompressible: the same")
     if material.young.viscosity > 0.0 or material.young.relaxed == 0.0:
@@ -213,7 +216,7 @@ def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
         if confined is None:
             return LedgerEntry(effect, treated, None, "no load curve tells it; run both of target.material.constant")
         softer *= confined
-    return LedgerEntry(effect, treated, 1.0 - softer**0.4, "bound", "target.material.constant")
+    return LedgerEntry(effect, treated, 1.0 - softer**0.4, "bound", f"{solid}.material.constant", value="bulk")
 
 
 def _confined(scene: Scene, nu: float, depth: float) -> float | None:
