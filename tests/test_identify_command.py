@@ -75,11 +75,31 @@ def test_a_person_reads_intervals(
     assert "not to be trusted" in said.err
 
 
+@pytest.mark.tenth
+def test_finite_elements_correct_the_law(
+    curves: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """On the half-space Ting's law is exact: elements move nothing by more than their own bars could."""
+    where = tmp_path / "out"
+    line = ["identify", str(curves[0]), "--scene", "polymer-sphere", "--free", "E1"]
+    assert main([*line, "--method", "fe", "--out", str(where)]) == 0
+    said, content = capsys.readouterr(), json.loads((where / "identified.json").read_text(encoding="utf-8"))
+    (one,) = content["by_reference"]["parameters"].values()
+    assert content["by_reference"]["runs"] == 2
+    assert content["by_reference"]["error"] < 1e-3
+    assert 0.0 < abs(one["value"] - one["by_law"]) < one["bar"]
+    assert "E1: " in said.out
+    assert "moved by" in said.out
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
         (["--free", "target.material.E3"], "--free: target.material.E3: no number of polymer-sphere.toml; accepted: "),
         (["--free", FREE, "--write", "found.json"], "--write: found.json: accepted: a file that ends with .toml"),
+        (["--free", FREE, "--sample", "7"], "--sample: 7: accepted a whole number from 100 to 1000000"),
+        (["--free", FREE, "--method", "feme"], "--method: feme: accepted ting, fe"),
+        (["--free", f"{FREE},nu"], "--free: the force of this scene tells only a combination of target.material."),
         (["--free", FREE, "--corner", "-3"], "--corner: -3: accepted a frequency above zero, Hz"),
         (["--free", FREE, "--set", "striker.mass=0.5"], "< 0; cure: check mass"),
         (["--free", FREE, "--set", "striker.mas=50.0"], "striker.mas: unknown key"),

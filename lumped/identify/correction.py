@@ -23,8 +23,8 @@ from lumped.numbers import Array
 from lumped.result.history import History
 from lumped.scene.scene import Scene
 
-ROUNDS = 4  # work: each asks the reference for every curve
-STAYS = 0.1  # of half an interval: a place that moves less has been found
+ROUNDS = 6  # work: each asks the reference for every curve
+STAYS = 0.1  # of half an interval, or of the reference's bars: a place that moves less has been found
 
 
 class Reference(Protocol):
@@ -49,7 +49,7 @@ def correct(histories: Histories, valleys: Sequence[Valley], corner: float | Non
         there, found = _round(histories, valley, corner, reference)
         step, bars = np.abs(found.sought - valley.sought), _bars(there, found.sought)
         valley = found
-        if runs > 1 and np.all(step <= np.maximum(bars, STAYS * _half_widths(there, found.sought))):
+        if runs > 1 and np.all(step <= STAYS * np.maximum(bars, _half_widths(there, found.sought))):
             told = _told(histories, valleys, there, found, bars, runs * len(there.samples))
             return Corrected(there, found, told)
     reason = f"the parameters still move after {ROUNDS} rounds of reference histories"

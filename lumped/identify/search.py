@@ -89,27 +89,25 @@ def _most_likely(histories: Histories, corner: float | None) -> tuple[Histories,
         reason = f"the force of this scene tells only a combination of {', '.join(names)}"
         raise BadInput(Fault(FREE, "", f"{reason}; accepted: one of them held, or a geometry that tells them apart"))
     scouted = [descended(histories, start, _limits(histories, start), SCOUTED) for start in starts]
-    squares = [histories.squares(one.sought) for one in scouted]
-    least, best = min(squares), scouted[int(np.argmin(squares))]
-    most = least * (1.0 + NEAR * quantile(histories) / histories.freedom)
-    near = [one for one, found in zip(scouted, squares, strict=True) if one is not best and found < most]
+    scouted.sort(key=lambda one: histories.squares(one.sought))
+    best, *near = _distinct(histories, scouted, NEAR * histories.squares(scouted[0].sought) / histories.freedom)
     for _ in range(REWEIGHED):
         histories = reweighed(histories, best.sought, corner)
-        best = descended(histories, best.sought, best.limits)
+        best = descended(histories, best.sought, best.limits, SCOUTED)
     softer, moved = _softened(reweighed(histories, best.sought, corner), best.sought)
     ended = [descended(softer, one.sought, one.limits) for one in map(moved, (best, *near))]
     ended.sort(key=lambda one: softer.squares(one.sought))
-    return softer, tuple(_distinct(softer, ended))
+    return softer, tuple(_distinct(softer, ended, 1.0 - REACHED))
 
 
-def _distinct(histories: Histories, ended: Sequence[Valley]) -> Iterator[Valley]:
-    """The first, and those within the bound above it that lie beyond its interval by the slopes there."""
-    best, bound = ended[0].sought, quantile(histories)
+def _distinct(histories: Histories, ended: Sequence[Valley], share: float) -> Iterator[Valley]:
+    """The first, and those within the bound above it, times a share, that lie as far from it by the slopes there."""
+    best, bound = ended[0].sought, share * quantile(histories)
     least, slopes = histories.squares(best), histories.slopes(best)
     yield ended[0]
     for one in ended[1:]:
         away = float(np.sum((slopes @ (one.sought - best)) ** 2))
-        if histories.squares(one.sought) - least < (1.0 - REACHED) * bound < away:
+        if histories.squares(one.sought) - least < bound < away:
             yield one
 
 

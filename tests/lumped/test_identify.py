@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,8 +19,11 @@ from scipy.special import stdtrit
 
 from lumped import BadInput, Scene, identify, laws, simulate
 from lumped.fit.noise import colour_of, memory, whitened, whiteness
+from lumped.identify.ensemble import draws_of
 from lumped.identify.histories import Impact
+from lumped.identify.record import ToldValley
 from lumped.numbers import Array
+from lumped.result.history import History
 from lumped.result.score import Curve
 
 SEED = 20261125
@@ -245,7 +250,126 @@ def test_an_exponent_is_told_beside_its_factor() -> None:
         assert (one.low or np.inf) <= POWER[name] <= (one.high or 0.0)
     one = found.parameters["striker.exponent"]
     assert (one.high or np.inf) - (one.low or 0.0) < 0.15
-    assert any("coefficient and striker.exponent are correlated" in warning for warning in found.warnings)
+    assert any("are correlated by" in warning for warning in found.warnings)
+
+
+@pytest.mark.tenth
+def test_both_valleys_of_one_history_are_in_the_interval() -> None:
+    """A fast relaxation tells it as well as a slow one, and what lies between does not, by least squares of its own."""
+    rng = np.random.default_rng(2)
+    table = scene(STRIKERS[0], {"law": "sls", "E0": 1e6, "R1": 0.5, "R2": 0.0335})
+    first = curve_of(rng, *history_by_springs(table, {}), 0.03 * rng.normal(size=ROWS))
+    free = [f"target.material.{name}" for name in SLS]
+    found = identify({"first": first}, table, free)
+    slow, fast = (valley.parameters["target.material.R2"] for valley in found.valleys)
+    whole = found.parameters["target.material.R2"]
+    assert slow.value == whole.value
+    assert (whole.low, whole.high) == (fast.low, slow.high)
+    assert slow.low is not None
+    assert fast.high is not None
+    assert fast.high < slow.low
+    assert any("tell the curves about as well" in warning for warning in found.warnings)
+
+    def least(held: float, valley: ToldValley) -> float:
+        values = [valley.parameters[f"target.material.{name}"].value for name in ("E0", "R1")]
+
+        def left(x: Array) -> Array:
+            material = {"law": "sls", "E0": np.exp(x[0]), "R1": np.exp(x[1]), "R2": held}
+            impact = Impact.of(Scene.from_dict(scene(STRIKERS[0], material)))
+            return first.force - impact.force(first.time - found.curves[0].touch - 0.01 * x[2])
+
+        most = [np.log(1e9), np.log(1e8), 1.0]
+        start = [*np.log(values), 0.0]
+        return 2.0 * float(least_squares(left, start, diff_step=1e-4, xtol=1e-5, bounds=(-np.inf, most)).cost)
+
+    bound, slowly = stdtrit(ROWS - 4, 0.95) ** 2, float(np.sum((first.force - found.curves[0].fitted) ** 2))
+    assert 0.0 < found.valleys[1].growth < bound
+    between = least(float(np.sqrt(fast.high * slow.low)), found.valleys[1])
+    assert between / slowly > 1.0 + bound / (ROWS - 4)
+
+
+def test_walkers_draw_from_a_gaussian_of_any_scale() -> None:
+    """Mean, covariance and quantiles of a linear-Gaussian truth; and the same walk in any linear coordinates."""
+    rng, size = np.random.default_rng(SEED), 3
+    root = rng.normal(size=(size, size)) * [[1e-3], [1.0], [1e4]]
+    mean, inverse = rng.normal(size=size), np.linalg.inv(root)
+
+    def density(place: Array) -> float:
+        return -0.5 * float(np.sum((inverse @ (place - mean)) ** 2))
+
+    def plain(place: Array) -> float:
+        return -0.5 * float(np.sum(place**2))
+
+    start = 3.0 * rng.normal(size=(40, size))
+    found = draws_of(density, mean + start @ root.T, 200, 60, np.random.default_rng(1))
+    unit = (found.rows - mean) @ inverse.T
+    error = 1.0 / np.sqrt(found.effective)
+    assert 200 < found.effective < 40 * 200 / 4
+    assert 0.3 < found.taken < 0.7
+    assert np.abs(unit.mean(axis=0)) == pytest.approx(0.0, abs=4.0 * error)
+    assert np.cov(unit, rowvar=False) == pytest.approx(np.eye(size), abs=6.0 * error)
+    for share, place in ((0.05, -1.6449), (0.95, 1.6449)):
+        assert np.quantile(unit, share, axis=0) == pytest.approx(place, abs=8.0 * error)
+    same = draws_of(plain, start, 200, 60, np.random.default_rng(1))
+    assert np.abs(same.rows - unit)[: 40 * 20].max() < 1e-6, "rounding grows from step to step"
+
+
+@pytest.mark.tenth
+def test_a_sample_says_what_the_profile_says(tmp_path: Path) -> None:
+    """Of a modulus, whose likelihood is nearly Gaussian; nine tenths of another record lie in the predicted band."""
+    rng = np.random.default_rng(SEED)
+    table = scene(STRIKERS[0], {"law": "elastic", "E": 1e6})
+    time, force = history_by_springs(table, {})
+    found = identify(
+        {"curve": curve_of(rng, time, force, 0.03 * rng.normal(size=ROWS))}, table, ["target.material.E"], sample=400
+    )
+    (one,), (curve,), drawn = found.parameters.values(), found.curves, found.posterior
+    assert drawn is not None
+    assert one.low is not None
+    assert one.high is not None
+    low, high = np.quantile(drawn.values[:, 0], [0.05, 0.95])
+    assert (low, high) == pytest.approx((one.low, one.high), abs=0.2 * (one.high - one.low))
+    true = np.interp(curve.time - curve.touch, time, force, 0.0, 0.0)
+    another = true + 0.03 * force.max() * rng.normal(size=curve.time.size)
+    inside = (curve.predicted[0] <= another) & (another <= curve.predicted[1])
+    assert np.mean(inside) == pytest.approx(0.9, abs=3.0 * 0.3 / np.sqrt(ROWS))
+    found.write_files(tmp_path)
+    draws = np.loadtxt(tmp_path / "sample.csv", delimiter=",", skiprows=1)
+    assert draws[:, 0] == pytest.approx(drawn.values[:, 0])
+    assert draws.shape[1] == 3, "modulus, touch, likelihood"
+    assert np.all(curve.predicted[0] <= curve.band[0])
+    assert np.all(curve.band[1] <= curve.predicted[1])
+
+
+def test_a_reference_corrects_the_law_where_it_errs() -> None:
+    """The truth knows a gravity that the law of the search does not: with a reference that knows it the search ends at
+    the truth, and a reference that errs within its bar moves it by no more than is said.
+    """
+    table = scene(STRIKERS[0], {"law": "elastic", "E": 1e6})
+    heavy = Scene.from_dict({**table, "model": {"gravity": 1.0}})
+
+    def reference(one: Scene, off: float = 0.0) -> History:
+        there = replace(one, model=heavy.model)
+        history = simulate(laws.get("ting").of(there), there, 1e-5).history
+        bar = np.full(len(history), 0.01 * history.force.max())
+        return replace(history, force=history.force + off * bar, force_error=bar)
+
+    curves = {"curve": curve_of(np.random.default_rng(SEED), *_rows(reference(heavy)), np.zeros(ROWS))}
+    free = ["target.material.E"]
+    alone, corrected, other = (
+        identify(curves, table, free, reference=one) for one in (None, reference, partial(reference, off=1.0))
+    )
+    values = [one.parameters[free[0]].value for one in (alone, corrected, other)]
+    assert abs(values[0] / 1e6 - 1.0) > 1e-2
+    assert abs(values[1] / 1e6 - 1.0) < 5e-4
+    assert corrected.by_reference is not None
+    moved = corrected.by_reference.parameters[free[0]]
+    assert (moved.by_law, moved.value) == pytest.approx(values[:2])
+    assert 0.0 < abs(values[2] - values[1]) < moved.bar
+
+
+def _rows(history: History) -> tuple[Array, Array]:
+    return history.time, history.force
 
 
 def test_coloured_noise_widens_the_intervals_as_its_memory_asks() -> None:
