@@ -451,6 +451,7 @@ def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> 
             kept.with_suffix(".part").rename(kept)
 
 
+@cache
 def _kept(work: Path, tests: Path) -> Path:
     """Where the calls of a file of tests are kept, as it is now."""
     return work / f"{tests.stem}-{hashlib.sha256(tests.read_bytes()).hexdigest()[:12]}.jsonl"
@@ -498,7 +499,9 @@ def calls(work: Path, jobs: int, patterns: Iterable[str]) -> list[dict[str, Any]
         environment = _environment(ROOT) | {"MUTANTS_CALLS": str(work)}
         environment["PYTHONPATH"] += f"{os.pathsep}{ROOT / 'tests'}"
         command = [sys.executable, "-m", "pytest", *PYTEST, "-p", "mutants", *map(str, some)]
-        subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, check=False)
+        asked = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+        if asked.returncode not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
+            raise SystemExit(asked.stdout)
         for path in some:
             _kept(work, path).touch()  # none of its tests may be a plain one
 
