@@ -248,6 +248,13 @@ def test_the_command_writes_contacts(tmp_path: Path) -> None:
         assert len(list(csv.reader(file))) > 201
 
 
+def test_the_ledger_has_the_lateral_inertia_of_rayleigh_s_bar() -> None:
+    """(nu radius/length)^2 of a bar of one square metre, ten metres long."""
+    scene = Scene.load("bar-impact", {"striker.material.nu": 0.3, "striker.faces": "sliding"})
+    entry = next(one for one in plan(scene, {}).ledger if one.effect == "lateral inertia")
+    assert entry.estimate == pytest.approx((0.3 / 10.0) ** 2 / math.pi)
+
+
 def test_an_end_before_the_separation_is_no_separation() -> None:
     scene = replace(Scene.load("bar-impact"), motion=Motion(end_time=0.3))
     result = fe_contact.run(scene, numerics={"steps": 100})

@@ -96,6 +96,17 @@ def test_the_bars_of_a_washer_cover_what_finer_settings_find(base: str, agree: C
     agree(fe_contact.run(scene, TOLERANCE), fe_contact.run(scene, TOLERANCE, numerics=finer))
 
 
+def test_a_punch_on_an_elastic_body_swings_for_half_a_period() -> None:
+    """Its force is 2 E* a times the depth: v sqrt(k m) at the peak, pi sqrt(m/k) long."""
+    scene = Scene.load("polymer-punch", {"target.material": {"law": "elastic", "E": 2e6, "nu": 0.45}})
+    stiffness, result = 2.0 * scene.contact_modulus.relaxed * 3e-3, fe_contact.run(scene, 1e-2, "fe")
+    period, found = math.sqrt(scene.mass / stiffness), result.quantities
+    for name, value in (("peak_force", scene.velocity * stiffness * period), ("duration", math.pi * period)):
+        assert abs(found[name].value - value) <= found[name].error
+    peak = found["peak_force"]
+    assert sum(result.error_budget.values()) == pytest.approx(peak.error / peak.value), "shares of the peak by cause"
+
+
 def test_three_marches_tell_all() -> None:
     """Mesh, penalty and far field change one stiffness: each is one more press, and no march."""
     work = solve(random_scene(0), {"tolerance": TOLERANCE}).certified.work

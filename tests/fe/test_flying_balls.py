@@ -21,6 +21,7 @@ from fe_contact.steppers.steps import Strike
 from fe_contact.waves.impact import choices_of, energies, motion, record
 from fe_contact.waves.moving import Moving
 from fe_contact.waves.targets import half_space, plane, sphere
+from fe_contact.waves.targets.base import too_fast
 from lumped import BadInput, Result, Scene
 from lumped.materials.radiation import radiation_coefficient
 
@@ -312,6 +313,15 @@ def test_a_setting_at_the_end_of_its_range_is_varied_all_the_same(key: str) -> N
 def test_what_cannot_be_is_refused_with_its_key(name: str, changes: dict[str, Any], key: str) -> None:
     with pytest.raises(BadInput, match=key):
         simulate(Scene.load(name, changes), "fe", {})
+
+
+def test_the_softer_of_two_balls_says_what_is_too_fast() -> None:
+    """Its shear waves are the slower ones."""
+    hard = {"striker.material.E": 1e10, "striker.velocity": 20.0}
+    for changes in (hard, {"target.material.E": 1e10, "striker.velocity": 20.0}):
+        assert too_fast(Scene.load("two-finite-spheres-waves", changes))
+    both = hard | {"target.material.E": 1e10}
+    assert not too_fast(Scene.load("two-finite-spheres-waves", both))
 
 
 @pytest.mark.parametrize("target", [PLANE, HALF_SPACE])

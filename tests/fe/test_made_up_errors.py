@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,12 +14,14 @@ from scipy.special import beta, betainc
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, Causes
 from fe_contact.budget.certify import _rows, _time_steps, trust
-from fe_contact.budget.curve import Curve, extrapolated
-from fe_contact.budget.several import _error, _late
-from fe_contact.budget.variation import SAFETY, Softening, Variation
-from fe_contact.settings import Numerics
+from fe_contact.budget.curve import Curve, extrapolated, squared_radius
+from fe_contact.budget.several import _error, _flight, _late
+from fe_contact.budget.variation import RIPPLED, SAFETY, STEEPER, Softening, Variation
+from fe_contact.settings import Numerics, WaveNumerics
 from fe_contact.steppers.steps import Strike
+from fe_contact.waves import certify as certify_waves
 from fe_contact.waves.certify import Moved
+from fe_contact.waves.plan import DEFAULTS
 from lumped.materials import Relaxation
 
 STEPS, CASES = 160, 40
@@ -181,6 +184,21 @@ def test_two_curves_that_cross_just_where_a_quantity_is_read_make_neither_of_the
         assert change.errors["peak_time"] < 100.0 * size / period, "nor is all of the contact unknown"
         times = np.linspace(0.0, 1.0, 500)
         assert np.all(np.abs(fine.force(times) - TRUTH.force(times)) <= change.force(times) + 1e-6), (phase, shift)
+
+
+@pytest.mark.parametrize("flat", [False, True])
+def test_a_tilt_of_the_force_moves_its_peak_by_slope_over_curvature(flat: bool) -> None:
+    """[1 - 4 u^2]^(3/2) = 1 - 6 u^2 + ..., u from the top, in any unit: a slope 2 s there moves it by s/6."""
+    for duration, push, tilt in ((1.0, 1.0, 1e-3), (1e-4, 50.0, -1e-2), (30.0, 1e-3, 1e-4)):
+        straight, tilted = (
+            replace(made_up(STEPS, off), duration=duration) for off in (np.zeros_like, lambda t, s=tilt: s * (t - 0.5))
+        )
+        straight, tilted = (replace(one, mean_force=push * one.mean_force) for one in (straight, tilted))
+        if flat:
+            straight = replace(straight, radius_squared=np.ones_like(straight.x))
+        moved = Variation(straight, tilted, 1.0).errors["peak_time"] / (duration * abs(tilt) / 6.0)
+        # the bar keeps room for a change that ripples, or whose slope is not its chord's
+        assert moved == pytest.approx(STEEPER if flat else RIPPLED, rel=0.03)
 
 
 def test_ends_that_are_read_badly_are_known_no_better() -> None:
@@ -346,3 +364,65 @@ def test_a_later_contact_that_comes_late_moves_its_own_force() -> None:
     expected = np.maximum(abs(force[0] - force[1]), abs(force[2] - force[1]))
     assert _late(curve, touched + share, late) == pytest.approx(expected, abs=1e-3)
     assert expected.max() > 0.02
+
+
+@pytest.mark.parametrize(("cause", "order"), [("mesh", 1), ("penalty", 1), ("time_step", 1), ("far_field", 2)])
+def test_bars_of_waves_hold_what_falls_with_the_order_of_its_cause(
+    cause: str, order: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And no less: where marches with another setting err by a lower order, their bars may be too small."""
+    setting = {"mesh": "elements_per_contact", "time_step": "steps"}.get(cause, cause.replace("field", "radius"))
+    numerics = WaveNumerics(**DEFAULTS, tolerance=1e-2, elements_per_contact=4.0, penalty=400.0, steps=160,
+                            far_radius=20.0, contact_radius=1e-3, contact_time=1.0, peak_share=0.5)  # fmt: skip
+
+    def off(chosen: WaveNumerics) -> float:
+        return 0.1 * float(getattr(chosen, setting)) ** -order
+
+    contact = SimpleNamespace(march=None, strike=STRIKE)
+    runs: Any = SimpleNamespace(
+        follow=lambda chosen: SimpleNamespace(contacts=[contact]),
+        curve=lambda number, chosen: made_up(STEPS, lambda share: np.full_like(share, off(chosen))),
+        cheap=80,
+    )
+    monkeypatch.setattr(certify_waves, "curve_of", lambda *_: None)
+    monkeypatch.setattr(certify_waves, "reading", lambda *_: None)
+    bar = certify_waves._judged(runs, 0, numerics)[1][cause][0].errors["peak_force"]
+    assert SAFETY <= bar / off(numerics) < 1.2 * SAFETY
+
+
+def test_what_no_run_tells_makes_no_bar() -> None:
+    """Where a variation failed nothing is known, of energies neither."""
+    nothing: Any = None
+    found = Budget(TRUTH, nothing, dict.fromkeys(CAUSES, ()) | {"mesh": (None,)}, nothing, nothing)
+    assert found.total("peak_force") == np.inf
+    assert found.energy_error("stored") == np.inf
+
+
+@pytest.mark.parametrize("separated", [True, False])
+def test_what_has_parted_presses_no_more_what_is_cut_off_does(separated: bool) -> None:
+    """A force that jumps to nothing at the end, or goes on."""
+    held = replace(made_up(STEPS, np.zeros_like), mean_force=np.ones(STEPS + 1), separated=separated)
+    np.testing.assert_allclose(held.force(np.array([-0.1, 0.5, 1.01])), [0.0, 1.0, 0.0 if separated else 1.0])
+
+
+def test_a_flight_follows_from_the_speed_and_the_depth_where_bodies_part() -> None:
+    curve = replace(made_up(STEPS, np.zeros_like), strike=replace(STRIKE, gravity=9.81))
+    time, depth, velocity, *_ = _flight(curve, 1.2)
+    since = time - 1.0
+    np.testing.assert_allclose(velocity, 9.81 * since - curve.leaving_speed)
+    np.testing.assert_allclose(depth, curve.depth[-1] - curve.leaving_speed * since + 0.5 * 9.81 * since**2, atol=1e-9)
+
+
+@pytest.mark.parametrize("rows", [2, 40])
+def test_the_squared_radius_is_told_at_shares_of_any_contact(rows: int) -> None:
+    """a^2 = t (T - t) of a contact of a millisecond, also where its path turns before there are three radii."""
+    end = 1e-3
+    time = end * np.linspace(0.0, 1.0, 2 * rows + 1)[1:]
+    depth = time * (end - time)
+    march: Any = SimpleNamespace(time=np.append(0.0, time), depth=np.append(0.0, depth), separated=True,
+                                 radius=np.sqrt(depth), radius_time=time)  # fmt: skip
+    shares, squares = squared_radius(march)
+    assert shares[0] == 0.0
+    assert shares[-1] == 1.0
+    assert np.all(np.diff(shares) >= 0.0)
+    np.testing.assert_allclose(squares, end**2 * shares * (1.0 - shares), atol=1e-3 * end**2)

@@ -56,6 +56,13 @@ def quantities(case: Scene, tolerance: float) -> dict[str, float]:
     return {name: quantity.value for name, quantity in result.quantities.items()}
 
 
+@pytest.mark.parametrize("alpha", [1.2, 1.5, 2.5])
+def test_a_force_that_is_steep_where_contact_begins_and_ends_takes_few_steps(alpha: float) -> None:
+    """There steps run in a root of the time in which the motion is smooth: else they are many."""
+    case = scene("hertz", alpha=alpha)
+    assert laws.hertz.of(case).simulate(case, 1e-3).work["steps"] < 50.0 / alpha
+
+
 def test_every_law_has_its_case() -> None:
     assert set(OWN) == set(NAMES)
     assert set(laws.available()) >= OF_GEOMETRY
