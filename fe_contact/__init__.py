@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from lumped import Fit, History, Result, Scene
     from lumped.indentation import Indentation
     from lumped.result.score import Curve
+    from lumped.schema import Table
 
 __all__ = ["compare", "fit", "indent", "plot", "run", "sweep", "table1", "tradeoff", "transfer", "validate"]
 __version__ = "0.1.0"
@@ -86,9 +87,10 @@ def indent(
     from lumped.scene.indenter import Indenter
     from lumped.scene.tables import load_indenter
 
+    table: Table = {}
     if isinstance(scene, Scene):
         shape, target, material, striker = vars(scene.geometry).values()
-        indenter, table = Indenter(shape, material, target, striker, scene.model, scene.name, scene.source), {}
+        indenter = Indenter(shape, material, target, striker, scene.model, scene.name, scene.source)
     else:
         indenter, table = load_indenter(Indenter, scene)
     return press(indenter, tuple(depths), settings(table, tolerance, indenter.source), instant)
@@ -215,13 +217,17 @@ def plot(found: object, out: str | Path) -> tuple[Path, ...]:
     """
     from pathlib import Path
 
-    from fe_contact.studies.compare.chart import Comparison, plot_comparison
-    from fe_contact.studies.history_chart import Result, plot_history
-    from fe_contact.studies.sweep.chart import SweepTable, plot_sweep
+    from fe_contact.studies.compare.chart import plot_comparison
+    from fe_contact.studies.compare.study import Comparison
+    from fe_contact.studies.history_chart import plot_history
+    from fe_contact.studies.sweep.chart import plot_sweep
+    from fe_contact.studies.sweep.table import SweepTable
     from fe_contact.studies.table1.chart import plot_table1
-    from fe_contact.studies.tradeoff.chart import Tradeoff, plot_tradeoff
-    from fe_contact.studies.transfer.chart import TransferStudy, plot_transfer
-    from lumped import BadInput, Fault
+    from fe_contact.studies.tradeoff.chart import plot_tradeoff
+    from fe_contact.studies.tradeoff.study import Tradeoff
+    from fe_contact.studies.transfer.chart import plot_transfer
+    from fe_contact.studies.transfer.study import TransferStudy
+    from lumped import BadInput, Fault, Result
 
     charts: Mapping[type, Callable[..., tuple[Path, ...]]] = {
         Result: plot_history,
@@ -238,7 +244,7 @@ def plot(found: object, out: str | Path) -> tuple[Path, ...]:
     return charts[type(found)](found, Path(out))
 
 
-def _read(scene: Scene | str | Path) -> tuple[Scene, Mapping[str, Any]]:
+def _read(scene: Scene | str | Path) -> tuple[Scene, Table]:
     """A scene, and the settings of its file. Raises BadInput."""
     from lumped import Scene
     from lumped.scene.tables import load

@@ -110,13 +110,15 @@ def places(table: Table) -> Iterator[tuple[Table, str]]:
 
 
 def mutant(rng: random.Random) -> tuple[str, Table]:
-    """A packaged scene with one key misspelt, left out, or of another value."""
+    """A packaged scene with one key misspelt, left out, or of another value, near or far."""
     table = tomllib.loads(SCENES.path(rng.choice(SCENES.names)).read_text(encoding="utf-8"))
     inside, key = rng.choice(list(places(table)))
-    change = rng.choice(("misspelt", "left out", "other", "other"))
+    change = rng.choice(("misspelt", "left out", "other", "nearby"))
     value = inside.pop(key)
     if change == "misspelt":
         inside[key[:-1] + "qx"] = value
+    elif change == "nearby":
+        inside[key] = 1.01 * value if isinstance(value, float) else value
     elif change == "other":
         inside[key] = rng.choice(OTHERS)
     return f"{key} {change}", table

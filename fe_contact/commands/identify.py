@@ -157,9 +157,9 @@ def _check_written(path: Path | None) -> None:
 
 
 def _write_scene(path: Path, found: Identified) -> None:
-    """The scene file with the values found. Raises BadInput."""
+    """The scene file with the values found, which is called as the file is. Raises BadInput."""
     try:
-        path.write_text(toml_text(found.table), encoding="utf-8")
+        path.write_text(toml_text({**found.table, "name": path.stem}), encoding="utf-8")
     except OSError as failure:
         raise BadInput(Fault(WRITE, str(path), f"cannot be written: {failure.strerror}")) from failure
 

@@ -178,6 +178,7 @@ ENTRY: Mapping[str, tuple[Table, str]] = {
     "estimate": (NUMBER, "its effect over the peak force; null where unknown"),
     "note": (TEXT, "what the estimate rests on"),
     "key": (TEXT, "of the scene file, which selects the larger model; empty where there is none"),
+    "value": ({"type": ["boolean", "number", "string", "null"]}, "of this key: what selects the larger model"),
     "spread": ({"type": ["array", "null"], "items": {"type": "number"}}, "lowest and highest, where the scene is open"),
     "verdict": ({**TEXT, "pattern": f"^({'|'.join(VERDICTS)})"}, "whether it may be left out at this tolerance"),
 }
@@ -220,7 +221,7 @@ def result() -> Table:
     }
     exact = {
         "quantities": _whole(quantity),
-        "model_ledger": {"type": "array", "items": _told(ENTRY, tuple(ENTRY))},
+        "model_ledger": {"type": "array", "items": _told(ENTRY, (*(name for name in ENTRY if name != "value"),))},
         "energy": _whole(dict.fromkeys(ENERGY_TERMS, NUMBER)),
     }
     return _told({name: (exact.get(name, kind), says) for name, (kind, says) in RESULT.items()}, ALWAYS)

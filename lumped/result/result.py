@@ -236,7 +236,7 @@ class Result:
             "tolerance": self.tolerance,
             "message": self.message,
             "scene": self.scene.to_dict(),
-            "model": vars(self.model),
+            "model": self.model.resolved(self.scene.material),
             "numerics": self.numerics,
             "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
             "dimensionless": groups(self.scene, values, self.history),
@@ -289,7 +289,7 @@ def write_failure(directory: Path, scene: Scene, method: str, message: str) -> N
         "model_sufficient": None,
         "message": message,
         "scene": scene.to_dict(),
-        "model": vars(scene.model),
+        "model": scene.model.resolved(scene.material),
         "quantities": {name: {"value": None, "error": None, "unit": unit} for name, unit in UNITS.items()},
         "provenance": provenance(),
     }
