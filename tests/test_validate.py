@@ -202,12 +202,18 @@ def test_an_exact_answer_and_a_published_one_are_found_for_a_packaged_scene() ->
     assert all(move.agrees for move in found.published)
 
 
-@given(st.lists(st.floats(-10.0, 10.0), min_size=2, max_size=60), st.floats(1e-3, 5.0))
-def test_a_thinned_curve_misses_no_row_by_more_than_is_allowed(force: list[float], allowed: float) -> None:
-    time, column = np.arange(len(force), dtype=float), np.array(force)
-    kept = thinned(time, column, allowed)
-    assert {kept[0], kept[-1]} == {0, len(force) - 1}
-    assert np.abs(np.interp(time, time[kept], column[kept]) - column).max() <= allowed * (1.0 + 1e-12)
+PAIRS = st.lists(st.tuples(st.floats(-10.0, 10.0), st.floats(0.0, 2.0)), min_size=2, max_size=60)
+
+
+@given(PAIRS, st.floats(1e-3, 5.0))
+def test_a_thinned_curve_misses_no_row_by_more_than_is_allowed(
+    pairs: list[tuple[float, float]], allowed: float
+) -> None:
+    time, columns = np.arange(len(pairs), dtype=float), np.array(pairs).T
+    kept = thinned(time, columns, allowed)
+    assert {kept[0], kept[-1]} == {0, len(pairs) - 1}
+    for column in columns:
+        assert np.abs(np.interp(time, time[kept], column[kept]) - column).max() <= allowed * (1.0 + 1e-12)
 
 
 @given(st.floats(-1e12, 1e12), st.floats(1e-9, 1.0))

@@ -13,7 +13,10 @@ from fe_contact.assembly.forms import Array
 from fe_contact.studies import style
 
 PANELS, LEVELS, MICRO = 2.9, 8, 1e6  # look: height, in; lines of a map at most; physics: µs in a s
-SHOWN = {"restitution": (1.0, "restitution, less the exact one"), "duration": (100.0, "contact time, % too long")}
+SHOWN = {
+    "restitution": (1.0, "restitution, less the exact one"),
+    "duration": (100.0, "contact time, less the exact one, %"),
+}
 
 
 def plot_correspondence(

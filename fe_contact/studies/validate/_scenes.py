@@ -142,20 +142,23 @@ def _larger(found: Result) -> tuple[str, float | None, str]:
 
 
 def _drawn(history: History) -> SceneCurve:
-    """The fewest rows between which straight lines look the same."""
-    rows = thinned(history.time, history.force, DRAWN * float(np.abs(history.force).max()))
+    """The fewest rows between which straight lines, of the force and of its bar, look the same."""
+    columns = np.array([history.force, history.force_error])
+    rows = thinned(history.time, columns, DRAWN * float(np.abs(history.force).max()))
     return SceneCurve(history.time[rows], history.force[rows], history.force_error[rows])
 
 
-def thinned(time: Array, force: Array, allowed: float) -> list[int]:
-    """Places of the rows to keep so that straight lines between them miss no other row by more than is ``allowed``."""
+def thinned(time: Array, columns: Array, allowed: float) -> list[int]:
+    """Places of the rows to keep of columns (k, n) over time (n,) so that straight lines between them miss no other row
+    by more than is ``allowed``.
+    """
     kept, left = {0, time.size - 1}, [(0, time.size - 1)]
     while left:
         first, last = left.pop()
-        inside = slice(first + 1, last)
-        width = time[last] - time[first]
+        inside, width = slice(first + 1, last), time[last] - time[first]
         share = (time[inside] - time[first]) / width if width > 0.0 else np.zeros(last - first - 1)
-        off = np.abs(force[inside] - (force[first] + share * (force[last] - force[first])))
+        start, end = columns[:, first, None], columns[:, last, None]
+        off = np.abs(columns[:, inside] - (start + share * (end - start))).max(axis=0)
         if off.size and off.max() > allowed:
             most = first + 1 + int(off.argmax())
             kept.add(most)

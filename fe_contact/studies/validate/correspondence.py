@@ -40,6 +40,7 @@ STIFFER, SLOWER = (0.1, 10.0), (1e-7, 1e-3)
 POINTS, FEW_POINTS = (15, 25), (7, 11)  # of the map; of a quick one
 PLACES, FEW_PLACES = (4, 5), (2, 3)  # at which finite elements are asked
 LAW_TOLERANCE, TOLERANCE = 1e-5, 1e-3  # of the laws; of finite elements
+MICRO = 1e6  # physics: µs in a s
 HELD = ("peak_force", "peak_depth", "duration", "restitution", "impulse")
 
 
@@ -71,7 +72,7 @@ class CorrespondenceMap:
 
     def place(self, table: SweepTable, case: int) -> str:
         """A case in words."""
-        return f"R1 = {table.numbers[R1][case]:.3g}, R2 = {table.numbers[R2][case]:.3g} s"
+        return f"R1 = {table.numbers[R1][case]:.3g}, R2 = {MICRO * table.numbers[R2][case]:.3g} µs"
 
 
 def _column(name: str) -> int:
@@ -124,6 +125,9 @@ def sentences(found: CorrespondenceMap) -> list[str]:
     for name in ("peak_force", "duration", "restitution"):
         off = found.off(name)
         case = int(np.nanargmax(np.abs(off)))
+        if abs(off[case]) <= LAW_TOLERANCE:
+            said.append(f"{name.replace('_', ' ')}: as the exact law has it, everywhere")
+            continue
         size = f"{off[case]:+.2g}" if name == "restitution" else f"{100.0 * off[case]:+.2g} %"
         said.append(f"{name.replace('_', ' ')}: {size} at worst, at {found.place(found.laws, case)}")
     return said

@@ -211,6 +211,6 @@
     for (const button of all(box, ".gallery button")) button.addEventListener("click", () => choose(button.dataset.scene));
     select.addEventListener("change", () => choose(select.value));
     new ResizeObserver(() => draw()).observe(plot);
-    choose(Object.keys(scenes).find(name => scenes[name].exact) ?? select.value);
+    choose(box.dataset.start in scenes ? box.dataset.start : select.value);
   }
 })();
