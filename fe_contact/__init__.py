@@ -18,12 +18,13 @@ if TYPE_CHECKING:
     from fe_contact.studies.table1.study import Trial
     from fe_contact.studies.tradeoff.study import Tradeoff
     from fe_contact.studies.transfer.study import TransferStudy
+    from fe_contact.studies.validate.base import Report
     from lumped import Fit, History, Result, Scene
     from lumped.indentation import Indentation
     from lumped.result.score import Curve
     from lumped.schema import Table
 
-__all__ = ["compare", "fit", "indent", "plot", "run", "sweep", "table1", "tradeoff", "transfer"]
+__all__ = ["compare", "fit", "indent", "plot", "run", "sweep", "table1", "tradeoff", "transfer", "validate"]
 __version__ = "0.1.0"
 
 
@@ -334,3 +335,35 @@ def transfer(
     known, table = _read(scene)
     with one_thread:
         return run_transfer(known.changed, settings(table, tolerance, known.source), asked)
+
+
+def validate(
+    out: str | Path, quick: bool = False, jobs: int = 2, resume: bool = False, sections: Sequence[str] = ()
+) -> Report:
+    """Everything on the packaged scenes, in one report: ``index.html`` in the folder ``out``.
+
+    Parameters
+    ----------
+    out : folder of the page, with a folder a section beside it.
+    quick : fewer places, settings and scenes: minutes instead of a quarter of an hour.
+    jobs : processes that answer, 1 for this one; more are as for :func:`sweep`.
+    resume : take sections that ``out`` holds of this suite, and make the others alone.
+    sections : names of the sections to make; none: all.
+
+    Returns
+    -------
+    Report: ``headlines``, each a ``word`` (``verified`` only of what was held against an exact answer) and a ``text``;
+    ``told``, section by section, with its ``failure`` where it has none; ``missed``, empty where all was reached.
+
+    Raises
+    ------
+    BadInput for an unknown section, CannotWrite. A section that fails with a name is shown as failed.
+    """
+    from pathlib import Path
+
+    from fe_contact.studies.validate._study import validate as run_validate
+    from fe_contact.studies.workers import checked_jobs
+    from fe_contact.threads import one_thread
+
+    with one_thread:
+        return run_validate(Path(out), quick, checked_jobs(jobs), resume, sections)

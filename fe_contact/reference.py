@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
 
 import numpy as np
 
+from fe_contact import large_strains
 from fe_contact.assembly.forms import check_compressible
 from fe_contact.budget import plan as statics
 from fe_contact.budget.budget import CAUSES, Solution, shares_of
@@ -72,6 +73,8 @@ Solved = SolvedBy[Certified]  # without waves
 
 def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
     """Force history of a scene by finite elements, with waves or without, and error bars; see :func:`solve`."""
+    if scene.model.finite:
+        return large_strains.fe(scene, given, progress)
     if not scene.model.inertia:
         check_target(scene)
         solved = _solved(scene, given, progress, Statics.of)
@@ -190,6 +193,9 @@ def _too_dear(certified: Certified, finer: Numerics) -> str:
 def expected(scene: Scene, given: Given) -> tuple[float, float]:
     """Tolerance, and processor time, s, about, of :func:`fe` once packages are loaded. Raises NotReached, BadInput."""
     with faults_of(scene):
+        if scene.model.finite:
+            large_strains.check_impact(scene)
+            return float(given.get("tolerance", DEFAULT_TOLERANCE)), large_strains.SECONDS
         if scene.model.inertia:
             target, chosen = with_waves(scene), plan(scene, given).numerics
             assert isinstance(chosen, WaveNumerics)
@@ -204,6 +210,9 @@ def check_target(scene: Scene) -> None:
     """Raise BadInput for a target which no impact is marched on, and for waves, which are marched elsewhere."""
     geometry = scene.geometry
     check_compressible(scene)
+    if scene.model.finite:
+        reason = "finite: this command is for small displacements in this version; accepted: small, or fe-contact run"
+        raise BadInput(Fault(scene.source, "model.kinematics", reason))
     if scene.model.inertia:
         reason = "true: this command is without waves in this version; accepted: false, or fe-contact run"
         raise BadInput(Fault(scene.source, "model.inertia", reason))

@@ -26,6 +26,7 @@ MESHES = STANDARD | {"meshes", "numpy", "scipy", "skfem", "meshio", "gmsh"}
 ONE_IMPORTER = {
     "distributed": "fe_contact/studies/workers.py",
     "gmsh": "meshes/session.py",
+    "jinja2": "fe_contact/studies/validate/_page.py",
     "markdown": "fe_contact/manual/site.py",
     "pandas": "lumped/result/history.py",
     "pyarrow": "fe_contact/studies/sweep/table.py",
@@ -134,8 +135,9 @@ ROOMS = {  # lowest first
         "restitution fit identify ptmd pounding paper __init__"
     ),
     "fe_contact": (
-        "errors settings progress threads assembly contact schemes dynamics bodies steppers march targets budget "
-        "indentation fields recovery waves reference methods studies manual commands cli __main__ __init__"
+        "errors settings progress threads assembly contact schemes dynamics bodies steppers march targets solids "
+        "budget indentation fields recovery waves large_strains reference methods studies manual commands cli "
+        "__main__ __init__"
     ),
 }
 FILES_AT_A_ROOT = 14

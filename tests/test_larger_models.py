@@ -22,7 +22,7 @@ def test_what_is_measured_is_what_an_exact_law_finds() -> None:
     answers = [simulate(laws.get("ting").of(one), one, 1e-5) for one in (scene, scene.changed(BULK))]
     peaks = [answer.quantities["peak_force"].value or math.nan for answer in answers]
     (found,) = measure(scene, {"tolerance": 1e-2})
-    assert found.key == "target.material.constant"
+    assert found.setting == "target.material.constant=bulk"
     assert found.change is not None
     assert found.error is not None
     assert abs(found.change - (peaks[1] / peaks[0] - 1.0)) <= found.error < 0.05 * abs(found.change)
@@ -68,5 +68,5 @@ def test_run_says_which_effects_it_takes_in(tmp_path: Path, capsys: pytest.Captu
 def test_plan_measures_where_asked(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plan", "polymer-sphere", "--tolerance", "1e-2", "--measure", "--json"]) == 0
     (found,) = json.loads(capsys.readouterr().out)["measured"]
-    assert found["key"] == "target.material.constant"
+    assert found["setting"] == "target.material.constant=bulk"
     assert -found["estimate"] < found["change"] < 0.0

@@ -14,8 +14,8 @@ import pytest
 
 import fe_contact
 from fe_contact.cli import main
+from fe_contact.studies.pound.calibration import calibrated_study
 from fe_contact.studies.pound.chart import plot_study
-from fe_contact.studies.pound.study import calibrated_study
 from lumped import Scene, laws, simulate
 from lumped.errors import BadInput
 from lumped.laws._power_law import PowerLaw

@@ -44,6 +44,8 @@ def _indented(args: argparse.Namespace, indenter: Indenter, depths: tuple[float,
     from lumped.indentation import indent as closed_form
 
     tolerance = given.get("tolerance", DEFAULT_TOLERANCE)
+    if args.method == "cheapest" and indenter.model.finite:
+        return by_elements(indenter, depths, given, args.instant, progress)
     if args.method != "cheapest":
         return closed_form(indenter, depths, args.method, args.instant, tolerance)
     try:

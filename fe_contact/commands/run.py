@@ -47,7 +47,7 @@ def _modelled(args: argparse.Namespace, scene: Scene, table: Table) -> tuple[Sce
 def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path, taken: list[str]) -> int:
     from fe_contact.methods import settings, simulate
 
-    if args.method == "fe" and not scene.model.inertia:
+    if args.method == "fe" and not scene.model.inertia and not scene.model.finite:
         from fe_contact.reference import result_of, solve
 
         solved = solve(scene, settings(table, None, scene.source), base.progress_of(args))
@@ -85,6 +85,10 @@ def _check(args: argparse.Namespace, scene: Scene) -> None:
         raise BadInput(Fault("--fields", "", "only with --method fe"))
     from fe_contact.fields import check_fields
     from fe_contact.reference import with_waves
+
+    if scene.model.finite:
+        reason = "finite: no fields of large strains in this version; accepted with --fields: small"
+        raise BadInput(Fault(scene.source, "model.kinematics", reason))
 
     if scene.model.inertia and (with_waves(scene).write_fields is None or scene.striker_material is not None):
         reason = f"{scene.target.name}: accepted with --fields and model.inertia: half_space, its striker rigid"

@@ -31,8 +31,7 @@ class MeasuredEffect:
     """
 
     effect: str
-    key: str
-    value: bool | float | str | None
+    setting: str
     estimate: float | None
     change: float | None = None
     error: float | None = None
@@ -42,8 +41,7 @@ class MeasuredEffect:
         estimate = "none" if self.estimate is None else f"{self.estimate:.2g}"
         if self.change is None or self.error is None:
             return f"{self.effect}: estimate {estimate} | not measured: {self.reason}"
-        with_key = setting(self.key, self.value)
-        return f"{self.effect} ({with_key}): estimate {estimate} | measured {self.change:+.2g} +- {self.error:.1g}"
+        return f"{self.effect} ({self.setting}): estimate {estimate} | measured {self.change:+.2g} +- {self.error:.1g}"
 
     def to_json(self) -> Table:
         """Its fields."""
@@ -62,16 +60,9 @@ class SufficientModel:
     left: Mapping[str, str] = field(default_factory=dict)
 
     def __str__(self) -> str:
-        took = [
-            f"{entry.effect} ({setting(entry.key, entry.value)}), estimated {entry.size:.2g}" for entry in self.taken
-        ]
+        took = [f"{entry.effect} ({entry.setting}), estimated {entry.size:.2g}" for entry in self.taken]
         said = f"the model takes in {', '.join(took)}" if took else "the model is the scene's own"
         return "; ".join([said, *(f"{effect} is left out: {reason}" for effect, reason in self.left.items())])
-
-
-def setting(key: str, value: bool | float | str | None) -> str:
-    """As --set takes it."""
-    return f"{key}={str(value).lower() if isinstance(value, bool) else value}"
 
 
 def above(ledger: Sequence[LedgerEntry], tolerance: float) -> list[LedgerEntry]:
@@ -102,7 +93,7 @@ def _tolerance_of(entry: LedgerEntry) -> float:
 
 def _measured(scene: Scene, entry: LedgerEntry, own: Result) -> MeasuredEffect:
     """By the larger model, with settings of its own."""
-    without = MeasuredEffect(entry.effect, entry.key, entry.value, entry.estimate)
+    without = MeasuredEffect(entry.effect, entry.setting, entry.estimate)
     try:
         larger = fe(scene.changed({entry.key: entry.value}), {"tolerance": _tolerance_of(entry)})
         change, error = change_of(own.quantities["peak_force"], larger.quantities["peak_force"])

@@ -98,7 +98,9 @@ def check(scene: Scene, name: str) -> None:
 
 
 def waves(scene: Scene) -> str:
-    """What a law without inertia leaves out of a scene: the waves in its bodies, where they have any."""
+    """What a law of small displacements without inertia leaves out of a scene, where that has any of it."""
+    if scene.model.finite:
+        return "large strains, which model.kinematics asks for"
     return "waves in the bodies, which have inertia here" if scene.model.inertia else ""
 
 

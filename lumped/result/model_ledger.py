@@ -9,6 +9,8 @@ from dataclasses import dataclass, replace
 from numpy.polynomial import Polynomial
 
 from lumped.errors import FeContactError
+from lumped.materials import Material
+from lumped.materials.energies.base import energy_of
 from lumped.materials.radiation import Pulse
 from lumped.result.history import History
 from lumped.result.result import LedgerEntry, Quantity, percent
@@ -20,12 +22,14 @@ from lumped.targets.base import Target
 from lumped.targets.rod import Rod
 
 GRAVITY = 9.81  # physics: m/s2
+LARGE = "model.kinematics"
 # c1 (1 - nu)^2, cubic in nu, of elastic energies with finite strains; tests/fe/test_finite_strain.py finds it again.
 FIRST_ORDER = {
     "St Venant-Kirchhoff": Polynomial([-0.106722, -0.244066, 0.549732, -0.354504]),
     "neo-Hooke": Polynomial([0.247781, -0.830110, 0.390577, 0.426889]),
     "Hencky": Polynomial([0.425033, -1.477636, 1.302120, -0.093957]),
 }
+ENERGY_NAMES = {"st_venant_kirchhoff": "St Venant-Kirchhoff", "neo_hooke": "neo-Hooke", "hencky": "Hencky"}
 # By how much less a rod's end comes in than a half-space, its uniform shortening apart, over F/(E* b), b the rod's
 # radius: 0.61 at nu = -0.5 to 0.66 at 0.5; tests/fe/test_rod_end.py finds it again.
 ROD_END = 0.65
@@ -68,7 +72,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
     entries = [
         inertia(scene, resolved, peak),
         profile(scene.geometry.shape, resolved, peak),
-        finite_strain(scene.geometry.material.nu, height, peak, IN_AN_IMPACT),
+        strained_much(scene.geometry.material, resolved, height, peak, IN_AN_IMPACT),
         sideways(scene, peak),
         series(scene, peak),
         striker(scene),
@@ -86,7 +90,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
 def ledger_at_rest(indenter: Indenter, peak: Peak) -> tuple[LedgerEntry, ...]:
     """The same of a slow indentation at its deepest, which has neither inertia nor time."""
     shape, target, nu = indenter.shape, indenter.target, indenter.material.nu
-    entries = [finite_strain(nu, target.pressed_height(shape), peak)]
+    entries = [strained_much(indenter.material, indenter.model, target.pressed_height(shape), peak)]
     if target.fixed_radius(shape) is None:
         entries.append(profile(shape, indenter.model, peak))
     return (*entries, ends(shape, target, nu)) if shape.plane else tuple(entries)
@@ -134,22 +138,38 @@ def profile(shape: Shape, model: Model, peak: Peak) -> LedgerEntry:
     return LedgerEntry(effect, "parabola", abs(parabola / exact - 1.0), key="model.profile", value="exact")
 
 
-def finite_strain(nu: float, height: float | None, peak: Peak, share: float = 1.0) -> LedgerEntry:
+def strained_much(
+    material: Material, model: Model, height: float | None, peak: Peak, share: float = 1.0
+) -> LedgerEntry:
+    """Included, by the energy of the material, or what :func:`finite_strain` estimates of it."""
+    if not model.finite:
+        return finite_strain(material.nu, height, peak, share, material.hyperelastic)
+    return LedgerEntry("finite strain", f"included: W = {energy_of(material.hyperelastic).formula}", 0.0)
+
+
+def finite_strain(
+    nu: float, height: float | None, peak: Peak, share: float = 1.0, energy: str | None = None
+) -> LedgerEntry:
     """From small displacements to large ones a sphere's force at a depth becomes F (1 + c1 depth/a) to first order.
 
     c1 is the work of the cubic terms of an elastic energy, and of the profile met by a surface that moves inward, in
     Hertz's field: energies with the same E and nu differ in it, in sign too. Other profiles count with their own
     depth/a; what is flattened as a whole by the share of the depth in its `height`, m, where that is more. In an
-    impact the work is given and the depth gives way: a `share` of it.
+    impact the work is given and the depth gives way: a `share` of it. One `energy` alone, where it is known.
     """
-    found = {name: share * peak.steepness * float(at(nu)) / (1.0 - nu) ** 2 for name, at in FIRST_ORDER.items()}
+    effect, named = "finite strain", ENERGY_NAMES.get(energy or "")
+    known = {name: at for name, at in FIRST_ORDER.items() if named in (None, name)}
+    found = {name: share * peak.steepness * float(at(nu)) / (1.0 - nu) ** 2 for name, at in known.items()}
     lowest, highest = (of(found, key=lambda name: found[name]) for of in (min, max))
     spread, note = (found[lowest], found[highest]), f"{lowest} to {highest}: the scene gives no law of large strains"
-    effect, treated, sizes = "finite strain", "small displacements", [abs(change) for change in spread]
+    treated, sizes = "small displacements", [abs(change) for change in spread]
     if height is not None and peak.depth > max(sizes) * height:
-        return LedgerEntry(effect, treated, peak.depth / height, "order of magnitude: depth over what is pressed")
+        note = "order of magnitude: depth over what is pressed"
+        return LedgerEntry(effect, treated, peak.depth / height, note, key=LARGE, value="finite")
+    if named is not None:
+        return LedgerEntry(effect, treated, sizes[0], f"{named}, to first order in depth/a", key=LARGE, value="finite")
     least = min(sizes) if spread[0] * spread[1] > 0.0 else None
-    return LedgerEntry(effect, treated, least, note, spread=spread)
+    return LedgerEntry(effect, treated, least, note, LARGE, spread, "finite")
 
 
 def of_dent(scene: Scene, peak: Peak) -> Peak:

@@ -133,12 +133,16 @@ class LedgerEntry:
         return f"{ABOVE}: {self.key or NO_KEY}" if self.exceeds(tolerance) else f"{OPEN}: {self.note}"
 
     @property
+    def setting(self) -> str:
+        """The key with its value, as --set takes it."""
+        return f"{self.key}={str(self.value).lower() if isinstance(self.value, bool) else self.value}"
+
+    @property
     def cure(self) -> str:
         """How a run includes it, in words; that nothing does where there is no larger model."""
         if not self.key:
             return NO_KEY
-        value = str(self.value).lower() if isinstance(self.value, bool) else self.value
-        return f"to include it: --set {self.key}={value}"
+        return f"to include it: --set {self.setting}"
 
     @property
     def sentence(self) -> str:
@@ -232,7 +236,7 @@ class Result:
             "tolerance": self.tolerance,
             "message": self.message,
             "scene": self.scene.to_dict(),
-            "model": vars(self.model),
+            "model": self.model.resolved(self.scene.material),
             "numerics": self.numerics,
             "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
             "dimensionless": groups(self.scene, values, self.history),
@@ -285,7 +289,7 @@ def write_failure(directory: Path, scene: Scene, method: str, message: str) -> N
         "model_sufficient": None,
         "message": message,
         "scene": scene.to_dict(),
-        "model": vars(scene.model),
+        "model": scene.model.resolved(scene.material),
         "quantities": {name: {"value": None, "error": None, "unit": unit} for name, unit in UNITS.items()},
         "provenance": provenance(),
     }

@@ -15,6 +15,7 @@ from typing import Annotated, ClassVar, Protocol, TypeVar
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
+from lumped.materials.energies.base import energy_of
 from lumped.materials.networks import NETWORKS
 from lumped.schema import Table
 from lumped.schema.files import SCENES, overridden, parsed
@@ -42,6 +43,7 @@ LAWS = Folder[Described]("lumped.laws", source="law")  # they know scenes: here 
 LEAST_MASS = 1e-21  # safety: kg, the lightest body that is accepted
 END_IN_CONTACT_TIMES = 50.0  # work: default end of the motion for each contact, in elastic contact times
 DIRECTIONS = ("unsaid", "down", "horizontal")
+KINEMATICS = ("small", "finite")
 MASS = Key(Number(0.0, 1e12, "kg"), "mass of the striker")
 SPEED = Number(1e-9, 1e5, "m/s")
 VELOCITY = Key(SPEED, "velocity of the striker at first touch")
@@ -63,7 +65,18 @@ class Model(Record):
     profile: Annotated[str, Key(Choice(("exact", "parabola")), "the striker's profile")] = "exact"
     gravity: Annotated[float, Key(Number(-1e6, 1e6, "m/s2"), "gravity along the motion")] = 0.0
     direction: Annotated[str, Key(Choice(DIRECTIONS), "where the motion leads")] = DIRECTIONS[0]
+    kinematics: Annotated[str, Key(Choice(KINEMATICS), "how large displacements and strains may be")] = KINEMATICS[0]
     name: ClassVar[str] = "model"
+
+    @property
+    def finite(self) -> bool:
+        """Whether displacements and strains may be large."""
+        return self.kinematics == "finite"
+
+    def resolved(self, material: Material | None) -> Table:
+        """What a record says of it: its keys, and the elastic energy of a material that is strained much."""
+        energy = {"energy": energy_of(material.hyperelastic).formula} if self.finite and material is not None else {}
+        return vars(self) | energy
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,174 @@
+"""Mesh and material's response -> energy, nodal forces, consistent tangent; the pattern of the matrix is made once.
+
+A body's core answers by its material's response, the rest of it, where strains are small, by the linear stiffness
+which the response has at rest: eliminated once, it is a dense matrix between the nodes on the core's rim.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sparse
+
+from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, vector_dofs
+from fe_contact.assembly.interior import factorized
+from fe_contact.solids.base import AXIAL, RADIAL, PointAnswer, Response, State
+
+NOISE = 1e-11  # rounding: of an entry of a stiffness of which all has been taken away
+
+
+@dataclass(frozen=True, eq=False)
+class Bulk:
+    """Elements as material points.
+
+    ``slopes`` (3, elements, points, n): d/dr, d/dz and 1/r (0 in plane strain) of the n scalar shape functions;
+    ``weight`` (elements, points) volume of every point; ``dofs`` (elements, 2 n) of ``size`` of the whole mesh.
+    """
+
+    slopes: Array
+    weight: Array
+    dofs: Indices
+    size: int
+
+    @classmethod
+    def of(cls, basis: Basis, plane: bool, elements: Indices) -> Bulk:
+        """Some elements of a scalar basis, axisymmetric or, of both halves, in plane strain."""
+        radius = np.asarray(basis.global_coordinates())[0]
+        gradient = np.stack([np.asarray(shape[0].grad) for shape in basis.basis], axis=-1)
+        value = np.stack([np.broadcast_to(np.asarray(shape[0]), radius.shape) for shape in basis.basis], axis=-1)
+        hoop = np.zeros_like(value) if plane else value / radius[:, :, None]
+        slopes = np.concatenate([gradient, hoop[None]])[:, elements]
+        weight = np.asarray(basis.dx) * (2.0 if plane else 2.0 * np.pi * radius)
+        return cls(slopes, weight[elements], vector_dofs(basis.element_dofs)[elements], 2 * int(basis.N))
+
+    def gradient(self, displacement: Array) -> Array:
+        """Of a displacement (2 N,), (5, elements, points)."""
+        local = displacement[self.dofs]
+        radial = np.matmul(self.slopes, local[:, 0::2, None])[..., 0]
+        axial = np.matmul(self.slopes[:2], local[:, 1::2, None])[..., 0]
+        return np.stack([radial[0], radial[1], axial[0], axial[1], radial[2]])
+
+    def answered(self, displacement: Array, response: Response, state: State = ()) -> Loaded:
+        """What the material answers to a displacement (2 N,) after ``state``."""
+        return Loaded(self, response.respond(self.gradient(displacement), state))
+
+
+@dataclass(frozen=True, eq=False)
+class Loaded:
+    """A bulk under a displacement."""
+
+    bulk: Bulk
+    answer: PointAnswer
+
+    @cached_property
+    def energy(self) -> float:
+        """Of all points, J (per length in plane strain); infinite where the material cannot be."""
+        return float(np.vdot(self.bulk.weight, self.answer.energy))
+
+    @cached_property
+    def forces(self) -> Array:
+        """Nodal forces (2 N,): derivative of the energy."""
+        slopes, stress = self.bulk.slopes, self.answer.stress * self.bulk.weight
+        local = np.empty((*self.bulk.dofs.shape,))
+        for start, rows in ((0, RADIAL), (1, AXIAL)):
+            parts = [np.matmul(stress[row][:, None], slopes[k])[:, 0] for k, row in enumerate(rows)]
+            local[:, start::2] = np.sum(parts, axis=0)
+        return np.asarray(np.bincount(self.bulk.dofs.ravel(), local.ravel(), self.bulk.size), dtype=float)
+
+    def matrices(self) -> Array:
+        """Consistent tangent of every element, (elements, 2 n, 2 n)."""
+        tangent, slopes = self.answer.tangent * self.bulk.weight, self.bulk.slopes
+        elements, points, functions = slopes.shape[1:]
+        local = np.empty((elements, 2 * functions, 2 * functions))
+        for (i, rows), (j, columns) in (
+            ((0, RADIAL), (0, RADIAL)),
+            ((0, RADIAL), (1, AXIAL)),
+            ((1, AXIAL), (1, AXIAL)),
+        ):
+            pushed = np.empty((elements, len(rows), points, functions))
+            for k, row in enumerate(rows):
+                terms = (tangent[row, column][:, :, None] * slopes[m] for m, column in enumerate(columns))
+                pushed[:, k] = sum(terms)
+            tested = slopes[: len(rows)].transpose(1, 3, 0, 2).reshape(elements, functions, -1)
+            local[:, i::2, j::2] = np.matmul(tested, pushed.reshape(elements, -1, functions))
+        local[:, 1::2, 0::2] = local[:, 0::2, 1::2].transpose(0, 2, 1)
+        return local
+
+
+@dataclass(frozen=True, eq=False)
+class Pattern:
+    """Where blocks of entries stand in a sparse matrix of the free degrees of freedom.
+
+    ``places`` of all entries of all blocks, one after the other; the last place takes those of held ones.
+    """
+
+    places: Indices
+    indices: npt.NDArray[np.int32]
+    pointers: npt.NDArray[np.int32]
+
+    @classmethod
+    def of(cls, blocks: Sequence[Indices], free: Indices, size: int) -> Pattern:
+        """Of square blocks, each (m, k) degrees of freedom of ``size``; ``free`` of all that are not held."""
+        number = np.full(size, -1)
+        number[free] = np.arange(free.size)
+        keys = [_keys(number[block], free.size) for block in blocks]
+        found, places = np.unique(np.concatenate(keys), return_inverse=True)
+        entries = found[found < free.size**2]
+        pointers = np.searchsorted(entries, free.size * np.arange(free.size + 1))
+        return cls(places, (entries % free.size).astype(np.int32), pointers.astype(np.int32))
+
+    def matrix(self, blocks: Sequence[Array]) -> Matrix:
+        """The sum of blocks (m, k, k) as a sparse matrix, (free, free)."""
+        values = np.concatenate([block.ravel() for block in blocks])
+        sums = np.bincount(self.places, values, minlength=self.indices.size)[: self.indices.size]
+        free = self.pointers.size - 1
+        return sparse.csc_matrix((sums, self.indices, self.pointers), shape=(free, free))
+
+
+def _keys(numbers: Indices, free: int) -> Indices:
+    """Place of every entry of square blocks in the full matrix by columns, one beyond it where one is held."""
+    rows, columns = numbers[:, :, None], numbers[:, None, :]
+    return np.asarray(np.where((rows < 0) | (columns < 0), free**2, columns * free + rows)).ravel()
+
+
+@dataclass(frozen=True, eq=False)
+class CoredBody:
+    """A ``core`` that answers by a ``response``; ``rest`` (n, n) stiffness of all else between ``rim`` nodes' (n,)
+    degrees of freedom; ``free`` those of the core that are not held.
+    """
+
+    core: Bulk
+    response: Response
+    rest: Array
+    rim: Indices
+    free: Indices
+
+    @classmethod
+    def of(cls, core: Bulk, response: Response, stiffness: Matrix, fixed: Indices, state: State = ()) -> CoredBody:
+        """Of the linear ``stiffness`` of the whole body, (2 N, 2 N), of which the core at rest is a part."""
+        at_rest = core.answered(np.zeros(core.size), response, state)
+        everything = np.arange(core.size)
+        inner = Pattern.of([core.dofs], everything, core.size).matrix([at_rest.matrices()])
+        whole = stiffness.tocsc()
+        beside = _denoised((whole - inner).tocoo(), whole.diagonal())
+        within = np.unique(core.dofs)
+        loaded = np.flatnonzero(np.diff(beside.indptr))
+        rim = np.setdiff1d(np.intersect1d(within, loaded), fixed)
+        outer = np.setdiff1d(np.setdiff1d(loaded, within), fixed)
+        rest = beside[rim][:, rim].toarray()
+        if outer.size:
+            coupling = beside[outer][:, rim]
+            rest -= coupling.T @ factorized(beside[outer][:, outer].tocsc())(coupling.toarray())
+        return cls(core, response, 0.5 * (rest + rest.T), rim, np.setdiff1d(within, fixed))
+
+
+def _denoised(difference: Matrix, diagonal: Array) -> Matrix:
+    """Without what rounding leaves of entries that have been taken away."""
+    size = np.sqrt(diagonal[difference.row] * diagonal[difference.col])
+    kept = np.abs(difference.data) > NOISE * size
+    entries = (difference.data[kept], (difference.row[kept], difference.col[kept]))
+    return sparse.csc_matrix(entries, shape=difference.shape)

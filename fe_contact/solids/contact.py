@@ -1,0 +1,168 @@
+"""A rigid profile pressed on the surface of a body by a penalty at quadrature points, without friction.
+
+Energy K/2 int <g>^2 dA over the undeformed area, g the overlap along the motion; forces and tangent are its
+derivatives, by the same quadrature as the force on the striker.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from fe_contact.assembly.forms import Array, Indices, vector_dofs
+from fe_contact.assembly.surface import FACET_POINTS, Surface, lagrange
+from lumped.shapes import Shape
+
+BEND = 1e-5  # rounding: step of the quotient that tells a profile's curvature, over the radius
+
+
+class Overlap(NamedTuple):
+    """``depth`` (...) of points within the striker, m; ``normal`` (2, ...) its derivative by their displacement (r, z);
+    ``bend`` (...) its second one by the radial displacement, the only one that is not zero, 1/m.
+    """
+
+    depth: Array
+    normal: Array
+    bend: Array
+
+
+class Obstacle(Protocol):
+    """A rigid striker above a body z <= 0."""
+
+    def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
+        """Of points at ``place`` (2, ...), displaced by ``displacement`` (2, ...), with the striker ``depth`` deep."""
+
+
+@dataclass(frozen=True)
+class OnDeformed:
+    """Heights of a ``profile``, lengths in units of ``unit`` m, where the points have come to."""
+
+    profile: Shape
+    unit: float
+
+    def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
+        """See :class:`Obstacle`."""
+        radius, height = place + displacement
+        side, within = np.sign(radius), self.unit * np.abs(radius)
+        rise, slope = self.profile.height(within) / self.unit, side * self.profile.slope(within)
+        above, below = within * (1.0 + BEND), within * (1.0 - BEND)
+        with np.errstate(invalid="ignore"):
+            bend = (self.profile.slope(above) - self.profile.slope(below)) / (2.0 * BEND * np.abs(radius))
+            return Overlap(depth + height - rise, np.stack([-slope, np.ones_like(slope)]), -bend)
+
+
+@dataclass(frozen=True)
+class OnUndeformed:
+    """The same where the points were: small displacements, along the undeformed normal."""
+
+    profile: Shape
+    unit: float
+
+    def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
+        """See :class:`Obstacle`."""
+        rise = self.profile.height(self.unit * np.abs(place[0])) / self.unit
+        normal = np.zeros_like(place)
+        normal[1] = 1.0
+        return Overlap(depth + place[1] - rise + displacement[1], normal, np.zeros_like(rise))
+
+
+@dataclass(frozen=True, eq=False)
+class Skin:
+    """The facets where contact may happen: ``place`` (2, facets, points) of their quadrature points.
+
+    ``weights`` (facets, points) undeformed area; ``trace`` (points, k) shape functions of a facet; ``dofs`` (facets,
+    2 k) of ``size`` of the whole mesh.
+    """
+
+    place: Array
+    weights: Array
+    trace: Array
+    dofs: Indices
+    size: int
+
+    @classmethod
+    def of(cls, surface: Surface, places: Array, order: int, size: int) -> Skin:
+        """Of a boundary; ``places`` (2, n_s) of its nodes. Straight facets, elements of an ``order``."""
+        corners = surface.corners(order)
+        count = corners.size - 1
+        gauss, weight = np.polynomial.legendre.leggauss(order + FACET_POINTS)
+        nodes = order * np.arange(count)[:, None] + np.arange(order + 1)
+        ends = places[:, : count * order + 1 : order]
+        share = 0.5 * (gauss + 1.0)
+        place = ends[:, :-1, None] + (ends[:, 1:] - ends[:, :-1])[:, :, None] * share
+        coordinate = corners[:-1, None] + np.diff(corners)[:, None] * share
+        weights = 0.5 * np.diff(corners)[:, None] * weight * surface.measure(coordinate)
+        return cls(place, weights, lagrange(share, order), vector_dofs(surface.dofs[nodes].T), size)
+
+    def displacement(self, whole: Array) -> Array:
+        """At the points, (2, facets, points), from that of the mesh (2 N,)."""
+        local = whole[self.dofs]
+        return np.stack([local[:, c::2] @ self.trace.T for c in (0, 1)])
+
+    def pressed(self, whole: Array, obstacle: Obstacle, depth: float, stiffness: float) -> Touch:
+        """What a striker does to the body displaced by ``whole`` (2 N,); ``stiffness`` of the penalty, Pa/m."""
+        displacement = self.displacement(whole)
+        return Touch(self, displacement, obstacle.overlap(self.place, displacement, depth), stiffness)
+
+
+@dataclass(frozen=True, eq=False)
+class Touch:
+    """A skin under a striker."""
+
+    skin: Skin
+    displacement: Array
+    overlap: Overlap
+    stiffness: float
+
+    @cached_property
+    def _pushed(self) -> Array:
+        """Force at every point, N."""
+        return np.asarray(self.stiffness * self.skin.weights * np.maximum(self.overlap.depth, 0.0))
+
+    @cached_property
+    def energy(self) -> float:
+        """Of the penalty, J."""
+        return float(0.5 * np.vdot(self._pushed, np.maximum(self.overlap.depth, 0.0)))
+
+    @property
+    def force(self) -> float:
+        """On the striker, along its motion, N: derivative of the energy by the depth."""
+        return float(self._pushed.sum())
+
+    @property
+    def normal(self) -> Array:
+        """Derivative of the overlap, zero where nothing touches."""
+        return np.where(self.overlap.depth > 0.0, self.overlap.normal, 0.0)
+
+    @cached_property
+    def forces(self) -> Array:
+        """Derivative of the energy by the mesh's displacement, (2 N,)."""
+        return self._along(self._pushed)
+
+    @property
+    def stiffening(self) -> Array:
+        """Derivative of these forces by the depth, (2 N,)."""
+        return self._along(self.stiffness * self.skin.weights)
+
+    def _along(self, force: Array) -> Array:
+        """Nodal forces (2 N,) of forces (facets, points) along the normals of the points that touch."""
+        local = np.empty(self.skin.dofs.shape)
+        for c in (0, 1):
+            local[:, c::2] = (force * self.normal[c]) @ self.skin.trace
+        return np.asarray(np.bincount(self.skin.dofs.ravel(), local.ravel(), self.skin.size), dtype=float)
+
+    def matrices(self, convex: bool = False) -> Array:
+        """Tangent of every facet, (facets, 2 k, 2 k); ``convex``: without what the striker's bend takes from it."""
+        touching = self.overlap.depth > 0.0
+        springs, trace = self.stiffness * self.skin.weights * touching, self.skin.trace
+        local = np.empty((*self.skin.dofs.shape, self.skin.dofs.shape[1]))
+        for i in (0, 1):
+            for j in (0, 1):
+                value = springs * self.normal[i] * self.normal[j]
+                if not (i or j or convex):
+                    value = value + self._pushed * np.where(touching, self.overlap.bend, 0.0)
+                local[:, i::2, j::2] = np.einsum("qa,fq,qb->fab", trace, value, trace, optimize=True)
+        return local

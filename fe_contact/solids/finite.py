@@ -1,0 +1,23 @@
+"""Large strains of a hyperelastic material."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fe_contact.assembly.forms import Array
+from fe_contact.solids.base import PointAnswer, State
+from lumped.materials.energies.base import StrainEnergy, strained
+
+
+@dataclass(frozen=True)
+class Hyperelastic:
+    """An ``energy`` with these moduli of small strain, Pa: ``shear`` mu and ``lame`` lambda."""
+
+    energy: StrainEnergy
+    shear: float
+    lame: float
+
+    def respond(self, gradient: Array, state: State) -> PointAnswer:
+        """See :class:`fe_contact.solids.base.Response`."""
+        found = strained(self.energy, gradient, self.shear, self.lame)
+        return PointAnswer(found.stress, found.tangent, found.energy)

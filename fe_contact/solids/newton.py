@@ -1,0 +1,169 @@
+"""Equilibrium of a body that is not linear under a striker: Newton's method with a line search on the energy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fe_contact.assembly.forms import Array, Matrix
+from fe_contact.assembly.interior import factorized
+from fe_contact.solids.base import State
+from fe_contact.solids.bulk import CoredBody, Loaded, Pattern
+from fe_contact.solids.contact import Obstacle, Skin, Touch
+from lumped.errors import NotReached
+
+MOST_ITERATIONS = 60  # work: a step that needs more is made in halves
+SETTLED = 1e-9  # of the energy: the step that changes it by no more is the last one
+ENOUGH = 1e-4  # share of what the slope promises that a step has to lessen the energy by
+ROUNDING = 1e-14  # of the energy: a trial may be higher by so much
+SHORTEST = 1e-4  # share of a Newton step below which the energy stands still
+
+
+class EquilibriumLost(NotReached):
+    """Newton's method found no equilibrium: the body folds, or strain left the range of its material."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(f"{reason}; cure: smaller depths, or another target.material.hyperelastic")
+
+
+@dataclass(frozen=True, eq=False)
+class Encounter:
+    """A body whose ``skin`` a striker meets; its matrix has one ``pattern``."""
+
+    body: CoredBody
+    skin: Skin
+    pattern: Pattern
+    obstacle: Obstacle
+
+    @classmethod
+    def of(cls, body: CoredBody, skin: Skin, obstacle: Obstacle) -> Encounter:
+        """Raises nothing: makes the pattern."""
+        blocks = [body.core.dofs, skin.dofs, body.rim[None]]
+        return cls(body, skin, Pattern.of(blocks, body.free, body.core.size), obstacle)
+
+    def at(self, displacement: Array, depth: float, stiffness: float, state: State = ()) -> Balance:
+        """Body and striker with the mesh displaced so, (2 N,), after ``state``."""
+        loaded = self.body.core.answered(displacement, self.body.response, state)
+        touch = self.skin.pressed(displacement, self.obstacle, depth, stiffness)
+        return Balance(self, displacement, depth, loaded, touch)
+
+
+@dataclass(frozen=True, eq=False)
+class Balance:
+    """Energy, its derivative and second derivative by the free degrees of freedom."""
+
+    pressing: Encounter
+    displacement: Array
+    depth: float
+    loaded: Loaded
+    touch: Touch
+
+    @cached_property
+    def strain_energy(self) -> float:
+        """Of core and rest, J."""
+        body = self.pressing.body
+        rim = self.displacement[body.rim]
+        return self.loaded.energy + 0.5 * float(rim @ body.rest @ rim)
+
+    @property
+    def energy(self) -> float:
+        """With the penalty's."""
+        return self.strain_energy + self.touch.energy
+
+    @property
+    def force(self) -> float:
+        """On the striker."""
+        return self.touch.force
+
+    @cached_property
+    def residual(self) -> Array:
+        """Forces that are not balanced, (free,)."""
+        body = self.pressing.body
+        forces = self.loaded.forces + self.touch.forces
+        forces[body.rim] += body.rest @ self.displacement[body.rim]
+        return forces[body.free]
+
+    def tangent(self, convex: bool) -> Matrix:
+        """Sparse (free, free)."""
+        blocks = [self.loaded.matrices(), self.touch.matrices(convex), self.pressing.body.rest[None]]
+        return self.pressing.pattern.matrix(blocks)
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """A ``balance`` found in so many ``iterations``.
+
+    ``rate`` (2 N,): its displacement by the depth, by the last factors, which are those of a place next to it.
+    """
+
+    balance: Balance
+    rate: Array
+    iterations: int
+
+    def predicted(self, depth: float) -> Array:
+        """Displacement to begin another depth with, (2 N,)."""
+        return self.balance.displacement + (depth - self.balance.depth) * self.rate
+
+    @property
+    def rigid_force(self) -> float:
+        """On the striker if the penalty were rigid, to first order in its softness."""
+        touch = self.balance.touch
+        return 2.0 * touch.force + float(touch.forces @ self.rate)
+
+    @property
+    def error(self) -> float:
+        """What another iteration would change of the force, of it."""
+        balance = self.balance
+        left = float(self.rate[balance.pressing.body.free] @ balance.residual)
+        return abs(left) / max(balance.force, np.finfo(float).tiny)
+
+
+def balanced(pressing: Encounter, start: Array, depth: float, stiffness: float, state: State = ()) -> Equilibrium:
+    """From a displacement (2 N,) to begin with. Raises EquilibriumLost."""
+
+    def at(displacement: Array) -> Balance:
+        return pressing.at(displacement, depth, stiffness, state)
+
+    here = at(start)
+    if not np.isfinite(here.energy):
+        raise EquilibriumLost(f"an element is inverted at depth {depth:.3g}")
+    for iteration in range(1, MOST_ITERATIONS + 1):
+        solve, step = _step(here)
+        slope = float(here.residual @ step)
+        there = _descended(here, step, slope, at)
+        if -slope <= SETTLED * there.energy:
+            rate = _whole(there, solve(-there.touch.stiffening[there.pressing.body.free]))
+            return Equilibrium(there, rate, iteration)
+        here = there
+    raise EquilibriumLost(f"no equilibrium in {MOST_ITERATIONS} iterations at depth {depth:.3g}")
+
+
+def _step(here: Balance) -> tuple[Callable[[Array], Array], Array]:
+    """Factors and Newton's step (free,); along a convex model where the energy would climb."""
+    for convex in (False, True):
+        solve = factorized(here.tangent(convex))
+        step = solve(-here.residual)
+        if here.residual @ step <= 0.0:
+            return solve, step
+    raise EquilibriumLost("the body is not stable")
+
+
+def _whole(here: Balance, free: Array) -> Array:
+    """Of all degrees of freedom (2 N,)."""
+    found = np.zeros_like(here.displacement)
+    found[here.pressing.body.free] = free
+    return found
+
+
+def _descended(here: Balance, step: Array, slope: float, at: Callable[[Array], Balance]) -> Balance:
+    """The end of the step, or the nearest place towards it of less energy."""
+    whole, share = _whole(here, step), 1.0
+    while share > SHORTEST:
+        there = at(here.displacement + share * whole)
+        if there.energy <= here.energy + ENOUGH * share * slope + ROUNDING * abs(here.energy):
+            return there
+        share *= 0.5
+    raise EquilibriumLost("the energy has no descent")

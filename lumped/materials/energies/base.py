@@ -1,0 +1,180 @@
+"""The contract of an energy, and how its stress and tangent follow from its formula.
+
+In a plane of symmetry or of revolution F is a 2 x 2 block F2 and the stretch t out of the plane, and any isotropic
+energy is a function of three numbers: of t, of the block's j = det F2, and of D = F2:F2 - 2 j, which is (F_rr - F_zz)^2
++ (F_rz + F_zr)^2 and cancels no digit at small strain. Formulas are written in jets: numbers that carry their first and
+second derivatives in (D, j, t) along.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from lumped.numbers import Array
+from lumped.schema.members import Folder
+
+
+@dataclass(frozen=True, eq=False)
+class Jet:
+    """A function at points (...): its ``value`` (...), ``first`` (3, ...) and ``second`` derivatives (3, 3, ...)."""
+
+    value: Array
+    first: Array
+    second: Array
+
+    def of(self, value: Array, first: Array, second: Array) -> Jet:
+        """A function of this one, by its own value and two derivatives, (...)."""
+        outer = self.first[:, None] * self.first[None]
+        return Jet(value, first * self.first, second * outer + first * self.second)
+
+    def __add__(self, other: Jet | float) -> Jet:
+        if isinstance(other, Jet):
+            return Jet(self.value + other.value, self.first + other.first, self.second + other.second)
+        return Jet(self.value + other, self.first, self.second)
+
+    def __sub__(self, other: Jet | float) -> Jet:
+        return self + -1.0 * other
+
+    def __mul__(self, other: Jet | float) -> Jet:
+        if not isinstance(other, Jet):
+            return Jet(other * self.value, other * self.first, other * self.second)
+        mixed = self.first[:, None] * other.first[None]
+        first = self.first * other.value + self.value * other.first
+        second = self.second * other.value + self.value * other.second + mixed + np.swapaxes(mixed, 0, 1)
+        return Jet(self.value * other.value, first, second)
+
+    __rmul__ = __mul__
+
+    def __pow__(self, power: float) -> Jet:
+        """For a positive function, or a whole power."""
+        first = power * self.value ** (power - 1.0)
+        return self.of(self.value**power, first, power * (power - 1.0) * self.value ** (power - 2.0))
+
+
+def logarithm(jet: Jet, less_one: Array) -> Jet:
+    """ln of a jet whose value less one is known, (...)."""
+    inverse = 1.0 / jet.value
+    return jet.of(np.log1p(less_one), inverse, -(inverse**2))
+
+
+@dataclass(frozen=True, eq=False)
+class Invariants:
+    """``shape`` D, ``area`` j, ``hoop`` t as jets; ``area_rise`` j - 1, ``hoop_rise`` t - 1, (...), to all digits."""
+
+    shape: Jet
+    area: Jet
+    hoop: Jet
+    area_rise: Array
+    hoop_rise: Array
+
+    @classmethod
+    def of(cls, gradient: Array) -> Invariants:
+        """Of a displacement gradient in components (rr, rz, zr, zz, tt), (5, ...)."""
+        rr, rz, zr, zz, tt = gradient
+        rise = rr + zz + (rr * zz - rz * zr)
+        unit, none = np.eye(3), np.zeros((3, 3))
+        stretched = ((rr - zz) ** 2 + (rz + zr) ** 2, 1.0 + rise, 1.0 + tt)
+        more = (1,) * tt.ndim
+        shape, area, hoop = (
+            Jet(value, row.reshape(3, *more), none.reshape(3, 3, *more))
+            for value, row in zip(stretched, unit, strict=True)
+        )
+        return cls(shape, area, hoop, rise, tt)
+
+    @property
+    def log_area(self) -> Jet:
+        """ln j."""
+        return logarithm(self.area, self.area_rise)
+
+    @property
+    def log_hoop(self) -> Jet:
+        """ln t."""
+        return logarithm(self.hoop, self.hoop_rise)
+
+    @property
+    def log_volume(self) -> Jet:
+        """ln J, J = j t."""
+        return self.log_area + self.log_hoop
+
+    @property
+    def volume_rise(self) -> Jet:
+        """J - 1."""
+        volume = self.area * self.hoop
+        rise = self.area_rise + self.hoop_rise + self.area_rise * self.hoop_rise
+        return Jet(rise, volume.first, volume.second)
+
+    @property
+    def first_isochoric(self) -> Jet:
+        """J^(-2/3) I1 - 3, I1 = D + 2 j + t^2."""
+        return (self.shape + 2.0 * self.area + self.hoop**2) * (self.area * self.hoop) ** (-2.0 / 3.0) - 3.0
+
+    @property
+    def second_isochoric(self) -> Jet:
+        """J^(-4/3) I2 - 3, I2 = j^2 + t^2 (D + 2 j)."""
+        whole = self.area**2 + self.hoop**2 * (self.shape + 2.0 * self.area)
+        return whole * (self.area * self.hoop) ** (-4.0 / 3.0) - 3.0
+
+
+def compression(invariants: Invariants, shear: float, lame: float) -> Jet:
+    """kappa/2 (J - 1)^2, kappa = lambda + 2 mu/3: the volume's part of what is split."""
+    return invariants.volume_rise**2.0 * (0.5 * (lame + 2.0 * shear / 3.0))
+
+
+@dataclass(frozen=True)
+class StrainEnergy:
+    """A member of this folder: its ``formula``, as a record spells it; ``density`` W(invariants, mu, lambda), Pa."""
+
+    formula: str
+    density: Callable[[Invariants, float, float], Jet]
+
+
+@dataclass(frozen=True, eq=False)
+class Strained:
+    """``energy`` W (...), Pa; first Piola-Kirchhoff ``stress`` (5, ...) and ``tangent`` dP/dF (5, 5, ...), Pa."""
+
+    energy: Array
+    stress: Array
+    tangent: Array
+
+
+# Second derivatives of D and of j in (rr, rz, zr, zz, tt): physics.
+BENT_SHAPE = 2.0 * np.array(
+    [[1, 0, 0, -1, 0], [0, 1, 1, 0, 0], [0, 1, 1, 0, 0], [-1, 0, 0, 1, 0], [0, 0, 0, 0, 0]], dtype=float
+)
+BENT_AREA = np.array(
+    [[0, 0, 0, 1, 0], [0, 0, -1, 0, 0], [0, -1, 0, 0, 0], [1, 0, 0, 0, 0], [0, 0, 0, 0, 0]], dtype=float
+)
+
+
+def strained(energy: StrainEnergy, gradient: Array, shear: float, lame: float) -> Strained:
+    """What an energy answers to a displacement gradient (5, ...), of components (rr, rz, zr, zz, tt).
+
+    `shear` mu and `lame` lambda, Pa. Infinite energy, and no stress, where any volume or stretch is not positive.
+    """
+    rr, rz, zr, zz, tt = gradient
+    invariants = Invariants.of(gradient)
+    if not (np.all(invariants.area.value > 0.0) and np.all(invariants.hoop.value > 0.0)):
+        return Strained(np.full(tt.shape, np.inf), np.zeros_like(gradient), np.zeros((5, *gradient.shape)))
+    density = energy.density(invariants, shear, lame)
+    rise = np.zeros((3, *gradient.shape))
+    rise[0, :4] = 2.0 * (rr - zz), 2.0 * (rz + zr), 2.0 * (rz + zr), 2.0 * (zz - rr)
+    rise[1, :4] = 1.0 + zz, -zr, -rz, 1.0 + rr
+    rise[2, 4] = 1.0
+    more = (1,) * tt.ndim
+    stress = np.einsum("a...,ai...->i...", density.first, rise)
+    pushed = np.einsum("ab...,bj...->aj...", density.second, rise)
+    tangent = np.einsum("ai...,aj...->ij...", rise, pushed)
+    tangent += density.first[0] * BENT_SHAPE.reshape(5, 5, *more) + density.first[1] * BENT_AREA.reshape(5, 5, *more)
+    return Strained(density.value, stress, tangent)
+
+
+ENERGIES = Folder[StrainEnergy]("lumped.materials.energies", "material", "hyperelastic")
+DEFAULT = "neo_hooke"
+
+
+def energy_of(name: str | None) -> StrainEnergy:
+    """The energy a material names, or the one that stands for its silence."""
+    return ENERGIES.get(name or DEFAULT)
