@@ -85,8 +85,8 @@ def commands_page(parsers: Mapping[str, argparse.ArgumentParser]) -> str:
     """What every command does and takes, as its own --help says."""
     parts = [
         "# Every command",
-        "`fe-contact NAME --help` says the same. Exit codes: 0 done, 1 a defect of ours, 2 bad input, 3 the tolerance was"
-        " not reached or a solve did not converge, 130 interrupted. Shells complete commands and options after"
+        "`fe-contact NAME --help` says the same. Exit codes: 0 done, 1 a defect of ours, 2 bad input, 3 the tolerance"
+        " was not reached or a solve did not converge, 130 interrupted. Shells complete commands and options after"
         " `pip install shtab` and `shtab --shell=bash --prog fe-contact fe_contact.cli.parser`, whose output goes where"
         " the shell's completions are.",
     ]
