@@ -14,11 +14,12 @@ from lumped.errors import BadInput, Fault
 from lumped.numbers import Array, Clock
 from lumped.result.folder import RECORD, publish
 from lumped.result.model_ledger import Peak, ledger_at_rest
-from lumped.result.result import LedgerEntry, Quantity, groups_at_rest, provenance, sufficient
+from lumped.result.result import LedgerEntry, Quantity, good_to, groups_at_rest, provenance, sufficient
 from lumped.scene.indenter import Indenter
 from lumped.schema import Table
 from lumped.schema.csv_file import write_columns
 from lumped.schema.json_file import plain, write_json
+from lumped.schema.shown import Picture, curves
 from lumped.targets.sphere import SphereTarget
 
 SCHEMA = "fe-contact/indentation/1"
@@ -141,6 +142,24 @@ class Indentation:
         if np.unique(self.depth).size < FEWEST:
             return None
         return finite_size(self.indenter, self.depth, self.force / self.modulus, self.force_error / self.modulus)
+
+    def __repr__(self) -> str:
+        return self.summary()
+
+    def plot(self) -> Picture:
+        """Force, N, over depth, m, as a notebook shows it or ``.write("force.svg")``."""
+        order = np.argsort(self.depth)
+        return curves({"force": (self.depth[order], self.force[order])}, "depth, m", "force, N")
+
+    def summary(self) -> str:
+        """Depth and force, a line each, the power law through them, and what the model is good to."""
+        lines = [f"{self.indenter.name}: {self.method}, tolerance {self.tolerance:g}"]
+        table = zip(self.depth, self.force, self.force_error, strict=True)
+        lines += [f"{depth:.6g} m  {force:.6g} +- {error:.1e} N" for depth, force, error in table]
+        lines += [f"{name:11s} {quantity}" for name, quantity in self.quantities.items()]
+        if self.finite_size is not None:
+            lines.append(f"F/F_Hertz-1 {self.finite_size.slope} a/R")
+        return "\n  ".join([*lines, *filter(None, [good_to(self.model_ledger)])])
 
     def to_json(self) -> Table:
         """The content of result.json."""

@@ -121,6 +121,8 @@ def test_an_indentation_is_that_of_the_command_whatever_it_is_asked_of() -> None
         fe_contact.indent(one, [1e-5, 2e-5, 4e-5], 0.05) for one in ("polymer-sphere", Scene.load("polymer-sphere"))
     ]
     assert np.array_equal(found[0].force, found[1].force)
+    assert len(repr(found[0]).splitlines()) < 10
+    assert found[0].plot().svg.count("<polyline") == 1
     assert abs(found[0].quantities["alpha"].value - 1.5) <= found[0].quantities["alpha"].error + 1e-3
 
 
@@ -128,6 +130,7 @@ def test_an_indentation_is_that_of_the_command_whatever_it_is_asked_of() -> None
 def test_what_is_found_is_drawn(result: Result, tmp_path: Path) -> None:
     compared = fe_contact.compare("polymer-sphere", ["hertz", "mdr"], tolerance=0.05)
     assert {*compared.laws} == {"hertz", "mdr"}
+    assert "hertz: errs by" in repr(compared)
     for found in (result, compared):
         files = fe_contact.plot(found, tmp_path / type(found).__name__)
         assert {path.suffix for path in files} == {".svg", ".png"}

@@ -30,6 +30,7 @@ from lumped.schema import Table
 from lumped.schema.files import SCENES, overridden, parse_assignment, parsed
 
 DONE, NOT_REACHED = 0, 3  # two of the exit codes of cli, which loads this file only when it is needed
+WIDE = 88  # look: of a help that no terminal bounds
 LONGEST = 80  # characters of what --set changed in a folder's name: file systems take 255 bytes with the scene's name
 Read = TypeVar("Read")
 Parser = TypeVar("Parser", bound=argparse.ArgumentParser)
@@ -62,7 +63,7 @@ class Command:
 
     def parser(self, program: str) -> argparse.ArgumentParser:
         """What its options are read by; `program`: fe-contact and its name."""
-        return self.fill(argparse.ArgumentParser(program))
+        return self.fill(argparse.ArgumentParser(program, formatter_class=partial(argparse.HelpFormatter, width=WIDE)))
 
     def fill(self, parser: Parser) -> Parser:
         """The same parser with all that it says and takes."""

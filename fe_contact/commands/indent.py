@@ -9,7 +9,6 @@ from fe_contact.settings import DEFAULT_TOLERANCE
 from lumped.errors import BadInput, Fault, NotReached, nearest, shown
 from lumped.indentation import Indentation
 from lumped.result.folder import publish
-from lumped.result.result import good_to
 from lumped.scene.indenter import Indenter
 from lumped.schema import Table
 
@@ -26,8 +25,8 @@ def execute(args: argparse.Namespace) -> int:
     where = base.folder(args, "indent", indenter.name)
     found = _indented(args, indenter, depths, given)
     content = publish(where, found.write_files)
-    title = f"{found.indenter.name}: {found.method}, tolerance {found.tolerance:g}"
-    return base.report(args, found, content, _lines(found), where, title)
+    title, *lines = found.summary().split("\n  ")
+    return base.report(args, found, content, lines, where, title)
 
 
 def _indented(args: argparse.Namespace, indenter: Indenter, depths: tuple[float, ...], given: Table) -> Indentation:
@@ -52,18 +51,6 @@ def _indented(args: argparse.Namespace, indenter: Indenter, depths: tuple[float,
         return closed_form(indenter, depths, EXACT[indenter.target.has_length], args.instant, tolerance)
     except NotReached:  # the load curve ends before
         return by_elements(indenter, depths, given, args.instant, progress)
-
-
-def _lines(found: Indentation) -> list[str]:
-    """Depth and force, one a line, and the power law through them."""
-    table = zip(found.depth, found.force, found.force_error, strict=True)
-    lines = [f"{depth:.6g} m  {force:.6g} +- {error:.1e} N" for depth, force, error in table]
-    for name, quantity in found.quantities.items():
-        lines.append(f"{name:11s} {quantity}")
-    if found.finite_size is not None:
-        slope = found.finite_size.slope
-        lines.append(f"F/F_Hertz-1 {slope.value:.4g} +- {slope.error or 0.0:.1e} a/R")
-    return [*lines, good_to(found.model_ledger)]
 
 
 MEMBER = base.Command(

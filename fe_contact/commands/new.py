@@ -106,10 +106,10 @@ def commented(name: str, tables: Table) -> str:
     for part, folder, common in (("striker", SHAPES, STRIKER_KEYS), ("target", TARGETS, TARGET_KEYS)):
         body = {key: value for key, value in tables.get(part, {}).items() if key != "material"}
         (own,) = alternatives(folder, body.get("shape"))
-        lines += _section(part, body, {"shape": Key(Member(folder.package), "shape"), **own, **common})
+        lines += _section(part, body, {"shape": Key(Member(folder.package), "which kind"), **own, **common})
         if "material" in tables.get(part, {}):
             material = tables[part]["material"]
-            law = Key(Member(NETWORKS.package), "law")
+            law = Key(Member(NETWORKS.package), "how it deforms")
             of_law = {"law": law, **_network_keys(material), **keys_of(Material)}
             lines += _section(f"{part}.material", material, of_law)
     for part, keys in SECTIONS.items():
@@ -142,7 +142,7 @@ def _line(name: str, value: object, key: Key | None, column: int = COLUMN) -> st
 
 def _kind(part: str, given: str | None, asking: bool) -> str:
     """The kind of a part: given, answered, or the first. Raises BadInput for an unknown one."""
-    key = Key(Member(FOLDERS[part].package))
+    key = Key(Member(FOLDERS[part].package), "which kind")
     if given is None:
         return str(_answered(part, START[part], key)) if asking else START[part]
     FOLDERS[part].get(given, f"--{part}")
@@ -168,7 +168,7 @@ def _ask_each(path: str, table: Table, keys: Mapping[str, Key]) -> None:
 def _answered(question: str, start: object, key: Key) -> object:
     """What a person answers, asked until it is accepted; nothing keeps `start`."""
     while True:
-        sys.stderr.write(f"{question} ({key.kind.accepted}) [{start}]: ")
+        sys.stderr.write(f"{question}: {key.meaning} ({key.kind.accepted}) [{start}]: ")
         sys.stderr.flush()
         text = sys.stdin.readline().strip()
         if not text:

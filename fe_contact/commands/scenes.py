@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import itertools
-import textwrap
 from pathlib import Path
 
 from fe_contact.commands import base
@@ -17,18 +16,15 @@ def execute(args: argparse.Namespace) -> int:
 
     scenes = {name: Scene.load(name) for name in SCENES.names}
     width = max(map(len, scenes))
-    lines = list[str]()
-    for name, one in scenes.items():
-        lines.append(f"{name:{width}s} {described(one)}, {one.mass:g} kg at {one.velocity:g} m/s")
-        lines += textwrap.wrap(comment(SCENES.path(name)), 110, initial_indent="    ", subsequent_indent="    ")
+    lines = [f"{name:{width}s} {described(one)}: {comment(SCENES.path(name))}" for name, one in scenes.items()]
     base.say(args, {name: scene.to_dict() for name, scene in scenes.items()}, lines)
     return base.DONE
 
 
 def comment(path: Path) -> str:
-    """What a scene file says of itself: the lines behind a # before its first key."""
+    """What a scene file says of itself: the first sentence behind a # before its first key."""
     lines = itertools.takewhile(lambda line: line.startswith("#"), path.read_text(encoding="utf-8").splitlines())
-    return " ".join(line.lstrip("# ") for line in lines)
+    return " ".join(line.lstrip("# ") for line in lines).partition(". ")[0].rstrip(".")
 
 
 def described(scene: Scene) -> str:

@@ -195,7 +195,10 @@ RESULT: Mapping[str, tuple[Table, str]] = {
     "tolerance": ({"type": "number"}, "asked of every ruled quantity"),
     "message": (TEXT, "why it did not converge or separate, in words"),
     "scene": (ANY_TABLE, "the scene as it was resolved: a scene file's tables"),
-    "model": (of_keys(keys_of(Model)), "the model as it was resolved; every claimed error refers to it"),
+    "model": (
+        of_keys(keys_of(Model)) | {"additionalProperties": TEXT},
+        "the model as it was resolved, with finite kinematics the energy too; every claimed error refers to it",
+    ),
     "numerics": (ANY_TABLE, "settings that answered"),
     "quantities": (ANY_TABLE, "value, error (absolute half-width) and unit of each; null where undefined"),
     "dimensionless": (ANY_TABLE, "groups without units, and the scales F0 and T0 of the elastic impact"),

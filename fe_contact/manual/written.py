@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import textwrap
 from collections.abc import Iterable, Iterator, Mapping
 
 from fe_contact import settings
@@ -84,11 +83,16 @@ def keys_page() -> str:
 
 def commands_page(parsers: Mapping[str, argparse.ArgumentParser]) -> str:
     """What every command does and takes, as its own --help says."""
-    parts = ["# Every command", "`fe-contact NAME --help` says the same. Exit codes: 0 done, 1 a defect of ours, 2 bad"]
-    parts[1] += " input, 3 the tolerance was not reached or a solve did not converge, 130 interrupted."
+    parts = [
+        "# Every command",
+        "`fe-contact NAME --help` says the same. Exit codes: 0 done, 1 a defect of ours, 2 bad input, 3 the tolerance"
+        " was not reached or a solve did not converge, 130 interrupted. Shells complete commands and options after"
+        " `pip install shtab` and `shtab --shell=bash --prog fe-contact fe_contact.cli.parser`, whose output goes where"
+        " the shell's completions are.",
+    ]
     for name, parser in parsers.items():
-        described = (parser.description or "").replace("%%", "%")
-        parts += [f"## {name}", described[:1].upper() + described[1:] + ".", f"```text\n{_usage(parser)}\n```"]
+        says, parser.description = (parser.description or "").replace("%%", "%"), None
+        parts += [f"## {name}", f"{says[:1].upper()}{says[1:]}.", f"```text\n{parser.format_help().strip()}\n```"]
     return "\n\n".join(parts) + "\n"
 
 
@@ -103,12 +107,6 @@ def errata_page() -> str:
         _table(("where", "printed", "right", "because", "kind"), rows),
     ]
     return "\n\n".join(parts) + "\n"
-
-
-def _usage(parser: argparse.ArgumentParser) -> str:
-    """Usage and options; what it does stands above."""
-    described = "\n".join(textwrap.wrap(parser.description or "", 78))
-    return parser.format_help().replace(described, "").replace("\n\n\n\n", "\n\n").strip()
 
 
 def _section(title: str, sets: Sets | Iterable[Keys]) -> Iterator[str]:
@@ -140,6 +138,6 @@ def _ruled(name: str) -> str:
 
 def _table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     """A table in Markdown; bars within cells stay in them."""
-    lines = [[*header], *([cell.replace("|", r"\|") for cell in row] for row in rows)]
+    lines = [[*header], *([cell.replace("|", r"\|").replace("*", r"\*") for cell in row] for row in rows)]
     lines.insert(1, ["---"] * len(lines[0]))
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)

@@ -95,6 +95,9 @@ class Comparison:
     refused: Mapping[str, str]
     nested: NestedAreas | None
 
+    def __repr__(self) -> str:
+        return "\n  ".join([f"{self.reference.scene.name}: against {self.reference.method}", *verdicts(self)])
+
 
 def compare(
     solved: Solved | None,

@@ -129,6 +129,9 @@ class SweepTable:
         )
         return content
 
+    def __repr__(self) -> str:
+        return "\n".join([f"{self.sweep.name}: {self.sweep.count} cases", *self.summary()])
+
     def summary(self) -> list[str]:
         """A line a method: how its answers ended, and the widest bar of a peak force."""
         said = []

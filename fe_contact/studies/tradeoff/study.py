@@ -91,6 +91,9 @@ class Tradeoff:
     tolerance: float
     points: tuple[Point, ...]
 
+    def __repr__(self) -> str:
+        return "\n".join(self.verdict)
+
     @property
     def verdict(self) -> tuple[str, ...]:
         """In words, advice first."""

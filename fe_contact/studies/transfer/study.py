@@ -122,6 +122,9 @@ class TransferStudy:
     refused: Mapping[str, str]
     rows: tuple[TransferRow, ...]
 
+    def __repr__(self) -> str:
+        return "\n".join(self.sentences)
+
     @property
     def keys(self) -> tuple[str, ...]:
         """What the states vary."""
