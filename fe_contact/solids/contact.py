@@ -11,11 +11,13 @@ from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array, Indices, vector_dofs
 from fe_contact.assembly.surface import FACET_POINTS, Surface, lagrange
 from lumped.shapes import Shape
 
+Points = npt.NDArray[np.bool_]  # which of them, (facets, points)
 BEND = 1e-5  # rounding: step of the quotient that tells a profile's curvature, over the radius
 
 
@@ -102,10 +104,16 @@ class Skin:
         local = whole[self.dofs]
         return np.stack([local[:, c::2] @ self.trace.T for c in (0, 1)])
 
-    def pressed(self, whole: Array, obstacle: Obstacle, depth: float, stiffness: float) -> Touch:
-        """What a striker does to the body displaced by ``whole`` (2 N,); ``stiffness`` of the penalty, Pa/m."""
+    def pressed(
+        self, whole: Array, obstacle: Obstacle, depth: float, stiffness: float, touching: Points | None = None
+    ) -> Touch:
+        """What a striker does to the body displaced by ``whole`` (2 N,); ``stiffness`` of the penalty, Pa/m.
+
+        ``touching``: points (facets, points) that stick to it, pulled or pushed; None: those within it.
+        """
         displacement = self.displacement(whole)
-        return Touch(self, displacement, obstacle.overlap(self.place, displacement, depth), stiffness)
+        overlap = obstacle.overlap(self.place, displacement, depth)
+        return Touch(self, displacement, overlap, stiffness, overlap.depth > 0.0 if touching is None else touching)
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,16 +124,22 @@ class Touch:
     displacement: Array
     overlap: Overlap
     stiffness: float
+    touching: Points
+
+    @cached_property
+    def pressure(self) -> Array:
+        """At every point, (facets, points), Pa."""
+        return np.where(self.touching, self.stiffness * self.overlap.depth, 0.0)
 
     @cached_property
     def _pushed(self) -> Array:
         """Force at every point, N."""
-        return np.asarray(self.stiffness * self.skin.weights * np.maximum(self.overlap.depth, 0.0))
+        return self.skin.weights * self.pressure
 
     @cached_property
     def energy(self) -> float:
         """Of the penalty, J."""
-        return float(0.5 * np.vdot(self._pushed, np.maximum(self.overlap.depth, 0.0)))
+        return float(0.5 * np.vdot(self._pushed, self.pressure) / self.stiffness)
 
     @property
     def force(self) -> float:
@@ -135,7 +149,7 @@ class Touch:
     @property
     def normal(self) -> Array:
         """Derivative of the overlap, zero where nothing touches."""
-        return np.where(self.overlap.depth > 0.0, self.overlap.normal, 0.0)
+        return np.where(self.touching, self.overlap.normal, 0.0)
 
     @cached_property
     def forces(self) -> Array:
@@ -147,13 +161,12 @@ class Touch:
 
     def matrices(self, convex: bool = False) -> Array:
         """Tangent of every facet, (facets, 2 k, 2 k); ``convex``: without what the striker's bend takes from it."""
-        touching = self.overlap.depth > 0.0
-        springs, trace = self.stiffness * self.skin.weights * touching, self.skin.trace
+        springs, trace = self.stiffness * self.skin.weights * self.touching, self.skin.trace
         local = np.empty((*self.skin.dofs.shape, self.skin.dofs.shape[1]))
         for i in (0, 1):
             for j in (0, 1):
                 value = springs * self.normal[i] * self.normal[j]
                 if not (i or j or convex):
-                    value = value + self._pushed * np.where(touching, self.overlap.bend, 0.0)
+                    value = value + self._pushed * np.where(self.touching, self.overlap.bend, 0.0)
                 local[:, i::2, j::2] = np.einsum("qa,fq,qb->fab", trace, value, trace, optimize=True)
         return local

@@ -12,7 +12,7 @@ from fe_contact.assembly.forms import Array, Matrix
 from fe_contact.assembly.interior import factorized
 from fe_contact.solids.base import State
 from fe_contact.solids.bulk import Body, Loaded, Pattern
-from fe_contact.solids.contact import Obstacle, Skin, Touch
+from fe_contact.solids.contact import Obstacle, Points, Skin, Touch
 from lumped.errors import NotReached
 
 MOST_ITERATIONS = 60  # work: a step that needs more is made in halves
@@ -43,10 +43,12 @@ class Pressing:
         blocks = [body.core.dofs, skin.dofs, body.rim[None]]
         return cls(body, skin, Pattern.of(blocks, body.free, body.core.size), obstacle)
 
-    def at(self, displacement: Array, depth: float, stiffness: float, state: State = ()) -> Balance:
-        """Body and striker with the mesh displaced so, (2 N,), after ``state``."""
+    def at(
+        self, displacement: Array, depth: float, stiffness: float, state: State = (), touching: Points | None = None
+    ) -> Balance:
+        """Body and striker with the mesh displaced so, (2 N,), after ``state``; ``touching``: see :meth:`Skin.pressed`."""
         loaded = self.body.core.answered(displacement, self.body.response, state)
-        touch = self.skin.pressed(displacement, self.obstacle, depth, stiffness)
+        touch = self.skin.pressed(displacement, self.obstacle, depth, stiffness, touching)
         return Balance(self, displacement, loaded, touch)
 
 
@@ -99,12 +101,26 @@ class Equilibrium:
     shift: float
 
 
-def balanced(pressing: Pressing, start: Array, depth: float, stiffness: float, state: State = ()) -> Equilibrium:
-    """From a displacement (2 N,) to begin with. Raises EquilibriumLost."""
+def balanced(
+    pressing: Pressing,
+    start: Array,
+    depth: float,
+    stiffness: float,
+    state: State = (),
+    touching: Points | None = None,
+    settled: float = SETTLED,
+) -> Equilibrium:
+    """From a displacement (2 N,) to begin with. Raises EquilibriumLost.
+
+    ``touching``: points (facets, points) that are to touch in the first iteration; ``settled``: of the energy, what the
+    last one still changes.
+    """
 
     def at(displacement: Array) -> Balance:
         return pressing.at(displacement, depth, stiffness, state)
 
+    if touching is not None:
+        start = start + _step(pressing.at(start, depth, stiffness, state, touching))[0]
     here = at(start)
     if not np.isfinite(here.energy):
         raise EquilibriumLost(f"an element is inverted at depth {depth:.3g}")
@@ -112,7 +128,7 @@ def balanced(pressing: Pressing, start: Array, depth: float, stiffness: float, s
         step, slope = _step(here)
         there = _descended(here, step, slope, at)
         shift = abs(there.force - here.force) / max(abs(there.force), np.finfo(float).tiny)
-        if -slope <= SETTLED * there.energy:
+        if -slope <= settled * there.energy:
             return Equilibrium(there, iteration, shift)
         here = there
     raise EquilibriumLost(f"no equilibrium in {MOST_ITERATIONS} iterations at depth {depth:.3g}")
