@@ -14,7 +14,7 @@ from typing import ClassVar
 import numpy as np
 
 from fe_contact.assembly.forms import Array, check_compressible
-from fe_contact.bodies.pressing import Still
+from fe_contact.bodies.pressing import PressedDepths, Still
 from fe_contact.budget.certify import LEAST_ORDER, other_mesh, other_setting
 from fe_contact.budget.plan import DEFAULTS, ELEMENTS, RIM_PENALTY
 from fe_contact.budget.refine import Finer, dominant, refine
@@ -22,6 +22,7 @@ from fe_contact.budget.variation import factor
 from fe_contact.errors import faults_of
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, check_kind
+from fe_contact.solids import pressing as solids
 from fe_contact.targets.base import TARGETS
 from fe_contact.threads import one_thread
 from lumped.errors import BadInput, Fault
@@ -40,20 +41,6 @@ BISECTIONS = 40  # work: halvings of the place where undeformed surfaces cease t
 SMALL = 1e-3  # radius, in depths, from which the search for the overlap's end begins
 SCOUTING, SCOUTING_ORDER = 2.0, 2  # elements along the contact radius that tell how large contacts will be
 LEAST_SHARE, LARGEST_SHARE = 0.4, 2.0  # contact radius over the one at which the undeformed surfaces overlap
-
-
-@dataclass(frozen=True, eq=False)
-class PressedDepths:
-    """Force over modulus, m^2, and contact radius, m, at every depth, (n,); counted work.
-
-    ``mesh_order``: the most that the mesh's order can be, where the contact ends; ``ends``: whether the body does.
-    """
-
-    force: Array
-    contact_radius: Array
-    work: Mapping[str, int]
-    mesh_order: float
-    ends: bool
 
 
 @one_thread
@@ -171,6 +158,8 @@ def settings(given: Given, shape: Shape) -> Numerics:
 
 def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) -> PressedDepths:
     """Every depth, m, with one setting of everything, from the largest to the smallest; ``radii`` to begin with, m."""
+    if indenter.model.finite:
+        return solids.press(indenter, depth, radii, numerics)
     body: Still = TARGETS.get(indenter.target.name).still(indenter, radii, numerics)
     force, radius = np.empty_like(depth), np.empty_like(depth)
     growth, problems, iterations = 1.0, 0, 0

@@ -6,6 +6,7 @@ What the meshes share on which a contact may end anywhere.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar, Protocol
 
@@ -34,10 +35,12 @@ STIFFER = 6.0  # penalty where the contact ends at a rim, over that where it may
 # ends as steeply, but less of its force lies there.
 REFINEMENT, LINE_REFINEMENT = 2.5, 2.0
 STRUCK_REFINEMENT = 4.0  # the same in an impact: its force must be smooth in time
+FINITE_REFINEMENT = 3.0  # the same where strains are large
 FAINT = 1e-4  # share of the peak force below which an impact's contact may be resolved less
 SPHERE_REFINEMENT = 3.0  # the same on spheres, of which two may touch whose meshes do not match
 WIDEST = 1.2  # rad from the first touch: a contact on a circle ends before
 MARGIN = 1.35  # largest radius of the fine mesh over that of the contacts expected
+FINITE_MARGIN = 1.15  # the same where strains are large: contacts are some per cent wider, or less wide, for them
 WIDEST_THIN = 130.0  # thicknesses of the body that a fine mesh may be wide: its elements shrink with the thickness
 
 
@@ -49,6 +52,20 @@ class Pressed:
     contact_radius: float
     problems: int
     iterations: int
+
+
+@dataclass(frozen=True, eq=False)
+class PressedDepths:
+    """Force over modulus, m^2, and contact radius, m, at every depth, (n,); counted work.
+
+    ``mesh_order``: the most that the mesh's order can be, where the contact ends; ``ends``: whether the body does.
+    """
+
+    force: Array
+    contact_radius: Array
+    work: Mapping[str, int]
+    mesh_order: float
+    ends: bool
 
 
 class Meshed(Protocol):
@@ -282,6 +299,12 @@ class Zone:
     def of(cls, radii: Array) -> Zone:
         """Of contact radii, m."""
         reference = MARGIN * float(radii.max())
+        return cls(reference, float(radii.min()) / reference)
+
+    @classmethod
+    def finite(cls, radii: Array) -> Zone:
+        """The same of contact radii, m, that large strains change by little."""
+        reference = FINITE_MARGIN * float(radii.max())
         return cls(reference, float(radii.min()) / reference)
 
     @classmethod

@@ -154,9 +154,18 @@ class Touch:
     @cached_property
     def forces(self) -> Array:
         """Derivative of the energy by the mesh's displacement, (2 N,)."""
+        return self._along(self._pushed)
+
+    @property
+    def stiffening(self) -> Array:
+        """Derivative of these forces by the depth, (2 N,)."""
+        return self._along(self.stiffness * self.skin.weights)
+
+    def _along(self, force: Array) -> Array:
+        """Nodal forces (2 N,) of forces (facets, points) along the normals of the points that touch."""
         local = np.empty(self.skin.dofs.shape)
         for c in (0, 1):
-            local[:, c::2] = (self._pushed * self.normal[c]) @ self.skin.trace
+            local[:, c::2] = (force * self.normal[c]) @ self.skin.trace
         return np.bincount(self.skin.dofs.ravel(), local.ravel(), minlength=self.skin.size)
 
     def matrices(self, convex: bool = False) -> Array:

@@ -49,7 +49,7 @@ class Pressing:
         """Body and striker with the mesh displaced so, (2 N,), after ``state``; ``touching``: see :meth:`Skin.pressed`."""
         loaded = self.body.core.answered(displacement, self.body.response, state)
         touch = self.skin.pressed(displacement, self.obstacle, depth, stiffness, touching)
-        return Balance(self, displacement, loaded, touch)
+        return Balance(self, displacement, depth, loaded, touch)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +58,7 @@ class Balance:
 
     pressing: Pressing
     displacement: Array
+    depth: float
     loaded: Loaded
     touch: Touch
 

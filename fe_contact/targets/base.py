@@ -26,7 +26,8 @@ class MeshedTarget:
 
     ``struck(geometry, numerics)``: the target in an impact, whose surface alone remembers; ``relaxing``: the same of a
     bulk that relaxes. None where there is no such impact in this version. ``whole``: with its inside what ``struck``
-    knows by its surface, None where no fields are written. ``seconds``: processor time, s, of an impact to 1e-3,
+    knows by its surface, None where no fields are written. ``solid``: mesh and supports for large strains, as ``still``,
+    with its unit, m; None where there is none in this version. ``seconds``: processor time, s, of an impact to 1e-3,
     as measured of the packaged scenes: it tells what to expect, no more.
     """
 
@@ -35,12 +36,14 @@ class MeshedTarget:
     relaxing: Callable[[Geometry, Numerics], Deformable] | None = None
     whole: Callable[[Geometry, Numerics], WholeBody] | None = None
     seconds: float = 0.8
+    solid: Callable[[Indenter, Array, Numerics], tuple[ElasticBody, float]] | None = None
 
     @classmethod
     def meshed(
         cls,
         still: Callable[[Indenter, Array, Numerics], Still],
         meshed: Callable[[Geometry, Numerics], Recipe[ElasticBody]],
+        solid: Callable[[Indenter, Array, Numerics], tuple[ElasticBody, float]] | None = None,
     ) -> MeshedTarget:
         """One that is ``meshed`` for an impact alike whatever it is made of."""
 
@@ -54,7 +57,7 @@ class MeshedTarget:
         def whole(geometry: Geometry, numerics: Numerics) -> WholeBody:
             return meshed(geometry, numerics).follow().condensed(geometry.material.nu)
 
-        return cls(still, struck, relaxing, whole)
+        return cls(still, struck, relaxing, whole, solid=solid)
 
 
 FLAT_SECONDS = 0.05  # the same where an end is flat: one stiffness is enough

@@ -7,6 +7,8 @@ The half-plane struck by a cylinder: depth relative to the point at the datum.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import scipy.sparse as sparse
 
@@ -15,6 +17,7 @@ from fe_contact.assembly.cache import cached
 from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.forms import Array, Basis, Matrix
 from fe_contact.assembly.operators import (
+    ElasticBody,
     SurfaceOperator,
     WholeBody,
     basis_on,
@@ -25,6 +28,7 @@ from fe_contact.assembly.operators import (
 )
 from fe_contact.assembly.surface import flat, lagrange
 from fe_contact.bodies.pressing import (
+    FINITE_REFINEMENT,
     LINE_REFINEMENT,
     REFINEMENT,
     STRUCK_REFINEMENT,
@@ -41,6 +45,7 @@ from fe_contact.targets.base import MeshedTarget
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 
+FINER = 2.0  # elements at the surface over those which the growth into the body is for, where strains are large
 ENDS = ("base", "side")  # of a box of it
 DATUM = 0.15  # size of the mesh over the datum's depth, per far radius of the settings
 
@@ -153,4 +158,25 @@ def _upwards(basis: Basis, depth: float) -> Matrix:
     return sparse.csr_matrix(entries, shape=(1, 2 * basis.N))
 
 
-MEMBER = MeshedTarget(still, struck=struck, whole=whole, seconds=0.1)
+def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> tuple[ElasticBody, float]:
+    """The half-space for large strains, on one mesh for all contacts; ``radii`` expected of them, m."""
+    zone = Zone.finite(radii)
+    elements = FINITE_REFINEMENT * numerics.elements_per_contact
+    return _solid(elements, zone.smallest, numerics.far_radius, numerics.order), zone.reference
+
+
+@cached
+def _solid(elements: float, smallest: float, far_radius: float, order: int) -> ElasticBody:
+    """In units of the reference radius."""
+    mesh = made(meshes.half_space_for_waves, elements / FINER, smallest, far_radius, FINER)
+    basis = basis_on(mesh, order)
+    return ElasticBody(basis, partial(_stiffness, basis), 2 * basis.get_dofs("axis").flatten(), flat(basis))
+
+
+def _stiffness(basis: Basis, bulk: float, shear: float) -> Matrix:
+    """Of body and far field, of any modulus, (2 N, 2 N)."""
+    modulus = 4.0 * shear * (3.0 * bulk + shear) / (3.0 * bulk + 4.0 * shear)
+    return modulus * system_matrix(basis, (1.5 * bulk - shear) / (3.0 * bulk + shear))
+
+
+MEMBER = MeshedTarget(still, struck=struck, whole=whole, seconds=0.1, solid=solid)

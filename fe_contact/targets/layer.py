@@ -18,6 +18,7 @@ from fe_contact.assembly.forms import Array, Basis, Matrix, elastic, plane_stiff
 from fe_contact.assembly.operators import ElasticBody, basis_on, made
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import (
+    FINITE_REFINEMENT,
     LINE_REFINEMENT,
     REFINEMENT,
     STRUCK_REFINEMENT,
@@ -53,6 +54,16 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     sizes, bonded = (elements, smallest, thickness, width), target.base == "bonded"
     surface = on_mesh(_body.recipe(sizes, numerics.order, bonded, indenter.shape.plane), indenter.material.nu)
     return FixedStill(surface, indenter, numerics, reference, reference, thickness)
+
+
+def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> tuple[ElasticBody, float]:
+    """The layer for large strains; ``radii``, m: those of the contacts expected."""
+    target, zone = indenter.target, Zone.finite(radii)
+    assert isinstance(target, Layer)
+    thickness = thickness_over(zone.reference, target.thickness)
+    elements, width = FINITE_REFINEMENT * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
+    sizes = (elements, zone.smallest, thickness, width)
+    return _body(sizes, numerics.order, target.base == "bonded", indenter.shape.plane), zone.reference
 
 
 def _pressed(rim: float | None, radii: Array) -> tuple[float, float | None]:
@@ -110,4 +121,4 @@ def robin(facets: Basis, shear: float) -> sparse.coo_matrix:
     return on_boundary(facets, tensor, 2 * np.pi * radius)
 
 
-MEMBER = MeshedTarget.meshed(still, meshed)
+MEMBER = MeshedTarget.meshed(still, meshed, solid)

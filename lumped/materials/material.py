@@ -10,6 +10,7 @@ from lumped.errors import BadInput, Fault
 from lumped.materials.relaxation import Relaxation
 from lumped.schema import Table
 from lumped.schema.keys import Choice, Key, Number, Record, written
+from lumped.schema.members import Member
 
 MODULUS, DENSITY = Number(1e-3, 1e16, "Pa"), Number(1e-3, 1e6, "kg/m3")
 POISSON = Number(-1.0, 0.5, above=True)
@@ -31,6 +32,9 @@ class Material(Record):
     bulk_modulus: Annotated[float | None, Key(MODULUS, "constant bulk modulus of a fluid")] = None
     yield_strength: Annotated[float | None, Key(MODULUS, "stress at which it yields")] = None
     work_of_adhesion: Annotated[float | None, Key(Number(1e-9, 1e6, "J/m2"), "work to part two surfaces")] = None
+    hyperelastic: Annotated[
+        str | None, Key(Member("lumped.materials.energies"), "elastic energy of large strains", required=False)
+    ] = None
     name: ClassVar[str] = "material"
 
     def __post_init__(self) -> None:
@@ -78,10 +82,10 @@ class Material(Record):
         """The elastic material that a slow or, `instant`, a sudden load meets; it has to be finite and no fluid."""
         young = self.young.glassy if instant else self.young.relaxed
         if self.constant == "poisson":
-            return Material(Relaxation(young), self.nu)
+            return Material(Relaxation(young), self.nu, hyperelastic=self.hyperelastic)
         shear = young / (2.0 * (1.0 + self.nu))
         stiffness = 9.0 * self.bulk * shear / (3.0 * self.bulk + shear)
-        return Material(Relaxation(stiffness), 0.5 * stiffness / shear - 1.0)
+        return Material(Relaxation(stiffness), 0.5 * stiffness / shear - 1.0, hyperelastic=self.hyperelastic)
 
     def to_dict(self) -> Table:
         """The table of a scene file that gives this material back."""

@@ -42,6 +42,7 @@ LAWS = Folder[Described]("lumped.laws", source="law")  # they know scenes: here 
 LEAST_MASS = 1e-21  # safety: kg, the lightest body that is accepted
 END_IN_CONTACT_TIMES = 50.0  # work: default end of the motion for each contact, in elastic contact times
 DIRECTIONS = ("unsaid", "down", "horizontal")
+KINEMATICS = ("small", "finite")
 MASS = Key(Number(0.0, 1e12, "kg"), "mass of the striker")
 SPEED = Number(1e-9, 1e5, "m/s")
 VELOCITY = Key(SPEED, "velocity of the striker at first touch")
@@ -63,7 +64,13 @@ class Model(Record):
     profile: Annotated[str, Key(Choice(("exact", "parabola")), "the striker's profile")] = "exact"
     gravity: Annotated[float, Key(Number(-1e6, 1e6, "m/s2"), "gravity along the motion")] = 0.0
     direction: Annotated[str, Key(Choice(DIRECTIONS), "where the motion leads")] = DIRECTIONS[0]
+    kinematics: Annotated[str, Key(Choice(KINEMATICS), "how large displacements and strains may be")] = KINEMATICS[0]
     name: ClassVar[str] = "model"
+
+    @property
+    def finite(self) -> bool:
+        """Whether displacements and strains may be large."""
+        return self.kinematics == "finite"
 
 
 @dataclass(frozen=True)
