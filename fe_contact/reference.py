@@ -20,6 +20,7 @@ from fe_contact.budget.runs import operations
 from fe_contact.budget.several import Row, Several
 from fe_contact.errors import faults_of
 from fe_contact.march.impacts import UNFOLLOWED
+from fe_contact.plastic import impact as yielding
 from fe_contact.progress import Progress, silent
 from fe_contact.recovery import indentation_left, recovers
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, WaveNumerics, check_kind
@@ -72,6 +73,9 @@ Solved = SolvedBy[Certified]  # without waves
 
 def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
     """Force history of a scene by finite elements, with waves or without, and error bars; see :func:`solve`."""
+    if scene.model.plasticity:
+        with faults_of(scene):
+            return result_of(scene, _solved(scene, given, progress, yielding.Striking.of))
     if not scene.model.inertia:
         check_target(scene)
         solved = _solved(scene, given, progress, Statics.of)
@@ -94,6 +98,8 @@ def plan(scene: Scene, given: Given) -> Plan:
     Raises NotReached where even a coarse estimate does not come to an end.
     """
     with faults_of(scene):
+        if scene.model.plasticity:
+            return yielding.plan(scene, given)
         if not scene.model.inertia:
             return statics.plan(scene, given)
         check_kind(given, True, scene.source)

@@ -133,7 +133,7 @@ ROOMS = {  # lowest first
     ),
     "fe_contact": (
         "errors settings progress threads assembly contact schemes dynamics bodies steppers march targets solids budget "
-        "indentation fields recovery waves reference methods studies commands cli __main__ __init__"
+        "plastic indentation fields recovery waves reference methods studies commands cli __main__ __init__"
     ),
 }
 FILES_AT_A_ROOT = 14

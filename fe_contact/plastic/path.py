@@ -23,9 +23,8 @@ from fe_contact.solids.contact import Obstacle, Overlap
 from fe_contact.solids.newton import Equilibrium, EquilibriumLost, balanced
 from lumped.errors import NotReached
 
-SETTLED = 1e-11  # of the energy, what the last iteration may change: of the force 1e-5 of its step
-ROUGHLY = 1e-5  # the same while the pressure given to begin with is a guess
-GUESSED = 0.1  # of the pressure: where the one given is further off it is given again
+SETTLED = 1e-8  # of the energy, what the last iteration may change: it leaves the square of its share
+GUESSED = 0.3  # of the pressure: where the one given is further off it is given again
 GIVEN = 4  # times at most
 HALVINGS = 4  # of a step that does not settle
 ELASTIC_RATIO = 1.5  # of successive depths where nothing yields

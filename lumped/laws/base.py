@@ -98,7 +98,9 @@ def check(scene: Scene, name: str) -> None:
 
 
 def waves(scene: Scene) -> str:
-    """What a law without inertia leaves out of a scene: the waves in its bodies, where they have any."""
+    """What an elastic law without inertia leaves out of a scene: the waves in its bodies, or that they yield."""
+    if scene.model.plasticity:
+        return "that the target yields"
     return "waves in the bodies, which have inertia here" if scene.model.inertia else ""
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from numpy.polynomial import Polynomial
 
 from lumped.errors import FeContactError
+from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.result.history import History
 from lumped.result.result import LedgerEntry, Quantity
@@ -75,7 +76,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
         series(scene, peak),
         striker(scene),
         gravity(scene, resolved, peak.force, scene.mass),
-        plasticity(scene, peak),
+        plasticity(scene.geometry.material, resolved, peak),
         adhesion(scene, peak),
     ]
     if scene.geometry.shape.plane:
@@ -89,6 +90,8 @@ def ledger_at_rest(indenter: Indenter, peak: Peak) -> tuple[LedgerEntry, ...]:
     """The same of a slow indentation at its deepest, which has neither inertia nor time."""
     shape, target, nu = indenter.shape, indenter.target, indenter.material.nu
     entries = [finite_strain(nu, target.pressed_height(shape), peak)]
+    if indenter.material.yield_strength is not None:
+        entries.append(plasticity(indenter.material, indenter.model, peak))
     if target.fixed_radius(shape) is None:
         entries.append(profile(shape, indenter.model, peak))
     return (*entries, ends(shape, target, nu)) if shape.plane else tuple(entries)
@@ -238,12 +241,14 @@ def series(scene: Scene, peak: Peak) -> LedgerEntry:
     return LedgerEntry(effect, treated, bound if math.isfinite(bound) else None, "bound until the contact recedes")
 
 
-def plasticity(scene: Scene, peak: Peak) -> LedgerEntry:
+def plasticity(material: Material, model: Model, peak: Peak) -> LedgerEntry:
     """Pressure capped at p_y = 1.6 Y: at the same depth F falls by 1 - (3q - q^3)/2, q = p_y/p_0.
 
     Thornton 1997, doi 10.1115/1.2787319: F = F_y + pi R p_y (depth - depth_y) beyond the yield depth.
     """
-    effect, strength = "plasticity", scene.geometry.material.yield_strength
+    effect, strength = "plasticity", material.yield_strength
+    if model.plasticity:
+        return LedgerEntry(effect, "included", 0.0)
     if strength is None:
         return LedgerEntry(effect, "neglected", None, "needs target.material.yield_strength")
     if peak.contact_radius == 0.0:
@@ -251,7 +256,7 @@ def plasticity(scene: Scene, peak: Peak) -> LedgerEntry:
     pressure = 1.5 * peak.force / (math.pi * peak.contact_radius**2)
     share = min(FIRST_YIELD * strength / pressure, 1.0)
     note = f"p0/(1.6 Y) = {pressure / (FIRST_YIELD * strength):.3g}"
-    return LedgerEntry(effect, "neglected", 1.0 - 0.5 * share * (3.0 - share**2), note)
+    return LedgerEntry(effect, "neglected", 1.0 - 0.5 * share * (3.0 - share**2), note, "model.plasticity")
 
 
 def adhesion(scene: Scene, peak: Peak) -> LedgerEntry:

@@ -1,0 +1,257 @@
+"""A loading of a half-space that yields, and its release: from a scene's bodies and settings to smooth curves.
+
+Where a contact ends in an element changes from step to step, and with it the force, by 1e-3 where the body flows
+freely: noise without a trend. So a force is a smooth function of the depth through those of all steps, some of which go
+deeper than asked; two meshes then differ by their trends, and a third of their noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from fe_contact.assembly.forms import Array, check_compressible
+from fe_contact.plastic.ground import Ground, Sizes, yielding_of
+from fe_contact.plastic.path import ELASTIC_RATIO, Counts, Place, Presser
+from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
+from lumped.scene.indenter import Indenter
+from lumped.scene.scene import Scene
+from lumped.shapes import Shape
+
+BEYOND = 1.2  # of the largest depth: up to there forces are found, so that it lies amid them
+KNOTS = 0.5  # between knots of a smooth force, in ln depth: two elements or more along the contact radius
+RIM_KNOTS = 0.25  # the same under a rim, where no edge moves
+FAINT, FIRM = 0.5, 0.9  # of the yield strength, mean elastic pressures: before them nothing yields, and hardly anything
+FEWEST = 6  # forces of a smooth curve at least
+SPARE = 1.15  # widest contact over the radius up to which undeformed surfaces overlap: plastic flow piles up
+STRIDE = 4.0  # over the settings' steps: of a step in depth, over the depth
+SMALLEST = 1.5e-3  # contact over the widest one: no mesh is finer
+BISECTIONS = 60  # work
+ELEMENTS = 11.0  # along the contact radius, at tolerance 1e-3
+RIM_ELEMENTS = 2.0  # the same under a rim, which the mesh is refined to
+ORDER = 3  # of the elements: they do not lock where flow keeps the volume
+STEPS = 40
+DEFAULTS: Given = {"order": ORDER, "penalty": 4000.0, "enforcement": "corrected", "scheme": "galerkin", "far_radius": 20.0}
+
+
+def settings(given: Given, rim: bool) -> Numerics:
+    """Settings of a body that yields: what the user left open."""
+    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    finer = max(1.0, (DEFAULT_TOLERANCE / tolerance) ** 0.5)
+    elements = (RIM_ELEMENTS if rim else ELEMENTS) * finer
+    steps = 4 * round(STEPS * finer / 4)
+    chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "steps": steps}
+    return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
+
+
+@dataclass(frozen=True, eq=False)
+class Pressed:
+    """Forces (n,), N, and contact radii, m, at depths (n,), m, and the smooth curves through them."""
+
+    depth: Array
+    force: Array
+    radius: Array
+    power: float
+    knots: float
+
+    @cached_property
+    def _logarithm(self) -> Callable[[Array], Array]:
+        return smooth(np.log(self.depth), np.log(self.force), self.knots)
+
+    @cached_property
+    def _squared(self) -> Callable[[Array], Array]:
+        return smooth(np.log(self.depth), np.log(self.radius), self.knots)
+
+    def logarithm(self, depth: Array) -> Array:
+        """Of the force at depths, m; before the first one it is a power of the depth."""
+        inside = np.clip(depth, self.depth[0], self.depth[-1])
+        before = np.minimum(np.log(np.maximum(depth, np.finfo(float).tiny) / self.depth[0]), 0.0)
+        return np.asarray(self._logarithm(np.log(inside)) + self.power * before)
+
+    def contact_radius(self, depth: Array) -> Array:
+        """At depths, m; there in proportion to the root of force over depth."""
+        inside = np.clip(depth, self.depth[0], self.depth[-1])
+        before = np.minimum(np.log(np.maximum(depth, np.finfo(float).tiny) / self.depth[0]), 0.0)
+        return np.asarray(np.exp(self._squared(np.log(inside)) + (self.power - 1.0) * before))
+
+
+def smooth(x: Array, y: Array, spacing: float) -> Callable[[Array], Array]:
+    """The cubic spline nearest to samples (n,), its knots a ``spacing`` apart at least."""
+    from scipy.interpolate import make_lsq_spline  # late: only what yields needs it
+
+    intervals = max(1, min(round((x[-1] - x[0]) / spacing), (x.size - 4) // 2))
+    inner = np.linspace(x[0], x[-1], intervals + 1)
+    knots = np.concatenate([np.full(3, x[0]), inner, np.full(3, x[-1])])
+    found: Callable[[Array], Array] = make_lsq_spline(x, y, knots, 3)
+    return found
+
+
+@dataclass(frozen=True)
+class Course:
+    """What is pressed into what, and how deep; m, Pa. ``first``, ``firm``: depths before which nothing yields, and
+    hardly anything; ``smallest`` and ``widest`` contact to expect.
+    """
+
+    profile: Shape
+    poisson: float
+    modulus: float
+    strength: float
+    hardening: float
+    first: float
+    firm: float
+    deepest: float
+
+    @classmethod
+    def of(cls, scene: Scene | Indenter, shallowest: float, deepest: float) -> Course:
+        """From and to a depth, m, which has to be known about."""
+        check_compressible(scene)
+        geometry = scene.geometry
+        material, profile = geometry.material, scene.profile
+        modulus = geometry.shape.modulus(material).relaxed
+        strength = material.yield_strength
+        assert strength is not None  # see plasticity_faults
+        faint, firm = (_depth_of(profile, share * strength / modulus, deepest) for share in (FAINT, FIRM))
+        first = min(max(faint, 1e-6 * deepest), shallowest, deepest / 4.0)
+        return cls(
+            profile=profile,
+            poisson=material.nu,
+            modulus=modulus,
+            strength=strength,
+            hardening=material.hardening_modulus or 0.0,
+            first=first,
+            firm=max(firm, first),
+            deepest=deepest,
+        )
+
+    @property
+    def rim(self) -> bool:
+        """Whether all contacts end at a rim."""
+        return self.profile.fixed_radius is not None
+
+    @cached_property
+    def unit(self) -> float:
+        """The widest contact to expect, m."""
+        return self.profile.fixed_radius or SPARE * overlapping(self.profile, BEYOND * self.deepest)
+
+    @property
+    def power(self) -> float:
+        """Of the depth that a force is in proportion to before anything yields."""
+        return self.profile.exponent_of_force
+
+    def ground(self, numerics: Numerics, cut: bool = False) -> Ground:
+        """The half-space meshed. Raises BodyTooFine."""
+        smallest = 1.0 if self.rim else 0.5 * overlapping(self.profile, self.first) / self.unit
+        sizes = Sizes(
+            elements=numerics.elements_per_contact,
+            order=numerics.order,
+            smallest=min(max(smallest, SMALLEST), 1.0),
+            far_radius=numerics.far_radius,
+            rim=self.rim,
+            cut=cut,
+        )
+        yielding = yielding_of(self.poisson, self.strength / self.modulus, self.hardening / self.modulus)
+        return Ground.of(self.profile, self.unit, yielding, self.poisson, sizes)
+
+    def depths(self, steps: int, end: float) -> Array:
+        """Ends of the steps, m: coarse where nothing yields."""
+        firm = min(self.firm, end)
+        before = _spread(self.first, firm, ELASTIC_RATIO) if firm > self.first else np.array([self.first])
+        after = _spread(before[-1], end, 1.0 + STRIDE / steps) if end > before[-1] else before[-1:]
+        found = np.concatenate([before, after[1:]])
+        return found if found.size > FEWEST else np.geomspace(self.first, end, FEWEST + 1)
+
+
+def _spread(start: float, end: float, ratio: float) -> Array:
+    """Depths from start to end, no further apart than a ratio."""
+    count = max(1, int(np.ceil(np.log(end / start) / np.log(ratio) - 1e-9)))
+    return np.geomspace(start, end, count + 1)
+
+
+def overlapping(profile: Shape, depth: float) -> float:
+    """Radius up to which the undeformed surfaces overlap, m."""
+    return _largest(lambda radius: float(profile.height(radius)) < depth, depth)
+
+
+def _depth_of(profile: Shape, pressure: float, deepest: float) -> float:
+    """Depth, m, at which the mean elastic pressure reaches one over E*; zero where it is higher from the touch on."""
+    curve = profile.load_curve
+
+    def lower(depth: float) -> bool:
+        area = np.pi * float(curve.contact_radius(depth)) ** 2
+        return bool(float(curve.force(depth)) < pressure * area)
+
+    if not lower(1e-9 * deepest):
+        return 0.0
+    return min(_largest(lower, 1e-9 * deepest, 16.0 * deepest), 16.0 * deepest)
+
+
+def _largest(holds: Callable[[float], bool], start: float, most: float = np.inf) -> float:
+    """The largest number for which something holds, by doubling and bisection."""
+    low, high = 0.0, start
+    while high < most and holds(high):
+        low, high = high, 2.0 * high
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return high
+
+
+@dataclass(eq=False)
+class Loading:
+    """A loading step by step: forces of the middles, places at the ends."""
+
+    course: Course
+    numerics: Numerics
+    presser: Presser
+    middles: list[Place]
+    ends: list[Place]
+
+    @classmethod
+    def of(cls, course: Course, numerics: Numerics, cut: bool = False) -> Loading:
+        """Nothing is pressed yet."""
+        ground = course.ground(numerics, cut)
+        return cls(course, numerics, Presser(ground, numerics.penalty, course.unit), [], [])
+
+    def to(self, end: float) -> None:
+        """On to a depth, m, whatever was reached. Raises PlasticFlowLost, MemoryTooSmall."""
+        course = self.course
+        depths = course.depths(self.numerics.steps, end) / course.unit
+        if not self.ends:
+            radius = 0.7 * overlapping(course.profile, course.first) / course.unit
+            here = self.presser.first(float(depths[0]), 1.0 if course.rim else radius)
+            self.middles, self.ends = [here], [here]
+        for depth in depths[depths > self.ends[-1].depth * (1.0 + 1e-9)]:
+            self.step(float(depth))
+
+    def step(self, depth: float) -> None:
+        """One step further, to a depth in units of the course."""
+        before = self.ends[-2] if len(self.ends) > 1 else self.presser.at_rest()
+        for middle, end in self.presser.loaded(before, self.ends[-1], depth):
+            self.middles.append(middle)
+            self.ends.append(end)
+
+    @property
+    def pressed(self) -> Pressed:
+        """The forces so far."""
+        course = self.course
+        depth, force, radius = (np.array(column) for column in zip(*((p.depth, p.force, p.radius) for p in self.middles)))
+        return Pressed(
+            depth=course.unit * depth,
+            force=course.modulus * course.unit**2 * force,
+            radius=course.unit * radius,
+            power=course.power,
+            knots=RIM_KNOTS if course.rim else KNOTS,
+        )
+
+    @property
+    def counts(self) -> Counts:
+        """Of work."""
+        return self.presser.counts
+
+
+def coarser(numerics: Numerics) -> Numerics:
+    """The mesh on which all but itself is varied."""
+    return replace(numerics, elements_per_contact=numerics.elements_per_contact / np.sqrt(2.0))
