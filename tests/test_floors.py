@@ -132,8 +132,8 @@ ROOMS = {  # lowest first
         "restitution fit identify ptmd pounding paper __init__"
     ),
     "fe_contact": (
-        "errors settings progress threads assembly contact schemes dynamics bodies steppers march targets solids budget "
-        "plastic indentation fields recovery waves reference methods studies commands cli __main__ __init__"
+        "errors settings progress threads assembly contact schemes dynamics bodies steppers march targets solids "
+        "budget plastic indentation fields recovery waves reference methods studies commands cli __main__ __init__"
     ),
 }
 FILES_AT_A_ROOT = 14

@@ -10,31 +10,41 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array, check_compressible
+from fe_contact.budget.variation import SAFETY
 from fe_contact.plastic.ground import Ground, Sizes, yielding_of
-from fe_contact.plastic.path import ELASTIC_RATIO, Counts, Place, Presser
+from fe_contact.plastic.path import ELASTIC_RATIO, Place, Presser
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.shapes import Shape
 
+Told = TypeVar("Told")
 BEYOND = 1.2  # of the largest depth: up to there forces are found, so that it lies amid them
 KNOTS = 0.5  # between knots of a smooth force, in ln depth: two elements or more along the contact radius
 RIM_KNOTS = 0.25  # the same under a rim, where no edge moves
 FAINT, FIRM = 0.5, 0.9  # of the yield strength, mean elastic pressures: before them nothing yields, and hardly anything
 FEWEST = 6  # forces of a smooth curve at least
 SPARE = 1.15  # widest contact over the radius up to which undeformed surfaces overlap: plastic flow piles up
-STRIDE = 4.0  # over the settings' steps: of a step in depth, over the depth
+STRIDE = 6.0  # over the settings' steps: of a step in depth, over the depth
 SMALLEST = 1.5e-3  # contact over the widest one: no mesh is finer
 BISECTIONS = 60  # work
 ELEMENTS = 11.0  # along the contact radius, at tolerance 1e-3
 RIM_ELEMENTS = 2.0  # the same under a rim, which the mesh is refined to
 ORDER = 3  # of the elements: they do not lock where flow keeps the volume
 STEPS = 40
-DEFAULTS: Given = {"order": ORDER, "penalty": 4000.0, "enforcement": "corrected", "scheme": "galerkin", "far_radius": 20.0}
+FEWEST_STEPS = 4  # of a run that tells anything
+DEFAULTS: Given = {
+    "order": ORDER,
+    "penalty": 4000.0,
+    "enforcement": "corrected",
+    "scheme": "galerkin",
+    "far_radius": 20.0,
+}
 
 
 def settings(given: Given, rim: bool) -> Numerics:
@@ -126,6 +136,10 @@ class Course:
             deepest=deepest,
         )
 
+    def outgrown(self, numerics: Numerics) -> Course:
+        """For wider contacts, where the settings say that they outgrew what was expected."""
+        return replace(self, deepest=self.deepest * numerics.contact_radius**2)
+
     @property
     def rim(self) -> bool:
         """Whether all contacts end at a rim."""
@@ -201,19 +215,18 @@ def _largest(holds: Callable[[float], bool], start: float, most: float = np.inf)
 
 @dataclass(eq=False)
 class Loading:
-    """A loading step by step: forces of the middles, places at the ends."""
+    """A loading step by step: places at their ends."""
 
     course: Course
     numerics: Numerics
     presser: Presser
-    middles: list[Place]
     ends: list[Place]
 
     @classmethod
     def of(cls, course: Course, numerics: Numerics, cut: bool = False) -> Loading:
         """Nothing is pressed yet."""
         ground = course.ground(numerics, cut)
-        return cls(course, numerics, Presser(ground, numerics.penalty, course.unit), [], [])
+        return cls(course, numerics, Presser(ground, numerics.penalty, course.unit), [])
 
     def to(self, end: float) -> None:
         """On to a depth, m, whatever was reached. Raises PlasticFlowLost, MemoryTooSmall."""
@@ -222,22 +235,20 @@ class Loading:
         if not self.ends:
             radius = 0.7 * overlapping(course.profile, course.first) / course.unit
             here = self.presser.first(float(depths[0]), 1.0 if course.rim else radius)
-            self.middles, self.ends = [here], [here]
+            self.ends = [here]
         for depth in depths[depths > self.ends[-1].depth * (1.0 + 1e-9)]:
             self.step(float(depth))
 
     def step(self, depth: float) -> None:
         """One step further, to a depth in units of the course."""
         before = self.ends[-2] if len(self.ends) > 1 else self.presser.at_rest()
-        for middle, end in self.presser.loaded(before, self.ends[-1], depth):
-            self.middles.append(middle)
-            self.ends.append(end)
+        self.ends += self.presser.loaded(before, self.ends[-1], depth)
 
     @property
     def pressed(self) -> Pressed:
         """The forces so far."""
         course = self.course
-        depth, force, radius = (np.array(column) for column in zip(*((p.depth, p.force, p.radius) for p in self.middles)))
+        depth, force, radius = columns(self.ends)
         return Pressed(
             depth=course.unit * depth,
             force=course.modulus * course.unit**2 * force,
@@ -246,10 +257,57 @@ class Loading:
             knots=RIM_KNOTS if course.rim else KNOTS,
         )
 
-    @property
-    def counts(self) -> Counts:
-        """Of work."""
-        return self.presser.counts
+
+def columns(places: list[Place]) -> Array:
+    """Depths, forces and contact radii of places, (3, n)."""
+    return np.array([(place.depth, place.force, place.radius) for place in places]).T
+
+
+class Varied(NamedTuple, Generic[Told]):
+    """What runs with different settings tell.
+
+    ``base`` has the finest mesh; of all others, ``same`` its steps, ``finer`` twice as many, ``fewer`` half as many;
+    as many as that ``softer`` with half the penalty, ``nearer`` with a mesh that ends half as far away.
+    """
+
+    base: Told
+    same: Told
+    finer: Told
+    fewer: Told
+    softer: Told
+    nearer: Told
+
+    @classmethod
+    def of(cls, run: Callable[[Numerics, bool], Told], numerics: Numerics) -> Varied[Told]:
+        """Of a ``run`` with settings, on a mesh that is cut or not."""
+        coarse = coarser(numerics)
+        few = coarse.varied(steps=max(coarse.steps // 2, FEWEST_STEPS))
+        return cls(
+            base=run(numerics, False),
+            same=run(coarse, False),
+            finer=run(coarse.varied(steps=2 * coarse.steps), False),
+            fewer=run(few, False),
+            softer=run(few.varied(penalty=0.5 * few.penalty), False),
+            nearer=run(few, True),
+        )
+
+    def mended(self, onwards: Callable[[Told, Told, Told, float], Told]) -> Told:
+        """The finest mesh with what the others know of the steps: their square counts out (Richardson).
+
+        ``onwards(one, fine, coarse, weight)``: one + weight (fine - coarse).
+        """
+        return onwards(self.base, self.finer, self.same, 4.0 / 3.0)
+
+    def pairs(self, onwards: Callable[[Told, Told, Told, float], Told]) -> dict[str, tuple[Told, Told, float]]:
+        """By cause two answers, and the factor that makes an error of what they differ by."""
+        fine = onwards(self.finer, self.finer, self.same, 1.0 / 3.0)
+        coarse = onwards(self.same, self.same, self.fewer, 1.0 / 3.0)
+        return {
+            "mesh": (self.base, self.same, SAFETY),
+            "penalty": (self.fewer, self.softer, SAFETY),
+            "time_step": (fine, coarse, SAFETY / 3.0),
+            "far_field": (self.fewer, self.nearer, SAFETY / 3.0),
+        }
 
 
 def coarser(numerics: Numerics) -> Numerics:

@@ -78,7 +78,7 @@ class Ground:
     @cached_property
     def points(self) -> Array:
         """Radii of the quadrature points of the surface, ascending (q,)."""
-        return self.pressing.skin.place[0].ravel()
+        return np.asarray(self.pressing.skin.place[0].ravel())
 
     @property
     def unknowns(self) -> int:
@@ -156,7 +156,7 @@ def _mesh(sizes: Sizes) -> MeshTri:
 
 
 def _basis(mesh: MeshTri, order: int) -> Basis:
-    """Of scalar functions, with the points of degree 2 order - 1: more of them resist plastic flow. Raises BodyTooFine."""
+    """Of scalar functions, with points of degree 2 order - 1: more would resist plastic flow. Raises BodyTooFine."""
     from skfem import CellBasis
 
     unknowns = 2 * order**2 * int(mesh.nvertices)

@@ -6,7 +6,6 @@ their integrals; every setting is varied once, and each of these runs has a grea
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
@@ -18,9 +17,10 @@ from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, dominant
 from fe_contact.budget.variation import Variation
+from fe_contact.errors import MemoryTooSmall
 from fe_contact.march.impact import balanced
-from fe_contact.plastic.course import BEYOND, Course, Loading, coarser, overlapping, settings
-from fe_contact.plastic.indent import ROUNDS, SAFETY
+from fe_contact.plastic.course import BEYOND, Course, Loading, Varied, columns, overlapping, settings
+from fe_contact.plastic.indent import ROUNDS
 from fe_contact.plastic.path import Place, parting
 from fe_contact.progress import Progress
 from fe_contact.settings import Given, Numerics, check_kind
@@ -34,7 +34,7 @@ ROWS = 400  # of each half of an impact: the line between two errs by 1e-5 of th
 GRID = 500  # depths at which a loading is told
 SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting on
 DEGREE = 5  # of the polynomial through the forces of a release, to the power that makes them a line
-RELEASE_STEPS = 0.3  # of a release over those of the settings
+SPRINGING = 0.3  # of a release over those of the settings
 PILOT: Given = {"elements_per_contact": 3.0, "steps": 16}  # of the run that tells how deep an impact will go
 SOFTEST = 0.75  # of the yield strength, on what overlaps: hardly a lower force while a body yields
 
@@ -55,23 +55,24 @@ class Answered:
     stored: float
     plastic: float
 
-    def mended(self, fine: Answered, coarse: Answered, weight: float) -> Answered:
-        """With ``weight`` times what a run with more steps changes of one with fewer; depths are the same."""
+    @classmethod
+    def of(cls, loading: Loading) -> Answered:
+        """Of a loading; its release is not known yet."""
+        course, pressed = loading.course, loading.pressed
+        depth = np.geomspace(course.first, BEYOND * course.deepest, GRID)
+        unknown = {"springs": 1.0, "roots": SPRUNG, "shrunk": SPRUNG, "stored": 0.0, "plastic": 0.0}
+        return cls(depth, pressed.logarithm(depth), pressed.contact_radius(depth), **unknown)
 
-        def on(name: str) -> Array:
-            found: Array = getattr(self, name) + weight * (getattr(fine, name) - getattr(coarse, name))
-            return found
 
-        return Answered(
-            depth=self.depth,
-            logarithm=on("logarithm"),
-            radius=self.radius,
-            springs=float(on("springs")),
-            roots=on("roots"),
-            shrunk=self.shrunk,
-            stored=float(on("stored")),
-            plastic=float(on("plastic")),
-        )
+def _onwards(one: Answered, fine: Answered, coarse: Answered, weight: float) -> Answered:
+    """``one`` and ``weight`` times what ``fine`` changes of ``coarse``; the depths of all are the same."""
+
+    def of(name: str) -> Array:
+        found: Array = getattr(one, name) + weight * (getattr(fine, name) - getattr(coarse, name))
+        return found
+
+    numbers = {name: float(of(name)) for name in ("springs", "stored", "plastic")}
+    return replace(one, logarithm=of("logarithm"), roots=of("roots"), **numbers)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +110,9 @@ class Motion:
         low, high = float(depth[after - 1]), float(depth[after])
         for _ in range(50):
             middle = 0.5 * (low + high)
-            mean = (self.force(np.array([depth[after - 1], 0.5 * (depth[after - 1] + middle), middle])) @ [1, 4, 1]) / 6.0
+            mean = (
+                self.force(np.array([depth[after - 1], 0.5 * (depth[after - 1] + middle), middle])) @ [1, 4, 1]
+            ) / 6.0
             spent = work[after - 1] + mean * (middle - depth[after - 1])
             low, high = (middle, high) if spent < self.energy else (low, middle)
         return high
@@ -150,7 +153,7 @@ class Motion:
 
     def _account(self, speed: float) -> dict[str, float]:
         none = dict.fromkeys(("viscous", "radiated", "contact", "numerical"), 0.0)
-        own = {"stored": self.answered.stored, "plastic": self.answered.plastic}
+        own = {name: getattr(self.answered, name) for name in ("stored", "plastic")}
         return balanced({"in": self.energy, "out": 0.5 * self.mass * speed**2, **own, **none})
 
 
@@ -185,34 +188,28 @@ def _simpson(values: Array, step: float) -> Array:
     return step * np.concatenate([[first], inner, [last]])
 
 
-def answered(loading: Loading, energy: float, power: float, deepest: float) -> Answered:
-    """Of a loading beyond the greatest depth of an impact, m, and a release from there."""
-    course, pressed = loading.course, loading.pressed
-    depth = np.geomspace(course.first, BEYOND * course.deepest, GRID)
-    below = [number for number, place in enumerate(loading.ends) if place.depth < deepest / course.unit * (1.0 - 1e-6)]
-    last = below[-1]
-    before = loading.ends[last - 1] if last else loading.presser.at_rest()
-    *_, (_, end) = loading.presser.loaded(before, loading.ends[last], deepest / course.unit)
-    top = loading.presser.projected(end)
-    places = loading.presser.released(top, max(8, round(RELEASE_STEPS * loading.numerics.steps)), power)
+def answered(loading: Loading, known: Answered, deepest: float, power: float) -> Answered:
+    """What is ``known`` of a loading, and a release from the greatest depth of an impact, m."""
+    course, presser = loading.course, loading.presser
+    last = [place.depth < deepest / course.unit * (1.0 - 1e-6) for place in loading.ends].index(False) - 1
+    before = loading.ends[last - 1] if last else presser.at_rest()
+    taken = list(presser.loaded(before, loading.ends[last], deepest / course.unit))
+    places = presser.released(taken[-1], max(8, round(SPRINGING * loading.numerics.steps)), power)
     springs, roots, shrunk = _release(places, power)
-    scale = course.modulus * course.unit**3
-    ground, final = loading.presser.ground, places[-1]
-    return Answered(
-        depth=depth,
-        logarithm=pressed.logarithm(depth),
-        radius=pressed.contact_radius(depth),
+    scale, final = course.modulus * course.unit**3, places[-1]
+    return replace(
+        known,
         springs=springs,
         roots=roots,
         shrunk=np.ones_like(shrunk) if course.rim else shrunk,
-        stored=scale * ground.stored(final.displacement, final.state),
-        plastic=scale * ground.worked(final.state),
+        stored=scale * presser.ground.stored(final.displacement, final.state),
+        plastic=scale * presser.ground.worked(final.state),
     )
 
 
 def _release(places: list[Place], power: float) -> tuple[float, Array, Array]:
     """Share of the depth that springs back; force^(1/power) and contact radius at ``SPRUNG``, over those at first."""
-    depth, force, radius = (np.array(column) for column in zip(*((p.depth, p.force, p.radius) for p in places)))
+    depth, force, radius = columns(places)
     top = depth[0]
     fit = np.polynomial.Polynomial.fit(depth, (force / force[0]) ** (1.0 / power), min(DEGREE, depth.size - 2))
     end = parting(places[-2], places[-1], power)
@@ -245,11 +242,8 @@ class Pilot:
         numerics = settings(PILOT, course.rim)
         loading = Loading.of(course, numerics)
         loading.to(BEYOND * deepest)
-        pressed = loading.pressed
-        depth = np.geomspace(course.first, BEYOND * deepest, GRID)
-        guess = Answered(depth, pressed.logarithm(depth), pressed.contact_radius(depth), 0.5, SPRUNG, SPRUNG, 0.0, 0.0)
         power = released_power(course)
-        found = Motion(guess, scene.reduced_mass, energy, power, course.power)
+        found = Motion(Answered.of(loading), scene.reduced_mass, energy, power, course.power)
         deepest = found.deepest
         return cls(Course.of(scene, deepest, deepest), found.march(Work()))
 
@@ -288,7 +282,24 @@ class Striking:
 
     def certified(self, numerics: Numerics) -> Budget:
         """The contact and its bars. Raises NotReached."""
-        return _Runs(self.scene, self.course, numerics, self.progress).budget()
+        runner = Runner(self.scene, self.course.outgrown(numerics), self.progress)
+        runs = Varied.of(runner.run, numerics)
+        told, works = Varied(*(run.answered for run in runs)), [run.work for run in runs]
+        march = runner.motion(told.mended(_onwards)).march(runs.base.work)
+        curve = Curve.of(march, Strike.of(self.scene))
+        self._check_end(curve.duration)
+        changes = {
+            cause: (Variation(runner.curve(first), runner.curve(second), factor),)
+            for cause, (first, second, factor) in told.pairs(_onwards).items()
+        }
+        work = TotalWork.of(works, runs.base.unknowns, sum(one.iterations for one in works), 0)
+        return Budget(curve, march, changes, work, numerics)
+
+    def _check_end(self, duration: float) -> None:
+        """Raise BadInput for an end of the motion amid the contact."""
+        if duration > self.scene.end_time:
+            told = f"{self.scene.end_time:g} s: the contact lasts {duration:.3g} s; accepted: longer, or none"
+            raise BadInput(Fault(self.scene.source, "motion.end_time", told))
 
     def finer(self, found: Budget) -> Finer:
         """Less of the causes that stand in the way."""
@@ -316,65 +327,43 @@ def plan(scene: Scene, given: Given) -> Plan:
     return Plan(numerics, frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
 
 
-@dataclass(eq=False)
-class _Runs:
-    """One impact with settings varied, each of them once."""
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One impact with some settings: what the body ``answered``, and what it cost."""
+
+    answered: Answered
+    work: Work
+    unknowns: int
+
+
+@dataclass(frozen=True, eq=False)
+class Runner:
+    """Impacts of a scene with settings varied."""
 
     scene: Scene
     course: Course
-    numerics: Numerics
     progress: Progress
 
-    def budget(self) -> Budget:
-        """Of all runs."""
-        scene, course, coarse = self.scene, self.course, coarser(self.numerics)
-        if self.numerics.contact_radius != 1.0:  # it outgrew what was expected
-            self.course = replace(course, deepest=course.deepest * self.numerics.contact_radius**2)
-        self.work: list[Work] = []
-        base, same = self._run(self.numerics), self._run(coarse)
-        finer = self._run(coarse.varied(steps=2 * coarse.steps))
-        few = coarse.varied(steps=max(coarse.steps // 2, 4))
-        fewer, softer = self._run(few), self._run(few.varied(penalty=0.5 * few.penalty))
-        nearer = self._run(few, cut=True)
-        march = self._motion(base.mended(finer, same, 4.0 / 3.0)).march(self.work[0])
-        curve = Curve.of(march, Strike.of(scene))
-        pairs = {
-            "mesh": (base, same, SAFETY),
-            "penalty": (fewer, softer, SAFETY),
-            "time_step": (finer.mended(finer, same, 1.0 / 3.0), same.mended(same, fewer, 1.0 / 3.0), SAFETY / 3.0),
-            "far_field": (fewer, nearer, SAFETY / 3.0),
-        }
-        changes = {
-            cause: (Variation(self._curve(first), self._curve(second), factor),)
-            for cause, (first, second, factor) in pairs.items()
-        }
-        total = TotalWork.of(self.work, self.unknowns, sum(one.iterations for one in self.work), 0)
-        if curve.duration > scene.end_time:
-            told = f"{scene.end_time:g} s: the contact lasts {curve.duration:.3g} s; accepted: longer, or none"
-            raise BadInput(Fault(scene.source, "motion.end_time", told))
-        return Budget(curve, march, changes, total, self.numerics)
-
-    def _run(self, numerics: Numerics, cut: bool = False) -> Answered:
+    def run(self, numerics: Numerics, cut: bool) -> Run:
+        """A loading beyond where the energy is spent, and a release from there. Raises NotReached."""
         self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")
-        course = self.course
-        loading = Loading.of(course, numerics, cut)
-        loading.to(BEYOND * course.deepest)
-        pressed = loading.pressed
-        depth = np.geomspace(course.first, BEYOND * course.deepest, GRID)
-        known = Answered(depth, pressed.logarithm(depth), pressed.contact_radius(depth), 0.5, SPRUNG, SPRUNG, 0.0, 0.0)
-        deepest = self._motion(known).deepest
-        found = answered(loading, self._energy, released_power(course), min(deepest, float(depth[-1])))
-        counts = loading.counts
-        self.work.append(Work(len(loading.ends), counts.problems, counts.iterations))
-        self.unknowns = max(getattr(self, "unknowns", 0), loading.presser.ground.unknowns)
-        return found
+        loading = Loading.of(self.course, numerics, cut)
+        loading.to(BEYOND * self.course.deepest)
+        known = Answered.of(loading)
+        deepest = self.motion(known).deepest
+        if deepest > known.depth[-1]:
+            raise MemoryTooSmall(self.course.unit)
+        found = answered(loading, known, deepest, released_power(self.course))
+        counts = loading.presser.counts
+        work = Work(len(loading.ends), counts.problems, counts.iterations)
+        return Run(found, work, loading.presser.ground.unknowns)
 
-    @property
-    def _energy(self) -> float:
-        return 0.5 * self.scene.reduced_mass * self.scene.velocity**2
+    def motion(self, answer: Answered) -> Motion:
+        """The striker's, on what answers so."""
+        mass = self.scene.reduced_mass
+        energy = 0.5 * mass * self.scene.velocity**2
+        return Motion(answer, mass, energy, released_power(self.course), self.course.power)
 
-    def _motion(self, answer: Answered) -> Motion:
-        return Motion(answer, self.scene.reduced_mass, self._energy, released_power(self.course), self.course.power)
-
-    def _curve(self, answer: Answered) -> Curve:
-        return Curve.of(self._motion(answer).march(Work()), Strike.of(self.scene))
+    def curve(self, answer: Answered) -> Curve:
+        """The same, for comparison."""
+        return Curve.of(self.motion(answer).march(Work()), Strike.of(self.scene))

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.refine import Finer, dominant, refine
-from fe_contact.plastic.course import BEYOND, Course, Loading, Pressed, coarser, settings
+from fe_contact.plastic.course import BEYOND, Course, Loading, Pressed, Varied, settings
 from fe_contact.progress import Progress
 from fe_contact.settings import Given, Numerics
 from lumped.indentation import Indentation
 from lumped.numbers import Clock
 from lumped.scene.indenter import Indenter
 
-SAFETY = 1.25  # of an error over the change that tells it
 AROUND = 0.7  # in ln depth: a change counts as the error of its neighbours, for it may vanish where it changes sign
 DENSE = 80  # depths at which changes are read
 ROUNDS = 1  # of refinement
@@ -48,7 +48,7 @@ def indent(indenter: Indenter, depths: tuple[float, ...], given: Given, progress
     found, _ = refine(way, settings(given, course.rim))
     radius = found.pressed.contact_radius(asked)
     indenter.check_contacts(asked, radius)
-    force = np.exp(np.interp(np.log(asked), np.log(found.depth), found.logarithm - np.log(found.depth)) + np.log(asked))
+    force = np.exp(np.interp(asked, found.depth, found.logarithm))
     budget = {cause: np.interp(asked, found.depth, error) for cause, error in found.budget.items()}
     return Indentation(
         indenter=indenter,
@@ -78,10 +78,24 @@ class Indenting:
 
     def certified(self, numerics: Numerics) -> Answer:
         """Forces and what each setting changes of them. Raises NotReached where nothing settles."""
-        dense = np.geomspace(self.asked.min(), self.asked.max(), DENSE)
-        depth = np.unique(np.concatenate([dense, self.asked]))
-        runs = Runs(self.course, depth, numerics, self.progress)
-        return runs.answer()
+        depth = np.unique(np.concatenate([np.geomspace(self.asked.min(), self.asked.max(), DENSE), self.asked]))
+        loadings = Varied.of(partial(self._run, self.course.outgrown(numerics)), numerics)
+        told = Varied(*(loading.pressed.logarithm(depth) for loading in loadings))
+        return Answer(
+            depth=depth,
+            logarithm=told.mended(_onwards),
+            pressed=loadings.base.pressed,
+            budget={
+                cause: around(depth, factor * np.abs(first - second))
+                for cause, (first, second, factor) in told.pairs(_onwards).items()
+            },
+            numerics=numerics,
+            work={
+                "degrees_of_freedom": loadings.base.presser.ground.unknowns,
+                "contact_problems": sum(loading.presser.counts.problems for loading in loadings),
+                "iterations": sum(loading.presser.counts.iterations for loading in loadings),
+            },
+        )
 
     def finer(self, found: Answer) -> Finer:
         """Less of what dominates, until the tolerance is met."""
@@ -90,62 +104,15 @@ class Indenting:
             return Finer(None)
         return Finer(dominant(errors, found.numerics, self.pinned))
 
-
-@dataclass(eq=False)
-class Runs:
-    """Loadings with settings varied, told at depths (n,), m."""
-
-    course: Course
-    depth: Array
-    numerics: Numerics
-    progress: Progress
-
-    def answer(self) -> Answer:
-        """Of all of them."""
-        course = self.course
-        if self.numerics.contact_radius != 1.0:  # it outgrew what was expected
-            course = replace(course, deepest=course.deepest * self.numerics.contact_radius**2)
-        base = self._run(course, self.numerics)
-        coarse = coarser(self.numerics)
-        steps = coarse.steps
-        same = self._run(course, coarse)
-        finer = self._run(course, coarse.varied(steps=2 * steps))
-        few = coarse.varied(steps=max(steps // 2, 4))
-        fewer = self._run(course, few)
-        softer = self._run(course, few.varied(penalty=0.5 * few.penalty))
-        nearer = self._run(course, few, cut=True)
-        told = [run.pressed.logarithm(self.depth) for run in (base, same, finer, fewer, softer, nearer)]
-        at_base, at_same, at_finer, at_fewer, at_softer, at_nearer = told
-        budget = {
-            "mesh": SAFETY * np.abs(at_base - at_same),
-            "penalty": SAFETY * np.abs(at_fewer - at_softer),
-            "time_step": SAFETY / 3.0 * np.abs(extrapolated(at_finer, at_same) - extrapolated(at_same, at_fewer)),
-            "far_field": SAFETY / 3.0 * np.abs(at_fewer - at_nearer),
-        }
-        every = (base, same, finer, fewer, softer, nearer)
-        return Answer(
-            depth=self.depth,
-            logarithm=at_base + 4.0 / 3.0 * (at_finer - at_same),
-            pressed=base.pressed,
-            budget={cause: around(self.depth, error) for cause, error in budget.items()},
-            numerics=self.numerics,
-            work={
-                "degrees_of_freedom": base.presser.ground.unknowns,
-                "contact_problems": sum(run.counts.problems for run in every),
-                "iterations": sum(run.counts.iterations for run in every),
-            },
-        )
-
-    def _run(self, course: Course, numerics: Numerics, cut: bool = False) -> Loading:
+    def _run(self, course: Course, numerics: Numerics, cut: bool) -> Loading:
         self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")
         loading = Loading.of(course, numerics, cut)
         loading.to(BEYOND * self.course.deepest)
         return loading
 
 
-def extrapolated(fine: Array, coarse: Array) -> Array:
-    """Of two runs whose steps are as one to two, without what errs by the square of the step."""
-    return fine + (fine - coarse) / 3.0
+def _onwards(one: Array, fine: Array, coarse: Array, weight: float) -> Array:
+    return one + weight * (fine - coarse)
 
 
 def around(depth: Array, error: Array) -> Array:

@@ -46,7 +46,7 @@ class Pressing:
     def at(
         self, displacement: Array, depth: float, stiffness: float, state: State = (), touching: Points | None = None
     ) -> Balance:
-        """Body and striker with the mesh displaced so, (2 N,), after ``state``; ``touching``: see :meth:`Skin.pressed`."""
+        """Body and striker with the mesh displaced so, (2 N,), after ``state``; ``touching`` as of a skin."""
         loaded = self.body.core.answered(displacement, self.body.response, state)
         touch = self.skin.pressed(displacement, self.obstacle, depth, stiffness, touching)
         return Balance(self, displacement, depth, loaded, touch)

@@ -93,7 +93,11 @@ class ForceLaw(PointLaw):
 
     def resolved(self, scene: Scene) -> Model:
         """The scene's model as this law has it: its stiffness stands for a parabola, and no body for waves."""
-        return replace(scene.model, profile="parabola", inertia=False, plasticity=False) if scene.has_geometry else scene.model
+        return (
+            replace(scene.model, profile="parabola", inertia=False, plasticity=False)
+            if scene.has_geometry
+            else scene.model
+        )
 
 
 def between_masses(name: str, scene: Scene) -> ForceLaw:
