@@ -19,6 +19,7 @@ from fe_contact.budget.variation import SAFETY
 from fe_contact.plastic.ground import Ground, Sizes, yielding_of
 from fe_contact.plastic.path import ELASTIC_RATIO, Place, Presser
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
+from lumped.errors import BadInput, Fault
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.shapes import Shape
@@ -55,6 +56,17 @@ def settings(given: Given, rim: bool) -> Numerics:
     steps = 4 * round(STEPS * finer / 4)
     chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "steps": steps}
     return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
+
+
+def check_given(given: Given, source: str) -> None:
+    """Raise BadInput for settings of bodies that do not yield."""
+    found = [
+        Fault(source, f"numerics.{key}", f"{given[key]}: with model.plasticity there is no choice; leave it out")
+        for key in ("scheme", "enforcement")
+        if key in given and given[key] != DEFAULTS[key]
+    ]
+    if found:
+        raise BadInput(found)
 
 
 @dataclass(frozen=True, eq=False)

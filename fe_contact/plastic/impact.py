@@ -19,7 +19,7 @@ from fe_contact.budget.refine import Finer, dominant
 from fe_contact.budget.variation import Variation
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.march.impact import balanced
-from fe_contact.plastic.course import BEYOND, Course, Loading, Varied, columns, overlapping, settings
+from fe_contact.plastic.course import BEYOND, Course, Loading, Varied, check_given, columns, overlapping, settings
 from fe_contact.plastic.indent import ROUNDS
 from fe_contact.plastic.path import Place, parting
 from fe_contact.progress import Progress
@@ -30,6 +30,7 @@ from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import LedgerEntry, meets
 from lumped.scene.scene import Scene
 
+SECONDS = 12.0  # processor time of an impact to 1e-3, about
 ROWS = 400  # of each half of an impact: the line between two errs by 1e-5 of the force
 GRID = 500  # depths at which a loading is told
 SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting on
@@ -60,8 +61,7 @@ class Answered:
         """Of a loading; its release is not known yet."""
         course, pressed = loading.course, loading.pressed
         depth = np.geomspace(course.first, BEYOND * course.deepest, GRID)
-        unknown = {"springs": 1.0, "roots": SPRUNG, "shrunk": SPRUNG, "stored": 0.0, "plastic": 0.0}
-        return cls(depth, pressed.logarithm(depth), pressed.contact_radius(depth), **unknown)
+        return cls(depth, pressed.logarithm(depth), pressed.contact_radius(depth), 1.0, SPRUNG, SPRUNG, 0.0, 0.0)
 
 
 def _onwards(one: Answered, fine: Answered, coarse: Answered, weight: float) -> Answered:
@@ -71,8 +71,14 @@ def _onwards(one: Answered, fine: Answered, coarse: Answered, weight: float) -> 
         found: Array = getattr(one, name) + weight * (getattr(fine, name) - getattr(coarse, name))
         return found
 
-    numbers = {name: float(of(name)) for name in ("springs", "stored", "plastic")}
-    return replace(one, logarithm=of("logarithm"), roots=of("roots"), **numbers)
+    return replace(
+        one,
+        logarithm=of("logarithm"),
+        roots=of("roots"),
+        springs=float(of("springs")),
+        stored=float(of("stored")),
+        plastic=float(of("plastic")),
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -316,6 +322,7 @@ class Striking:
 def plan(scene: Scene, given: Given) -> Plan:
     """Settings and ledger, by a coarse run. Raises NotReached."""
     check_kind(given, False, scene.source)
+    check_given(given, scene.source)
     pilot = Pilot.of(scene)
     numerics = settings(given, pilot.course.rim)
     march = pilot.march

@@ -11,7 +11,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.refine import Finer, dominant, refine
-from fe_contact.plastic.course import BEYOND, Course, Loading, Pressed, Varied, settings
+from fe_contact.plastic.course import BEYOND, Course, Loading, Pressed, Varied, check_given, settings
 from fe_contact.progress import Progress
 from fe_contact.settings import Given, Numerics
 from lumped.indentation import Indentation
@@ -42,6 +42,7 @@ def indent(indenter: Indenter, depths: tuple[float, ...], given: Given, progress
     Raises BadInput for depths that cannot be, NotReached where nothing settles.
     """
     clock = Clock()
+    check_given(given, indenter.source)
     asked = np.array(indenter.checked(depths))
     course = Course.of(indenter, float(asked.min()), float(asked.max()))
     way = Indenting(course, asked, frozenset(given) - {"tolerance"}, progress)
