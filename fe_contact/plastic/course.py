@@ -17,7 +17,7 @@ import numpy as np
 from fe_contact.assembly.forms import Array, check_compressible
 from fe_contact.budget.variation import SAFETY
 from fe_contact.plastic.ground import Ground, Sizes, yielding_of
-from fe_contact.plastic.path import ELASTIC_RATIO, Place, Presser
+from fe_contact.plastic.path import ELASTIC_RATIO, Station, Presser
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
 from lumped.errors import BadInput, Fault
 from lumped.scene.indenter import Indenter
@@ -70,7 +70,7 @@ def check_given(given: Given, source: str) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Pressed:
+class Forces:
     """Forces (n,), N, and contact radii, m, at depths (n,), m, and the smooth curves through them."""
 
     depth: Array
@@ -226,16 +226,16 @@ def _largest(holds: Callable[[float], bool], start: float, most: float = np.inf)
 
 
 @dataclass(eq=False)
-class Loading:
+class PlasticLoading:
     """A loading step by step: places at their ends."""
 
     course: Course
     numerics: Numerics
     presser: Presser
-    ends: list[Place]
+    ends: list[Station]
 
     @classmethod
-    def of(cls, course: Course, numerics: Numerics, cut: bool = False) -> Loading:
+    def of(cls, course: Course, numerics: Numerics, cut: bool = False) -> PlasticLoading:
         """Nothing is pressed yet."""
         ground = course.ground(numerics, cut)
         return cls(course, numerics, Presser(ground, numerics.penalty, course.unit), [])
@@ -257,11 +257,11 @@ class Loading:
         self.ends += self.presser.loaded(before, self.ends[-1], depth)
 
     @property
-    def pressed(self) -> Pressed:
+    def pressed(self) -> Forces:
         """The forces so far."""
         course = self.course
         depth, force, radius = columns(self.ends)
-        return Pressed(
+        return Forces(
             depth=course.unit * depth,
             force=course.modulus * course.unit**2 * force,
             radius=course.unit * radius,
@@ -270,7 +270,7 @@ class Loading:
         )
 
 
-def columns(places: list[Place]) -> Array:
+def columns(places: list[Station]) -> Array:
     """Depths, forces and contact radii of places, (3, n)."""
     return np.array([(place.depth, place.force, place.radius) for place in places]).T
 

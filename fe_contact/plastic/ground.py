@@ -107,7 +107,7 @@ def at_rest(shape: tuple[int, ...]) -> State:
 
 
 @dataclass(frozen=True, eq=False)
-class Meshed:
+class MeshedGround:
     """All of a body that is known before its strength: its core, whole stiffness for E* = 1, held degrees of freedom,
     skin; which elements of the core are its outermost.
     """
@@ -120,14 +120,14 @@ class Meshed:
 
 
 @cached
-def _meshed(sizes: Sizes, poisson: float) -> Meshed:
+def _meshed(sizes: Sizes, poisson: float) -> MeshedGround:
     basis = _basis(_mesh(sizes), sizes.order)
     middles = basis.mesh.p[:, basis.mesh.t].mean(axis=1)
     distance = np.hypot(middles[0], middles[1])
     elements = np.flatnonzero(distance < CORE)
     surface = flat(basis)
     skin = Skin.of(surface, np.stack([surface.coordinate, np.zeros_like(surface.coordinate)]), sizes.order, 2 * basis.N)
-    return Meshed(
+    return MeshedGround(
         core=Bulk.of(basis, False, elements),
         stiffness=_stiffness(basis, poisson),
         fixed=held(basis, along=("axis",), across=()),

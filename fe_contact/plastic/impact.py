@@ -19,9 +19,18 @@ from fe_contact.budget.refine import Finer, dominant
 from fe_contact.budget.variation import Variation
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.march.impact import balanced
-from fe_contact.plastic.course import BEYOND, Course, Loading, Varied, check_given, columns, overlapping, settings
+from fe_contact.plastic.course import (
+    BEYOND,
+    Course,
+    PlasticLoading,
+    Varied,
+    check_given,
+    columns,
+    overlapping,
+    settings,
+)
 from fe_contact.plastic.indent import ROUNDS
-from fe_contact.plastic.path import Place, parting
+from fe_contact.plastic.path import Station, parting
 from fe_contact.progress import Progress
 from fe_contact.settings import Given, Numerics, check_kind
 from fe_contact.steppers.steps import March, Strike, Work
@@ -57,7 +66,7 @@ class Answered:
     plastic: float
 
     @classmethod
-    def of(cls, loading: Loading) -> Answered:
+    def of(cls, loading: PlasticLoading) -> Answered:
         """Of a loading; its release is not known yet."""
         course, pressed = loading.course, loading.pressed
         depth = np.geomspace(course.first, BEYOND * course.deepest, GRID)
@@ -82,7 +91,7 @@ def _onwards(one: Answered, fine: Answered, coarse: Answered, weight: float) -> 
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class Rebound:
     """A striker of ``mass``, kg, and ``energy``, J, on a body that answers so; forces ~ (what is left)^``power``."""
 
     answered: Answered
@@ -194,7 +203,7 @@ def _simpson(values: Array, step: float) -> Array:
     return step * np.concatenate([[first], inner, [last]])
 
 
-def answered(loading: Loading, known: Answered, deepest: float, power: float) -> Answered:
+def answered(loading: PlasticLoading, known: Answered, deepest: float, power: float) -> Answered:
     """What is ``known`` of a loading, and a release from the greatest depth of an impact, m."""
     course, presser = loading.course, loading.presser
     last = [place.depth < deepest / course.unit * (1.0 - 1e-6) for place in loading.ends].index(False) - 1
@@ -213,7 +222,7 @@ def answered(loading: Loading, known: Answered, deepest: float, power: float) ->
     )
 
 
-def _release(places: list[Place], power: float) -> tuple[float, Array, Array]:
+def _release(places: list[Station], power: float) -> tuple[float, Array, Array]:
     """Share of the depth that springs back; force^(1/power) and contact radius at ``SPRUNG``, over those at first."""
     depth, force, radius = columns(places)
     top = depth[0]
@@ -246,10 +255,10 @@ class Pilot:
         deepest = _at_most(scene, energy)
         course = Course.of(scene, deepest, deepest)
         numerics = settings(PILOT, course.rim)
-        loading = Loading.of(course, numerics)
+        loading = PlasticLoading.of(course, numerics)
         loading.to(BEYOND * deepest)
         power = released_power(course)
-        found = Motion(Answered.of(loading), scene.reduced_mass, energy, power, course.power)
+        found = Rebound(Answered.of(loading), scene.reduced_mass, energy, power, course.power)
         deepest = found.deepest
         return cls(Course.of(scene, deepest, deepest), found.march(Work()))
 
@@ -335,7 +344,7 @@ def plan(scene: Scene, given: Given) -> Plan:
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class YieldRun:
     """One impact with some settings: what the body ``answered``, and what it cost."""
 
     answered: Answered
@@ -351,10 +360,10 @@ class Runner:
     course: Course
     progress: Progress
 
-    def run(self, numerics: Numerics, cut: bool) -> Run:
+    def run(self, numerics: Numerics, cut: bool) -> YieldRun:
         """A loading beyond where the energy is spent, and a release from there. Raises NotReached."""
         self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")
-        loading = Loading.of(self.course, numerics, cut)
+        loading = PlasticLoading.of(self.course, numerics, cut)
         loading.to(BEYOND * self.course.deepest)
         known = Answered.of(loading)
         deepest = self.motion(known).deepest
@@ -363,13 +372,13 @@ class Runner:
         found = answered(loading, known, deepest, released_power(self.course))
         counts = loading.presser.counts
         work = Work(len(loading.ends), counts.problems, counts.iterations)
-        return Run(found, work, loading.presser.ground.unknowns)
+        return YieldRun(found, work, loading.presser.ground.unknowns)
 
-    def motion(self, answer: Answered) -> Motion:
+    def motion(self, answer: Answered) -> Rebound:
         """The striker's, on what answers so."""
         mass = self.scene.reduced_mass
         energy = 0.5 * mass * self.scene.velocity**2
-        return Motion(answer, mass, energy, released_power(self.course), self.course.power)
+        return Rebound(answer, mass, energy, released_power(self.course), self.course.power)
 
     def curve(self, answer: Answered) -> Curve:
         """The same, for comparison."""

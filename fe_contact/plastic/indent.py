@@ -11,7 +11,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.refine import Finer, dominant, refine
-from fe_contact.plastic.course import BEYOND, Course, Loading, Pressed, Varied, check_given, settings
+from fe_contact.plastic.course import BEYOND, Course, Forces, PlasticLoading, Varied, check_given, settings
 from fe_contact.progress import Progress
 from fe_contact.settings import Given, Numerics
 from lumped.indentation import Indentation
@@ -25,12 +25,12 @@ KEPT = ("tolerance", "elements_per_contact", "order", "penalty", "steps", "far_r
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class ForcesFound:
     """ln of the force at depths (n,), m, extrapolated in the steps; ``pressed`` the finest run; errors by cause."""
 
     depth: Array
     logarithm: Array
-    pressed: Pressed
+    pressed: Forces
     budget: Mapping[str, Array]
     numerics: Numerics
     work: Mapping[str, int]
@@ -45,7 +45,7 @@ def indent(indenter: Indenter, depths: tuple[float, ...], given: Given, progress
     check_given(given, indenter.source)
     asked = np.array(indenter.checked(depths))
     course = Course.of(indenter, float(asked.min()), float(asked.max()))
-    way = Indenting(course, asked, frozenset(given) - {"tolerance"}, progress)
+    way = YieldingWay(course, asked, frozenset(given) - {"tolerance"}, progress)
     found, _ = refine(way, settings(given, course.rim))
     radius = found.pressed.contact_radius(asked)
     indenter.check_contacts(asked, radius)
@@ -68,7 +68,7 @@ def indent(indenter: Indenter, depths: tuple[float, ...], given: Given, progress
 
 
 @dataclass(frozen=True, eq=False)
-class Indenting:
+class YieldingWay:
     """The way of an indentation of what yields."""
 
     course: Course
@@ -77,12 +77,12 @@ class Indenting:
     progress: Progress
     rounds: ClassVar[int] = ROUNDS
 
-    def certified(self, numerics: Numerics) -> Answer:
+    def certified(self, numerics: Numerics) -> ForcesFound:
         """Forces and what each setting changes of them. Raises NotReached where nothing settles."""
         depth = np.unique(np.concatenate([np.geomspace(self.asked.min(), self.asked.max(), DENSE), self.asked]))
         loadings = Varied.of(partial(self._run, self.course.outgrown(numerics)), numerics)
         told = Varied(*(loading.pressed.logarithm(depth) for loading in loadings))
-        return Answer(
+        return ForcesFound(
             depth=depth,
             logarithm=told.mended(_onwards),
             pressed=loadings.base.pressed,
@@ -98,16 +98,16 @@ class Indenting:
             },
         )
 
-    def finer(self, found: Answer) -> Finer:
+    def finer(self, found: ForcesFound) -> Finer:
         """Less of what dominates, until the tolerance is met."""
         errors = {cause: float(error.max()) for cause, error in found.budget.items()}
         if sum(errors.values()) <= found.numerics.tolerance:
             return Finer(None)
         return Finer(dominant(errors, found.numerics, self.pinned))
 
-    def _run(self, course: Course, numerics: Numerics, cut: bool) -> Loading:
+    def _run(self, course: Course, numerics: Numerics, cut: bool) -> PlasticLoading:
         self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")
-        loading = Loading.of(course, numerics, cut)
+        loading = PlasticLoading.of(course, numerics, cut)
         loading.to(BEYOND * self.course.deepest)
         return loading
 

@@ -57,7 +57,7 @@ class Given:
         return found._replace(depth=found.depth + self.more)
 
 
-class Place(NamedTuple):
+class Station(NamedTuple):
     """A body pressed ``depth`` deep: displacement (2 N,), state, force, pressure (facets, points), contact radius."""
 
     depth: float
@@ -87,13 +87,13 @@ class Presser:
     unit: float
     counts: Counts = field(default_factory=Counts)
 
-    def at_rest(self) -> Place:
+    def at_rest(self) -> Station:
         """Nothing touched yet."""
         ground = self.ground
         size = ground.pressing.body.core.size
-        return Place(0.0, np.zeros(size), ground.rest, 0.0, np.zeros(ground.pressing.skin.weights.shape), 0.0)
+        return Station(0.0, np.zeros(size), ground.rest, 0.0, np.zeros(ground.pressing.skin.weights.shape), 0.0)
 
-    def settled(self, state: State, depth: float, displacement: Array, pressure: Array, radius: float) -> Place:
+    def settled(self, state: State, depth: float, displacement: Array, pressure: Array, radius: float) -> Station:
         """Equilibrium at a depth after ``state``; displacement, pressure and radius are guesses.
 
         The penalty only mends the pressure given: where that is far off, it is given again. Raises EquilibriumLost.
@@ -111,7 +111,7 @@ class Presser:
         reached = self._edge(found)
         if reached > WIDEST or not self.ground.contained(found.balance.loaded.answer.state):
             raise MemoryTooSmall(self.unit * reached)
-        return Place(depth, displacement, found.balance.loaded.answer.state, touch.force, pressure, reached)
+        return Station(depth, displacement, found.balance.loaded.answer.state, touch.force, pressure, reached)
 
     def _balanced(
         self, state: State, depth: float, start: Array, pressure: Array, stiffness: float, touching: Points
@@ -135,7 +135,7 @@ class Presser:
         share = depth[last] / max(depth[last] - depth[last + 1], np.finfo(float).tiny)
         return float(points[last] + min(max(share, 0.0), 1.0) * (points[last + 1] - points[last]))
 
-    def loaded(self, before: Place, here: Place, depth: float, halvings: int = HALVINGS) -> Iterator[Place]:
+    def loaded(self, before: Station, here: Station, depth: float, halvings: int = HALVINGS) -> Iterator[Station]:
         """End of the step from ``here`` to a depth, or ends of its halves where it does not settle.
 
         ``before``: the end of the last step, along which this one is guessed. Raises PlasticFlowLost.
@@ -152,7 +152,7 @@ class Presser:
             yield found
         yield from self.loaded(before, last, depth, halvings - 1)
 
-    def _stepped(self, before: Place, here: Place, depth: float) -> Place:
+    def _stepped(self, before: Station, here: Station, depth: float) -> Station:
         """Two stages. Raises EquilibriumLost."""
         stage = here.depth + GAMMA * (depth - here.depth)
         share = (stage - here.depth) / (here.depth - before.depth) if before.depth > 0.0 else 0.0
@@ -161,36 +161,36 @@ class Presser:
         state = tuple(start + on * (flowed - start) for start, flowed in zip(here.state, middle.state, strict=True))
         return self._stage(state, here, middle, depth, on)
 
-    def _stage(self, state: State, before: Place, here: Place, depth: float, share: float) -> Place:
+    def _stage(self, state: State, before: Station, here: Station, depth: float, share: float) -> Station:
         """From ``here`` to a depth after ``state``, guessed as a ``share`` of what happened since ``before``."""
         radius = self.grown(here, depth)
         start = here.displacement + share * (here.displacement - before.displacement)
         return self.settled(state, depth, start, self.scaled(here, radius), radius)
 
-    def grown(self, here: Place, depth: float) -> float:
+    def grown(self, here: Station, depth: float) -> float:
         """Contact radius to expect at a depth, as of a round profile."""
         if self.ground.rim:
             return 1.0
         return min(here.radius * float(np.sqrt(depth / here.depth)), 1.0)
 
-    def scaled(self, here: Place, radius: float, share: float = 1.0) -> Array:
+    def scaled(self, here: Station, radius: float, share: float = 1.0) -> Array:
         """The pressure of a place on another radius, ``share`` of it."""
         points = self.ground.points
         found = np.interp(points * (here.radius / radius), points, here.pressure.ravel())
         return (share * np.where(points < radius, found, 0.0)).reshape(here.pressure.shape)
 
-    def first(self, depth: float, radius: float) -> Place:
+    def first(self, depth: float, radius: float) -> Station:
         """From rest to a first depth at once, with a contact radius to expect. Raises PlasticFlowLost."""
         rest = self.at_rest()
         return self._projected(rest.state, depth, rest.displacement, rest.pressure, min(radius, 1.0))
 
-    def _projected(self, state: State, depth: float, displacement: Array, pressure: Array, radius: float) -> Place:
+    def _projected(self, state: State, depth: float, displacement: Array, pressure: Array, radius: float) -> Station:
         try:
             return self.settled(state, depth, displacement, pressure, radius)
         except EquilibriumLost:
             raise PlasticFlowLost(self.unit * depth) from None
 
-    def released(self, here: Place, steps: int, power: float) -> list[Place]:
+    def released(self, here: Station, steps: int, power: float) -> list[Station]:
         """Places of a release, ``here`` first, until hardly anything springs back; force ~ what is left^``power``."""
         found = [here, self._released(here, here, here.depth - FIRST_RELEASED * here.force / (2.0 * here.radius))]
         for number in range(1, steps + 1):
@@ -203,7 +203,7 @@ class Presser:
             found.append(self._released(found[-2], found[-1], depth))
         return found
 
-    def _released(self, before: Place, here: Place, depth: float) -> Place:
+    def _released(self, before: Station, here: Station, depth: float) -> Station:
         """A step back, from a place reached by one from ``before``."""
         share = 1.0
         start = here.displacement
@@ -216,7 +216,7 @@ class Presser:
         return self._projected(here.state, depth, start, pressure, radius)
 
 
-def parting(before: Place, here: Place, power: float) -> float:
+def parting(before: Station, here: Station, power: float) -> float:
     """Depth at which a release ends, by the line through two places of force^(1/power)."""
     first, second = before.force ** (1.0 / power), here.force ** (1.0 / power)
     return float(here.depth - second * (before.depth - here.depth) / (first - second))

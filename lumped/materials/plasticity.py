@@ -23,7 +23,7 @@ DEEPEST = 2.0  # contact radii: below them the axis' shear stress only falls
 
 
 @dataclass(frozen=True, eq=False)
-class Flow:
+class PlasticStep:
     """What points answer at the end of a step, of any shape (...): ``stress`` (5, ...) by the components of the
     gradient, Pa; ``tangent`` its consistent derivative (5, 5, ...); ``energy`` (...), J/m3, the incremental potential
     of both; ``strain`` (4, ...) and ``amount`` (...) of plastic strain in the end.
@@ -48,7 +48,7 @@ class Yielding:
     strength: float
     hardening: float = 0.0
 
-    def flowed(self, gradient: Array, strain: Array, amount: Array) -> Flow:
+    def flowed(self, gradient: Array, strain: Array, amount: Array) -> PlasticStep:
         """The step to a displacement ``gradient`` (5, ...) from plastic ``strain`` (4, ...) of an ``amount`` (...).
 
         Backward Euler's radial return, de Souza Neto et al. 2008 (ISBN 978-0-470-69452-7), box 7.5, with the tangent of
@@ -65,7 +65,7 @@ class Yielding:
         deviator = 2.0 * shear * kept * trial
         stress = deviator[GRADIENT] + np.multiply.outer(VOLUME, self.bulk * volume)
         softer = np.where(yields, 3.0 * shear / rigid - (1.0 - kept), 0.0)
-        return Flow(
+        return PlasticStep(
             stress=stress,
             tangent=self._tangent(kept, softer, direction),
             energy=0.5 * self.bulk * volume**2 + shear * length**2 - beyond**2 / (2.0 * rigid),
