@@ -17,6 +17,7 @@ import signal
 import socket
 import sys
 import tempfile
+import textwrap
 import threading
 import traceback
 from collections.abc import Callable, Iterator, Sequence
@@ -26,10 +27,15 @@ from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
-from fe_contact import __version__
 from fe_contact.progress import clear
 from fe_contact.threads import one_thread
 
+DESCRIPTION = (
+    "Impact of bodies on viscoelastic targets: finite elements with error bars, beside lumped pounding models."
+)
+CITATION = """the paper that it checks:
+  Q. Xue, C. Zhang, J. He, G. Zou, J. Zhang, An Updated Analytical Structural Pounding Force Model Based on
+  Viscoelasticity of Materials, Shock and Vibration 2016, doi 10.1155/2016/2596923; to cite the suite: CITATION.cff"""
 DONE, DEFECT, BAD_INPUT, NOT_REACHED = 0, 1, 2, 3  # exit codes of the program
 LEAST_MEMORY = 640 * 2**20  # bytes of address space: below, the libraries of gmsh and scipy crash while they load
 SIGNALLED = 128  # plus the signal's number, as shells count: 130 after Ctrl-C, 143 after SIGTERM
@@ -54,19 +60,46 @@ class OneLine(argparse.ArgumentParser):
         self.exit(BAD_INPUT, f"{self.prog}: {shortened(printable(message), SHOWN_OF_A_LINE)}; see {self.prog} --help\n")
 
 
+class Versions(argparse.Action):
+    """Says which versions are installed, and ends."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
+        from fe_contact.commands.doctor import version_line
+
+        print(version_line())
+        parser.exit()
+
+
 def parser() -> OneLine:
     """The parser of all commands."""
     from fe_contact.commands import COMMANDS
 
-    top = OneLine(prog="fe-contact", description="Finite-element contact validation suite.")
-    top.add_argument("--version", action="version", version=f"fe-contact {__version__}")
-    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    top = OneLine(
+        prog="fe-contact", description=DESCRIPTION, epilog=_overview(), formatter_class=argparse.RawTextHelpFormatter
+    )
+    top.add_argument("--version", action=Versions, nargs=0, help="versions of this suite and what it computes with")
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", help="one of those below")
     for name, command in COMMANDS.members.items():
-        says = command.summary
-        own = commands.add_parser(name, help=says.replace("%", "%%"), description=says)
-        for option in command.options:
-            option(own)
+        command.fill(commands.add_parser(name))
     return top
+
+
+def _overview() -> str:
+    """All commands in their groups, each group with an example."""
+    from fe_contact.commands import COMMANDS
+    from fe_contact.commands.base import GROUPS
+
+    lines = list[str]()
+    for group, example in GROUPS.items():
+        own = {name: one for name, one in COMMANDS.members.items() if one.group == group}
+        lines += [f"{group}, as {example}", *(_entry(name, one.summary) for name, one in own.items()), ""]
+    return "\n".join([*lines, CITATION])
+
+
+def _entry(name: str, summary: str) -> str:
+    """A command in the overview, its summary beside it."""
+    indent = " " * 15
+    return textwrap.fill(summary, 100, initial_indent=f"  {name:13s}", subsequent_indent=indent)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

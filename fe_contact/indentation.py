@@ -7,13 +7,13 @@ How large slow contacts will be, about: what meshes are made for. It enters no v
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from fe_contact.assembly.forms import Array, check_compressible
+from fe_contact.assembly.forms import Array, Indices, check_compressible
 from fe_contact.bodies.pressing import PressedDepths, Still
 from fe_contact.budget.certify import LEAST_ORDER, other_mesh, other_setting
 from fe_contact.budget.plan import DEFAULTS, ELEMENTS, RIM_PENALTY
@@ -32,11 +32,13 @@ from lumped.numbers import Clock
 from lumped.scene.indenter import Indenter
 from lumped.shapes import Shape
 
-CAUSES = ("mesh", "penalty", "far_field")
+CAUSES = ("mesh", "penalty", "far_field")  # that a setting lessens
 LAST_NU = 0.5 - 1e-9  # solves lose their digits as 1/(1 - 2 nu): no answer from 1e-12 on, right ones still at 1e-10
 ROUNDING = 1e-9  # relative, of a solve of nearly incompressible bodies: where nothing else errs
 ROUNDS = 5  # refinements before giving up
 FEWEST = 12  # depths that tell an error bar
+FEWEST_SOFT = 4  # those of them that tell what the penalty changes
+FEWEST_LARGE = 8  # the same of large strains, where each takes a Newton iteration or five on the whole mesh
 SPREAD = 0.6  # of them at least, smallest over largest: contact edges over an element of the coarser mesh
 BISECTIONS = 40  # work: halvings of the place where undeformed surfaces cease to overlap
 SMALL = 1e-3  # radius, in depths, from which the search for the overlap's end begins
@@ -64,15 +66,17 @@ def indent(
         if indenter.model.plasticity:
             return plastic.indent(indenter, depths, given, progress)
         modulus, asked = indenter.modulus(instant), len(indenter.checked(depths))
-        depth = _accompanied(np.array(depths))
+        depth = _accompanied(np.array(depths), FEWEST_LARGE if indenter.model.finite else FEWEST)
         elastic, numerics = indenter.elastic(instant), settings(given, indenter.shape)
         check_compressible(indenter)
         _check_digits(elastic)
+        if indenter.model.finite:
+            solids.check_large(indenter, numerics.enforcement)
         way = Indenting(elastic, depth, expected(elastic, depth, numerics), frozenset(given) - {"tolerance"}, progress)
         found, _ = refine(way, numerics)
         base, budget, numerics = found.base, found.budget, found.numerics
         indenter.check_contacts(depth[:asked], base.contact_radius[:asked])
-    error = ROUNDING + np.sum([budget[cause] for cause in CAUSES], axis=0)[:asked]
+    error = ROUNDING + np.sum(list(budget.values()), axis=0)[:asked]
     force = (modulus * indenter.shape.total * base.force)[:asked]
     kept = ("tolerance", "elements_per_contact", "order", "penalty", "enforcement", "far_radius")
     return Indentation(
@@ -114,18 +118,46 @@ class Indenting:
     def certified(self, numerics: Numerics) -> PressedBudget:
         """The forces and what each setting changes of them. Raises NotReached where contact does not settle."""
         self.progress(f"{numerics.elements_per_contact:g} elements along the contact radius")
-        base = self._press(numerics)
-        return PressedBudget(base, _budget(base, self._press, numerics), numerics)
+        base = press(self.elastic, self.depth, self.radii, numerics)
+        errors = {cause: np.full(self.depth.size, error) for cause, error in self._budget(base, numerics).items()}
+        return PressedBudget(base, errors, numerics)
 
     def finer(self, found: PressedBudget) -> Finer:
         """Less of what dominates, until the tolerance is met."""
-        errors = {cause: float(error.max()) for cause, error in found.budget.items()}
+        errors = {cause: float(found.budget[cause].max()) for cause in CAUSES}
         if sum(errors.values()) <= found.numerics.tolerance:
             return Finer(None)
         return Finer(dominant(errors, found.numerics, self.pinned))
 
-    def _press(self, numerics: Numerics) -> PressedDepths:
-        return press(self.elastic, self.depth, self.radii, numerics)
+    def _budget(self, base: PressedDepths, numerics: Numerics) -> dict[str, float]:
+        """Relative error of the force by cause.
+
+        The far field is varied on the other mesh, which as a rule is the cheaper one, unless the body ends before; the
+        penalty costs no mesh, but in large strains as much as one, and there a few depths tell of it.
+        """
+        other, by_mesh = other_mesh(numerics, base.mesh_order)
+        far, farther = other_setting(other, "far_radius")
+        penalty, stiffer = other_setting(numerics, "penalty")
+        many, few = self._telling(FEWEST_LARGE), self._telling(FEWEST_SOFT)
+        on_other = self._press(many, other)
+        on_far = on_other if on_other.ends else self._press(many, far)
+        by_penalty = factor(LEAST_ORDER["penalty"], stiffer)
+        return {
+            "mesh": _error(by_mesh, base.at(many), on_other),
+            "penalty": _error(by_penalty, base.at(few), self._press(few, penalty)),
+            "far_field": _error(factor(LEAST_ORDER["far_field"], farther), on_other, on_far),
+            "newton": base.newton,
+        }
+
+    def _press(self, told: Indices, numerics: Numerics) -> PressedDepths:
+        return press(self.elastic, self.depth[told], self.radii[told], numerics)
+
+    def _telling(self, few: int) -> Indices:
+        """Depths that tell of a setting: all, but where each is dear a few from the smallest to the largest."""
+        order = np.argsort(self.depth)
+        if self.elastic.model.finite and order.size > few:
+            order = order[np.linspace(0, order.size - 1, few).astype(int)]
+        return np.asarray(np.sort(order))
 
 
 def _check_digits(elastic: Indenter) -> None:
@@ -140,14 +172,14 @@ def _check_digits(elastic: Indenter) -> None:
         raise BadInput(faults)
 
 
-def _accompanied(depth: Array) -> Array:
+def _accompanied(depth: Array, fewest: int) -> Array:
     """The depths, m, and some between them: how far a mesh errs depends on where in an element a contact ends.
 
     A lone depth could end where two meshes agree by chance.
     """
-    if depth.size >= FEWEST:
+    if depth.size >= fewest:
         return depth
-    return np.concatenate([depth, np.geomspace(min(depth.min(), SPREAD * depth.max()), depth.max(), FEWEST)])
+    return np.concatenate([depth, np.geomspace(min(depth.min(), SPREAD * depth.max()), depth.max(), fewest)])
 
 
 def settings(given: Given, shape: Shape) -> Numerics:
@@ -174,30 +206,12 @@ def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) ->
     return PressedDepths(force, radius, work, body.mesh_order, body.ends)
 
 
-def _budget(base: PressedDepths, run: Callable[[Numerics], PressedDepths], numerics: Numerics) -> dict[str, Array]:
-    """Relative error of the force by cause, at every depth.
-
-    The far field is varied on the other mesh, which as a rule is the cheaper one, unless the body ends before; the
-    penalty costs no mesh.
-    """
-    other, by_mesh = other_mesh(numerics, base.mesh_order)
-    far, farther = other_setting(other, "far_radius")
-    penalty, stiffer = other_setting(numerics, "penalty")
-    on_other = run(other)
-    on_far = on_other if on_other.ends else run(far)
-    return {
-        "mesh": _error(by_mesh, base, on_other),
-        "penalty": _error(factor(LEAST_ORDER["penalty"], stiffer), base, run(penalty)),
-        "far_field": _error(factor(LEAST_ORDER["far_field"], farther), on_other, on_far),
-    }
-
-
-def _error(trusted: float, first: PressedDepths, second: PressedDepths) -> Array:
-    """Error by a cause: what its other setting changes, ``trusted`` so many times, (n,).
+def _error(trusted: float, first: PressedDepths, second: PressedDepths) -> float:
+    """Error by a cause: what its other setting changes, ``trusted`` so many times.
 
     A body without a length of its own answers alike at every depth, so the largest change speaks for all.
     """
-    return np.full_like(first.force, trusted * np.abs(second.force / first.force - 1.0).max())
+    return float(trusted * np.abs(second.force / first.force - 1.0).max())
 
 
 def expected(indenter: Indenter, depth: Array, numerics: Numerics) -> Array:
@@ -206,8 +220,11 @@ def expected(indenter: Indenter, depth: Array, numerics: Numerics) -> Array:
     Where the undeformed surfaces overlap, times what a coarse mesh finds of it at the extreme depths.
     """
     overlapping = _overlapping(indenter, depth)
-    if indenter.target.fixed_radius(indenter.shape) is not None or not indenter.target.has_length:
+    if indenter.target.fixed_radius(indenter.shape) is not None:
         return overlapping
+    if not indenter.target.has_length:
+        curve = indenter.target.load_curve(indenter.profile, indenter.material.nu) if indenter.model.finite else None
+        return overlapping if curve is None else np.asarray(curve.contact_radius(depth))
     ends = [int(depth.argmin()), int(depth.argmax())]
     coarse = numerics.varied(elements_per_contact=SCOUTING, order=SCOUTING_ORDER)
     reach = overlapping[ends] * np.array([LEAST_SHARE, LARGEST_SHARE])

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
 
 import numpy as np
 
+from fe_contact import large_strains
 from fe_contact.assembly.forms import check_compressible
 from fe_contact.budget import plan as statics
 from fe_contact.budget.budget import CAUSES, Solution, shares_of
@@ -77,6 +78,8 @@ def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
         with faults_of(scene):
             flowed = _solved(scene, given, progress, yielding.Striking.of)
         return result_of(scene, flowed)
+    if scene.model.finite:
+        return large_strains.fe(scene, given, progress)
     if not scene.model.inertia:
         check_target(scene)
         solved = _solved(scene, given, progress, Statics.of)
@@ -197,6 +200,9 @@ def _too_dear(certified: Certified, finer: Numerics) -> str:
 def expected(scene: Scene, given: Given) -> tuple[float, float]:
     """Tolerance, and processor time, s, about, of :func:`fe` once packages are loaded. Raises NotReached, BadInput."""
     with faults_of(scene):
+        if scene.model.finite:
+            large_strains.check_impact(scene)
+            return float(given.get("tolerance", DEFAULT_TOLERANCE)), large_strains.SECONDS
         if scene.model.inertia:
             target, chosen = with_waves(scene), plan(scene, given).numerics
             assert isinstance(chosen, WaveNumerics)
@@ -216,6 +222,9 @@ def check_target(scene: Scene) -> None:
     if scene.model.plasticity:
         reason = "true: this command does not know it in this version; accepted: false, or fe-contact run"
         raise BadInput(Fault(scene.source, "model.plasticity", reason))
+    if scene.model.finite:
+        reason = "finite: this command is for small displacements in this version; accepted: small, or fe-contact run"
+        raise BadInput(Fault(scene.source, "model.kinematics", reason))
     if scene.model.inertia:
         reason = "true: this command is without waves in this version; accepted: false, or fe-contact run"
         raise BadInput(Fault(scene.source, "model.inertia", reason))

@@ -35,6 +35,11 @@ class Range:
         """In words."""
         return f"{'a whole number' if self.whole else 'a number'} from {self.low:g} to {self.high:g}"
 
+    @property
+    def schema(self) -> Table:
+        """For editors."""
+        return {"type": "integer" if self.whole else "number", "minimum": self.low, "maximum": self.high}
+
     def read(self, value: object) -> float:
         """The number; raises ValueError."""
         if isinstance(value, bool) or not isinstance(value, int | float) or not self.low <= value <= self.high:
@@ -59,6 +64,11 @@ class MemberOf:
     def accepted(self) -> str:
         """In words."""
         return ", ".join(self.names)
+
+    @property
+    def schema(self) -> Table:
+        """For editors."""
+        return {"enum": self.names}
 
     def read(self, value: object) -> str:
         """The name; raises ValueError, with the nearest one."""

@@ -80,6 +80,15 @@ def addressed(source: str, places: Mapping[str, str]) -> Iterator[None]:
         raise BadInput(fault.at(source, places) for fault in bad.faults) from bad
 
 
+class PackageMissing(FeContactError):
+    """A package that only this call needs is not installed."""
+
+    exit_code = 2
+
+    def __init__(self, package: str) -> None:
+        super().__init__(f"{package} is missing; cure: pip install {package}")
+
+
 class NotReached(FeContactError):
     """The tolerance was not reached, or a solve did not converge."""
 

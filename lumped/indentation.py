@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -152,6 +152,7 @@ class Indentation:
             "tolerance": self.tolerance,
             "message": self.message,
             "scene": self.indenter.to_dict(),
+            "model": self.indenter.model.resolved(self.indenter.material),
             "contact_modulus": self.modulus,
             "numerics": self.numerics,
             "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
@@ -215,7 +216,7 @@ def indent(
     if method in HALF_SPACE_ALONE and indenter.target.has_length:
         reason = f"{method} knows the half-space alone; accepted: another method, or half_space without a datum"
         raise BadInput(Fault(indenter.source, "target.shape", reason))
-    clock = Clock()
+    clock, indenter = Clock(), replace(indenter, model=replace(indenter.model, kinematics="small"))
     depth, modulus = np.array(indenter.checked(depths)), indenter.modulus(instant)
     shape = indenter.shape.resolved("parabola") if method == "hertz" else indenter.profile
     with indenter.addressed():

@@ -1,17 +1,20 @@
-"""A washer's section, with a node under the rim of what presses it: a rectangle, fine where the stress is singular."""
+"""A washer's section, with a node under the rim of what presses it: a rectangle, fine where the stress is singular, and
+about a narrow hole, where displacements go as 1/r.
+"""
 
 from __future__ import annotations
 
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from meshes.triangles import checked, distance, elements_checked, polygon, smaller, tagged
+from meshes.triangles import checked, distance, elements_checked, larger, polygon, smaller, tagged
 
 if TYPE_CHECKING:
     from skfem import MeshTri
 
 GRADING = 1.6  # growth of the element size per distance from a singular point, times elements
 FINEST = 1.6e-4  # element size at a singular point over the narrowest part, times elements squared
+NEEDLE = 0.01  # hole's radius over the height below which it changes the stiffness by less than it squared over ten
 
 
 def washer(elements: float, inner: float, outer: float, rim: float, bonded: bool) -> MeshTri:
@@ -33,25 +36,34 @@ def washer(elements: float, inner: float, outer: float, rim: float, bonded: bool
     MeshError for numbers outside these ranges.
     """
     n = elements_checked("the shortest length", elements, 0.5, 200.0)
-    outer = checked("outer radius over the height", outer, 1e-4, 1e4)
-    inner = checked("inner radius over the height", inner, 1e-9, outer)
     rim = checked("radius of the contact over the height", rim, inner, outer)
+    inner = checked("inner radius over the height", inner, 1e-9, outer)
+    outer = checked("outer radius over the height", outer, 1e-4, 1e4)
     sharp = ((inner, -1.0), (outer, -1.0)) if bonded else ()
     inside = rim < outer
-    return rectangle(inner, outer, 1.0, (rim,) if inside else (), ((rim, 0.0),) * inside + sharp, n)
+    about = f"{GRADING / n!r}*{larger('x', repr(NEEDLE))}"
+    return rectangle(inner, outer, 1.0, (rim,) if inside else (), ((rim, 0.0),) * inside + sharp, n, about)
 
 
 def rectangle(
-    left: float, right: float, height: float, marks: tuple[float, ...], sharp: tuple[tuple[float, float], ...], n: float
+    left: float,
+    right: float,
+    height: float,
+    marks: tuple[float, ...],
+    sharp: tuple[tuple[float, float], ...],
+    n: float,
+    largest: str | None = None,
 ) -> MeshTri:
     """Triangles of ``left <= r <= right``, ``-height <= z <= 0``.
 
     ``marks``: radii on the upper side that have to be nodes; ``sharp``: points (r, z) where the stress is singular;
-    ``n``: elements along the shortest length. Boundaries ``surface`` (z = 0), ``base``, ``inside``, ``outside``.
+    ``n``: elements along the shortest length; ``largest`` size of one over (x, y), in the words of gmsh, None: any.
+    Boundaries ``surface`` (z = 0), ``base``, ``inside``, ``outside``.
     """
     stops = [left, *marks, right]
     narrowest = min(height, *(far - near for near, far in pairwise(stops)))
     size = repr(min(height, right - left) / n)  # the grading takes care of what is narrower
+    size = size if largest is None else smaller(largest, size)
     for r, z in sharp:
         size = smaller(f"({FINEST * narrowest / n**2!r}+{GRADING / n!r}*{distance(r, z)})", size)
     corners = [*((r, 0.0) for r in stops), (right, -height), (left, -height)]

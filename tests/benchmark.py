@@ -1,58 +1,53 @@
-"""What an impact costs, as multiples of bare imports measured in the same run. A script, not a test.
+"""A script, not a test: what everything costs, in bare imports measured beside it, against a stored record.
 
-    python tests/benchmark.py
+    python tests/benchmark.py [GROUP ...] [--repeats N] [--record]
 
-Every cold run is a process of its own with a velocity nobody used before, and no run reads what is known on disk, so
-that nothing can be remembered.
-Process CPU (user and system) of the child; medians of five, the runs of all kinds interleaved.
+A group is a function below that yields ratios. Every cold run is a process of its own with a speed that nobody used
+before, and reads nothing from disk, so that nothing can be remembered. CPU counts user and system time of a process and
+its children; a ratio by the clock says so. `--record` keeps what was measured in `tests/benchmark.json` and writes the
+README's table from it; without it each ratio stands beside the recorded one. Work is counted, not timed: marches,
+solves and iterations of one run, which a change of speed alone must leave as they are.
 """
 
 from __future__ import annotations
 
+import argparse
+import json
 import os
 import random
-import resource
+import re
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
 
+import fe_contact
 from lumped import Scene, laws, simulate
 from lumped.laws import mdr
 
 ROOT = Path(__file__).resolve().parent.parent
-REPEATS = 5
+RECORD = ROOT / "tests" / "benchmark.json"
+README = ROOT / "README.md"
+TABLE = re.compile(r"(?<=<!-- benchmark -->\n).*?(?=<!-- end of benchmark -->)", re.DOTALL)
+
+REPEATS = 3
 IMPORTS = "import numpy, scipy.sparse.linalg, scipy.linalg, skfem, gmsh, meshio"
-TOLERANCES = ("1e-3", "1e-4")
-BOUNDS = {"1e-3": 3.0, "1e-4": 4.0}
-# Another impact as a multiple of bare imports, where these take 0.4 s: 50 ms.
-TABLE1_BOUND, STABILITY_BOUND = 75, 150  # 30 s and 60 s where bare imports take 0.4 s
-MARGINAL_BOUND, MARGINAL_REPEATS = 50e-3 / 0.4, 15
+SECOND = 1 / 0.4  # in bare imports, for goals that were set in seconds
 MEGABYTE = 1024  # ru_maxrss counts kilobytes
-# One impact between two masses: 5 ms where bare imports take 0.4 s; a study of many.
-FORCE_BOUND, FORCE_TOLERANCE, FORCE_SAMPLES = 5e-3 / 0.4, 1e-3, 21
-FORCE_STUDY, STUDY_BOUND = 10_000, 60.0 / 0.4
-# Impacts of lumped laws as multiples of bare imports, where these take 0.4 s: 5 ms and 30 ms.
-LAW_BOUNDS = {"correspondence": 5e-3 / 0.4, "ting": 30e-3 / 0.4, "mdr": 30e-3 / 0.4}
-LAW_TOLERANCE, LAW_REPEATS = 1e-5, 15
+RUN_MEMORY, STUDY_MEMORY = 300.0, 500.0  # MB
 
-# One impact with waves in a process of its own: 400 implicit steps of some 3000 unknowns.
-WAVES = """
-from lumped import Scene
-from fe_contact.waves.targets.half_space import moving
-from fe_contact.waves.impact import motion
-from fe_contact.waves.targets.half_space import plan
-scene = Scene.load("steel-ball-waves")
-numerics = plan(scene, {"steps": 400, "elements_per_contact": 4.0}).numerics
-body = moving(scene, numerics)
-assert 2900 <= body.body.size <= 3400, body.body.size
-assert len(motion(body, scene, numerics).samples) >= 400
-"""
-WAVES_BOUND = 4.0
-
+# The tolerance of a run and the scene it is asked of, with the most it should cost.
+RUNS = [
+    ("polymer-sphere", "1e-2", 3.0), ("polymer-sphere", "1e-3", 3.0), ("polymer-sphere", "1e-4", 4.0),
+    ("polymer-layer", "1e-3", 15.0), ("rod-in-ring", "1e-3", 15.0), ("polymer-o-ring", "1e-3", 6.1),
+    ("rubber-layer-bulk", "1e-3", 7.3), ("polymer-sphere-waves", "3e-3", 6.8), ("polymer-layer-waves", "3e-3", 6.6),
+    ("steel-on-steel-waves", "3e-3", 7.3),
+]  # fmt: skip
 # The deepest of twenty slow indentations of every row of Table 1 and what lies between them, m.
 ROW_DEPTHS = {
     "polymer-sphere": 3e-4, "polymer-cone": 3e-4, "polymer-power": 3e-4, "polymer-punch": 3e-4,
@@ -60,236 +55,270 @@ ROW_DEPTHS = {
     "polymer-layer-line": 3e-4, "polymer-layer-sliding": 3e-4, "polymer-o-ring": 5e-4, "polymer-washer": 3e-4,
     "rod-in-ring": 3e-4, "two-spheres": 1e-4, "two-cylinders": 1e-4, "two-finite-spheres": 1e-4,
 }  # fmt: skip
-ROW_BOUND, ROW_MEMORY, ROW_REPEATS, ROW_SHALLOWEST = 3.0, 500, 3, 0.02
+ROW_BOUND, ROW_SHALLOWEST = 3.0, 0.02
+STUDIES = [
+    (("table1",), 75.0), (("stability", "--quick"), 150.0), (("tradeoff", "polymer-sphere", "--quick"), 40.0),
+    *(((("transfer", name), 60.0)) for name in
+      ("steel-ball-sls", "polymer-sphere", "polymer-layer", "rod-in-ring", "concrete-pole")),
+    (("pound", "two-frames.toml"), 10.0),
+]  # fmt: skip
+COMPARED, COMPARE_RUNS = "polymer-layer", 3.0
+MARGINAL_BOUND, MARGINAL_REPEATS = 50e-3 * SECOND, 15
+FORCE_BOUND, FORCE_TOLERANCE = 5e-3 * SECOND, 1e-3
+LAW_BOUNDS = {"correspondence": 5e-3 * SECOND, "ting": 30e-3 * SECOND, "mdr": 30e-3 * SECOND}
+LAW_TOLERANCE, LAW_SAMPLES = 1e-5, 15
+TING_STUDY, TING_BOUND = 1_000, 25.0  # a tenth of 10,000 and of its 250 imports
+# Whole sweeps in two processes by the clock: base scene, method, cases measured, imports allowed for so many.
+SWEEPS = [
+    ("polymer-sphere", "fe", 300, 45.0),
+    ("polymer-layer", "fe", 40, 18.0),
+    ("polymer-sphere", "correspondence", 2000, 6.0),
+]
+# Groups of which the README shows one row.
+MANY = {"indent": " (the dearest row)", "law": " (the dearest law)"}
+COUNTED = ("polymer-sphere", "polymer-layer", "rod-in-ring", "polymer-prism", "two-spheres", "ball-bouncing")
 
 
-def child(arguments: list[str]) -> tuple[float, float]:
-    """CPU seconds and peak memory, MB, of a Python process of its own."""
+@dataclass(frozen=True)
+class Ratio:
+    """A cost in bare imports: median, least and most of the repeats; ``bound`` is the goal; ``memory`` in MB or 0."""
+
+    group: str
+    what: str
+    median: float
+    least: float
+    most: float
+    bound: float
+    memory: float = 0.0
+
+    @classmethod
+    def of(cls, group: str, what: str, samples: list[float], bound: float, memory: float = 0.0) -> Ratio:
+        return cls(group, what, statistics.median(samples), min(samples), max(samples), bound, memory)
+
+    def line(self, older: Ratio | None) -> str:
+        """With what the record says, and a word where the two spreads do not touch or a goal is missed."""
+        said = f"{self.group:10} {self.what:46} {self.median:8.3g} ({self.least:.3g} to {self.most:.3g})"
+        said += f", goal {self.bound:.3g}" + (f", {self.memory:.0f} MB" if self.memory else "")
+        if older is not None:
+            apart = self.least > older.most or self.most < older.least
+            said += f"; recorded {older.median:.3g}" + (", changed" if apart else "")
+        return said + ("" if self.median <= self.bound else "; missed")
+
+
+def child(arguments: list[str]) -> tuple[float, float, float]:
+    """CPU seconds, seconds by the clock and peak memory, MB, of a Python process of its own and its children."""
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
     probe = (
-        "import resource, subprocess, sys\n"
+        "import resource, subprocess, sys, time\n"
+        "start = time.perf_counter()\n"
         "code = subprocess.call(sys.argv[1:], stdout=subprocess.DEVNULL)\n"
         "used = resource.getrusage(resource.RUSAGE_CHILDREN)\n"
-        "print(code, used.ru_utime + used.ru_stime, used.ru_maxrss)\n"
+        "print(code, used.ru_utime + used.ru_stime, time.perf_counter() - start, used.ru_maxrss)\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", probe, sys.executable, *arguments],
         cwd=ROOT, env=environment, capture_output=True, text=True, check=True,
     )  # fmt: skip
-    code, cpu, memory = done.stdout.split()
-    if code != "0":
+    code, cpu, clock, memory = done.stdout.split()
+    if code not in ("0", "3"):  # a study that says of a case that it did not converge has done its work
         raise SystemExit(f"{' '.join(arguments)} ended with {code}:\n{done.stderr}")
-    return float(cpu), float(memory) / MEGABYTE
+    return float(cpu), float(clock), float(memory) / MEGABYTE
 
 
-def say(line: str) -> None:
-    sys.stdout.write(line + "\n")
-    sys.stdout.flush()
-
-
-def run_once(tolerance: str, folder: str) -> tuple[float, float]:
-    velocity = f"striker.velocity={random.SystemRandom().uniform(0.015, 0.025)!r}"
-    command = ["run", "polymer-sphere", "--tolerance", tolerance, "--set", velocity, "--out", folder, "--quiet"]
-    return child(["-m", "fe_contact", *command])
-
-
-def cold() -> float:
-    """Whole processes against bare imports, whose CPU seconds it returns."""
-    found: dict[str, list[tuple[float, float]]] = {"imports": [], **{t: [] for t in TOLERANCES}}
+def command(*words: str) -> tuple[float, float, float]:
+    """As `child`, of one of our commands that writes into a folder of its own."""
     with tempfile.TemporaryDirectory() as folder:
-        run_once(TOLERANCES[0], folder)  # so that the libraries' files are in memory
-        for _ in range(REPEATS):
-            found["imports"].append(child(["-c", IMPORTS]))
-            for tolerance in TOLERANCES:
-                found[tolerance].append(run_once(tolerance, folder))
-    cpu = {kind: statistics.median(run[0] for run in runs) for kind, runs in found.items()}
-    memory = {kind: max(run[1] for run in runs) for kind, runs in found.items()}
-    say(f"bare imports            {cpu['imports']:.3f} s CPU, {memory['imports']:.0f} MB")
-    for tolerance in TOLERANCES:
-        ratio = cpu[tolerance] / cpu["imports"]
-        say(
-            f"fe-contact run, {tolerance}    {cpu[tolerance]:.3f} s CPU = {ratio:.2f} x imports "
-            f"(bound {BOUNDS[tolerance]:g}), {memory[tolerance]:.0f} MB (bound 300)"
-        )
-    return cpu["imports"]
+        return child(["-m", "fe_contact", *words, "--out", folder, "--quiet"])
 
 
-def commanded(*command: str, bound: float) -> None:
-    """A study, its two processes together, by the clock and by their CPU, against bare imports."""
-    with tempfile.TemporaryDirectory() as folder:
-        start = time.perf_counter()
-        imports, _ = child(["-c", IMPORTS])
-        middle = time.perf_counter()
-        cpu, memory = child(["-m", "fe_contact", *command, "--out", folder, "--quiet"])
-        clock, waited = time.perf_counter() - middle, middle - start
-    say(
-        f"fe-contact {' '.join(command):12s} {cpu:.1f} s CPU of both = {cpu / imports:.0f} x imports, "
-        f"{clock / waited:.0f} x by the clock (bound {bound}), {memory:.0f} MB each (bound {ROW_MEMORY})"
-    )
+def against_imports(group: str, what: str, bound: float, repeats: int, words: Callable[[], list[str]]) -> Ratio:
+    """CPU of one of our commands, each time against bare imports just before it; ``words`` are other ones each time."""
+    samples, memory = [], 0.0
+    for _ in range(repeats):
+        imports = child(["-c", IMPORTS])[0]
+        cpu, _, used = command(*words())
+        samples.append(cpu / imports)
+        memory = max(memory, used)
+    return Ratio.of(group, what, samples, bound, memory)
 
 
-def indent_rows() -> None:
-    """Twenty slow indentations of every row, a whole process each, against bare imports between them."""
-    with tempfile.TemporaryDirectory() as folder:
-        for name, deepest in ROW_DEPTHS.items():
-            imports, rows = [], []
-            for _ in range(ROW_REPEATS):
-                imports.append(child(["-c", IMPORTS])[0])
-                rows.append(indent_once(name, deepest, folder))
-            ratio = statistics.median(cpu for cpu, _ in rows) / statistics.median(imports)
-            memory = max(memory for _, memory in rows)
-            say(
-                f"fe-contact indent, 20 depths, {name:22} {ratio:.2f} x imports (bound {ROW_BOUND:g}), "
-                f"{memory:.0f} MB (bound {ROW_MEMORY})"
-            )
+def run_words(scene: str, tolerance: str) -> list[str]:
+    """An impact at a speed that nobody used before: up to a tenth off the scene's."""
+    velocity = Scene.load(scene).striker.velocity * random.SystemRandom().uniform(0.9, 1.1)
+    return ["run", scene, "--tolerance", tolerance, "--set", f"striker.velocity={velocity!r}"]
 
 
-def indent_once(name: str, deepest: float, folder: str) -> tuple[float, float]:
+def indent_words(scene: str, deepest: float) -> list[str]:
+    """Twenty depths over a decade and a half, the shallowest of them new each time."""
     shallowest = ROW_SHALLOWEST * random.SystemRandom().uniform(1.0, 1.1)
     depths = ",".join(repr(deepest * shallowest ** (share / 19.0)) for share in range(20))
-    return child(["-m", "fe_contact", "indent", name, "--depths", depths, "--out", folder, "--quiet"])
+    return ["indent", scene, "--depths", depths]
 
 
-def waves() -> None:
-    """An impact with inertia, a whole process, against bare imports between them."""
-    imports, impacts = [], []
-    for _ in range(REPEATS):
-        imports.append(child(["-c", IMPORTS])[0])
-        impacts.append(child(["-c", WAVES])[0])
-    ratio = statistics.median(impacts) / statistics.median(imports)
-    say(f"impact with waves, 400 steps, 3000 unknowns {ratio:.2f} x imports (bound {WAVES_BOUND:g})")
+def runs(repeats: int) -> Iterator[Ratio]:
+    """One impact, bars included, a whole process each."""
+    for scene, tolerance, bound in RUNS:
+        yield against_imports("run", f"{scene} at {tolerance}", bound, repeats, partial(run_words, scene, tolerance))
 
 
-def marginal(imports: float) -> None:
-    """Another impact on meshes that are there already, within this process: from scene to result, bars included."""
-    sys.path.insert(0, str(ROOT))
-    import fe_contact
-    import lumped
-    from fe_contact.budget.plan import plan
-    from fe_contact.march.impact import march
-    from fe_contact.steppers.steps import Strike
-    from fe_contact.targets import half_space
-
-    rng = random.SystemRandom()
-    for tolerance in TOLERANCES:
-        spent: dict[str, list[float]] = {"march": [], "run": []}
-        for repeat in range(MARGINAL_REPEATS + 1):
-            scene = lumped.Scene.load("polymer-sphere", {"striker.velocity": rng.uniform(0.015, 0.025)})
-            numerics, strike = plan(scene, {"tolerance": float(tolerance)}).numerics, Strike.of(scene)
-            surface = half_space.surface(scene.material.nu, numerics)
-            start = time.process_time()
-            march(strike, surface, numerics)
-            middle = time.process_time()
-            fe_contact.run(scene, float(tolerance))
-            if repeat:  # the first one makes the meshes
-                spent["march"].append(middle - start)
-                spent["run"].append(time.process_time() - middle)
-        one, all_of_it = (statistics.median(times) for times in spent.values())
-        say(
-            f"another impact, {tolerance}    {1e3 * all_of_it:.0f} ms = {all_of_it / imports:.3f} x imports "
-            f"(bound {MARGINAL_BOUND:g}), of which the finest march {1e3 * one:.0f} ms"
+def indents(repeats: int) -> Iterator[Ratio]:
+    """Twenty slow indentations of every row of Table 1, a whole process each."""
+    for scene, deepest in ROW_DEPTHS.items():
+        yield against_imports(
+            "indent", f"{scene}, 20 depths", ROW_BOUND, repeats, partial(indent_words, scene, deepest)
         )
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / MEGABYTE
-    say(f"this process            {peak:.0f} MB")
 
 
-def one_impact(law: str, scenes: list[Scene]) -> float:
-    """Median CPU seconds of one impact by a law, the first left out."""
-    spent = []
-    for scene in scenes:
-        start = time.process_time()
-        simulate(laws.get(law).of(scene), scene, LAW_TOLERANCE)
-        spent.append(time.process_time() - start)
-    return statistics.median(spent[1:])
+def studies(repeats: int) -> Iterator[Ratio]:
+    """Whole studies; `compare` in runs of the same scene."""
+    for words, bound in STUDIES:
+        yield against_imports("study", " ".join(words), bound, 1, partial(list, words))
+    samples = []
+    for _ in range(repeats):
+        alone = command(*run_words(COMPARED, "1e-3"))[0]
+        samples.append(command("compare", COMPARED)[0] / alone)
+    yield Ratio.of("study", f"compare {COMPARED}, in runs of it", samples, COMPARE_RUNS)
 
 
-def lumped_laws(imports: float) -> None:
-    """Impacts by the laws with memory, as multiples of bare imports."""
+def sweeps(repeats: int) -> Iterator[Ratio]:
+    """Many cases in two processes, start and table included, by the clock against the clock of bare imports."""
+    for scene, method, count, bound in SWEEPS:
+        samples, memory = [], 0.0
+        for _ in range(min(repeats, 1)):
+            with tempfile.TemporaryDirectory() as folder:
+                file = Path(folder) / "sweep.toml"
+                draws = f"[draws]\ncount = {count}\nseed = {random.SystemRandom().randrange(10**6)}\n"
+                velocity = Scene.load(scene).striker.velocity
+                draws += f'"striker.velocity" = {{ log_uniform = [{0.5 * velocity}, {2.0 * velocity}] }}\n'
+                file.write_text(f'name = "s"\nscene = "{scene}"\nmethods = ["{method}"]\n{draws}', encoding="utf-8")
+                imports = child(["-c", IMPORTS])[1]
+                _, clock, memory = command("sweep", str(file), "--jobs", "2")
+            samples.append(clock / imports)
+        yield Ratio.of("sweep", f"{count} of {scene} by {method}, clock", samples, bound, memory)
+
+
+def again(repeats: int) -> Iterator[Ratio]:
+    """One more impact in a process that has its meshes, bars included."""
+    imports = statistics.median(child(["-c", IMPORTS])[0] for _ in range(repeats))
+    for tolerance in (1e-3, 1e-4):
+        spent = []
+        for _ in range(MARGINAL_REPEATS + 1):
+            velocity = random.SystemRandom().uniform(0.015, 0.025)
+            scene = Scene.load("polymer-sphere", {"striker.velocity": velocity})
+            start = time.process_time()
+            fe_contact.run(scene, tolerance)
+            spent.append((time.process_time() - start) / imports)
+        yield Ratio.of("again", f"polymer-sphere at {tolerance:g}", spent[1:], MARGINAL_BOUND)
+
+
+def lumped_laws(repeats: int) -> Iterator[Ratio]:
+    """Impacts by laws, in one process: those with memory from a scene's geometry, those between two masses by k."""
+    imports = statistics.median(child(["-c", IMPORTS])[0] for _ in range(repeats))
     rng = random.SystemRandom()
     for name, base in (("polymer-sphere", 0.02), ("steel-ball-sls", 1.0)):
-        speeds = [base * rng.uniform(0.75, 1.25) for _ in range(LAW_REPEATS + 1)]
+        speeds = [base * rng.uniform(0.75, 1.25) for _ in range(LAW_SAMPLES)]
         scenes = [Scene.load(name, {"striker.velocity": speed}) for speed in speeds]
         for law, bound in LAW_BOUNDS.items():
-            cpu = one_impact(law, scenes)
-            say(f"{law:14} {name:15} {1e3 * cpu:6.1f} ms = {cpu / imports:.4f} x imports (bound {bound:.4f})")
-        start = time.process_time()
-        for scene in scenes:
-            mdr.estimate(scene)
-        cpu = (time.process_time() - start) / len(scenes)
-        bound = LAW_BOUNDS["correspondence"]
-        say(f"mdr.estimate   {name:15} {1e3 * cpu:6.1f} ms = {cpu / imports:.4f} x imports (bound {bound:.4f})")
-
-
-def force_laws() -> None:
-    """Every law between two masses: one impact by one march, and as a Result with bars, rows and ledgers."""
-    from lumped import Scene, laws
-
-    rng = random.SystemRandom()
-    imports = statistics.median(child(["-c", IMPORTS])[0] for _ in range(REPEATS))
-    for name in laws.available():
-        module = laws.get(name)
-        if "k" not in module.keys:
+            member = laws.get(law)
+            samples = spent(scenes, lambda scene, law=member: simulate(law.of(scene), scene, LAW_TOLERANCE), imports)
+            yield Ratio.of("law", f"{law}, {name}", samples, bound)
+        yield Ratio.of(
+            "law", f"mdr.estimate, {name}", spent(scenes, mdr.estimate, imports), LAW_BOUNDS["correspondence"]
+        )
+    for law in laws.available():
+        member = laws.get(law)
+        if "k" not in member.keys:
             continue
-        law = {"name": name, "k": 1e8, **({"e": 0.6} if "e" in module.keys else {})}
-        lean, whole = [], []
-        for _ in range(FORCE_SAMPLES):
-            striker = {"mass": rng.uniform(500.0, 2000.0), "velocity": rng.uniform(0.1, 2.0)}
-            scene = Scene.from_dict({"striker": striker, "law": law})
-            model, start = module.of(scene), time.process_time()
-            model.outcome(scene, FORCE_TOLERANCE)
-            middle = time.process_time()
-            model.simulate(scene, FORCE_TOLERANCE)
-            lean.append(middle - start)
-            whole.append(time.process_time() - middle)
-        one, all_of_it = statistics.median(lean), statistics.median(whole)
-        lean_said = f"{1e3 * one:5.1f} ms = {one / imports:.4f} x imports"
-        whole_said = f"as a Result {1e3 * all_of_it:5.1f} ms = {all_of_it / imports:.4f}"
-        say(f"{name:15} {lean_said}, {whole_said} (bound of both {FORCE_BOUND:.4f})")
+        keys = {"name": law, "k": 1e8, **({"e": 0.6} if "e" in member.keys else {})}
+        strikers = [{"mass": rng.uniform(500.0, 2e3), "velocity": rng.uniform(0.1, 2.0)} for _ in range(LAW_SAMPLES)]
+        scenes = [Scene.from_dict({"striker": striker, "law": keys}) for striker in strikers]
+        samples = spent(scenes, lambda scene, law=member: law.of(scene).simulate(scene, FORCE_TOLERANCE), imports)
+        yield Ratio.of("law", law, samples, FORCE_BOUND)
 
 
-def studied(seed: int) -> float | None:
-    """The restitution of an impact of a study: a law of those between two masses, or the correspondence law, each over
-    decades of its parameters.
-    """
-    rng = random.Random(seed)
-    names = [name for name in laws.available() if "k" in laws.get(name).keys]
-    name = rng.choice([*names, "correspondence"])
-    striker = {"mass": 10.0 ** rng.uniform(0.0, 4.0), "velocity": 10.0 ** rng.uniform(-1.0, 0.7)}
-    if name == "correspondence":
-        striker |= {"shape": "sphere", "radius": 10.0 ** rng.uniform(-1.5, 0.0)}
-        solid = {"law": "sls", "E0": 10.0 ** rng.uniform(9.0, 11.0), "R1": 10.0 ** rng.uniform(-1.0, 0.5)}
-        solid |= {"R2": 10.0 ** rng.uniform(-5.0, 0.0), "nu": 0.3}
-        scene = Scene.from_dict({"striker": striker, "target": {"shape": "half_space", "material": solid}})
-    else:
-        law = {"name": name, "k": 10.0 ** rng.uniform(6.0, 10.0)}
-        law |= {"e": rng.uniform(0.1, 0.95)} if "e" in laws.get(name).keys else {}
-        scene = Scene.from_dict({"striker": striker, "law": law})
-    return simulate(laws.get(name).of(scene), scene, FORCE_TOLERANCE).quantities["restitution"].value
+def spent(scenes: list[Scene], answer: Callable[[Scene], object], imports: float) -> list[float]:
+    """CPU of each answer but the first, which fills what is kept, in bare imports."""
+    found = []
+    for scene in scenes:
+        start = time.process_time()
+        answer(scene)
+        found.append((time.process_time() - start) / imports)
+    return found[1:]
 
 
-def study() -> None:
-    """Ten thousand whole Results, all different, in two processes, by the clock against bare imports before them."""
-    begin = time.perf_counter()
-    child(["-c", IMPORTS])
-    middle = time.perf_counter()
-    seeds = random.SystemRandom().sample(range(2**32), FORCE_STUDY)
-    with ProcessPoolExecutor(2) as pool:
-        ended = sum(found is not None for found in pool.map(studied, seeds, chunksize=100))
-    clock, imports = time.perf_counter() - middle, middle - begin
-    say(
-        f"{FORCE_STUDY} impacts in two processes, {ended} with a restitution: {clock:.0f} s = {clock / imports:.0f} x "
-        f"imports by the clock (bound {STUDY_BOUND:.0f})"
-    )
+def ting(repeats: int) -> Iterator[Ratio]:
+    """Ting's law asked again and again for other materials, as `identify` does."""
+    imports = statistics.median(child(["-c", IMPORTS])[0] for _ in range(repeats))
+    rng, total, law = random.SystemRandom(), 0.0, laws.get("ting")
+    for _ in range(TING_STUDY):
+        scene = Scene.load("polymer-sphere", {"target.material.C1": 1.8e4 * rng.uniform(0.1, 10.0)})
+        start = time.process_time()
+        simulate(law.of(scene), scene, 1e-3)
+        total += time.process_time() - start
+    yield Ratio.of("law", f"ting, {TING_STUDY} materials", [total / imports], TING_BOUND)
+
+
+GROUPS: dict[str, Callable[[int], Iterator[Ratio]]] = {
+    "runs": runs, "indents": indents, "studies": studies, "sweeps": sweeps,
+    "again": again, "laws": lumped_laws, "ting": ting,
+}  # fmt: skip
+
+
+def counted() -> dict[str, dict[str, int]]:
+    """Work of one run of each scene at its default tolerance, the same on every machine."""
+    return {name: dict(fe_contact.run(Scene.load(name)).work) for name in COUNTED}
+
+
+def table(ratios: list[Ratio]) -> str:
+    """The README's rows: of slow indentations and of laws the dearest alone."""
+    dearest = {one.group: one.what for one in sorted(ratios, key=lambda one: one.median) if one.group in MANY}
+    shown = [one for one in ratios if dearest.get(one.group, one.what) == one.what]
+    rows = [
+        f"| {one.group}: {one.what}{MANY.get(one.group, '')} | {one.median:.2g} | {one.bound:.2g} |\n" for one in shown
+    ]
+    return "| cost in bare imports | measured | goal |\n|---|---|---|\n" + "".join(rows)
+
+
+def recorded() -> tuple[list[Ratio], dict[str, dict[str, int]]]:
+    """What was measured last, and the work counted then."""
+    if not RECORD.exists():
+        return [], {}
+    known = json.loads(RECORD.read_text(encoding="utf-8"))
+    return [Ratio(**one) for one in known["ratios"]], known["work"]
+
+
+def keep(ratios: list[Ratio], work: dict[str, dict[str, int]]) -> None:
+    """The record, older ratios that were not measured now included, and the README's table."""
+    merged = {(one.group, one.what): one for one in [*recorded()[0], *ratios]}
+    known = {"ratios": [asdict(one) for one in merged.values()], "work": work}
+    RECORD.write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
+    text = README.read_text(encoding="utf-8")
+    README.write_text(TABLE.sub(lambda _: table(list(merged.values())), text), encoding="utf-8")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("groups", nargs="*", choices=[*GROUPS, []], metavar="GROUP", help=", ".join(GROUPS))
+    parser.add_argument("--repeats", type=int, default=REPEATS)
+    parser.add_argument("--record", action="store_true", help="keep what is measured, and write the README's table")
+    asked = parser.parse_args()
+    os.environ["FE_CONTACT_CACHE"] = "off"
+    older, work_before = recorded()
+    known = {(one.group, one.what): one for one in older}
+    ratios = []
+    for group in asked.groups or GROUPS:
+        for ratio in GROUPS[group](asked.repeats):
+            sys.stdout.write(ratio.line(known.get((ratio.group, ratio.what))) + "\n")
+            sys.stdout.flush()
+            ratios.append(ratio)
+    work = counted()
+    for name, now in work.items():
+        before = work_before.get(name, now)
+        changed = ", ".join(f"{key} {before.get(key)} -> {now[key]}" for key in now if before.get(key) != now[key])
+        sys.stdout.write(f"work       {name:46} {changed or 'as recorded' if work_before else now}\n")
+    if asked.record:
+        keep(ratios, work)
 
 
 if __name__ == "__main__":
-    os.environ["FE_CONTACT_CACHE"] = "off"
-    imports = cold()
-    indent_rows()
-    commanded("table1", bound=TABLE1_BOUND)
-    commanded("stability", "--quick", bound=STABILITY_BOUND)
-    waves()
-    marginal(imports)
-    lumped_laws(imports)
-    force_laws()
-    study()
+    main()

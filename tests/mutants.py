@@ -5,8 +5,9 @@
 Draws mutants of the syntax trees of the ``CORE``, every file alike: a number ten times larger or smaller, an order one
 more or less, a comparison turned round, a condition held, largest for smallest, a sum for a difference, a factor left
 out, an answer a tenth. Each is written to a copy of the checkout, never to the checkout, and meets the tests that call
-the mutated function, the fastest first, up to ``--budget`` seconds of processor time. Prints what every mutant met, the
-share killed, and the survivors; one that does no harm stands with its reason in ``HARMLESS`` and is not drawn.
+the mutated function, those first that killed others of its file, then the fastest, until one fails, up to ``--budget``
+seconds of processor time. Prints what every mutant met, the share killed, and the survivors; one that does no harm
+stands with its reason in ``HARMLESS`` and is not drawn.
 
 Which test calls what is found by running every test file once, and kept in the folder ``--work``; so are the
 answers, so that a run that was broken off goes on where it stood. A test file or a source that changes is asked again.
@@ -19,6 +20,7 @@ import ast
 import copy
 import hashlib
 import json
+import multiprocessing
 import os
 import random
 import re
@@ -32,12 +34,14 @@ import time
 from collections import defaultdict
 from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fnmatch import fnmatch
 from functools import cache, cached_property
+from itertools import accumulate
 from pathlib import Path
 from queue import SimpleQueue
-from types import CodeType, FrameType
+from types import CodeType
 from typing import Any
 
 import pytest
@@ -59,7 +63,7 @@ CORE = (
     "lumped/laws/mdr.py", "lumped/laws/correspondence.py", "lumped/result/history.py",
 )  # fmt: skip
 TESTS = ("tests/fe/test_*.py", "tests/lumped/test_*.py", "tests/test_table1.py", "tests/test_stability*.py")
-LONGEST = 20.0  # s of processor time, traced: a slower test is not asked
+LONGEST = 5.0  # s of processor time, watched: a slower test is not asked
 FEW = 8  # integers up to here are orders and numbers of things, larger ones are bounds
 SILENT = ("progress", "count", "counted", "warn", "lru_cache", "reshape")  # calls whose arguments change no answer
 
@@ -175,6 +179,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/waves/plan.py", "FLIGHT", ""): WORK,
     ("lumped/solvers/hereditary/approach.py", "PieceMotion.piece", "NEWTON_STEPS"): WORK,
     ("lumped/solvers/mdr/march.py", "_to_turn", ""): GUESS,
+    ("lumped/solvers/hereditary/rebound.py", "ReboundPieces._solved", "if ascends -> True"): WORK,
     # bounds and examples of files
     ("lumped/paper/table1.py", "ConeRow.length", ""): "a length that a cone does not have",
     ("lumped/paper/table1.py", "ROWS", ""): "the body that a study takes where a file names none",
@@ -422,12 +427,8 @@ def drawn(files: list[str], seed: int, count: int) -> list[Mutant]:
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, Any, Any]:
-    """Notes functions called by a test and its processor time."""
-    seen: dict[int, CodeType] = {}
-
-    def called(frame: FrameType, event: str, arg: object) -> None:
-        seen[id(frame.f_code)] = frame.f_code
+def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> Generator[None, Any, Any]:
+    """Notes functions called by a test and its processor time; a file of tests is kept once it is through."""
 
     def stop(*_: object) -> None:
         pytest.fail("too slow")
@@ -435,17 +436,48 @@ def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, Any, Any]:
     signal.signal(signal.SIGVTALRM, stop)
     signal.setitimer(signal.ITIMER_VIRTUAL, LONGEST)
     began = time.process_time()
-    sys.settrace(called)
     try:
-        return (yield)
+        with _seen() as codes:
+            return (yield)
     finally:
-        sys.settrace(None)
         signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
         taken = time.process_time() - began
-        functions = {_function(code) for code in seen.values()} - {""}
+        functions = {_function(code) for code in codes} - {""}
         line = json.dumps({"test": item.nodeid, "time": taken, "functions": sorted(functions)})
-        with Path(os.environ["MUTANTS_CALLS"]).open("a", encoding="utf-8") as file:
+        kept = _kept(Path(os.environ["MUTANTS_CALLS"]), item.path)
+        with kept.with_suffix(".part").open("a", encoding="utf-8") as file:
             file.write(line + "\n")
+        if nextitem is None or nextitem.path != item.path:
+            kept.with_suffix(".part").rename(kept)
+
+
+def _kept(work: Path, tests: Path) -> Path:
+    """Where the calls of a file of tests are kept, as it is now."""
+    return work / f"{tests.stem}-{hashlib.sha256(tests.read_bytes()).hexdigest()[:12]}.jsonl"
+
+
+@contextmanager
+def _seen() -> Iterator[set[CodeType]]:
+    """All code that begins meanwhile; from Python 3.12 on each tells so once, which takes hardly any time."""
+    codes = set[CodeType]()
+    if sys.version_info < (3, 12):
+        sys.settrace(lambda frame, event, arg: codes.add(frame.f_code))
+        yield codes
+        sys.settrace(None)
+        return
+    tool, begins = sys.monitoring.COVERAGE_ID, sys.monitoring.events.PY_START
+
+    def begun(code: CodeType, offset: int) -> object:
+        codes.add(code)
+        return sys.monitoring.DISABLE
+
+    sys.monitoring.use_tool_id(tool, "mutants")
+    sys.monitoring.register_callback(tool, begins, begun)
+    sys.monitoring.restart_events()
+    sys.monitoring.set_events(tool, begins)
+    yield codes
+    sys.monitoring.set_events(tool, sys.monitoring.events.NO_EVENTS)
+    sys.monitoring.free_tool_id(tool)
 
 
 def _function(code: CodeType) -> str:
@@ -458,23 +490,22 @@ def _function(code: CodeType) -> str:
 def calls(work: Path, jobs: int, patterns: Iterable[str]) -> list[dict[str, Any]]:
     """Every test with its time and the functions it calls; those of a test file that was asked before are kept."""
     files = [path for pattern in patterns for path in sorted(ROOT.glob(pattern))]
+    unknown = [path for path in files if not _kept(work, path).exists()]
+    for part in work.glob("*.part"):
+        part.unlink()
 
-    def asked(path: Path) -> list[dict[str, Any]]:
-        kept = work / f"{path.stem}-{hashlib.sha256(path.read_bytes()).hexdigest()[:12]}.jsonl"
-        if not kept.exists():
-            fresh = kept.with_suffix(".part")
-            fresh.write_text("", encoding="utf-8")
-            environment = _environment(ROOT) | {"MUTANTS_CALLS": str(fresh)}
-            environment["PYTHONPATH"] += f"{os.pathsep}{ROOT / 'tests'}"
-            subprocess.run(
-                [*PYTEST, "-p", "mutants", str(path)], cwd=ROOT, env=environment, capture_output=True, check=False
-            )
-            fresh.rename(kept)
-            sys.stderr.write(f"asked {path.name}\n")
-        return [json.loads(line) for line in kept.read_text(encoding="utf-8").splitlines()]
+    def ask(some: list[Path]) -> None:
+        environment = _environment(ROOT) | {"MUTANTS_CALLS": str(work)}
+        environment["PYTHONPATH"] += f"{os.pathsep}{ROOT / 'tests'}"
+        command = [sys.executable, "-m", "pytest", *PYTEST, "-p", "mutants", *map(str, some)]
+        subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, check=False)
+        for path in some:
+            _kept(work, path).touch()  # none of its tests may be a plain one
 
     with ThreadPoolExecutor(jobs) as pool:
-        return [test for tests in pool.map(asked, files) for test in tests if test["time"] < 0.95 * LONGEST]
+        list(pool.map(ask, [some for k in range(jobs) if (some := unknown[k::jobs])]))
+    tests = (json.loads(line) for path in files for line in _kept(work, path).read_text(encoding="utf-8").splitlines())
+    return [test for test in tests if test["time"] < 0.95 * LONGEST]
 
 
 def users(scope: str, file: str) -> set[str]:
@@ -521,49 +552,79 @@ def sources() -> list[str]:
 
 # --- what a mutant meets ---------------------------------------------------------------------------------------------
 
-PYTEST = (sys.executable, "-m", "pytest", "-q", "-n0", "-p", "no:cacheprovider", "--no-header", "--tenth")
+PYTEST = ("-q", "-n0", "-p", "no:cacheprovider", "--no-header")
+FORKED = multiprocessing.get_context("forkserver")  # no mutant waits for libraries to be imported
+LIBRARIES = ("__main__", "pytest", "numpy", "scipy.optimize", "scipy.integrate", "skfem", "meshio", "gmsh")
+FIRST = 2.0  # s of the tests that are asked first: most mutants do not live longer
+KILLED = "killed by "
 
 
 def _environment(root: Path) -> dict[str, str]:
     return {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(root)}
 
 
-def met(mutant: Mutant, tests: list[dict[str, Any]], budget: float, copied: Path) -> str:
+def met(mutant: Mutant, tests: list[dict[str, Any]], killers: set[str], budget: float, copied: Path) -> str:
     """What becomes of it: the test that fails, "timeout", "survived", or "no test calls it"."""
-    chosen, spent, name = [], 0.0, mutant.scope.rpartition(".")[2]
-    scope = {f"{mutant.file}:{mutant.scope}"}
-    called = any(scope & set(test["functions"]) for test in tests)
+    chosen = asked_of(mutant, tests, killers, budget)
+    if not chosen:
+        return "no test calls it"
+    first = sum(spent <= FIRST for spent in accumulate(test["time"] for test in chosen))
+    target, pristine = copied / mutant.file, ROOT / mutant.file
+    target.write_text(mutant.text, encoding="utf-8")
+    try:
+        for some in (chosen[:first], chosen[first:]):
+            found = _fate(some, copied) if some else ""
+            if found:
+                return found
+    finally:
+        shutil.copy2(pristine, target)  # with its time: else Python would go on with what it compiled
+    return f"survived {len(chosen)} tests"
+
+
+def asked_of(mutant: Mutant, tests: list[dict[str, Any]], killers: set[str], budget: float) -> list[dict[str, Any]]:
+    """Tests that call what it changes, up to so many seconds: first those that killed others of its file, then fast."""
+    scope, name = {f"{mutant.file}:{mutant.scope}"}, mutant.scope.rpartition(".")[2]
+    called = any(not scope.isdisjoint(test["functions"]) for test in tests)
     if not called:
         scope = users(mutant.scope, mutant.file)
-    for test in sorted(tests, key=lambda test: test["time"]):
+    chosen, spent = list[dict[str, Any]](), 0.0
+    for test in sorted(tests, key=lambda one: (one["test"] not in killers, one["time"])):
         near = not scope.isdisjoint(test["functions"]) or (
             not called and name in words(test["test"].partition("::")[0])
         )
-        if spent + test["time"] <= budget and near:
-            chosen.append(test["test"])
+        if near and spent + test["time"] <= budget:
+            chosen.append(test)
             spent += test["time"]
-    if not chosen:
-        return "no test calls it"
-    target, pristine = copied / mutant.file, ROOT / mutant.file
-    target.write_text(mutant.text, encoding="utf-8")
-    most = int(3.0 * spent + 20.0)  # s of processor time; one that hangs is noticed
+    return chosen
 
-    def bounded() -> None:
-        resource.setrlimit(resource.RLIMIT_CPU, (most, most))
 
-    try:
-        ended = subprocess.run(
-            [*PYTEST, "-x", *chosen], cwd=copied, env=_environment(copied), capture_output=True, text=True, check=False,
-            preexec_fn=bounded,
-        )  # fmt: skip
-    finally:
-        shutil.copy2(pristine, target)  # with its time: else Python would go on with what it compiled
-    if ended.returncode == 0:
-        return f"survived {len(chosen)} tests"
-    if ended.returncode == pytest.ExitCode.USAGE_ERROR:  # its name tells what the code calls something
+def _fate(tests: list[dict[str, Any]], copied: Path) -> str:
+    """What tests say of the code in a folder, nothing if they pass."""
+    most = int(3.0 * sum(test["time"] for test in tests) + 20.0)  # s of processor time; one that hangs is noticed
+    said = copied / "said"
+    one = FORKED.Process(target=_run, args=([test["test"] for test in tests], copied, said, most))
+    one.start()
+    one.join()
+    if one.exitcode == 0:
+        return ""
+    if one.exitcode == pytest.ExitCode.USAGE_ERROR:  # its name tells what the code calls something
         return "not asked, a test has another name now; cure: another --work"
-    failed = re.search(r"^(?:FAILED|ERROR) (\S+)", ended.stdout, re.MULTILINE)
-    return f"killed by {failed[1]}" if failed else "killed by timeout" if ended.returncode < 0 else "killed at import"
+    failed = re.search(r"^(?:FAILED|ERROR) (\S+)", said.read_text(encoding="utf-8"), re.MULTILINE)
+    return f"{KILLED}{failed[1]}" if failed else f"{KILLED}timeout" if (one.exitcode or 0) < 0 else "killed at import"
+
+
+def _run(tests: list[str], root: Path, said: Path, most: int) -> None:
+    """Tests of the code in a folder, in a process of its own."""
+    resource.setrlimit(resource.RLIMIT_CPU, (most, most))
+    os.chdir(root)
+    os.environ.update(_environment(root))
+    sys.path.insert(0, str(root))
+    with said.open("w", encoding="utf-8") as file:
+        os.dup2(file.fileno(), 1)
+        os.dup2(file.fileno(), 2)
+    code = pytest.main([*PYTEST, "-x", *tests])
+    sys.stdout.flush()
+    os._exit(code)
 
 
 def answered(
@@ -584,8 +645,9 @@ def answered(
         key = f"{mutant.name} {hashlib.sha256(mutant.text.encode()).hexdigest()[:12]}"
         if "killed" not in known.get(key, ""):
             root = free.get()
+            by = {answer for name, answer in known.items() if name.startswith(f"{mutant.file}:")}
             try:
-                known[key] = met(mutant, tests, budget, root)
+                known[key] = met(mutant, tests, {answer.removeprefix(KILLED) for answer in by}, budget, root)
             finally:
                 free.put(root)
             kept.write_text(json.dumps(known, indent=1), encoding="utf-8")
@@ -594,6 +656,8 @@ def answered(
         return mutant.name, known[key]
 
     try:
+        if _fate(sorted(tests, key=lambda test: float(test["time"]))[:1], roots[0]):
+            raise SystemExit((roots[0] / "said").read_text(encoding="utf-8"))  # the code itself fails
         with ThreadPoolExecutor(jobs) as pool:
             return dict(pool.map(one, mutants))
     finally:
@@ -625,12 +689,14 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=150)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--budget", type=float, default=60.0, help="s of processor time for one mutant")
+    parser.add_argument("--budget", type=float, default=20.0, help="s of processor time for one mutant")
     parser.add_argument("--only", nargs="+", default=["*"], help="patterns of files to mutate")
     parser.add_argument("--tests", nargs="+", default=TESTS, help="patterns of files that are asked")
     parser.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "fe-contact-mutants")
     given = parser.parse_args()
     given.work.mkdir(exist_ok=True)
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"
+    FORKED.set_forkserver_preload(list(LIBRARIES))
     files = [file for file in sources() if any(fnmatch(file, pattern) for pattern in CORE)]
     files = [file for file in files if any(fnmatch(file, pattern) for pattern in given.only)]
     chosen = drawn(files, given.seed, given.count)

@@ -21,18 +21,21 @@ FILES = {"pyproject.toml", "README.md", "LICENSE", "CITATION.cff", "CHANGELOG.md
 TOP_LEVEL = FILES | {"data", "tests"} | {*PACKAGES}
 
 STANDARD = sys.stdlib_module_names
-LUMPED = STANDARD | {"lumped", "numpy", "scipy"}
+LUMPED = STANDARD | {"lumped", "numpy", "scipy", "pandas"}
 MESHES = STANDARD | {"meshes", "numpy", "scipy", "skfem", "meshio", "gmsh"}
 ONE_IMPORTER = {
     "distributed": "fe_contact/studies/workers.py",
     "gmsh": "meshes/session.py",
+    "jinja2": "fe_contact/studies/validate/_page.py",
+    "markdown": "fe_contact/manual/site.py",
+    "pandas": "lumped/result/history.py",
     "pyarrow": "fe_contact/studies/sweep/table.py",
 }
 FINITE_ELEMENTS = LUMPED | MESHES | {"fe_contact", "matplotlib", "threadpoolctl", *ONE_IMPORTER}
 ALLOWED = {"lumped": LUMPED, "meshes": MESHES, "fe_contact": FINITE_ELEMENTS}
 HEAVY = {"skfem", "gmsh", "matplotlib", "meshio", "scipy.integrate"}
 NOT_LOADED = {
-    "lumped": HEAVY | {"meshes", "fe_contact"},
+    "lumped": HEAVY | {"meshes", "fe_contact", "pandas"},
     "meshes": {"lumped", "fe_contact", "skfem", "gmsh", "matplotlib"},
     "fe_contact": {"matplotlib", "scipy.integrate", *ONE_IMPORTER},
 }
@@ -133,7 +136,8 @@ ROOMS = {  # lowest first
     ),
     "fe_contact": (
         "errors settings progress threads assembly contact schemes dynamics bodies steppers march targets solids "
-        "budget plastic indentation fields recovery waves reference methods studies commands cli __main__ __init__"
+        "budget plastic indentation fields recovery waves large_strains reference methods studies manual commands cli "
+        "__main__ __init__"
     ),
 }
 FILES_AT_A_ROOT = 14

@@ -14,13 +14,15 @@ import pytest
 
 import fe_contact
 from fe_contact.cli import main
-from fe_contact.studies.pound_chart import plot_study
+from fe_contact.studies.pound.calibration import calibrated_study
+from fe_contact.studies.pound.chart import plot_study
 from lumped import Scene, laws, simulate
 from lumped.errors import BadInput
 from lumped.laws._power_law import PowerLaw
 from lumped.pounding import march
+from lumped.pounding import simulate as simulate_frames
 from lumped.pounding import study as studies
-from lumped.pounding.case_file import CASES, GRAVITY, load, read
+from lumped.pounding.case_file import CASES, GRAVITY, PoundingReader, load, read
 from lumped.pounding.ground import GroundRecord
 from lumped.pounding.study import NO_CONTACT, study
 from lumped.schema.csv_file import read_columns
@@ -35,6 +37,11 @@ CASE: dict[str, Any] = {
     "law": {"name": "kelvin", "k": 1e8, "e": 0.6, "velocity": 0.3},
     "motion": {"end_time": 1.0},
 }
+
+FLOORS = """
+striker = {shape = "sphere", radius = 2.0, mass = 1.0, velocity = 1.0}
+target = {shape = "half_space", material = {law = "sls", E0 = 3e10, R1 = 0.5, R2 = 0.005, nu = 0.2}}
+"""
 
 
 def changed(key: str, value: object) -> dict[str, Any]:
@@ -108,11 +115,7 @@ def test_other_laws_push_as_hard_as_the_own_one_in_an_elastic_impact() -> None:
 
 def test_storeys_may_meet_with_the_shapes_and_materials_of_a_scene(tmp_path: Path) -> None:
     """The paper's law: its first contact is about the impact of the two storeys alone."""
-    text = """
-        striker = {shape = "sphere", radius = 2.0, mass = 1.0, velocity = 1.0}
-        target = {shape = "half_space", material = {law = "sls", E0 = 3e10, R1 = 0.5, R2 = 0.005, nu = 0.2}}
-    """
-    (tmp_path / "floors.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "floors.toml").write_text(FLOORS, encoding="utf-8")
     law = {"name": "correspondence", "scene": "floors.toml"}
     found = study(read(changed("law", law), folder=tmp_path))
     assert found.message == ""
@@ -125,6 +128,62 @@ def test_storeys_may_meet_with_the_shapes_and_materials_of_a_scene(tmp_path: Pat
     impact = simulate(laws.correspondence.of(alone), alone, 1e-4)
     # the columns push a little in the 9 ms of a contact
     assert own.peak_force == pytest.approx(impact.quantities["peak_force"].value, rel=0.02)
+
+
+@pytest.mark.family
+@pytest.mark.parametrize("by", ["restitution", "least_squares"])
+def test_a_law_calibrated_on_its_own_impact_moves_the_structures_as_it_does(by: str, tmp_path: Path) -> None:
+    """Hunt and Crossley's of this material is the reference of both laws: the other one is what changes."""
+    (tmp_path / "floors.toml").write_text(FLOORS, encoding="utf-8")
+    law = {"name": "hunt_crossley", "scene": "floors.toml", "velocity": 0.3}
+    case = read(changed("law", law) | {"motion": {"end_time": 0.4}}, folder=tmp_path)
+    found = calibrated_study(case, ["hertz"], by, "hunt_crossley")
+    ours = found.study.main.measures()
+    assert ours == pytest.approx(simulate_frames(case.frames, case.laws(), case.ground, 0.4).measures(), rel=1e-6)
+    assert ours["contacts"] > 0
+    assert found.choice["hertz"]["impulse"] > 100.0 * found.bars["impulse"] > 0.0
+    other = found.study.motions["hertz"].result.measures()
+    assert found.choice["hertz"] == {name: other[name] - ours[name] for name in ours}
+
+
+@pytest.mark.tenth
+def test_finite_elements_stand_beside_the_laws_that_are_calibrated_on_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The law of the paper is exact but for the rebound, and known by its material: fitted, it is what it was."""
+    (tmp_path / "floors.toml").write_text(FLOORS, encoding="utf-8")
+    text = CASES.path("wall-pulse").read_text(encoding="utf-8")
+    law = '[law]\nname = "correspondence"\nscene = "floors.toml"\nvelocity = 0.3\n'
+    before, rest = text.partition("[law]")[0], text.partition("[ground]")[2]
+    (tmp_path / "case.toml").write_text(f"{before}{law}[ground]{rest}", encoding="utf-8")
+    command = ["pound", str(tmp_path / "case.toml"), "--set", "motion.end_time=1.0", "--quiet", "--json"]
+    assert main([*command, "--calibrate", "least_squares", "--laws", "hertz", "--out", str(tmp_path / "out")]) == 0
+    written = json.loads(capsys.readouterr().out)["calibration"]
+    (reference,) = written["references"].values()
+    assert reference["method"] == "fe"
+    assert 0.0 < reference["peak_force"]["error"] < 2e-3 * reference["peak_force"]["value"]
+    own = written["laws"]["correspondence"]["wall"]
+    assert own["parameters"] == pytest.approx({"R1": 0.5, "R2": 0.005}, rel=0.2)
+    assert own["normalized_error"] < 0.2 * written["laws"]["hertz"]["wall"]["normalized_error"]
+    assert set(written["choice"]) == {"hertz"}
+
+
+@pytest.mark.parametrize(
+    ("law", "by", "message"),
+    [
+        ({"name": "hertz", "k": 1e9, "velocity": 0.3}, "least_squares", "law.scene: missing"),
+        ({"name": "hertz", "scene": "floors.toml"}, "least_squares", "law.velocity: missing"),
+        ({"name": "hertz", "scene": "floors.toml", "velocity": 0.3}, "peak", "--calibrate: 'peak': accepted least_sq"),
+        ({"name": "ting", "scene": "floors.toml", "velocity": 0.3}, "least_squares", "ting is no force between"),
+    ],
+)
+def test_what_cannot_be_calibrated_is_said_before_any_work(
+    law: dict[str, Any], by: str, message: str, tmp_path: Path
+) -> None:
+    (tmp_path / "floors.toml").write_text(FLOORS, encoding="utf-8")
+    reader = PoundingReader("case", changed("law", law), tmp_path)
+    with pytest.raises(BadInput, match=message):
+        calibrated_study(reader.case(), [], by, "no such method")
 
 
 def test_an_odd_case_is_written_too(tmp_path: Path) -> None:

@@ -215,7 +215,7 @@ def test_finite_elements_judge_and_the_files_say_the_same(written: Path) -> None
         assert bool(told["reason"]) == (told["verdict"] == "refused") == (told["law"] == "rod_waves")
         assert 0.0 < told["reference_error"] < 2e-3 * max(told["reference"], 1.0)
     assert {row["verdict"] for row in rows if row["law"] == "ting"} == {"inside"}
-    assert content["laws"]["rod_waves"]["refused"].endswith("rod_waves is for a rod; accepted: rod, or another method")
+    assert content["laws"]["rod_waves"]["refused"].endswith("but for a rod; accepted: rod, or another method")
     slow = next(
         r for r in content["rows"] if (r["law"], r["quantity"], r["value"]) == ("hunt_crossley", "restitution", 0.01)
     )

@@ -35,7 +35,7 @@ STIFFER = 6.0  # penalty where the contact ends at a rim, over that where it may
 # ends as steeply, but less of its force lies there.
 REFINEMENT, LINE_REFINEMENT = 2.5, 2.0
 STRUCK_REFINEMENT = 4.0  # the same in an impact: its force must be smooth in time
-FINITE_REFINEMENT = 3.0  # the same where strains are large
+FINITE_REFINEMENT = 2.0  # the same where strains are large
 FAINT = 1e-4  # share of the peak force below which an impact's contact may be resolved less
 SPHERE_REFINEMENT = 3.0  # the same on spheres, of which two may touch whose meshes do not match
 WIDEST = 1.2  # rad from the first touch: a contact on a circle ends before
@@ -58,7 +58,8 @@ class Pressed:
 class PressedDepths:
     """Force over modulus, m^2, and contact radius, m, at every depth, (n,); counted work.
 
-    ``mesh_order``: the most that the mesh's order can be, where the contact ends; ``ends``: whether the body does.
+    ``mesh_order``: the most that the mesh's order can be, where the contact ends; ``ends``: whether the body does;
+    ``newton``: what another iteration would change of a force, relative, at most.
     """
 
     force: Array
@@ -66,6 +67,11 @@ class PressedDepths:
     work: Mapping[str, int]
     mesh_order: float
     ends: bool
+    newton: float = 0.0
+
+    def at(self, chosen: Indices) -> PressedDepths:
+        """At some of the depths."""
+        return replace(self, force=self.force[chosen], contact_radius=self.contact_radius[chosen])
 
 
 class Meshed(Protocol):

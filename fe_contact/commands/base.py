@@ -22,7 +22,7 @@ from fe_contact.settings import Given, faults
 from lumped.errors import BadInput, Fault, shown
 from lumped.indentation import Indentation
 from lumped.result.folder import publish
-from lumped.result.result import NO_KEY, Result, worst
+from lumped.result.result import Result, worst
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.scene.tables import load, load_indenter
@@ -32,6 +32,14 @@ from lumped.schema.files import SCENES, overridden, parse_assignment, parsed
 DONE, NOT_REACHED = 0, 3  # two of the exit codes of cli, which loads this file only when it is needed
 LONGEST = 80  # characters of what --set changed in a folder's name: file systems take 255 bytes with the scene's name
 Read = TypeVar("Read")
+Parser = TypeVar("Parser", bound=argparse.ArgumentParser)
+START, LAWS, STUDIES, KEEPING = "start here", "laws and measurements", "studies", "keeping house"
+GROUPS = {  # where a command stands in the help, and what to try first there
+    START: "fe-contact run polymer-sphere --plot",
+    LAWS: "fe-contact compare polymer-sphere --laws ting,hertz,kelvin",
+    STUDIES: "fe-contact sweep sweep.toml --jobs 2",
+    KEEPING: "fe-contact schema scene > scene-1.json",
+}
 
 
 option = partial(methodcaller, "add_argument")  # with argparse's names and keywords: an option, which a parser takes
@@ -40,14 +48,29 @@ SETTINGS = "set a key of the scene file, as striker.velocity=0.1"
 
 @dataclass(frozen=True)
 class Command:
-    """A member of this folder: what it does, in one line; its options; and what it executes, to an exit code 0 or 3.
+    """A member of this folder: what it does, in one line; its options; and what it executes, to an exit code.
 
-    Raises named failures for the other codes.
+    That is 0 or 3, or 1 where an installation is broken. Raises named failures for the other codes. `example`: how it
+    is called, by its name alone where that says it all; `group`: where it stands in the help.
     """
 
     summary: str
     options: Sequence[Callable[[argparse.ArgumentParser], object]]
     execute: Callable[[argparse.Namespace], int]
+    example: str = ""
+    group: str = STUDIES
+
+    def parser(self, program: str) -> argparse.ArgumentParser:
+        """What its options are read by; `program`: fe-contact and its name."""
+        return self.fill(argparse.ArgumentParser(program))
+
+    def fill(self, parser: Parser) -> Parser:
+        """The same parser with all that it says and takes."""
+        for option_of in self.options:
+            option_of(parser)
+        parser.description = self.summary.replace("%", "%%")
+        parser.epilog = f"example: {self.example or parser.prog}"
+        return parser
 
 
 def override(says: str = SETTINGS) -> methodcaller:
@@ -138,12 +161,17 @@ def folder(args: argparse.Namespace, command: str, name: str) -> Path:
     overrides = (text for text in getattr(args, "overrides", ()) if text.partition("=")[0].strip() != "name")
     changes = "".join(f"-{text}" for text in overrides)
     where = chosen or Path("fe-contact-out") / (f"{command}-{name}" + _part_of_a_name(changes))
-    if not _writable(where):
-        raise BadInput(Fault("--out", str(where), "accepted: a folder that can be written, its name printable"))
+    check_writable(where)
     return where
 
 
-def _writable(where: Path) -> bool:
+def check_writable(where: Path) -> None:
+    """Raise BadInput for a folder in which nothing can be written."""
+    if not writable(where):
+        raise BadInput(Fault("--out", str(where), "accepted: a folder that can be written, its name printable"))
+
+
+def writable(where: Path) -> bool:
     """Whether a folder is there, or can be made, in which files can be made."""
     try:
         with suppress(FileNotFoundError):  # it can be made in the folder above it
@@ -235,11 +263,7 @@ def report(
     if not result.converged:
         complain(result.message)
     if not result.model_sufficient:
-        most = worst(result.model_ledger)
-        complain(
-            f"model too small for the tolerance: {most.effect}, {most.treated}, "
-            f"about {most.estimate:.2g} of the peak force; {'; '.join(filter(None, (most.note, most.key or NO_KEY)))}"
-        )
+        complain(f"the model is too small for the tolerance: {worst(result.model_ledger).sentence}")
     return DONE if result.converged else NOT_REACHED
 
 

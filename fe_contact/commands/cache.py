@@ -26,4 +26,5 @@ MEMBER = base.Command(
     "known geometries on disk: where, how many, how much of what they may take",
     (base.JSON, base.option("--clear", action="store_true", help="remove them all")),
     execute,
+    group=base.KEEPING,
 )

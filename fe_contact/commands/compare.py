@@ -71,4 +71,6 @@ MEMBER = base.Command(
         base.option("--measured", type=Path, metavar="CURVE.csv", help="measured force: time_s,force_N"),
     ),
     execute,
+    example="fe-contact compare polymer-sphere --laws ting,hertz,kelvin",
+    group=base.LAWS,
 )

@@ -25,9 +25,9 @@ def execute(args: argparse.Namespace) -> int:
 
 
 MEMBER = base.Command(
-    "local exponent and D from the half-space to the thin layer, every profile, base and nu, checked by finite "
-    "elements; how far finite spheres are from Hertz; how wrong exponents are that are read from impacts on "
-    "viscoelastic bodies",
+    "exponents and D from the half-space to the thin layer, checked by finite elements; how wrong those are that are "
+    "read from impacts",
     (*base.OUTPUT, base.quick("fewer points, two Poisson's ratios, three impacts")),
     execute,
+    example="fe-contact exponents --quick",
 )

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,74 +18,90 @@ from lumped.schema import Table
 if TYPE_CHECKING:
     from lumped.fit import Estimate, Fit
     from lumped.fit.ranking import RankedFit
+    from lumped.result.score import Curve
+    from lumped.scene.scene import Scene
 
 WIDTH = 12  # of a parameter's name
 EVERY = "all"
+OPTIONS = {"free": "--free", "fixed": "--fix", "bounds": "--bounds", "law": "--law", "curve": "force_N"}
+
+
+@dataclass(frozen=True, eq=False)
+class FitQuestion:
+    """What a command line asks: the run, the scene, the judged curve and remarks on it, free and held parameters."""
+
+    run: base.StudyRun
+    scene: Scene
+    curve: Curve
+    free: tuple[str, ...] | None
+    fixed: Mapping[str, float]
+    remarks: tuple[str, ...]
+
+    @classmethod
+    def of(cls, args: argparse.Namespace) -> FitQuestion:
+        """Raises BadInput, also for a curve that is no impact of the scene."""
+        from lumped.fit.space import TOUCH
+        from lumped.result.curve_file import read_curve
+        from lumped.result.gate import check_curve
+
+        scene, curve = base.read_scene_for_fit(args), read_curve(args.curve)
+        free = None if args.free is None else tuple(name.strip() for name in args.free.split(","))
+        fixed = {name: base.number(value, "--fix") for name, value in _pairs(args.fix, "--fix")}
+        run = base.StudyRun.of(args, "fit", scene.name)
+        remarks = check_curve(curve, scene, str(args.curve), TOUCH not in {*(free or ()), *fixed})
+        return cls(run, scene, curve, free, fixed, remarks)
+
+    @contextmanager
+    def addressed(self) -> Iterator[None]:
+        """Faults within are those of the options, the curve's file, and the scene's."""
+        with addressed(str(self.run.args.curve), OPTIONS), self.scene.addressed():
+            yield
 
 
 def execute(args: argparse.Namespace) -> int:
-    """Fit, write, report; 0 or 3."""
+    """Fit one law or every one, write, report; 0 or 3."""
+    every = args.law == EVERY
+    (_check_ranking if every else _check_opensees)(args)
+    asked = FitQuestion.of(args)
+    asked.run.progress("fits of every law" if every else f"fit of {args.law}")
+    code = (_rank if every else _fit)(asked)
+    for remark in asked.remarks:
+        base.complain(remark)
+    return code
+
+
+def _fit(asked: FitQuestion) -> int:
+    """Fit a law, write, say its parameters; 0 or 3."""
     from fe_contact.studies.fit_chart import plot_fit
     from lumped.fit import RECORD, fit, write_failure
-    from lumped.fit.space import TOUCH
-    from lumped.result.curve_file import read_curve
-    from lumped.result.gate import check_curve
 
-    if args.law == EVERY:
-        return _rank(args)
-    _check_opensees(args)
-    scene, curve = base.read_scene_for_fit(args), read_curve(args.curve)
-    free = None if args.free is None else tuple(name.strip() for name in args.free.split(","))
-    fixed = {name: base.number(value, "--fix") for name, value in _pairs(args.fix, "--fix")}
+    args, where = asked.run.args, asked.run.where
     bounds = dict(_bounds(args.bounds))
-    where = base.folder(args, "fit", scene.name)
-    remarks = check_curve(curve, scene, str(args.curve), TOUCH not in {*(free or ()), *fixed})
-    base.progress_of(args)(f"fit of {args.law}")
-    options = {"free": "--free", "fixed": "--fix", "bounds": "--bounds", "law": "--law"}
     try:
-        with addressed(str(args.curve), {**options, "curve": "force_N"}), scene.addressed():
-            found = fit(curve, args.law, scene, free, fixed, bounds, args.peak)
+        with asked.addressed():
+            found = fit(asked.curve, args.law, asked.scene, asked.free, asked.fixed, bounds, args.peak)
     except NotReached as failure:
         write_failure(where, args.law, str(failure))
         raise
 
     def write(folder: Path) -> None:
         found.write_files(folder)
-        plot_fit(curve, found, folder)
+        plot_fit(asked.curve, found, folder)
 
-    _report(args, found, publish(where, write, RECORD), where)
-    for remark in remarks:
-        base.complain(remark)
+    _report(args, asked.scene, found, publish(where, write, RECORD), where)
     return base.DONE if found.result.converged else base.NOT_REACHED
 
 
-def _rank(args: argparse.Namespace) -> int:
+def _rank(asked: FitQuestion) -> int:
     """Fit every law, write, say the ranking; 0."""
     from fe_contact.studies.ranking_chart import plot_ranking
     from lumped.fit.ranking import RECORD, rank, write_ranking
-    from lumped.fit.space import TOUCH
-    from lumped.result.curve_file import read_curve
-    from lumped.result.gate import check_curve
 
-    given = {"--bounds": args.bounds, "--peak": args.peak, "--opensees": args.opensees}
-    chosen = [name for name, value in given.items() if value]
-    if chosen or args.free not in (None, TOUCH):
-        reason = f"with --law {EVERY} each law has its own; accepted: --free {TOUCH}, --fix"
-        raise BadInput(Fault(name, "", reason) for name in chosen or ["--free"])
-    scene, curve = base.read_scene_for_fit(args), read_curve(args.curve)
-    fixed = {name: base.number(value, "--fix") for name, value in _pairs(args.fix, "--fix")}
-    run = base.StudyRun.of(args, "fit", scene.name)
-    remarks = check_curve(curve, scene, str(args.curve), args.free is None and TOUCH not in fixed)
-    run.progress("fits of every law")
-    with addressed(str(args.curve), {"fixed": "--fix", "curve": "force_N"}), scene.addressed():
-        ranked = rank(curve, scene, fixed, args.free == TOUCH)
+    with asked.addressed():
+        ranked = rank(asked.curve, asked.scene, asked.fixed, asked.free is not None)
     lines = [_ranking_line(i, one) for i, one in enumerate(ranked, start=1)]
-    code = run.finish(
-        RECORD, lines, partial(write_ranking, ranked, curve), partial(plot_ranking, ranked, curve), "law by law"
-    )
-    for remark in remarks:
-        base.complain(remark)
-    return code
+    write, plot = partial(write_ranking, ranked, asked.curve), partial(plot_ranking, ranked, asked.curve)
+    return asked.run.finish(RECORD, lines, write, plot, "law by law")
 
 
 def _ranking_line(rank: int, one: RankedFit) -> str:
@@ -95,16 +113,18 @@ def _ranking_line(rank: int, one: RankedFit) -> str:
     return f"{rank:2d}  {one.law:16s} {known}: {values}"
 
 
-def _report(args: argparse.Namespace, found: Fit, content: Table, where: Path) -> None:
+def _report(args: argparse.Namespace, scene: Scene, found: Fit, content: Table, where: Path) -> None:
     """Parameters; for OpenSees the law, with the parameters as comments; warnings on stderr."""
     from lumped import laws
     from lumped.fit import opensees
 
     text = summary(found, where).splitlines()
     if args.opensees:
-        law = opensees.lines(laws.get(found.law).of(found.scene), found.scene, language=args.opensees)
-        text = [*(f"# {line}" for line in text), law]
-        content["opensees"] = law.splitlines()
+        law = laws.get(found.law).of(found.scene)
+        # what is fitted of a material stands in the fit's scene, the gap in that given
+        lines = opensees.lines(law, replace(found.scene, law=scene.law), language=args.opensees)
+        text = [*(f"# {line}" for line in text), lines]
+        content["opensees"] = lines.splitlines()
     base.say(args, content, text)
     for warning in found.warnings:
         base.complain(warning)
@@ -136,6 +156,17 @@ def _check_opensees(args: argparse.Namespace) -> None:
     if args.opensees not in opensees.LANGUAGES:
         reason = f"{shown(args.opensees)}: accepted {', '.join(opensees.LANGUAGES)}"
         raise BadInput(Fault("--opensees", "", reason))
+
+
+def _check_ranking(args: argparse.Namespace) -> None:
+    """Refuse what only one law has; raises BadInput."""
+    from lumped.fit.space import TOUCH
+
+    given = {"--bounds": args.bounds, "--peak": args.peak, "--opensees": args.opensees}
+    chosen = [name for name, value in given.items() if value]
+    if chosen or args.free not in (None, TOUCH):
+        reason = f"with --law {EVERY} each law has its own; accepted: --free {TOUCH}, --fix"
+        raise BadInput(Fault(name, "", reason) for name in chosen or ["--free"])
 
 
 def _pairs(text: str, option: str) -> Iterator[tuple[str, str]]:
@@ -171,4 +202,6 @@ MEMBER = base.Command(
         *base.OUTPUT,
     ),
     execute,
+    example="fe-contact fit curve.csv --law hunt_crossley --scene polymer-sphere --opensees",
+    group=base.LAWS,
 )

@@ -4,20 +4,28 @@ from __future__ import annotations
 
 import argparse
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
-from lumped.errors import BadInput, Fault
+from fe_contact.methods import FE, simulate
+from fe_contact.progress import Progress
+from lumped.errors import BadInput, Fault, NotReached
 from lumped.result.folder import publish
 from lumped.schema.files import SCENES, parse_assignment, toml_text
 
 if TYPE_CHECKING:
     from lumped.identify import Identified, Interval
+    from lumped.identify.correction import Reference
+    from lumped.result.history import History
+    from lumped.scene.scene import Scene
 
 # CURVE.csv:striker.velocity=0.3,striker.mass=0.1; a path may hold colons of its own
 OWN = re.compile(r"(?P<path>.*?):(?P<own>[A-Za-z_]\w*\.[^:=]+=.*)")
 WRITE = "--write"
+METHODS = ("ting", FE)
+LEAST_DRAWS, MOST_DRAWS = 100, 1_000_000  # the ends of a band need some; work
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -33,13 +41,16 @@ def execute(args: argparse.Namespace) -> int:
     where = base.folder(args, "identify", name)
     _check_written(args.write)
     corner = None if args.corner is None else _frequency(args.corner)
+    sample = 0 if args.sample is None else _draws(args.sample)
     curves = {path: read_curve(Path(path)) for path in own}
     warnings = list[str]()
     for path, curve in curves.items():
         warnings += check_curve(curve, Scene.load(args.scene, overrides | own[path]), path, touch_at_zero=False)
     free = [key.strip() for key in args.free.split(",") if key.strip()]
-    base.progress_of(args)(f"identifies {len(free)} keys from {len(curves)} curves")
-    found = identify(curves, args.scene, free, own, overrides, corner, args.each)
+    progress = base.progress_of(args)
+    progress(f"identifies {len(free)} keys from {len(curves)} curves")
+    reference = _reference(args, progress)
+    found = identify(curves, args.scene, free, own, overrides, corner, args.each, sample, reference)
 
     def write(folder: Path) -> None:
         found.write_files(folder)
@@ -80,10 +91,39 @@ def _frequency(text: str) -> float:
     return value
 
 
+def _draws(text: str) -> int:
+    """How many draws of the posterior. Raises BadInput."""
+    value = base.number(text, "--sample")
+    if not LEAST_DRAWS <= value <= MOST_DRAWS or value != int(value):
+        raise BadInput(Fault("--sample", "", f"{value:g}: accepted a whole number from {LEAST_DRAWS} to {MOST_DRAWS}"))
+    return int(value)
+
+
+def _reference(args: argparse.Namespace, progress: Progress) -> Reference | None:
+    """What corrects Ting's law: finite elements, or None. Raises BadInput."""
+    if args.method not in METHODS:
+        raise BadInput(Fault("--method", "", f"{args.method}: accepted {', '.join(METHODS)}"))
+    if args.method != FE:
+        return None
+    _, given = base.read_scene(args)
+
+    def reference(scene: Scene) -> History:
+        found = simulate(scene, FE, given, progress=progress)
+        if not found.converged:
+            raise NotReached(f"finite elements: {found.message}")
+        return found.history
+
+    return reference
+
+
 def summary(found: Identified) -> list[str]:
     """Every parameter with its interval, and how far the law explains the curves; one a line."""
     width = max(map(len, found.parameters))
     lines = [f"{name:{width}s} {shown(one)}" for name, one in found.parameters.items()]
+    lines += list(_of_reference(found))
+    if found.posterior is not None:
+        posterior = found.posterior
+        lines.append(f"sample: {len(posterior.values)} draws, as good as {posterior.effective:.0f} independent ones")
     for name, alone in found.each.items():
         lines += [f"{name} alone: {key.rpartition('.')[2]} {shown(one)}" for key, one in alone.parameters.items()]
     noises = ", ".join(f"{100.0 * curve.deviation / curve.peak:.2g} %" for curve in found.curves)
@@ -91,6 +131,17 @@ def summary(found: Identified) -> list[str]:
     test = f"Ljung-Box, p = {found.whiteness.probability:.2g}"
     verdict = "what is left is noise" if found.adequate else "the law does not explain the curves"
     return [*lines, f"touch at {touches} s, noise {noises} of the peak", f"{verdict} ({test})"]
+
+
+def _of_reference(found: Identified) -> Iterator[str]:
+    """How far finite elements moved every parameter, and how far their own bars could."""
+    if found.by_reference is None:
+        return
+    for name, one in found.by_reference.parameters.items():
+        moved = f"{one.by_law:.6g} by Ting's law, moved by {100.0 * (one.value / one.by_law - 1.0):+.2g} %"
+        yield f"{name.rpartition('.')[2]}: {moved}, finite elements' bars by {100.0 * one.bar / abs(one.value):.2g} %"
+    runs, error = found.by_reference.runs, 100.0 * found.by_reference.error
+    yield f"{runs} runs of finite elements, {error:.2g} % of the peak from Ting's law"
 
 
 def shown(one: Interval) -> str:
@@ -106,9 +157,9 @@ def _check_written(path: Path | None) -> None:
 
 
 def _write_scene(path: Path, found: Identified) -> None:
-    """The scene file with the values found. Raises BadInput."""
+    """The scene file with the values found, which is called as the file is. Raises BadInput."""
     try:
-        path.write_text(toml_text(found.table), encoding="utf-8")
+        path.write_text(toml_text({**found.table, "name": path.stem}), encoding="utf-8")
     except OSError as failure:
         raise BadInput(Fault(WRITE, str(path), f"cannot be written: {failure.strerror}")) from failure
 
@@ -122,8 +173,13 @@ MEMBER = base.Command(
         base.option("--each", action="store_true", help="every curve alone, too"),
         base.option("--corner", metavar="HZ", help="of the instrument's low pass, where no silence tells the noise's"),
         base.option(WRITE, type=Path, metavar="FILE.toml", help="write the scene with the values found"),
+        base.option("--sample", metavar="N", help="draws of the posterior, with bands of the force"),
+        base.option("--method", default="ting", help="ting (default), or fe: corrected by finite elements"),
+        base.option("--tolerance", metavar="T", help="of the finite elements; default 1e-3"),
         base.override(),
         *base.OUTPUT,
     ),
     execute,
+    example="fe-contact identify curve.csv --scene polymer-sphere --free target.material.E1",
+    group=base.LAWS,
 )

@@ -44,6 +44,8 @@ def _indented(args: argparse.Namespace, indenter: Indenter, depths: tuple[float,
     from lumped.indentation import indent as closed_form
 
     tolerance = given.get("tolerance", DEFAULT_TOLERANCE)
+    if args.method == "cheapest" and indenter.model.finite:
+        return by_elements(indenter, depths, given, args.instant, progress)
     if args.method != "cheapest":
         return closed_form(indenter, depths, args.method, args.instant, tolerance)
     try:
@@ -57,7 +59,7 @@ def _lines(found: Indentation) -> list[str]:
     table = zip(found.depth, found.force, found.force_error, strict=True)
     lines = [f"{depth:.6g} m  {force:.6g} +- {error:.1e} N" for depth, force, error in table]
     for name, quantity in found.quantities.items():
-        lines.append(f"{name:11s} {quantity.value:.6g} +- {quantity.error or 0.0:.1e} {quantity.unit}")
+        lines.append(f"{name:11s} {quantity}")
     if found.finite_size is not None:
         slope = found.finite_size.slope
         lines.append(f"F/F_Hertz-1 {slope.value:.4g} +- {slope.error or 0.0:.1e} a/R")
@@ -74,4 +76,6 @@ MEMBER = base.Command(
         base.option("--instant", action="store_true", help="the material against a sudden indentation"),
     ),
     execute,
+    example="fe-contact indent polymer-sphere --depths 1e-5,2e-5,5e-5",
+    group=base.START,
 )

@@ -16,4 +16,9 @@ def execute(args: argparse.Namespace) -> int:
     return base.DONE
 
 
-MEMBER = base.Command("the lumped laws, one line each", (base.JSON,), execute)
+MEMBER = base.Command(
+    "the lumped laws, one line each",
+    (base.JSON,),
+    execute,
+    group=base.LAWS,
+)

@@ -14,13 +14,14 @@ from lumped.schema import Table
 
 if TYPE_CHECKING:  # finite elements are loaded when they are needed
     from fe_contact.budget.plan import Plan
+    from fe_contact.studies.larger_models import MeasuredEffect
     from fe_contact.waves.plan import Cost
 
 
 def execute(args: argparse.Namespace) -> int:
     """Print the methods, settings, ledger, what waves take, why finite elements refuse the scene; 3 where too much.
 
-    An exact law is asked, in milliseconds; no finite elements.
+    An exact law is asked, in milliseconds; finite elements only with --measure.
     """
     from fe_contact.methods import lines_of, settings, weigh
     from fe_contact.reference import plan
@@ -39,13 +40,18 @@ def execute(args: argparse.Namespace) -> int:
         return base.DONE
     chosen = plan(scene, given)
     takes, refused = _takes(scene, chosen)
+    measured = _measured(args, scene, given)
     ledger = [entry.to_json(float(chosen.numerics.tolerance)) for entry in chosen.ledger]
     content = methods | {
         "numerics": chosen.numerics.as_dict(),
         "model_ledger": ledger,
         "cost": takes and takes.as_dict(),
+        "refused": refused and str(refused),
     }
-    base.say(args, content | {"refused": refused and str(refused)}, [*lines, *_lines(chosen, takes)], title)
+    if measured is not None:
+        content["measured"] = [one.to_json() for one in measured]
+    lines += [*_lines(chosen, takes), *_measured_lines(measured)]
+    base.say(args, content, lines, title)
     if refused and not args.json:
         base.complain(str(refused))
     return base.NOT_REACHED if isinstance(refused, NotReached) else base.DONE  # what only laws can follow is a plan too
@@ -60,11 +66,23 @@ def _lines(chosen: Plan, takes: Cost | None) -> list[str]:
         lines.append(f"  {key:21s} {value if not isinstance(value, float) else format(value, '.6g'):<12} {words[key]}")
     lines += [] if takes is None else [f"takes {takes}"]
     lines.append("left out, relative to the peak force:")
-    for entry in chosen.ledger:
-        size = f"{entry.spread[0]:.2g} to {entry.spread[1]:.2g}, " if entry.spread else ""
-        size += f"{entry.estimate:.2g}, " if entry.estimate is not None else ""
-        lines.append(f"  {entry.effect} ({entry.treated}): {size}{entry.verdict(tolerance)}")
-    return [*lines, good_to(chosen.ledger)]
+    return [*lines, *(f"  {entry.line(tolerance)}" for entry in chosen.ledger), good_to(chosen.ledger)]
+
+
+def _measured(args: argparse.Namespace, scene: Scene, given: Table) -> tuple[MeasuredEffect, ...] | None:
+    """Effects above the tolerance by the next larger model, None where nobody asked."""
+    if not args.measure:
+        return None
+    from fe_contact.studies.larger_models import measure
+
+    return measure(scene, given, base.progress_of(args))
+
+
+def _measured_lines(measured: tuple[MeasuredEffect, ...] | None) -> list[str]:
+    if measured is None:
+        return []
+    found = [f"  {one}" for one in measured] or ["  no effect above the tolerance has a larger model"]
+    return ["measured, as a change of the peak force:", *found]
 
 
 def _takes(scene: Scene, chosen: Plan) -> tuple[Cost | None, FeContactError | None]:
@@ -89,6 +107,9 @@ MEMBER = base.Command(
     (
         *base.SCENE,
         *base.OUTPUT,
+        base.option("--measure", action="store_true", help="run the larger model of each effect above the tolerance"),
     ),
     execute,
+    example="fe-contact plan polymer-sphere --tolerance 1e-2",
+    group=base.START,
 )

@@ -39,4 +39,5 @@ MEMBER = base.Command(
         *base.OUTPUT,
     ),
     execute,
+    group=base.LAWS,
 )

@@ -39,4 +39,5 @@ MEMBER = base.Command(
         base.option("--update", action="store_true", help="renew what is published in the packaged data"),
     ),
     execute,
+    example="fe-contact references --check --scenes polymer-sphere",
 )

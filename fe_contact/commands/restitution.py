@@ -21,5 +21,8 @@ def execute(args: argparse.Namespace) -> int:
 
 
 MEMBER = base.Command(
-    "restitution asked for against obtained: every law, exact and published dampings, both exits", base.OUTPUT, execute
+    "restitution asked for against obtained: every law, exact and published dampings, both exits",
+    base.OUTPUT,
+    execute,
+    group=base.LAWS,
 )

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fe_contact.commands import base
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.result.folder import publish
-from lumped.result.result import Result, good_to, write_failure
+from lumped.result.result import Result, write_failure
 from lumped.scene.scene import Scene
 from lumped.schema import Table
 
@@ -25,18 +24,30 @@ def execute(args: argparse.Namespace) -> int:
     scene, table = base.read_scene(args)
     args.method = args.method or default(scene)
     where = base.folder(args, "run", scene.name)
+    scene, taken = _modelled(args, scene, table)
     _check(args, scene)
     try:
-        return _impact(args, scene, table, where)
+        return _impact(args, scene, table, where, taken)
     except NotReached as failure:
         write_failure(where, scene, args.method, str(failure))
         raise
 
 
-def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path) -> int:
+def _modelled(args: argparse.Namespace, scene: Scene, table: Table) -> tuple[Scene, list[str]]:
+    """The scene with the model asked for, and a line that says which effects it takes in. Raises BadInput."""
+    if args.model == "given":
+        return scene, []
+    from fe_contact.methods import settings
+    from fe_contact.studies.larger_models import sufficient
+
+    found = sufficient(scene, settings(table, None, scene.source))
+    return found.scene, [str(found)]
+
+
+def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path, taken: list[str]) -> int:
     from fe_contact.methods import settings, simulate
 
-    if args.method == "fe" and not (scene.model.inertia or scene.model.plasticity):
+    if args.method == "fe" and not (scene.model.inertia or scene.model.finite or scene.model.plasticity):
         from fe_contact.reference import result_of, solve
 
         solved = solve(scene, settings(table, None, scene.source), base.progress_of(args))
@@ -44,22 +55,8 @@ def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path) -
     else:
         solved, result = None, simulate(scene, args.method, table, progress=base.progress_of(args))
     content = publish(where, lambda folder: _write(args, solved, result, folder))
-    title = f"{scene.name}: {result.method}, tolerance {result.tolerance:g}"
-    return base.report(args, result, content, _lines(result), where, title)
-
-
-def _lines(result: Result) -> list[str]:
-    """Quantities with their error bars, one a line, then every contact of several."""
-    lines = [
-        f"{name:13s} undefined: no separation"
-        if quantity.value is None
-        else f"{name:13s} {quantity.value:.6g} +- {quantity.error or 0.0:.1e} {quantity.unit}"
-        for name, quantity in result.quantities.items()
-    ]
-    lines += [_contact(number, contact) for number, contact in enumerate(result.contacts, start=1)]
-    if result.contacts and result.converged and result.message:
-        lines.append(result.message)
-    return [*_weighed(result), *lines, *filter(None, [good_to(result.model_ledger)])]
+    title, *lines = result.summary().split("\n  ")
+    return base.report(args, result, content, [*taken, *_weighed(result), *lines], where, title)
 
 
 def _weighed(result: Result) -> list[str]:
@@ -67,13 +64,6 @@ def _weighed(result: Result) -> list[str]:
     from fe_contact.methods import lines_of
 
     return [f"weighed: {line}" for line in lines_of(result.weighed)]
-
-
-def _contact(number: int, contact: Mapping[str, float | None]) -> str:
-    """One of several contacts in a line."""
-    names = {"duration": "s", "restitution": "", "peak_force": "N"}
-    told = [f"{name} {contact[name]:.6g} {unit}".rstrip() for name, unit in names.items() if contact[name] is not None]
-    return f"contact {number} at {contact['start']:.6g} s: {', '.join(told)}"
 
 
 def _write(args: argparse.Namespace, solved: Solved | None, result: Result, folder: Path) -> None:
@@ -98,6 +88,10 @@ def _check(args: argparse.Namespace, scene: Scene) -> None:
 
     if scene.model.plasticity:
         raise BadInput(Fault("--fields", "", "not with model.plasticity in this version; cure: leave it out"))
+    if scene.model.finite:
+        reason = "finite: no fields of large strains in this version; accepted with --fields: small"
+        raise BadInput(Fault(scene.source, "model.kinematics", reason))
+
     if scene.model.inertia and (with_waves(scene).write_fields is None or scene.striker_material is not None):
         reason = f"{scene.target.name}: accepted with --fields and model.inertia: half_space, its striker rigid"
         raise BadInput(Fault(scene.source, "target.shape", reason))
@@ -123,8 +117,16 @@ MEMBER = base.Command(
         *base.SCENE,
         *base.OUTPUT,
         base.option("--method", help="fe (default without [law]), cheapest, or a lumped law"),
+        base.option(
+            "--model",
+            choices=("given", "sufficient"),
+            default="given",
+            help="sufficient: with every effect that the model ledger puts above the tolerance and has a key for",
+        ),
         base.option("--fields", action="store_true", help="VTU of the fields at peak force"),
         base.option("--plot", action="store_true", help="force history and contact pressure as SVG and PNG"),
     ),
     execute,
+    example="fe-contact run polymer-sphere --plot",
+    group=base.START,
 )

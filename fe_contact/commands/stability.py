@@ -26,4 +26,5 @@ MEMBER = base.Command(
         base.option("--jobs", type=int, default=2, choices=range(1, 65), metavar="N", help="processes; default 2"),
     ),
     execute,
+    example="fe-contact stability --quick",
 )

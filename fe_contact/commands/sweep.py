@@ -47,4 +47,5 @@ MEMBER = base.Command(
         *base.OUTPUT,
     ),
     execute,
+    example="fe-contact sweep sweep.toml --jobs 2",
 )

@@ -26,4 +26,5 @@ MEMBER = base.Command(
     "error over processor time and counted work, by every method; where the defaults lie",
     (*base.SCENE, *base.OUTPUT, base.quick("a quarter of the settings; ten times the tolerance where no law is exact")),
     execute,
+    example="fe-contact tradeoff polymer-sphere --quick",
 )

@@ -89,4 +89,6 @@ MEMBER = base.Command(
         base.option("--method", metavar="M", help="of the reference; default: fe, or the law that the scene names"),
     ),
     execute,
+    example="fe-contact transfer polymer-sphere --laws kelvin,hunt_crossley",
+    group=base.LAWS,
 )

@@ -17,7 +17,7 @@ import numpy as np
 from fe_contact.assembly.forms import Array, check_compressible
 from fe_contact.budget.variation import SAFETY
 from fe_contact.plastic.ground import Ground, Sizes, yielding_of
-from fe_contact.plastic.path import ELASTIC_RATIO, Station, Presser
+from fe_contact.plastic.path import ELASTIC_RATIO, Presser, Station
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
 from lumped.errors import BadInput, Fault
 from lumped.scene.indenter import Indenter

@@ -21,9 +21,9 @@ from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import held
 from fe_contact.errors import BodyTooFine
 from fe_contact.solids.base import State
-from fe_contact.solids.bulk import Body, Bulk
+from fe_contact.solids.bulk import Bulk, CoredBody
 from fe_contact.solids.contact import OnUndeformed, Skin
-from fe_contact.solids.newton import Pressing
+from fe_contact.solids.newton import Encounter
 from fe_contact.solids.plastic import Plastic
 from lumped.materials.plasticity import Yielding
 from lumped.shapes import Shape
@@ -55,7 +55,7 @@ class Sizes:
 class Ground:
     """What a rigid ``profile`` is pressed into; ``unit``: the widest contact, m; ``yielding`` in units of E*."""
 
-    pressing: Pressing
+    pressing: Encounter
     yielding: Yielding
     outer: npt.NDArray[np.bool_]
     rim: bool
@@ -66,8 +66,8 @@ class Ground:
         meshed = _meshed(sizes, poisson)
         shape = meshed.core.weight.shape
         response = Plastic(yielding)
-        body = Body.of(meshed.core, response, meshed.stiffness, meshed.fixed, at_rest(shape))
-        pressing = Pressing.of(body, meshed.skin, OnUndeformed(profile, unit))
+        body = CoredBody.of(meshed.core, response, meshed.stiffness, meshed.fixed, at_rest(shape))
+        pressing = Encounter.of(body, meshed.skin, OnUndeformed(profile, unit))
         return cls(pressing, yielding, meshed.outer, sizes.rim)
 
     @property

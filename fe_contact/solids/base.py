@@ -12,7 +12,7 @@ RADIAL, AXIAL = (0, 1, 4), (2, 3)  # components of the displacement gradient by 
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class PointAnswer:
     """What material points answer to a displacement gradient of components (rr, rz, zr, zz, tt).
 
     ``stress`` (5, ...), first Piola-Kirchhoff's, of small strains Cauchy's, Pa; ``tangent`` its derivative (5, 5, ...),
@@ -29,5 +29,5 @@ class Answer:
 class Response(Protocol):
     """A material at every point of a body: a law and its numbers."""
 
-    def respond(self, gradient: Array, state: State) -> Answer:
+    def respond(self, gradient: Array, state: State) -> PointAnswer:
         """To a displacement gradient (5, elements, points) after ``state``; in plane strain its last row is zero."""

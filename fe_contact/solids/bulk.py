@@ -16,7 +16,7 @@ import scipy.sparse as sparse
 
 from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, vector_dofs
 from fe_contact.assembly.interior import factorized
-from fe_contact.solids.base import AXIAL, RADIAL, Answer, Response, State
+from fe_contact.solids.base import AXIAL, RADIAL, PointAnswer, Response, State
 
 NOISE = 1e-11  # rounding: of an entry of a stiffness of which all has been taken away
 
@@ -62,7 +62,7 @@ class Loaded:
     """A bulk under a displacement."""
 
     bulk: Bulk
-    answer: Answer
+    answer: PointAnswer
 
     @cached_property
     def energy(self) -> float:
@@ -77,7 +77,7 @@ class Loaded:
         for start, rows in ((0, RADIAL), (1, AXIAL)):
             parts = [np.matmul(stress[row][:, None], slopes[k])[:, 0] for k, row in enumerate(rows)]
             local[:, start::2] = np.sum(parts, axis=0)
-        return np.bincount(self.bulk.dofs.ravel(), local.ravel(), minlength=self.bulk.size)
+        return np.asarray(np.bincount(self.bulk.dofs.ravel(), local.ravel(), self.bulk.size), dtype=float)
 
     def matrices(self) -> Array:
         """Consistent tangent of every element, (elements, 2 n, 2 n)."""
@@ -136,7 +136,7 @@ def _keys(numbers: Indices, free: int) -> Indices:
 
 
 @dataclass(frozen=True, eq=False)
-class Body:
+class CoredBody:
     """A ``core`` that answers by a ``response``; ``rest`` (n, n) stiffness of all else between ``rim`` nodes' (n,)
     degrees of freedom; ``free`` those of the core that are not held.
     """
@@ -148,7 +148,7 @@ class Body:
     free: Indices
 
     @classmethod
-    def of(cls, core: Bulk, response: Response, stiffness: Matrix, fixed: Indices, state: State = ()) -> Body:
+    def of(cls, core: Bulk, response: Response, stiffness: Matrix, fixed: Indices, state: State = ()) -> CoredBody:
         """Of the linear ``stiffness`` of the whole body, (2 N, 2 N), of which the core at rest is a part."""
         at_rest = core.answered(np.zeros(core.size), response, state)
         everything = np.arange(core.size)

@@ -166,7 +166,7 @@ class Touch:
         local = np.empty(self.skin.dofs.shape)
         for c in (0, 1):
             local[:, c::2] = (force * self.normal[c]) @ self.skin.trace
-        return np.bincount(self.skin.dofs.ravel(), local.ravel(), minlength=self.skin.size)
+        return np.asarray(np.bincount(self.skin.dofs.ravel(), local.ravel(), self.skin.size), dtype=float)
 
     def matrices(self, convex: bool = False) -> Array:
         """Tangent of every facet, (facets, 2 k, 2 k); ``convex``: without what the striker's bend takes from it."""

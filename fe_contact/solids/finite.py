@@ -5,19 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fe_contact.assembly.forms import Array
-from fe_contact.solids.base import Answer, State
-from lumped.materials.energies.base import Energy, strained
+from fe_contact.solids.base import PointAnswer, State
+from lumped.materials.energies.base import StrainEnergy, strained
 
 
 @dataclass(frozen=True)
 class Hyperelastic:
     """An ``energy`` with these moduli of small strain, Pa: ``shear`` mu and ``lame`` lambda."""
 
-    energy: Energy
+    energy: StrainEnergy
     shear: float
     lame: float
 
-    def respond(self, gradient: Array, state: State) -> Answer:
+    def respond(self, gradient: Array, state: State) -> PointAnswer:
         """See :class:`fe_contact.solids.base.Response`."""
         found = strained(self.energy, gradient, self.shear, self.lame)
-        return Answer(found.stress, found.tangent, found.energy)
+        return PointAnswer(found.stress, found.tangent, found.energy)

@@ -1,4 +1,4 @@
-"""Equilibrium of a body that is not linear under a striker: Newton's method, made safe by a line search on the energy."""
+"""Equilibrium of a body that is not linear under a striker: Newton's method with a line search on the energy."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ import numpy as np
 from fe_contact.assembly.forms import Array, Matrix
 from fe_contact.assembly.interior import factorized
 from fe_contact.solids.base import State
-from fe_contact.solids.bulk import Body, Loaded, Pattern
+from fe_contact.solids.bulk import CoredBody, Loaded, Pattern
 from fe_contact.solids.contact import Obstacle, Points, Skin, Touch
 from lumped.errors import NotReached
 
 MOST_ITERATIONS = 60  # work: a step that needs more is made in halves
-SETTLED = 1e-13  # of the energy: the step that changes it by no more is the last one
-ROUNDING = 1e-9  # of the energy: a trial that is higher by no more than rounding may be
+SETTLED = 1e-9  # of the energy: the step that changes it by no more is the last one
+ENOUGH = 1e-4  # share of what the slope promises that a step has to lessen the energy by
+ROUNDING = 1e-14  # of the energy: a trial may be higher by so much
 SHORTEST = 1e-4  # share of a Newton step below which the energy stands still
 
 
@@ -29,16 +30,16 @@ class EquilibriumLost(NotReached):
 
 
 @dataclass(frozen=True, eq=False)
-class Pressing:
+class Encounter:
     """A body whose ``skin`` a striker meets; its matrix has one ``pattern``."""
 
-    body: Body
+    body: CoredBody
     skin: Skin
     pattern: Pattern
     obstacle: Obstacle
 
     @classmethod
-    def of(cls, body: Body, skin: Skin, obstacle: Obstacle) -> Pressing:
+    def of(cls, body: CoredBody, skin: Skin, obstacle: Obstacle) -> Encounter:
         """Raises nothing: makes the pattern."""
         blocks = [body.core.dofs, skin.dofs, body.rim[None]]
         return cls(body, skin, Pattern.of(blocks, body.free, body.core.size), obstacle)
@@ -56,7 +57,7 @@ class Pressing:
 class Balance:
     """Energy, its derivative and second derivative by the free degrees of freedom."""
 
-    pressing: Pressing
+    pressing: Encounter
     displacement: Array
     depth: float
     loaded: Loaded
@@ -95,15 +96,35 @@ class Balance:
 
 @dataclass(frozen=True, eq=False)
 class Equilibrium:
-    """A ``balance`` found in so many ``iterations``; ``shift``: what the last of them changed of the force, of it."""
+    """A ``balance`` found in so many ``iterations``.
+
+    ``rate`` (2 N,): its displacement by the depth, by the last factors, which are those of a place next to it.
+    """
 
     balance: Balance
+    rate: Array
     iterations: int
-    shift: float
+
+    def predicted(self, depth: float) -> Array:
+        """Displacement to begin another depth with, (2 N,)."""
+        return self.balance.displacement + (depth - self.balance.depth) * self.rate
+
+    @property
+    def rigid_force(self) -> float:
+        """On the striker if the penalty were rigid, to first order in its softness."""
+        touch = self.balance.touch
+        return 2.0 * touch.force + float(touch.forces @ self.rate)
+
+    @property
+    def error(self) -> float:
+        """What another iteration would change of the force, of it."""
+        balance = self.balance
+        left = float(self.rate[balance.pressing.body.free] @ balance.residual)
+        return abs(left) / max(balance.force, np.finfo(float).tiny)
 
 
 def balanced(
-    pressing: Pressing,
+    pressing: Encounter,
     start: Array,
     depth: float,
     stiffness: float,
@@ -121,38 +142,44 @@ def balanced(
         return pressing.at(displacement, depth, stiffness, state)
 
     if touching is not None:
-        start = start + _step(pressing.at(start, depth, stiffness, state, touching))[0]
+        start = start + _step(pressing.at(start, depth, stiffness, state, touching))[1]
     here = at(start)
     if not np.isfinite(here.energy):
         raise EquilibriumLost(f"an element is inverted at depth {depth:.3g}")
     for iteration in range(1, MOST_ITERATIONS + 1):
-        step, slope = _step(here)
+        solve, step = _step(here)
+        slope = float(here.residual @ step)
         there = _descended(here, step, slope, at)
-        shift = abs(there.force - here.force) / max(abs(there.force), np.finfo(float).tiny)
         if -slope <= settled * there.energy:
-            return Equilibrium(there, iteration, shift)
+            rate = _whole(there, solve(-there.touch.stiffening[there.pressing.body.free]))
+            return Equilibrium(there, rate, iteration)
         here = there
     raise EquilibriumLost(f"no equilibrium in {MOST_ITERATIONS} iterations at depth {depth:.3g}")
 
 
-def _step(here: Balance) -> tuple[Array, float]:
-    """Newton's step (2 N,) and the slope of the energy along it; along a convex model where the true one climbs."""
-    step = np.zeros_like(here.displacement)
+def _step(here: Balance) -> tuple[Callable[[Array], Array], Array]:
+    """Factors and Newton's step (free,); along a convex model where the energy would climb."""
     for convex in (False, True):
-        found = factorized(here.tangent(convex))(-here.residual)
-        slope = float(here.residual @ found)
-        if slope <= 0.0:
-            step[here.pressing.body.free] = found
-            return step, slope
+        solve = factorized(here.tangent(convex))
+        step = solve(-here.residual)
+        if here.residual @ step <= 0.0:
+            return solve, step
     raise EquilibriumLost("the body is not stable")
+
+
+def _whole(here: Balance, free: Array) -> Array:
+    """Of all degrees of freedom (2 N,)."""
+    found = np.zeros_like(here.displacement)
+    found[here.pressing.body.free] = free
+    return found
 
 
 def _descended(here: Balance, step: Array, slope: float, at: Callable[[Array], Balance]) -> Balance:
     """The end of the step, or the nearest place towards it of less energy."""
-    share = 1.0
+    whole, share = _whole(here, step), 1.0
     while share > SHORTEST:
-        there = at(here.displacement + share * step)
-        if there.energy <= here.energy + 1e-4 * share * slope + ROUNDING * 1e-5 * abs(here.energy):
+        there = at(here.displacement + share * whole)
+        if there.energy <= here.energy + ENOUGH * share * slope + ROUNDING * abs(here.energy):
             return there
         share *= 0.5
     raise EquilibriumLost("the energy has no descent")

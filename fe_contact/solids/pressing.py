@@ -8,30 +8,31 @@ back-substitution tells dU/d(depth), and the displacement to begin the next dept
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array, Indices
-from fe_contact.assembly.interior import factorized
 from fe_contact.assembly.operators import ElasticBody, moduli
 from fe_contact.bodies.pressing import PressedDepths, contact_end
 from fe_contact.contact.problem import ContactSolution
 from fe_contact.errors import ContactTooWide
 from fe_contact.settings import Numerics
-from fe_contact.solids.bulk import Body, Bulk
+from fe_contact.solids.bulk import Bulk, CoredBody
 from fe_contact.solids.contact import OnDeformed, Skin
 from fe_contact.solids.finite import Hyperelastic
-from fe_contact.solids.newton import Balance, Equilibrium, EquilibriumLost, Pressing, balanced
+from fe_contact.solids.newton import Balance, Encounter, Equilibrium, EquilibriumLost, balanced
 from fe_contact.targets.base import TARGETS
-from lumped.materials.energies.base import DEFAULT, ENERGIES
+from lumped.errors import BadInput, Fault
+from lumped.materials.energies.base import energy_of
 from lumped.scene.indenter import Indenter
 
 MESH_ORDER = 1.5  # of the force's error where the contact ends anywhere in an element
+CORRECTED = "corrected"
 CORE = 0.5  # of the way from the contact to the end of the mesh strains may be large
-RAMP = (0.01, 0.05, 0.25)  # shares of the penalty with which a body is pressed for the first time
-FARTHEST = 1.5  # a depth over the one before it, beyond which another is put between
-HALVINGS = 6  # work: of the way to a depth that cannot be reached at once
+RAMP = (0.02, 0.2, 1.0)  # shares of the penalty with which a body is pressed for the first time
+FARTHEST = 2.0  # a depth over the one before it, beyond which another is put between
+SPLITS = 6  # work: of the way to a depth that cannot be reached at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +42,7 @@ class Solid:
     ``ends``: whether the mesh is all of it.
     """
 
-    pressing: Pressing
+    pressing: Encounter
     unit: float
     dimension: int
     unknowns: int
@@ -54,13 +55,13 @@ class Solid:
         assert make is not None
         body, unit = make(indenter, radii, numerics)
         bulk, shear = moduli(indenter.material.nu)
-        energy = ENERGIES.get(indenter.material.hyperelastic or DEFAULT)
+        energy = energy_of(indenter.material.hyperelastic)
         response = Hyperelastic(energy, shear, bulk - 2.0 * shear / 3.0)
         core = Bulk.of(body.basis, body.surface.dimension == 2, _core(body))
         places = body.basis.doflocs[:, body.surface.dofs]
         skin = Skin.of(body.surface, places, numerics.order, core.size)
-        whole = Body.of(core, response, body.stiffness(bulk, shear), body.fixed)
-        pressing = Pressing.of(whole, skin, OnDeformed(indenter.profile, unit))
+        whole = CoredBody.of(core, response, body.stiffness(bulk, shear), body.fixed)
+        pressing = Encounter.of(whole, skin, OnDeformed(indenter.profile, unit))
         return cls(pressing, unit, body.surface.dimension - 1, core.size, False)
 
 
@@ -73,75 +74,75 @@ def _core(body: ElasticBody) -> Indices:
     return np.asarray(np.flatnonzero(away <= reach))
 
 
+def check_large(indenter: Indenter, enforcement: str) -> None:
+    """Raise BadInput for what is not pressed with large strains in this version."""
+    shape, target, faults = indenter.shape, indenter.target, list[Fault]()
+    cure = "or model.kinematics = 'small'"
+
+    def refuse(key: str, reason: str) -> None:
+        faults.append(Fault(indenter.source, key, f"with model.kinematics = 'finite' {reason}; accepted: {cure}"))
+
+    if TARGETS.get(target.name).solid is None or shape.plane:
+        able = ", ".join(name for name, member in TARGETS.members.items() if member.solid is not None)
+        refuse("target.shape", f"a {shape.name} on a {target.name} is not built: {able} under what is axisymmetric is")
+    elif target.fixed_radius(shape) is not None:
+        refuse("striker.shape", f"the rim of a {shape.name} is not built: rounded strikers, cones and powers are")
+    if indenter.striker_material is not None:
+        refuse("striker.material", "two bodies that yield are not built")
+    if indenter.model.inertia:
+        refuse("model.inertia", "waves are not built")
+    if enforcement != CORRECTED:
+        refuse("numerics.enforcement", f"{enforcement} is not built: {CORRECTED} is")
+    if faults:
+        raise BadInput(faults)
+
+
 def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) -> PressedDepths:
     """Every depth, m, from the smallest on; ``radii`` of the contacts expected, m. Raises NotReached."""
     solid = Solid.of(indenter, radii, numerics)
-    force, radius, reached, iterations = np.empty_like(depth), np.empty_like(depth), None, 0
+    force, radius, newton = (np.empty_like(depth) for _ in range(3))
+    reached, iterations = None, 0
     for i in np.argsort(depth):
         stiffness = numerics.penalty * solid.unit / float(radii[i])
         reached = advanced(solid.pressing, reached, float(depth[i]) / solid.unit, stiffness)
         force[i] = solid.unit**solid.dimension * reached.rigid_force
         radius[i] = solid.unit * _contact_radius(reached.balance)
-        iterations += reached.iterations
+        newton[i], iterations = reached.error, iterations + reached.iterations
         if not np.isfinite(radius[i]):
             raise ContactTooWide(float(depth[i]))
     work = {"degrees_of_freedom": solid.unknowns, "contact_problems": depth.size, "iterations": iterations}
-    return PressedDepths(force, radius, work, MESH_ORDER, solid.ends)
+    return PressedDepths(force, radius, work, MESH_ORDER, solid.ends, float(newton.max()))
 
 
-@dataclass(frozen=True, eq=False)
-class Reached:
-    """Equilibrium at a ``depth``; ``rate`` (2 N,) of its displacement by the depth; ``rigid_force`` without penalty."""
-
-    depth: float
-    balance: Balance
-    rate: Array
-    rigid_force: float
-    iterations: int
-
-    @classmethod
-    def of(cls, depth: float, found: Equilibrium, iterations: int) -> Reached:
-        """With what one back-substitution tells."""
-        balance, free = found.balance, found.balance.pressing.body.free
-        touch = balance.touch
-        rate = np.zeros_like(balance.displacement)
-        rate[free] = factorized(balance.tangent(convex=False))(-touch.stiffening[free])
-        rigid = touch.force + touch.force + float(touch.forces @ rate)
-        return cls(depth, balance, rate, rigid, iterations)
-
-    def displacement(self, depth: float) -> Array:
-        """To begin another depth with, (2 N,)."""
-        return self.balance.displacement + (depth - self.depth) * self.rate
-
-
-def advanced(pressing: Pressing, before: Reached | None, depth: float, stiffness: float) -> Reached:
-    """From what was ``reached`` to a larger depth, by as many steps as it takes. Raises EquilibriumLost."""
+def advanced(pressing: Encounter, before: Equilibrium | None, depth: float, stiffness: float) -> Equilibrium:
+    """From an equilibrium to that of a larger depth, by as many steps as it takes. Raises EquilibriumLost."""
     if before is None:
         return _first(pressing, depth, stiffness)
-    count = math.ceil(math.log(depth / before.depth) / math.log(FARTHEST)) or 1
-    iterations, split = 0, 0
-    left = list(np.geomspace(depth, before.depth, count, endpoint=False))
+    count = math.ceil(math.log(depth / before.balance.depth) / math.log(FARTHEST)) or 1
+    left = list(np.geomspace(depth, before.balance.depth, count, endpoint=False))
+    iterations, splits = 0, 0
     while left:
         try:
-            found = balanced(pressing, before.displacement(left[-1]), left[-1], stiffness)
+            found = balanced(pressing, before.predicted(left[-1]), left[-1], stiffness)
         except EquilibriumLost:
-            split += 1
-            if split > HALVINGS:
+            splits += 1
+            if splits > SPLITS:
                 raise
-            left.append(0.5 * (left[-1] + before.depth))
+            left.append(0.5 * (left[-1] + before.balance.depth))
             continue
-        iterations += found.iterations
-        before = Reached.of(left.pop(), found, iterations)
-    return before
+        before, iterations = found, iterations + found.iterations
+        left.pop()
+    return replace(before, iterations=iterations)
 
 
-def _first(pressing: Pressing, depth: float, stiffness: float) -> Reached:
+def _first(pressing: Encounter, depth: float, stiffness: float) -> Equilibrium:
     """From rest: a stiff penalty pressed in at once would turn elements inside out."""
-    displacement, iterations = np.zeros(pressing.skin.size), 0
-    for share in (*RAMP, 1.0):
-        found = balanced(pressing, displacement, depth, share * stiffness)
-        displacement, iterations = found.balance.displacement, iterations + found.iterations
-    return Reached.of(depth, found, iterations)
+    found = balanced(pressing, np.zeros(pressing.skin.size), depth, RAMP[0] * stiffness)
+    iterations = found.iterations
+    for share in RAMP[1:]:
+        found = balanced(pressing, found.balance.displacement, depth, share * stiffness)
+        iterations += found.iterations
+    return replace(found, iterations=iterations)
 
 
 def _contact_radius(balance: Balance) -> float:

@@ -23,6 +23,7 @@ from lumped.errors import BadInput, Fault, FeContactError, nearest
 from lumped.result.history import COLUMNS, History
 from lumped.result.result import Quantity, Result
 from lumped.scene.scene import Scene
+from lumped.scene.tables import load
 from lumped.schema import Table
 from lumped.schema.csv_file import write_columns
 from lumped.schema.files import SCENES, data_folder
@@ -121,12 +122,13 @@ def checked(names: Sequence[str]) -> tuple[str, ...]:
 
 
 def renewed(names: Sequence[str], published: Path, progress: Progress = silent) -> Iterator[Renewal]:
-    """Every scene answered by its default method at its default tolerance, against what `published` holds of it."""
+    """Every scene by its default method with the settings of its file, against what `published` holds of it."""
     for count, name in enumerate(names):
         progress(name, count, len(names))
         older = Reference.read(published, name)
         try:
-            result = simulate(Scene.load(name), None, {})
+            scene, settings = load(Scene, name)
+            result = simulate(scene, None, settings)
         except FeContactError as failure:
             yield Renewal(name, None, (), older is None, str(failure))
             continue

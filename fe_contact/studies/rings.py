@@ -109,13 +109,16 @@ def _case(indenter: Indenter) -> RingCase:
     return RingCase(indenter.name, indenter, math.pi * (target.inner_radius + pressed), target.height)
 
 
-def rings(chosen: Sequence[RingCase], where: Path, progress: Progress = silent) -> tuple[RingCurve, ...]:
-    """Every case over three decades of depth; rows are kept in the folder `where`. Raises NotReached."""
+def rings(chosen: Sequence[RingCase], where: Path, progress: Progress = silent, jobs: int = 1) -> tuple[RingCurve, ...]:
+    """Every case over three decades of depth, by so many processes; rows are kept in the folder `where`.
+
+    Raises NotReached.
+    """
     calls = {
         case.name: partial(indent, case.indenter, tuple(case.height * strain for strain in STRAINS), SETTINGS)
         for case in chosen
     }
-    found = journal.rows(where / KEPT, calls, progress)
+    found = journal.rows(where / KEPT, calls, progress, jobs)
     return tuple(curve(case, found[case.name]) for case in chosen)
 
 

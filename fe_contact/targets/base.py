@@ -26,9 +26,9 @@ class MeshedTarget:
 
     ``struck(geometry, numerics)``: the target in an impact, whose surface alone remembers; ``relaxing``: the same of a
     bulk that relaxes. None where there is no such impact in this version. ``whole``: with its inside what ``struck``
-    knows by its surface, None where no fields are written. ``solid``: mesh and supports for large strains, as ``still``,
-    with its unit, m; None where there is none in this version. ``seconds``: processor time, s, of an impact to 1e-3,
-    as measured of the packaged scenes: it tells what to expect, no more.
+    knows by its surface, None where no fields are written. ``solid``: as ``still``, mesh and supports for large
+    strains, with the unit, m; None where there is none in this version. ``seconds``: processor time, s, of an impact to
+    1e-3, as measured of the packaged scenes: it tells what to expect, no more.
     """
 
     still: Callable[[Indenter, Array, Numerics], Still]

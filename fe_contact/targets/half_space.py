@@ -47,7 +47,7 @@ from lumped.scene.indenter import Indenter
 
 FINER = 2.0  # elements at the surface over those which the growth into the body is for, where strains are large
 ENDS = ("base", "side")  # of a box of it
-DATUM = 0.15  # size of the mesh over the datum's depth, per far radius of the settings
+DATUM = 0.6  # size of the mesh over the datum's depth, per far radius of the settings, which is 2 at least
 
 
 def surface(poisson: float, numerics: Numerics) -> ScaledSurface:

@@ -109,7 +109,7 @@ def matrix(basis: Basis, bonded: bool, plane: bool, bulk: float, shear: float) -
         return stiffness(basis, law)
     from skfem import FacetBasis
 
-    sides = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["side"], intorder=2 * basis.elem.maxdeg)
+    sides = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["side"])
     return stiffness(basis, law) + robin(sides, shear)
 
 

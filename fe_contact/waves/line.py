@@ -150,7 +150,8 @@ class Line:
         for cause, other in self.others.items():
             least = _nearby(fine, other.reading) if self._alone else _ended_later(self.fine, other)
             if cause == "time_step":
-                least = _halved(other.reading, self.quarter.reading) | least
+                halved = _halved(other.reading, self.quarter.reading)
+                least = {name: max(halved.get(name, 0.0), least.get(name, 0.0)) for name in halved | least}
             found[cause] = bars(fine, other.reading, least, self.safety)
         return found
 

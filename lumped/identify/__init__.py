@@ -18,6 +18,7 @@ from lumped.identify.record import Interval as Interval
 from lumped.schema import Table
 
 if TYPE_CHECKING:
+    from lumped.identify.correction import Reference
     from lumped.result.score import Curve
 
 
@@ -29,23 +30,36 @@ def identify(
     overrides: Mapping[str, object] | None = None,
     corner: float | None = None,
     each: bool = False,
+    sample: int = 0,
+    reference: Reference | None = None,
 ) -> Identified:
     """The free keys of a scene, as `target.material.E0`, from one or several curves, by their names, together.
 
     `scene`: a file, a packaged name, or the tables; `overrides`: keys set in it. `own`: by a curve's name the keys that
     its impact has of its own, as {"striker.velocity": 0.3}. `corner`: of the instrument's low pass of first order, Hz,
-    where no silence tells the noise's colour. `each`: every curve alone too. Raises BadInput, and NotReached where no
-    impact of the scene comes near the curves.
+    where no silence tells the noise's colour. `each`: every curve alone too. `sample`: how many draws of the posterior,
+    see :mod:`lumped.identify.ensemble`. `reference`: the history of a scene by another method, as finite elements,
+    which corrects the law near the most likely place, see :mod:`lumped.identify.correction`. Raises BadInput, and
+    NotReached where no impact of the scene comes near the curves.
     """
     # what a search needs is imported with the first one: most work needs none
+    from lumped.identify.answer import answer
+    from lumped.identify.correction import correct
     from lumped.identify.keys import SceneFile
     from lumped.identify.search import search
 
     if not curves:
         raise BadInput(Fault("curves", "", "none; accepted: at least one measured history"))
     file, theirs = SceneFile.of(scene, overrides or {}), own or {}
-    together = search(curves, file, free, theirs, corner)
+
+    def found(some: Mapping[str, Curve]) -> Identified:
+        histories, valleys = search(some, file, free, theirs, corner)
+        if reference is None:
+            return answer(histories, valleys, tuple(some), sample)
+        corrected = correct(histories, valleys, corner, reference)
+        return answer(corrected.histories, (corrected.valley,), tuple(some), sample, corrected.told)
+
+    together = found(curves)
     if not each or len(curves) == 1:
         return together
-    alone = {name: search({name: curve}, file, free, theirs, corner) for name, curve in curves.items()}
-    return replace(together, each=alone)
+    return replace(together, each={name: found({name: curve}) for name, curve in curves.items()})

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lumped.errors import BadInput, NotReached
 from lumped.fit.measured import means
@@ -20,6 +21,7 @@ from lumped.laws import ting
 from lumped.laws._hereditary import once
 from lumped.numbers import Array
 from lumped.result.gate import MeasuredPulse
+from lumped.result.history import LEAST_ROWS, History
 from lumped.result.score import Curve
 from lumped.scene.scene import Scene
 
@@ -28,6 +30,7 @@ STEP, SHIFT = 1e-4, 1e-3  # of the differences: of a place, and of a touch over 
 FAR = 10.0  # an impact that does not exist is so many times as far from the curve as none
 MOST_ROWS = 1200  # work: a smooth pulse is told by as many means of neighbouring rows as by all
 BEFORE, AFTER = 2.0, 3.0  # work: widths of silence that are kept around the pulse
+MARGIN = 0.1  # of the width, before touch and after the end: neither contact nor silence
 EVEN = 0.01  # of a step: rows are as even as that where noise has a colour
 
 
@@ -90,6 +93,30 @@ class Impact:
 
         return cls(force, end)
 
+    def corrected(self, by: Correction) -> Impact:
+        """The same with the difference that a reference makes."""
+        return Impact(lambda time: self.force(time) + by.at(time), max(self.end, float(by.time[-1])))
+
+
+@dataclass(frozen=True, eq=False)
+class Correction:
+    """What a reference's force is beyond the law's, N, and its bar, N, at times since touch, s, (n,)."""
+
+    time: Array
+    force: Array
+    bar: Array
+
+    @classmethod
+    def of(cls, history: History, impact: Impact) -> Correction:
+        """At the history's rows, and as many more as a law has that lasts longer."""
+        time = np.union1d(history.time, np.linspace(0.0, max(impact.end, float(history.time[-1])), LEAST_ROWS))
+        bar = np.interp(time, history.time, history.force_error)
+        return cls(time, history.force_at(time) - impact.force(time), bar)
+
+    def at(self, time: Array) -> Array:
+        """The difference at other times since touch, N, (n,)."""
+        return np.interp(time, self.time, self.force, 0.0, 0.0)
+
 
 @dataclass(frozen=True, eq=False)
 class Noise:
@@ -101,12 +128,16 @@ class Noise:
 
 @dataclass(frozen=True, eq=False)
 class Histories:
-    """The curves, the scene's file and its free keys; what is known of the noise of each curve."""
+    """The curves, the scene's file and its free keys; what is known of the noise of each curve.
+
+    `corrections`: what a reference adds to the law's force of every curve; none: the law's alone.
+    """
 
     file: SceneFile
     keys: tuple[FreeKey, ...]
     samples: tuple[Samples, ...]
     noises: tuple[Noise, ...]
+    corrections: tuple[Correction, ...] = ()
     known: dict[bytes, tuple[Impact, ...] | None] = field(default_factory=dict)
 
     @property
@@ -119,16 +150,26 @@ class Histories:
         """How many residuals there are."""
         return sum(s.time.size - n.colour.size for s, n in zip(self.samples, self.noises, strict=True))
 
+    @property
+    def freedom(self) -> int:
+        """Residuals less what is sought."""
+        return self.rows - self.size
+
     def impacts(self, places: Array) -> tuple[Impact, ...] | None:
         """The impact of every curve with the free keys at these places, (p,); None where one does not exist."""
         key = places.tobytes()
         if key not in self.known:
             try:
-                scenes = [self.file.scene(self.keys, places, one.own) for one in self.samples]
-                self.known[key] = tuple(map(Impact.of, scenes))
+                every = tuple(map(Impact.of, self.scenes(places)))
+                pairs = zip(every, self.corrections, strict=True) if self.corrections else ()
+                self.known[key] = tuple(impact.corrected(by) for impact, by in pairs) or every
             except (BadInput, NotReached):
                 self.known[key] = None
         return self.known[key]
+
+    def scenes(self, places: Array) -> list[Scene]:
+        """The scene of every curve with the free keys at these places, (p,). Raises BadInput."""
+        return [self.file.scene(self.keys, places, one.own) for one in self.samples]
 
     def touches(self, sought: Array) -> list[float]:
         """When the bodies of each curve meet, s."""
@@ -143,9 +184,21 @@ class Histories:
         every = zip(self.samples, impacts, self.touches(sought), strict=True)
         return [one.force - impact.force(one.time - touch) for one, impact, touch in every]
 
+    def pressed(self, sought: Array) -> list[NDArray[np.bool_]]:
+        """Which rows of every curve lie in the contact, or nearly, each (n,): in the others is silence."""
+        impacts, found = self.impacts(sought[: len(self.keys)]) or (), list[NDArray[np.bool_]]()
+        for one, touch, impact in zip(self.samples, self.touches(sought), impacts, strict=True):
+            since, margin = one.time - touch, MARGIN * one.width
+            found.append((since >= -margin) & (since <= impact.end + margin))
+        return found
+
     def residuals(self, sought: Array) -> Array:
         """What noise has to explain, over its deviation, of all curves one after the other, (rows,)."""
         return np.concatenate(self.whitened(self.differences(sought)))
+
+    def squares(self, sought: Array) -> float:
+        """The sum of squares of the residuals over the noise."""
+        return float(np.sum(self.residuals(sought) ** 2))
 
     def whitened(self, columns: Sequence[Array]) -> list[Array]:
         """Columns of every curve, N, (n, ...), seen as the noise is: without its colour, over its deviation."""

@@ -134,11 +134,16 @@ def _network_keys(material: Table) -> Mapping[str, Key]:
 
 
 def free_keys(file: SceneFile, names: Sequence[str]) -> tuple[FreeKey, ...]:
-    """The free keys of a scene by their names; a list's own name stands for all of it. Raises BadInput."""
+    """The free keys of a scene by their names; a list's own name stands for all of it, a key's last part, as E0, for
+    the one key that ends so. Raises BadInput.
+    """
     known = {one.name: one for one in _numbers(file.table)}
     faults, found = list[Fault](), dict[str, FreeKey]()
     for name in names:
         chosen = [one for one in known.values() if name in (one.name, one.key)]
+        if not chosen:
+            short = [one for one in known.values() if name in (one.name.rpartition(".")[2], one.key.rpartition(".")[2])]
+            chosen = short if len({one.key for one in short}) == 1 else []
         if not chosen:
             accepted = ", ".join(known) or "none"
             reason = f"{name}: no number of {file.source}; accepted: {accepted}{nearest(name, tuple(known))}"

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from lumped.fit.noise import Whiteness
 from lumped.numbers import Array
 from lumped.schema import Table
-from lumped.schema.csv_file import write_csv
+from lumped.schema.csv_file import write_columns, write_csv
 from lumped.schema.json_file import plain, write_json
 
 SCHEMA, RECORD = "fe-contact/identified/1", "identified.json"
@@ -22,7 +22,8 @@ LEVEL = 0.9  # of the intervals
 class Interval:
     """A value and the ends of its interval by profile likelihood at a `level`, a share; an end is None where open.
 
-    Open is an end which the curves do not tell, or which lies beyond what is looked at.
+    Open is an end which the curves do not tell, or which lies beyond what is looked at. `unfound`: "low" or "high",
+    where the search for that end did not converge; it is None too, and not open.
     """
 
     value: float
@@ -30,6 +31,84 @@ class Interval:
     high: float | None
     level: float
     unit: str
+    unfound: tuple[str, ...] = ()
+
+
+def hull(every: Sequence[Interval]) -> Interval:
+    """The value of the first with the ends of all."""
+    lows, highs = [one.low for one in every], [one.high for one in every]
+    low = None if None in lows else min(end for end in lows if end is not None)
+    high = None if None in highs else max(end for end in highs if end is not None)
+    unfound = tuple(dict.fromkeys(end for one in every for end in one.unfound))
+    return replace(every[0], low=low, high=high, unfound=unfound)
+
+
+@dataclass(frozen=True, eq=False)
+class ToldValley:
+    """What one valley of the likelihood says: its intervals, and the correlation, a ratio, (p, p), of the logarithms.
+
+    `growth`: of the sum of squares over the noise, from the likeliest valley to this one.
+    """
+
+    parameters: Mapping[str, Interval]
+    correlation: Array
+    growth: float
+
+    def holds(self, values: Mapping[str, float]) -> bool:
+        """Whether all values lie within the intervals; an open end lets all through."""
+        every = ((one, values[name]) for name, one in self.parameters.items())
+        return all(
+            (one.low is None or one.low <= value) and (one.high is None or value <= one.high) for one, value in every
+        )
+
+
+@dataclass(frozen=True)
+class Shift:
+    """A parameter by the law alone and with the reference; its `bar`: how far the reference's own bars can move it."""
+
+    by_law: float
+    value: float
+    bar: float
+
+
+@dataclass(frozen=True)
+class ByReference:
+    """What a reference changed: parameters by their keys; the law's `error`, the largest difference over the peak.
+
+    `runs`: histories that were asked of it; `others`: valleys as likely by the law alone, where nobody asked it.
+    """
+
+    parameters: Mapping[str, Shift]
+    error: float
+    runs: int
+    others: int
+
+
+@dataclass(frozen=True, eq=False)
+class Posterior:
+    """Draws of the posterior: `values` of the parameters in their order, SI, (n, p), `touches`, s, (n, curves).
+
+    `logarithms` of the likelihood over its largest, (n,). `walkers` made them after `burned` steps each, a share
+    `taken` of the moves; they tell as much as `effective` independent ones.
+    """
+
+    values: Array
+    touches: Array
+    logarithms: Array
+    walkers: int
+    burned: int
+    taken: float
+    effective: float
+
+    def to_json(self, names: Sequence[str]) -> Table:
+        """What the record says of it."""
+        ends = np.quantile(self.values, [0.5, 0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL], axis=0).T.tolist()
+        work = {"draws": len(self.values), "walkers": self.walkers, "burned": self.burned, "taken": self.taken}
+        told = {
+            name: dict(zip(("median", "low", "high"), row, strict=True)) for name, row in zip(names, ends, strict=True)
+        }
+        correlation = np.atleast_2d(np.corrcoef(self.values, rowvar=False)).tolist()
+        return {**work, "effective": self.effective, "parameters": told, "correlation": correlation}
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +116,8 @@ class FittedCurve:
     """One measured curve: times, s, forces, N, and the identified law's, (n,); its touch, s.
 
     `deviation` is that of the noise, N; `colour`: the coefficients of its recursion, (order,);
-    `peak`: the highest force, N; `error`: of the law beyond the noise, over the peak.
+    `peak`: the highest force, N; `error`: of the law beyond the noise, over the peak. `band`: the law's force by the
+    posterior, its ends at the level of the intervals, N, (2, n); empty where none was drawn.
     """
 
     name: str
@@ -49,6 +129,25 @@ class FittedCurve:
     colour: Array
     peak: float
     error: float
+    band: Array
+
+    @property
+    def predicted(self) -> Array:
+        """The band of another measurement, its noise included, N, (2, n)."""
+        from scipy.special import ndtri
+
+        noise = float(ndtri(0.5 + 0.5 * LEVEL)) * self.deviation
+        away = np.hypot(self.band - self.fitted, noise)
+        return np.asarray(self.fitted + np.array([[-1.0], [1.0]]) * away)
+
+    @property
+    def columns(self) -> dict[str, Array]:
+        """Those of identified.csv, (n,) each."""
+        found = {"time_s": self.time, "force_N": self.force, "fitted_N": self.fitted}
+        if self.band.size:
+            found |= dict(zip(("law_low_N", "law_high_N"), self.band, strict=True))
+            found |= dict(zip(("predicted_low_N", "predicted_high_N"), self.predicted, strict=True))
+        return found
 
     def noise_content(self) -> Table:
         """What the record says of the noise."""
@@ -61,20 +160,22 @@ class FittedCurve:
 class Identified:
     """What one or several curves say of a scene.
 
-    `parameters` by dotted keys, SI units; `correlation`, a ratio, (p, p), of their logarithms, in the same order;
+    `parameters` by dotted keys, SI units, their intervals over all `valleys`, of which the likeliest is the first;
     `table`: the scene file with the values found; `whiteness` tests what is left, and `warnings` say what it means.
-    `widened`: the sum of squares over the noise may grow so many times as much as of noise alone. `each`: what every
-    curve says alone, where that was asked for.
+    `widened`: the sum of squares over the noise may grow so many times as much as of noise alone. `posterior`: its
+    draws, `by_reference`: what a reference changed, `each`: what every curve says alone, where these were asked for.
     """
 
     source: str
     parameters: Mapping[str, Interval]
-    correlation: Array
+    valleys: tuple[ToldValley, ...]
     curves: tuple[FittedCurve, ...]
     whiteness: Whiteness
     widened: float
     table: Table
     warnings: tuple[str, ...]
+    posterior: Posterior | None = None
+    by_reference: ByReference | None = None
     each: Mapping[str, Identified] = field(default_factory=dict)
 
     @property
@@ -92,10 +193,13 @@ class Identified:
             "scene": self.source,
             "law": "ting",
             "parameters": self._parameters,
-            "correlation": {"names": list(self.parameters), "matrix": self.correlation.tolist()},
+            "correlation": {"names": list(self.parameters), "matrix": self.valleys[0].correlation.tolist()},
+            "valleys": [asdict(one) | {"correlation": one.correlation.tolist()} for one in self.valleys],
             "model": {"adequate": self.adequate, "error": error, "widened": self.widened, **test},
             "onset_s": [curve.touch for curve in self.curves],
             "noise": [curve.noise_content() for curve in self.curves],
+            "posterior": self.posterior and self.posterior.to_json(list(self.parameters)),
+            "by_reference": self.by_reference and asdict(self.by_reference),
             "each": alone,
             "warnings": list(self.warnings),
         }
@@ -106,11 +210,17 @@ class Identified:
         return {name: asdict(one) for name, one in self.parameters.items()}
 
     def write_files(self, folder: Path) -> None:
-        """identified.json and identified.csv, the curves with what is left of them, into a folder that is there."""
+        """identified.json, identified.csv, the curves with what is left of them, and sample.csv, the draws, into a
+        folder that is there.
+        """
         write_json(folder / RECORD, self.to_json())
         rows = [
             [curve.name, *row]
             for curve in self.curves
-            for row in np.column_stack([curve.time, curve.force, curve.fitted]).tolist()
+            for row in np.column_stack(list(curve.columns.values())).tolist()
         ]
-        write_csv(folder / "identified.csv", ("curve", "time_s", "force_N", "fitted_N"), rows)
+        write_csv(folder / "identified.csv", ("curve", *self.curves[0].columns), rows)
+        if self.posterior is not None:
+            touches = [f"touch_{i}_s" for i in range(1, len(self.curves) + 1)]
+            columns = [*self.posterior.values.T, *self.posterior.touches.T, self.posterior.logarithms]
+            write_columns(folder / "sample.csv", (*self.parameters, *touches, "log_likelihood"), columns, 9)

@@ -161,7 +161,8 @@ def assemble(
 ) -> Result:
     """The Result of one law: history dense enough for the tolerance, ledgers, and what it cost.
 
-    `model` is the model as the law resolves it, where that is not the scene's without inertia.
+    `model` is the model as the law resolves it, where that is not the scene's with small displacements and
+    without inertia.
     """
     times = densified(answer.rows(scene), answer.columns.force, max(tolerance, FINEST_ROWS))
     depth, velocity, force, radius = answer.columns(times)
@@ -169,7 +170,7 @@ def assemble(
     # The rows themselves add what linear interpolation errs by, less than the tolerance; the bar is for the
     # rows.
     history = History(times, depth, velocity, force, radius, np.full(times.size, force_error))
-    resolved = model or replace(scene.model, inertia=False, plasticity=False)
+    resolved = model or replace(scene.model, inertia=False, kinematics="small", plasticity=False)
     missed = unmet(quantities, tolerance)
     peak = quantities["peak_force"].value or 1.0
     return Result(

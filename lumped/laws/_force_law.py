@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cache, partial
@@ -30,6 +31,8 @@ COARSEST, FINEST, FINER = 1e-5, 1e-12, 1e-2
 # Whatever is asked, a contact's duration, relative, and restitution are known to this; to that where marches are
 # compared, which takes two of them.
 END, END_COMPARED = 1e-11, 1e-8
+# Of the end's error before, at least so much is left: finer steps find rounding alone.
+NO_BETTER = 0.5
 # Two marches may agree by chance.
 SAFETY = 2.0
 # Peaks of several contacts that differ by less, relatively, are one height: rounding makes more of a long march.
@@ -71,11 +74,13 @@ class ForceLaw(PointLaw):
         clock, compared = Clock(), scene.motion.impacts > 1 or self.remembers
         end = END_COMPARED if compared else END
         marched = cache(partial(_marched, self, scene))  # what is coarse in a round was fine in the one before
-        step_tolerance, steps = _first(tolerance), 0
+        step_tolerance, steps, known = _first(tolerance), 0, math.inf
         while True:
             judged = _compared(marched, step_tolerance) if compared else _estimated(self, scene, step_tolerance)
             steps += judged.steps
-            if step_tolerance <= FINEST or (meets(judged.quantities, tolerance) and _ends_well(judged.quantities, end)):
+            before, known = known, _end_error(judged.quantities)
+            ends_well = known <= end or known > NO_BETTER * before
+            if step_tolerance <= FINEST or (meets(judged.quantities, tolerance) and ends_well):
                 break
             step_tolerance *= FINER
         answer, quantities, force_error, _ = judged
@@ -93,11 +98,8 @@ class ForceLaw(PointLaw):
 
     def resolved(self, scene: Scene) -> Model:
         """The scene's model as this law has it: its stiffness stands for a parabola, and no body for waves."""
-        return (
-            replace(scene.model, profile="parabola", inertia=False, plasticity=False)
-            if scene.has_geometry
-            else scene.model
-        )
+        small = replace(scene.model, inertia=False, kinematics="small", plasticity=False)
+        return replace(small, profile="parabola") if scene.has_geometry else scene.model
 
 
 def between_masses(name: str, scene: Scene) -> ForceLaw:
@@ -154,10 +156,10 @@ def _marched(law: ForceLaw, scene: Scene, step_tolerance: float) -> tuple[Answer
     return _answer(law, scene, track, outcomes), track.motion.steps
 
 
-def _ends_well(quantities: Mapping[str, Quantity], known: float) -> bool:
-    """Whether the end of a contact that ends is `known`."""
+def _end_error(quantities: Mapping[str, Quantity]) -> float:
+    """How well the end of a contact that ends is known: its duration's bar, relative, or the restitution's."""
     duration, restitution = quantities["duration"], quantities["restitution"]
-    return (duration.error or 0.0) <= known * (duration.value or 0.0) and (restitution.error or 0.0) <= known
+    return max((duration.error or 0.0) / (duration.value or math.inf), restitution.error or 0.0)
 
 
 def _until(law: ForceLaw, scene: Scene) -> float:

@@ -53,7 +53,8 @@ def of(scene: Scene) -> BarWaves:
     check_geometry(scene, BarWaves.name)
     block, faults = scene.shape, []
     if not isinstance(block, Block) or not block.uniform or not scene.model.inertia:
-        reason = "bar_waves is for a prism or plate with inertia, strained uniformly; accepted: one, or another method"
+        reason = "bar_waves is not for this striker, but for a prism or plate with inertia, strained uniformly"
+        reason += "; accepted: one, or another method"
         raise BadInput(Fault(scene.source, "striker.shape", reason))
     modulus, density = block.modulus(scene.geometry.material), scene.geometry.material.density or 0.0
     if not modulus.is_elastic:

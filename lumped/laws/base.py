@@ -98,9 +98,11 @@ def check(scene: Scene, name: str) -> None:
 
 
 def waves(scene: Scene) -> str:
-    """What an elastic law without inertia leaves out of a scene: the waves in its bodies, or that they yield."""
+    """What an elastic law of small displacements without inertia leaves out of a scene, where that has any of it."""
+    if scene.model.finite:
+        return "large strains, which model.kinematics asks for"
     if scene.model.plasticity:
-        return "that the target yields"
+        return "plastic flow, which model.plasticity asks for"
     return "waves in the bodies, which have inertia here" if scene.model.inertia else ""
 
 
@@ -121,5 +123,6 @@ def check_load_curve(scene: Scene, name: str) -> None:
 def check_half_space(scene: Scene, name: str) -> None:
     """Raise BadInput for a geometry which is not that of a half-space under an axisymmetric profile."""
     if scene.shape is not None and (not isinstance(scene.target, HalfSpace) or scene.shape.plane):
-        reason = f"{scene.target.name}: {name} is for the half-space; accepted: half_space, or another method"
+        reason = f"{name} is not for this {scene.target.name}, but for the half-space"
+        reason += "; accepted: half_space, or another method"
         raise BadInput(Fault(scene.source, "target.shape", reason))

@@ -51,7 +51,7 @@ def of(scene: Scene) -> RodWaves:
     check_geometry(scene, RodWaves.name)
     scene.check_single(RodWaves.name)
     if not isinstance(scene.target, Rod):
-        reason = f"{scene.target.name}: rod_waves is for a rod; accepted: rod, or another method"
+        reason = f"rod_waves is not for this {scene.target.name}, but for a rod; accepted: rod, or another method"
         raise BadInput(Fault(scene.source, "target.shape", reason))
     if not scene.geometry.material.young.is_elastic:
         reason = "its waves disperse, which rod_waves does not follow; accepted: elastic, or --method fe"

@@ -69,6 +69,11 @@ class PoundingCase:
             raise BadInput(faults)
         return tuple(found)
 
+    @property
+    def own_law(self) -> str | None:
+        """The name of the file's law, where it has gaps for it to act in."""
+        return self.law.name if self.law and self.frames.gaps else None
+
     def check_laws(self, names: Sequence[str]) -> None:
         """Raise BadInput, with all faults, for other laws that cannot be given by the same keys."""
         faults = list[Fault]()
@@ -95,18 +100,24 @@ class PoundingCase:
         }
 
 
-def load(source: str | Path, overrides: Mapping[str, object] | None = None) -> PoundingCase:
+def load(source: str | Path, overrides: Mapping[str, object] | None = None, calibrated: bool = False) -> PoundingCase:
     """The case of a file or of a packaged name; `overrides` maps dotted keys to values that replace the file's.
 
-    Raises BadInput with every fault found, at most 20.
+    `calibrated`: the numbers of its law are yet to come. Raises BadInput with every fault found, at most 20.
     """
     path = CASES.resolved(source)
-    return PoundingReader(path.name, overridden(parsed(path), overrides or {}, path.name), path.parent).case()
+    table = overridden(parsed(path), overrides or {}, path.name)
+    case = PoundingReader(path.name, table, path.parent).case()
+    if not calibrated:
+        case.laws()
+    return case
 
 
 def read(table: Mapping[str, object], source: str = "pound", folder: Path = Path()) -> PoundingCase:
     """The case of a table as in a file, whose record lies in the folder. Raises BadInput."""
-    return PoundingReader(source, dict(table), folder).case()
+    case = PoundingReader(source, dict(table), folder).case()
+    case.laws()
+    return case
 
 
 class PoundingReader(TableReader):
@@ -129,9 +140,7 @@ class PoundingReader(TableReader):
             )
         if pounding is None or self.faults:
             raise BadInput(self.faults)
-        case = PoundingCase(name, self.source, pounding, law, ground, motion["end_time"], shaking)
-        case.laws()
-        return case
+        return PoundingCase(name, self.source, pounding, law, ground, motion["end_time"], shaking)
 
     def frames(self) -> tuple[ShearFrame, ShearFrame | None] | None:
         """Left and right; None with a fault noted."""

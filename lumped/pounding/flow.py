@@ -80,23 +80,17 @@ class FrameFlow:
 
     @cached_property
     def influence(self) -> Array:
-        """(A unit)^k B unit: of the (k + 1)-th iterated integral of the forces on the state, (TERMS, 2 n, m)."""
+        """Of the (k + 1)-th iterated integral of the forces on the state, (A unit)^k B unit, and so on the depths and
+        the rates: (TERMS, 2 n + 2 m, m).
+        """
         push = np.zeros((2 * self.size, len(self.frames.gaps)))
         push[self.size :] = -self.unit * self.frames.rows.T / self.frames.mass[:, None]
         found = [push]
         for _ in range(TERMS - 1):
             found.append(self.matrix @ found[-1])
-        return np.array(found)
-
-    @cached_property
-    def on_depth(self) -> Array:
-        """The same on the depths, (TERMS, m, m)."""
-        return np.asarray(self.frames.rows @ self.influence[:, : self.size])
-
-    @cached_property
-    def on_rate(self) -> Array:
-        """The same on their rates, (TERMS, m, m)."""
-        return np.asarray(self.frames.rows @ self.influence[:, self.size :])
+        states = np.array(found)
+        rows = self.frames.rows
+        return np.concatenate([states, rows @ states[:, : self.size], rows @ states[:, self.size :]], axis=1)
 
     @cached_property
     def _behind(self) -> Array:
@@ -104,8 +98,8 @@ class FrameFlow:
         return np.abs(self.frames.rows)
 
     def noise(self, free: Array) -> Array:
-        """Depths that are zero but for rounding, m, (m,), where the free motion has these coefficients."""
-        farthest = self._behind @ np.abs(free[:, : self.size]).sum(axis=0)
+        """Depths that are zero but for rounding, m, (..., m), where a free motion has coefficients (..., k, n)."""
+        farthest = np.abs(free[..., : self.size]).sum(axis=-2) @ self._behind.T
         return np.asarray(ROUNDING * (farthest + self.frames.distances) + TINY)
 
     def slowest(self, free: Array) -> float:

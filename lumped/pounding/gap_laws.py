@@ -47,17 +47,34 @@ class GapLaw:
         return one
 
     def _made(self, frames: PoundingFrames, gap: Gap, velocity: float) -> ForceLaw:
+        try:
+            return force_of(self.name, self._scene(frames, gap, velocity, {"name": self.name, **self.values}))
+        except BadInput as bad:
+            raise BadInput(self._said_here(fault) for fault in bad.faults) from bad
+
+    @property
+    def numerics(self) -> Table:
+        """The raw settings of the scene."""
+        return dict(self.scene.get("numerics", {}))
+
+    def impact(self, frames: PoundingFrames, gap: Gap) -> Scene:
+        """The two storeys of a gap alone, as they meet with the scene's shapes and materials. Raises BadInput."""
+        if not self.scene or self.velocity is None:
+            missing = "velocity" if self.scene else "scene"
+            reason = "missing; accepted: with it the two storeys are an impact that a law can be calibrated on"
+            raise BadInput(Fault(self.source, f"law.{missing}", reason))
+        return self._scene(frames, gap, self.velocity, None)
+
+    def _scene(self, frames: PoundingFrames, gap: Gap, velocity: float, law: Table | None) -> Scene:
         left, right = frames.masses_at(gap)
         striker: Table = {**self.scene.get("striker", {}), "mass": left, "velocity": velocity}
         target: Table = {**self.scene.get("target", {}), "mass": right}
         if right is None:
             del target["mass"]
-        law = {"name": self.name, **self.values}
-        try:
-            scene = Scene.from_dict({"striker": striker, "target": target, "law": law}, self.source)
-            return force_of(self.name, scene)
-        except BadInput as bad:
-            raise BadInput(self._said_here(fault) for fault in bad.faults) from bad
+        tables = {"striker": striker, "target": target}
+        # a force between two masses follows no larger model: that is the reference's, which no law is named for
+        rest = {"model": self.scene.get("model", {})} if law is None else {"law": law}
+        return Scene.from_dict(tables | rest, self.source)
 
     def _said_here(self, fault: Fault) -> Fault:
         """A fault of the scene that stands for two storeys."""

@@ -1,10 +1,13 @@
-"""The frames marched from row to row; in a row from happening to happening of the gaps, each located exactly."""
+"""The frames marched from row to row; in a row from happening to happening of the gaps, each located exactly.
+
+Rows in which every gap stays far from touch are followed many at once: nothing happens there.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -20,8 +23,29 @@ from lumped.solvers.radau import STAGES
 
 MOST_ROWS = 300_000  # work: some minutes
 MOST_STEPS = 3000  # work: of one row, more is no motion but chatter
-# Told of every step: where it began, the step, where it led.
-Listener = Callable[[FramesAt, FrameStep, FramesAt], None]
+MOST_AHEAD = 16  # work: rows of one flight
+
+
+class Listener(Protocol):
+    """Told of all that the frames do."""
+
+    def step(self, at: FramesAt, step: FrameStep, to: FramesAt) -> None:
+        """One step: where it began, and where it led."""
+
+    def flight(self, flight: FramesFlight) -> None:
+        """Rows without any contact."""
+
+
+@dataclass(frozen=True, eq=False)
+class FramesFlight:
+    """r rows without contact: `times` (r + 1,), s, and `states` (r + 1, 2 n) between them; `within` (r, s, 2 n) at the
+    points of NODES in each, where the ground's acceleration is `ground` (r, s), m/s2.
+    """
+
+    times: Array
+    states: Array
+    within: Array
+    ground: Array
 
 
 def rows(frames: PoundingFrames, ground: GroundMotion, end_time: float) -> tuple[Array, float]:
@@ -56,9 +80,46 @@ class FrameMarch:
         frames = self.rules.flow.frames
         at, length = FramesAt(0.0, frames.start, -frames.distances, (OPEN,) * len(frames.gaps)), math.inf
         # A trial of Newton's method may go beyond all numbers: then the step is refused.
+        i, ahead = 1, 1
         with np.errstate(all="ignore"):
-            for until in times[1:].tolist():
-                at, length = self._row(at, until, length, listener)
+            while i < times.size:
+                flight = self._flight(at, times[i - 1 : i + ahead])
+                if flight is None:
+                    at, length = self._row(at, float(times[i]), length, listener)
+                    i, ahead = i + 1, 1
+                    continue
+                listener.flight(flight)
+                depths = frames.rows @ flight.states[-1, : self.rules.flow.size] - frames.distances
+                at, length = FramesAt(float(flight.times[-1]), flight.states[-1], depths, at.gaps), math.inf
+                i, ahead = i + flight.times.size - 1, min(2 * ahead, MOST_AHEAD)
+
+    def _flight(self, at: FramesAt, times: Array) -> FramesFlight | None:
+        """The rows between `times` as far as every gap stays clear of its touch; None where the first one is not."""
+        if any(gap is not OPEN for gap in at.gaps):
+            return None
+        flow, frames, lengths = self.rules.flow, self.rules.flow.frames, np.diff(times)
+        shares = (lengths[:, None, None] / flow.unit * NODES.points[:, None]) ** np.arange(TERMS + 1.0)
+        grounds = np.array([self.ground.series(time, flow.unit, TERMS) for time in times[:-1].tolist()])
+        states, free = [at.state], list[Array]()
+        for share, ground in zip(shares, grounds, strict=True):
+            free.append(flow.series(states[-1], ground))
+            states.append(share[-1] @ free[-1])
+        within = shares @ np.array(free)
+        clear = self._clear(at, within, lengths, flow.noise(np.array(free))) if frames.gaps else lengths.size
+        if clear == 0:
+            return None
+        ground = np.einsum("rsk,rk->rs", shares[:clear, :, :TERMS], grounds[:clear])
+        return FramesFlight(times[: clear + 1], np.array(states[: clear + 1]), within[:clear], ground)
+
+    def _clear(self, at: FramesAt, within: Array, lengths: Array, noise: Array) -> int:
+        """How many rows pass before one in which some gap comes near its touch."""
+        flow, frames = self.rules.flow, self.rules.flow.frames
+        depth = within[:, :, : flow.size] @ frames.rows.T - frames.distances
+        rate = within[:, :, flow.size :] @ frames.rows.T
+        first = np.vstack([frames.rows @ at.state[: flow.size] - frames.distances, depth[:-1, -1]])
+        reach = np.maximum(first, depth.max(axis=1)) + lengths[:, None] * np.abs(rate).max(axis=1)
+        near = (reach >= -2.0 * noise).any(axis=1)
+        return int(near.argmax()) if near.any() else lengths.size
 
     def _row(self, at: FramesAt, until: float, length: float, listener: Listener) -> tuple[FramesAt, float]:
         """To the end of a row; the length proposed for the next step, s."""
@@ -71,7 +132,7 @@ class FrameMarch:
             step, event, length = trial.accepted(min(length, until - at.time), length)
             end = until if event is None and step.length == until - at.time else at.time + step.length
             following, length = self._after(trial, step, event, end, length)
-            listener(start, step, following)
+            listener.step(start, step, following)
             at = following
             if at.time >= until:
                 return at, length

@@ -9,21 +9,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.polynomial.legendre import legder, legroots, legval
 
 from lumped.errors import BadInput, Fault
 from lumped.laws._force_law import ForceLaw
-from lumped.numbers import Array, highest
+from lumped.numbers import Array
 from lumped.pounding.flow import TERMS, FrameFlow
 from lumped.pounding.frames import PoundingFrames
 from lumped.pounding.gaps import FrameStep, GapState, Mode
 from lumped.pounding.ground import STILL, GroundMotion
-from lumped.pounding.march import FrameMarch, rows
+from lumped.pounding.march import FrameMarch, FramesFlight, rows
 from lumped.pounding.result import FrameContact, FramesEnergy, FramesMotion, FramesResult, StoreyPeaks
-from lumped.pounding.trial import FramesAt, Rules
+from lumped.pounding.trial import NODES, FramesAt, Rules
 from lumped.solvers.point.bodies import TINY, State
 from lumped.solvers.radau import STAGES, Nodes
 
-PLACES = np.linspace(0.0, 1.0, 33)  # in a step, among which its peak is looked for
+TOGETHER = 64  # work: steps that are accounted for at once
 
 
 def simulate(
@@ -60,12 +61,14 @@ class Peaks:
         return cls(np.zeros(count), np.zeros((STAGES, count)))
 
     def see(self, values: Array, nodes: Nodes) -> Array:
-        """Values at the points of a step, (s, n); which of them are larger than any before, (n,)."""
-        size = np.abs(values).max(axis=0)
+        """Values at the points of one step or more, (..., s, n); which are larger than any before, (n,)."""
+        steps = values.reshape(-1, *values.shape[-2:])
+        sizes = np.abs(steps).max(axis=1)
+        size = sizes.max(axis=0)
         larger = size > self.size
         if larger.any():
             self.size = np.where(larger, size, self.size)
-            self.series[:, larger] = nodes.series @ values[:, larger]
+            self.series[:, larger] = nodes.series @ steps[sizes.argmax(axis=0), :, np.arange(size.size)].T[:, larger]
         return np.asarray(larger)
 
     def heights(self) -> Array:
@@ -74,12 +77,13 @@ class Peaks:
 
     def top(self, i: int) -> tuple[float, float]:
         """Place in its step, and height."""
-
-        def curve(places: Array) -> Array:
-            return np.abs(np.polynomial.legendre.legval(2.0 * places - 1.0, self.series[:, i]))
-
-        place, height = highest(curve, PLACES)
-        return place, max(height, float(self.size[i]))
+        series = self.series[:, i]
+        turns = legroots(legder(series)) if series[1:].any() else np.zeros(0)
+        inside = np.real(turns[(np.imag(turns) == 0.0) & (np.abs(turns) < 1.0)])
+        places = np.concatenate([inside, [-1.0, 1.0]])
+        heights = np.abs(legval(places, series))
+        best = int(heights.argmax())
+        return 0.5 * (1.0 + float(places[best])), max(float(heights[best]), float(self.size[i]))
 
 
 @dataclass
@@ -123,13 +127,22 @@ class Account:
         self.input = self.damping = self.lost = 0.0
         self.steps = self.pressed_steps = 0
         self.last: FramesAt | None = None
+        self.waiting: list[tuple[Array, ...]] = []
 
-    def __call__(self, at: FramesAt, step: FrameStep, to: FramesAt) -> None:
+    def flight(self, flight: FramesFlight) -> None:
+        """Rows of the march without contact."""
+        count, weights = flight.times.size - 1, np.diff(flight.times)[:, None] * NODES.weights
+        self.steps += count
+        self._account(weights, flight.within, np.zeros((*weights.shape, len(self.names))), flight.ground)
+        self.times += flight.times[1:].tolist()
+        self.states += list(flight.states[1:])
+        self.forces += [np.zeros(len(self.names))] * count
+
+    def step(self, at: FramesAt, step: FrameStep, to: FramesAt) -> None:
         """One step of the march."""
         pressed = [i for i, gap in enumerate(at.gaps) if gap.mode is Mode.PRESSED]
         self.steps, self.pressed_steps = self.steps + 1, self.pressed_steps + bool(pressed)
         self._sum(at, step, pressed)
-        self.peaks.see(self._values(step), step.nodes)
         for i in pressed:
             if i not in self.open:
                 self.open[i] = OpenContact(at.time, float(step.first_rate[i]))
@@ -144,31 +157,45 @@ class Account:
         self.last = to
 
     def _sum(self, at: FramesAt, step: FrameStep, pressed: list[int]) -> None:
-        """Work of the ground, losses in the structures and in the contacts, over a step."""
-        frames, speeds = self.frames, step.states[:, self.flow.size :]
+        """One step to be accounted for; losses in its contacts."""
         weights = step.length * step.nodes.weights * step.nodes.pace
         shares = self.flow.shares(step.nodes, step.length)[:, :TERMS]
         ground = shares @ self.march.ground.series(at.time, self.flow.unit, TERMS)
-        self.input -= float(weights @ (ground * (speeds @ frames.mass)))
-        self.damping += float(weights @ np.einsum("si,ij,sj->s", speeds, frames.damping, speeds))
+        self._account(weights[None], step.states[None], step.force.T[None], ground[None])
         for i in pressed:
             known = State(float(at.depths[i]), float(step.first_rate[i]), 0.0, at.gaps[i].memory)
             law = self.march.rules.laws[i].within(known, step.length)
             depth = np.maximum(step.depth[i], TINY)
             self.lost += float(weights @ (law.lost(depth, step.rate[i], at.gaps[i].stage) * step.rate[i]))
 
-    def _values(self, step: FrameStep) -> Array:
-        """Displacement, drift, total acceleration and speed of every storey at the points of a step, (s, 4 n)."""
+    def _account(self, *rows: Array) -> None:
+        """Weights in time (r, s), states (r, s, 2 n), forces (r, s, m) and ground (r, s) of r steps more."""
+        self.waiting.append(rows)
+        if sum(one[0].shape[0] for one in self.waiting) >= TOGETHER:
+            self._close()
+
+    def _close(self) -> None:
+        """Work of the ground, losses in the structures, and peaks, of all steps that wait."""
+        if not self.waiting:
+            return
+        weights, states, forces, ground = map(np.concatenate, zip(*self.waiting, strict=True))
+        self.waiting.clear()
+        speeds = states[..., self.flow.size :]
+        self.input -= float((weights * ground * (speeds @ self.frames.mass)).sum())
+        self.damping += float((weights * ((speeds @ self.frames.damping) * speeds).sum(axis=-1)).sum())
+        self.peaks.see(self._values(states, forces), NODES)
+
+    def _values(self, states: Array, forces: Array) -> Array:
+        """Displacement, drift, total acceleration and speed of every storey, (..., 4 n)."""
         n = self.flow.size
-        places, speeds = step.states[:, :n], step.states[:, n:]
-        return np.hstack(
-            [places, places @ self.frames.to_drift.T, self._accelerations(step.states, step.force.T), speeds]
-        )
+        places, speeds = states[..., :n], states[..., n:]
+        drifts, accelerations = places @ self.frames.to_drift.T, self._accelerations(states, forces)
+        return np.concatenate([places, drifts, accelerations, speeds], axis=-1)
 
     def _accelerations(self, states: Array, forces: Array) -> Array:
-        """Total ones, m/s2, (k, n), of states (k, 2 n) and forces (k, m)."""
+        """Total ones, m/s2, (..., n), of states (..., 2 n) and forces (..., m)."""
         n, frames = self.flow.size, self.frames
-        pulls = states[:, :n] @ frames.stiffness + states[:, n:] @ frames.damping + forces @ frames.rows
+        pulls = states[..., :n] @ frames.stiffness + states[..., n:] @ frames.damping + forces @ frames.rows
         return np.asarray(-pulls / frames.mass)
 
     def _stored(self, i: int, gap: GapState, depth: float) -> float:
@@ -176,6 +203,7 @@ class Account:
 
     def result(self) -> FramesResult:
         """All of it."""
+        self._close()
         time, states, forces = np.array(self.times), np.array(self.states), np.array(self.forces)
         n, frames = self.flow.size, self.frames
         motion = FramesMotion(

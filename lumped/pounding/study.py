@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from lumped.errors import addressed
@@ -62,11 +62,18 @@ class PoundStudy:
 
 
 def study(
-    case: PoundingCase, names: Sequence[str] = (), progress: Callable[[str], None] = lambda message: None
+    case: PoundingCase,
+    names: Sequence[str] = (),
+    progress: Callable[[str], None] = lambda message: None,
+    calibrated: Mapping[str, tuple[ForceLaw, ...]] | None = None,
 ) -> PoundStudy:
-    """The case under its own law and these others. Raises BadInput, before any work, and NotReached."""
-    own = case.law.name if case.law and case.frames.gaps else None
-    laws = {name: case.laws(None if name == own else name) for name in dict.fromkeys([own, *names]) if name and own}
+    """The case under its own law and these others. Raises BadInput, before any work, and NotReached.
+
+    `calibrated`: laws by their names, one for each gap, in the place of those that the file gives by its keys.
+    """
+    own = case.own_law
+    every = dict.fromkeys([own, *names]) if own else {}
+    laws = calibrated or {name: case.laws(None if name == own else name) for name in every if name}
     motions = {}
     with addressed(case.source, {"motion": "motion"}):
         for name, one in laws.items():

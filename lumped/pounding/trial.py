@@ -13,21 +13,24 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg.lapack import dgesv
+from numpy.polynomial.legendre import legval
+from scipy.linalg.lapack import dgetrf, dgetrs
 
 from lumped.errors import NotReached
 from lumped.laws._force_law import ForceLaw
-from lumped.numbers import Array
+from lumped.numbers import Array, falling_zero
 from lumped.pounding.flow import FrameFlow
 from lumped.pounding.gaps import FrameStep, GapEvent, GapState, Mode, events_of
 from lumped.solvers.point.bodies import TINY, PointLaw, Stage, State
-from lumped.solvers.radau import STAGES, Nodes, radau
+from lumped.solvers.radau import STAGES, Nodes, paced, radau
 
 NODES = radau(STAGES)
 ITERATIONS = 12  # work: Newton's, of one step
-SMALL, EXACT = 1e-11, 1e-14  # a correction times its ratio to the one before; a correction that is rounding
+SMALL, EXACT = 1e-13, 1e-14  # a correction times its ratio to the one before; a correction that is rounding
+SLOW = 0.01  # work: a correction that is no smaller share of the one before asks for new slopes of the forces
 LOCATIONS = 60  # work: trials of where in a step something happens
 PRECISE = 1e-14  # of the time reached, and of a row: where it happens
+NEAR = 1e-10  # of a place in a step, which tells about when something happens
 NOISE = 1e-8  # rounding: of the slowest speed that counts, which no step can resolve
 SHORTEST, LONGEST, CAUTION = 0.1, 5.0, 0.8  # safety: least and most of the next step over this one, and the share
 HOPELESS = 2.0  # so much rougher than allowed a step need not be located any better to be refused
@@ -93,13 +96,16 @@ class FrameTrial:
         return [*self._events, *(event for i in near for event in self._touches[i])]
 
     @cached_property
-    def _depths(self) -> Array:
-        """Taylor coefficients of the depths, (TERMS + 1, m)."""
-        return np.asarray(self.free[:, : self.rules.flow.size] @ self.rules.flow.frames.rows.T)
+    def _coefficients(self) -> Array:
+        """Taylor coefficients of the states, the depths and the rates, (TERMS + 1, 2 n + 2 m)."""
+        size, rows = self.rules.flow.size, self.rules.flow.frames.rows
+        depths, rates = self.free[:, :size] @ rows.T, self.free[:, size:] @ rows.T
+        depths[0] = self.at.depths
+        return np.concatenate([self.free, depths, rates], axis=1)
 
     @cached_property
-    def _rates(self) -> Array:
-        return np.asarray(self.free[:, self.rules.flow.size :] @ self.rules.flow.frames.rows.T)
+    def _first_rates(self) -> Array:
+        return np.asarray(self._coefficients[0, 2 * self.rules.flow.size + len(self.at.gaps) :])
 
     @cached_property
     def _graded(self) -> tuple[int, float]:
@@ -115,7 +121,7 @@ class FrameTrial:
     @cached_property
     def _allowed(self) -> Array:
         """Roughness of the rates, m/s, of the gaps that are pressed."""
-        speeds = np.abs(self._rates[0, self._pressed])
+        speeds = np.abs(self._first_rates[self._pressed])
         touch = np.array([self.at.gaps[i].stage.speed for i in self._pressed])
         floor = NOISE * self.rules.flow.slowest(self.free)
         return np.asarray(np.maximum(self.rules.tolerance * np.maximum(speeds, touch), floor))
@@ -155,7 +161,7 @@ class FrameTrial:
         gap = self.at.gaps[event.gap]
         left = self.rules.laws[event.gap].grading(gap.stage) if event.surfaces else 1
         nodes = self._nodes(length)
-        return NODES.graded(left, mirrored=True) if left > 1 and nodes.power == 1 else nodes
+        return NODES.graded(left, begun=0.0, mirrored=True) if left > 1 and nodes.power == 1 else nodes
 
     def _until_event(self, step: FrameStep | None) -> tuple[FrameStep | None, GapEvent | None]:
         """The step, cut short at its first event; and again at one before that which only the shorter step shows."""
@@ -212,35 +218,32 @@ class FrameTrial:
 
     def _solved(self, length: float, nodes: Nodes, guess: Array) -> FrameStep | None:
         """The step whose forces are those of the laws at every point; None without convergence."""
-        flow, at, p = self.rules.flow, self.at, self._pressed
-        shares = flow.shares(nodes, length)
-        states, rate = shares @ self.free, (shares @ self._rates).T
-        depth = at.depths[:, None] + (shares[:, 1:] @ self._depths[1:]).T
-        force, gain, memories = np.zeros_like(depth), np.zeros_like(depth), [gap.memory for gap in at.gaps]
+        flow, at, p, count = self.rules.flow, self.at, self._pressed, len(self.at.gaps)
+        moved = flow.shares(nodes, length) @ self._coefficients
+        force, gain, memories = np.zeros((count, STAGES)), np.zeros((count, STAGES)), [gap.memory for gap in at.gaps]
+        parts = slice(2 * flow.size), slice(2 * flow.size, 2 * flow.size + count), slice(2 * flow.size + count, None)
+        states, depth, rate = moved[:, parts[0]], moved[:, parts[1]].T, moved[:, parts[2]].T
         if p:
             over = flow.integrals(nodes, length)
             pressing = self._pressing(length, nodes, over, depth[p], rate[p])
             found = pressing.solved(guess, flow.frames.reduced_masses[p] / length)
             if found is None:
                 return None
-            gain[p] = found
-            integrals = over @ gain.T  # (k, s, m)
-            states = states + np.einsum("ksm,knm->sn", integrals, flow.influence[: over.shape[0]])
-            depth += np.einsum("ksm,knm->ns", integrals, flow.on_depth[: over.shape[0]])
-            rate += np.einsum("ksm,knm->ns", integrals, flow.on_rate[: over.shape[0]])
+            # in place: states, depth and rate are views
+            moved += np.tensordot(over @ found.T, flow.influence[: over.shape[0], :, p], ((0, 2), (0, 2)))
             force[p] = pressing.forces(depth[p], rate[p])
             gain[p] = nodes.pace * force[p]
             for i, law in zip(p, pressing.laws, strict=True):
                 memories[i] = law.remembered(np.maximum(depth[i], TINY))
-        return FrameStep(length, nodes, states, at.depths, self._rates[0], depth, rate, force, gain, tuple(memories))
+        return FrameStep(length, nodes, states, at.depths, self._first_rates, depth, rate, force, gain, tuple(memories))
 
     def _pressing(self, length: float, nodes: Nodes, over: Array, depth: Array, rate: Array) -> Pressing:
         """The pressed gaps within a step, from depths and rates without force, (p, s)."""
         p, flow = self._pressed, self.rules.flow
-        by_gain = (
-            np.tensordot(on[: over.shape[0], p][:, :, p], over, (0, 0)).transpose(0, 2, 1, 3).reshape(depth.size, -1)
-            for on in (flow.on_depth, flow.on_rate)
-        )
+        first = 2 * flow.size
+        on = flow.influence[: over.shape[0], first:].reshape(over.shape[0], 2, -1, len(self.at.gaps))
+        of_both = np.tensordot(on[:, :, p][..., p], over, (0, 0)).transpose(0, 1, 3, 2, 4)
+        by_gain = of_both.reshape(2, depth.size, depth.size)
         return Pressing(
             [self.rules.laws[i].within(self.known(i), length) for i in p],
             [self.at.gaps[i].stage for i in p],
@@ -249,7 +252,7 @@ class FrameTrial:
 
     def known(self, i: int) -> State:
         """What the law of a gap knows here."""
-        return State(float(self.at.depths[i]), float(self._rates[0, i]), 0.0, self.at.gaps[i].memory)
+        return State(float(self.at.depths[i]), float(self._first_rates[i]), 0.0, self.at.gaps[i].memory)
 
 
 @dataclass(frozen=True, eq=False)
@@ -277,12 +280,13 @@ class Pressing:
 
         `scale`: the force, N, that changes a rate by itself over the step, per rate, (p,).
         """
-        before = 0.0
+        before, factors = 0.0, None
         for _ in range(ITERATIONS):
             depth = self.depth + (self.depth_by_gain @ gain.ravel()).reshape(gain.shape)
             rate = self.rate + (self.rate_by_gain @ gain.ravel()).reshape(gain.shape)
+            factors = factors or dgetrf(self._jacobian(depth, rate))[:2]
             excess = gain - self.pace * self.forces(depth, rate)
-            correction = dgesv(self._jacobian(depth, rate), excess.reshape(-1, 1))[2].reshape(gain.shape)
+            correction = dgetrs(*factors, excess.reshape(-1, 1))[0].reshape(gain.shape)
             gain = gain - correction
             sizes = np.abs(gain[:, 0]) + np.abs(gain[:, -1]) + scale * (np.abs(self.rate[:, 0]) + np.abs(rate[:, -1]))
             ratio = float((np.abs(correction).max(axis=1) / sizes).max())
@@ -290,6 +294,7 @@ class Pressing:
                 return None
             if ratio <= EXACT or ratio * ratio <= SMALL * before:
                 return gain
+            factors = factors if ratio <= SLOW * before or not before else None
             before = ratio
         return None
 
@@ -308,11 +313,14 @@ class Pressing:
 
 
 def _bracket(step: FrameStep, values: Array, place: int) -> tuple[float, float, float]:
-    """Between which times an event happens, s, and about when: on the line between two points."""
-    high, at_high = float(step.nodes.points[place]), float(values[place])
-    low, at_low = (float(step.nodes.points[place - 1]), float(values[place - 1])) if place else (0.0, -at_high)
-    share = high - at_high * (high - low) / (at_high - at_low) if at_high < at_low else high
-    return low * step.length, min(2.0 * high, 1.0) * step.length, share * step.length
+    """Between which times an event happens, s, and about when: where the polynomial through its values falls."""
+    nodes, series = step.nodes, step.nodes.series @ values
+    begin, end = np.append(0.0, nodes.places)[place : place + 2].tolist()
+    at = falling_zero(lambda one: float(legval(2.0 * one - 1.0, series)), begin, end, close=NEAR)
+    at = at if at > begin else 0.5 * (begin + end)
+    share = float(paced(np.array(at), nodes.power, nodes.begun, nodes.mirrored)[0])
+    low = float(nodes.points[place - 1]) if place else 0.0
+    return low * step.length, min(2.0 * float(nodes.points[place]), 1.0) * step.length, share * step.length
 
 
 def _ratio(rough: float, power: int) -> float:

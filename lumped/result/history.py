@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lumped.errors import BadInput, Fault
+from lumped.errors import BadInput, Fault, PackageMissing
 from lumped.numbers import Array, freeze_columns
 from lumped.schema.csv_file import read_columns, write_columns
+from lumped.schema.shown import Picture, curves, html_table
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 COLUMNS = {
     "time": "time_s",
@@ -79,6 +84,32 @@ class History(ForceOverTime):
 
     def __len__(self) -> int:
         return int(self.time.size)
+
+    def __repr__(self) -> str:
+        ends = [f"{name} {column.min():.4g} to {column.max():.4g} {unit}" for name, column, unit in self._columns()]
+        return f"History of {len(self)} rows: {', '.join(ends)}"
+
+    def _repr_html_(self) -> str:
+        rows = ((name, f"{column.min():.5g}", f"{column.max():.5g}", unit) for name, column, unit in self._columns())
+        return html_table(("column", "least", "most", "unit"), rows) + self.plot().svg
+
+    def _columns(self) -> Iterator[tuple[str, Array, str]]:
+        """Name, values and unit of each."""
+        for name, header in COLUMNS.items():
+            yield name, getattr(self, name), header.removeprefix(f"{name}_").replace("_per_", "/")
+
+    def plot(self, **others: ForceOverTime) -> Picture:
+        """Force, N, over time, s, as a notebook shows it or ``.write("force.svg")``; beside others by their names."""
+        every = {"force" if not others else "this": self} | others
+        return curves({name: (one.time, one.force) for name, one in every.items()}, "time, s", "force, N")
+
+    def to_pandas(self) -> DataFrame:
+        """A table of pandas with the columns of history.csv. Raises PackageMissing without pandas."""
+        try:
+            import pandas as pd
+        except ImportError:
+            raise PackageMissing("pandas") from None
+        return pd.DataFrame({header: getattr(self, name) for name, header in COLUMNS.items()})
 
     def resampled(self, time: ArrayLike) -> History:
         """The history at other times, s, linear between the rows and held at its ends."""

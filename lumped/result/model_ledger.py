@@ -9,9 +9,11 @@ from dataclasses import dataclass, replace
 from numpy.polynomial import Polynomial
 
 from lumped.errors import FeContactError
+from lumped.materials import Material
+from lumped.materials.energies.base import energy_of
 from lumped.materials.radiation import Pulse
 from lumped.result.history import History
-from lumped.result.result import LedgerEntry, Quantity
+from lumped.result.result import LedgerEntry, Quantity, percent
 from lumped.scene.geometry import plasticity_faults
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
@@ -21,18 +23,18 @@ from lumped.targets.base import Target
 from lumped.targets.rod import Rod
 
 GRAVITY = 9.81  # physics: m/s2
-INERTIA = "model.inertia"
+LARGE = "model.kinematics"
 # c1 (1 - nu)^2, cubic in nu, of elastic energies with finite strains; tests/fe/test_finite_strain.py finds it again.
 FIRST_ORDER = {
     "St Venant-Kirchhoff": Polynomial([-0.106722, -0.244066, 0.549732, -0.354504]),
     "neo-Hooke": Polynomial([0.247781, -0.830110, 0.390577, 0.426889]),
     "Hencky": Polynomial([0.425033, -1.477636, 1.302120, -0.093957]),
 }
+ENERGY_NAMES = {"st_venant_kirchhoff": "St Venant-Kirchhoff", "neo_hooke": "neo-Hooke", "hencky": "Hencky"}
 # By how much less a rod's end comes in than a half-space, its uniform shortening apart, over F/(E* b), b the rod's
 # radius: 0.61 at nu = -0.5 to 0.66 at 0.5; tests/fe/test_rod_end.py finds it again.
 ROD_END = 0.65
 IN_AN_IMPACT = 0.5  # of the change at one depth: W = (2/5) k d^(5/2) + (1/3) k c1 d^3/sqrt(R) is what was brought
-PROFILE = "model.profile = 'exact'"
 # Hertz: the first yield, below the surface, is where the peak pressure is 1.6 Y (Johnson, ISBN 978-0-521-34796-9).
 FIRST_YIELD = 1.6
 FLOW = 0.047  # 1/(1 + FLOW ln^2 w): how force falls behind Hertz'; tests/fe/test_plastic.py finds it again
@@ -72,7 +74,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
     entries = [
         inertia(scene, resolved, peak),
         profile(scene.geometry.shape, resolved, peak),
-        finite_strain(scene.geometry.material.nu, height, peak, IN_AN_IMPACT),
+        strained_much(scene.geometry.material, resolved, height, peak, IN_AN_IMPACT),
         sideways(scene, peak),
         series(scene, peak),
         striker(scene),
@@ -90,7 +92,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
 def ledger_at_rest(indenter: Indenter, peak: Peak) -> tuple[LedgerEntry, ...]:
     """The same of a slow indentation at its deepest, which has neither inertia nor time."""
     shape, target, nu = indenter.shape, indenter.target, indenter.material.nu
-    entries = [finite_strain(nu, target.pressed_height(shape), peak)]
+    entries = [strained_much(indenter.material, indenter.model, target.pressed_height(shape), peak)]
     if indenter.material.yield_strength is not None:
         entries.append(plasticity(indenter, indenter.model, peak))
     if target.fixed_radius(shape) is None:
@@ -106,7 +108,8 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     mass, geometry = scene.reduced_mass, scene.geometry
     pulse = Pulse(peak.force, peak.duration, mass, 0.5 * mass * scene.velocity**2, peak.contact_radius)
     estimate, note = scene.target.inertia_left_out(geometry.shape, geometry.material, pulse)
-    return LedgerEntry(effect, "neglected", estimate, note, INERTIA if scene.target.waves_under(geometry.shape) else "")
+    key = "model.inertia" if scene.target.waves_under(geometry.shape) else ""
+    return LedgerEntry(effect, "neglected", estimate, note, key, value=True if key else None)
 
 
 def gravity(scene: Scene, model: Model, force: float, mass: float) -> LedgerEntry:
@@ -119,8 +122,9 @@ def gravity(scene: Scene, model: Model, force: float, mass: float) -> LedgerEntr
     if model.direction == "horizontal":
         return LedgerEntry(effect, "across the motion", 0.0)
     if model.direction == "down":
-        return LedgerEntry(effect, "neglected", weight, "m g", "model.gravity")
-    asked = f"model.direction: of a drop, 'down', it would be {weight:.2g}; else 'horizontal'"
+        return LedgerEntry(effect, "neglected", weight, "m g", "model.gravity", value=GRAVITY)
+    down = f"a drop (--set model.direction=down) leaves out {percent(weight)}"
+    asked = f"{down}, a horizontal motion (--set model.direction=horizontal) nothing"
     return LedgerEntry(effect, "none assumed", None, asked)
 
 
@@ -132,28 +136,44 @@ def profile(shape: Shape, model: Model, peak: Peak) -> LedgerEntry:
     if shape.plane:
         heights = [float(shape.resolved(name).height(peak.contact_radius)) for name in ("exact", "parabola")]
         estimate = abs(heights[1] / heights[0] - 1.0) if heights[0] > 0.0 else 0.0
-        return LedgerEntry(effect, "parabola", estimate, key=PROFILE)
+        return LedgerEntry(effect, "parabola", estimate, key="model.profile", value="exact")
     exact = float(shape.resolved("exact").load_curve.force(peak.depth))
     parabola = float(shape.resolved("parabola").load_curve.force(peak.depth))
-    return LedgerEntry(effect, "parabola", abs(parabola / exact - 1.0), key=PROFILE)
+    return LedgerEntry(effect, "parabola", abs(parabola / exact - 1.0), key="model.profile", value="exact")
 
 
-def finite_strain(nu: float, height: float | None, peak: Peak, share: float = 1.0) -> LedgerEntry:
+def strained_much(
+    material: Material, model: Model, height: float | None, peak: Peak, share: float = 1.0
+) -> LedgerEntry:
+    """Included, by the energy of the material, or what :func:`finite_strain` estimates of it."""
+    if not model.finite:
+        return finite_strain(material.nu, height, peak, share, material.hyperelastic)
+    return LedgerEntry("finite strain", f"included: W = {energy_of(material.hyperelastic).formula}", 0.0)
+
+
+def finite_strain(
+    nu: float, height: float | None, peak: Peak, share: float = 1.0, energy: str | None = None
+) -> LedgerEntry:
     """From small displacements to large ones a sphere's force at a depth becomes F (1 + c1 depth/a) to first order.
 
     c1 is the work of the cubic terms of an elastic energy, and of the profile met by a surface that moves inward, in
     Hertz's field: energies with the same E and nu differ in it, in sign too. Other profiles count with their own
     depth/a; what is flattened as a whole by the share of the depth in its `height`, m, where that is more. In an
-    impact the work is given and the depth gives way: a `share` of it.
+    impact the work is given and the depth gives way: a `share` of it. One `energy` alone, where it is known.
     """
-    found = {name: share * peak.steepness * float(at(nu)) / (1.0 - nu) ** 2 for name, at in FIRST_ORDER.items()}
+    effect, named = "finite strain", ENERGY_NAMES.get(energy or "")
+    known = {name: at for name, at in FIRST_ORDER.items() if named in (None, name)}
+    found = {name: share * peak.steepness * float(at(nu)) / (1.0 - nu) ** 2 for name, at in known.items()}
     lowest, highest = (of(found, key=lambda name: found[name]) for of in (min, max))
     spread, note = (found[lowest], found[highest]), f"{lowest} to {highest}: the scene gives no law of large strains"
-    effect, treated, sizes = "finite strain", "small displacements", [abs(change) for change in spread]
+    treated, sizes = "small displacements", [abs(change) for change in spread]
     if height is not None and peak.depth > max(sizes) * height:
-        return LedgerEntry(effect, treated, peak.depth / height, "order of magnitude: depth over what is pressed")
+        note = "order of magnitude: depth over what is pressed"
+        return LedgerEntry(effect, treated, peak.depth / height, note, key=LARGE, value="finite")
+    if named is not None:
+        return LedgerEntry(effect, treated, sizes[0], f"{named}, to first order in depth/a", key=LARGE, value="finite")
     least = min(sizes) if spread[0] * spread[1] > 0.0 else None
-    return LedgerEntry(effect, treated, least, note, spread=spread)
+    return LedgerEntry(effect, treated, least, note, LARGE, spread, "finite")
 
 
 def of_dent(scene: Scene, peak: Peak) -> Peak:
@@ -200,12 +220,15 @@ def striker(scene: Scene) -> LedgerEntry:
 
 
 def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
-    """At most what the instantaneous stiffness changes by, to the power 2/5 of a peak force.
+    """At most what the instantaneous stiffness changes by, to the power 2/5 of a peak force; a scene of constant bulk
+    modulus has chosen.
 
     That of the half-space by 4G(3K+G)/(3K+4G) over 2G/(1-nu); a body with lengths confines, in thin layers most.
     """
     effect, material = "constant nu against constant bulk modulus", scene.geometry.material
-    treated = "constant nu" if material.constant == "poisson" else "constant bulk modulus"
+    treated, solid = "constant nu", "target" if scene.target.deformable else "striker"
+    if material.constant == "bulk":
+        return LedgerEntry(effect, "constant bulk modulus", 0.0, "as the scene says")
     if material.young.is_elastic or math.isinf(material.bulk):
         return LedgerEntry(effect, treated, 0.0, "elastic or incompressible: the same")
     if material.young.viscosity > 0.0 or material.young.relaxed == 0.0:
@@ -217,7 +240,7 @@ def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
         if confined is None:
             return LedgerEntry(effect, treated, None, "no load curve tells it; run both of target.material.constant")
         softer *= confined
-    return LedgerEntry(effect, treated, 1.0 - softer**0.4, "bound", "target.material.constant")
+    return LedgerEntry(effect, treated, 1.0 - softer**0.4, "bound", f"{solid}.material.constant", value="bulk")
 
 
 def _confined(scene: Scene, nu: float, depth: float) -> float | None:

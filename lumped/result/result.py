@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import math
 import platform
 from collections.abc import Mapping, Sequence
@@ -19,6 +20,7 @@ from lumped.scene.tables import Model
 from lumped.schema import Table
 from lumped.schema.csv_file import write_columns
 from lumped.schema.json_file import plain, write_json
+from lumped.schema.shown import Picture, html_table
 
 COLUMNS_LEFT = ("time_after_separation_s", "depth_m", "depth_error_m")
 SCHEMA = "fe-contact/result/1"
@@ -37,6 +39,7 @@ RULED_ABSOLUTE = ("restitution", "history_l2")
 ENERGY_TERMS = ("in", "out", "stored", "viscous", "plastic", "radiated", "contact", "numerical", "residual")
 WITHIN, ABOVE, OPEN, UNKNOWN = "within tolerance", "above it", "open", "unknown"
 NO_KEY = "no larger model here"
+LEFT_OUT = ("neglected", "none assumed")  # how a ledger's effect is treated that is not there at all
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,13 +80,26 @@ class Quantity:
     error: float | None
     unit: str
 
+    def __str__(self) -> str:
+        """Value, bar and unit; without a unit none, and a value that is always zero is its bar alone."""
+        if self.value is None:
+            return "undefined: no separation"
+        value = f"{self.value:.6g} " if self.value or self.unit != "1" else ""
+        return f"{value}+- {self.error or 0.0:.1e} {'' if self.unit == '1' else self.unit}".rstrip()
+
+
+def percent(share: float) -> str:
+    """A share of the peak force in words."""
+    return f"{100.0 * share:.2g} %" if abs(share) < 1.0 else f"{100.0 * share:.0f} %"
+
 
 @dataclass(frozen=True)
 class LedgerEntry:
     """One thing the model leaves out, and its estimated effect relative to the peak force, None where unknown.
 
-    `key` selects the larger model, empty where there is none. `spread`: lowest and highest change of the force where
-    the scene does not decide; the estimate is then what is left out at least, None where that may be nothing.
+    `key` with `value` selects the larger model, empty where there is none. `spread`: lowest and highest change of the
+    force where the scene does not decide; the estimate is then what is left out at least, None where that may be
+    nothing.
     """
 
     effect: str
@@ -92,6 +108,7 @@ class LedgerEntry:
     note: str = ""
     key: str = ""
     spread: tuple[float, float] | None = None
+    value: bool | float | str | None = None
 
     @property
     def size(self) -> float:
@@ -114,6 +131,32 @@ class LedgerEntry:
         if self.size <= tolerance:
             return WITHIN
         return f"{ABOVE}: {self.key or NO_KEY}" if self.exceeds(tolerance) else f"{OPEN}: {self.note}"
+
+    @property
+    def setting(self) -> str:
+        """The key with its value, as --set takes it."""
+        return f"{self.key}={str(self.value).lower() if isinstance(self.value, bool) else self.value}"
+
+    @property
+    def cure(self) -> str:
+        """How a run includes it, in words; that nothing does where there is no larger model."""
+        if not self.key:
+            return NO_KEY
+        return f"to include it: --set {self.setting}"
+
+    @property
+    def sentence(self) -> str:
+        """What is left out, by how much that changes the peak force, and how to include it."""
+        left = "is left out" if self.treated in LEFT_OUT else f"is taken as {self.treated}"
+        size = f"it may change the peak force by {percent(self.size)}" if self.known else "by how much is unknown"
+        return f"{self.effect} {left}; {size}; {self.cure}"
+
+    def line(self, tolerance: float) -> str:
+        """Effect, treatment, size and verdict, as a plan lists them."""
+        spread = "" if self.spread is None else " to ".join(map(percent, self.spread))
+        size = spread or (percent(self.estimate) if self.estimate else "")
+        said = f"above the tolerance; {self.cure}" if self.exceeds(tolerance) else self.verdict(tolerance)
+        return f"{self.effect} ({self.treated}): {', '.join(filter(None, (size, said)))}"
 
     def to_json(self, tolerance: float) -> Table:
         """Its fields, and its verdict at a tolerance."""
@@ -159,6 +202,27 @@ class Result:
         """Whether no effect that can be judged exceeds the tolerance."""
         return sufficient(self.model_ledger, self.tolerance)
 
+    def __repr__(self) -> str:
+        return self.summary()
+
+    def _repr_html_(self) -> str:
+        head = f"<b>{html.escape(self.scene.name)}</b>: {self.method}, tolerance {self.tolerance:g}"
+        table = html_table(("quantity", "value"), self.quantities.items())
+        return f"<p>{head}</p>{table}{self.plot().svg}<p>{html.escape(good_to(self.model_ledger))}</p>"
+
+    def plot(self, **others: Result) -> Picture:
+        """Its force, N, over time, s, beside those of other results by their names."""
+        return self.history.plot(**{name: one.history for name, one in others.items()})
+
+    def summary(self) -> str:
+        """Quantities with their bars, a line each, every one of several contacts, and what the model is good to."""
+        known = {name: value for name, value in self.quantities.items() if value.value is not None or self.converged}
+        lines = [f"{self.scene.name}: {self.method}, tolerance {self.tolerance:g}"]
+        lines += [f"{name:13s} {quantity}" for name, quantity in known.items()]
+        lines += [_contact(number, contact) for number, contact in enumerate(self.contacts, start=1)]
+        lines += [self.message] if self.message and (self.contacts or not self.converged) else []
+        return "\n  ".join([*lines, *filter(None, [good_to(self.model_ledger)])])
+
     def to_json(self) -> Table:
         """The content of result.json; what is not finite is null."""
         values = {name: quantity.value for name, quantity in self.quantities.items()}
@@ -172,7 +236,7 @@ class Result:
             "tolerance": self.tolerance,
             "message": self.message,
             "scene": self.scene.to_dict(),
-            "model": vars(self.model),
+            "model": self.model.resolved(self.scene.material),
             "numerics": self.numerics,
             "quantities": {name: asdict(quantity) for name, quantity in self.quantities.items()},
             "dimensionless": groups(self.scene, values, self.history),
@@ -205,6 +269,13 @@ class Result:
         write_json(folder / RECORD, self.to_json())
 
 
+def _contact(number: int, contact: Mapping[str, float | None]) -> str:
+    """One of several contacts in a line."""
+    names = {"duration": "s", "restitution": "", "peak_force": "N"}
+    told = [f"{name} {contact[name]:.6g} {unit}".rstrip() for name, unit in names.items() if contact[name] is not None]
+    return f"contact {number} at {contact['start']:.6g} s: {', '.join(told)}"
+
+
 def write_failure(directory: Path, scene: Scene, method: str, message: str) -> None:
     """Write the result.json of an impact that no solve brought to an end: what is known, and null for the rest.
 
@@ -218,7 +289,7 @@ def write_failure(directory: Path, scene: Scene, method: str, message: str) -> N
         "model_sufficient": None,
         "message": message,
         "scene": scene.to_dict(),
-        "model": vars(scene.model),
+        "model": scene.model.resolved(scene.material),
         "quantities": {name: {"value": None, "error": None, "unit": unit} for name, unit in UNITS.items()},
         "provenance": provenance(),
     }
@@ -268,9 +339,8 @@ def good_to(ledger: Sequence[LedgerEntry]) -> str:
         return ""
     most = max(ledger, key=lambda entry: entry.size)
     unknown = [entry.effect for entry in ledger if not entry.known]
-    said = f"this model is good to about {most.size:.1g} of the peak force"
-    said += f", for {most.effect}" if most.size else ""
-    return f"{said}; unknown: {', '.join(unknown)}" if unknown else said
+    said = f"this model is good to about {percent(most.size)} of the peak force, for {most.effect}" if most.size else ""
+    return "; ".join(filter(None, (said, f"unknown: {', '.join(unknown)}" if unknown else "")))
 
 
 def groups(scene: Scene, values: Mapping[str, float | None], history: History) -> Table:

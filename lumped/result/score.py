@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from lumped.errors import BadInput, Fault
 from lumped.numbers import Array, peak
 from lumped.result.history import ForceOverTime, History
+from lumped.schema.shown import html_table
 
 POINTS = 201  # equally spaced times at which two curves are compared
 GAUSS = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)  # shares of an interval: exact for the square of a line
@@ -55,6 +56,18 @@ class Score:
     loss: float | None
     shape: float | None
     peak_shift: float | None
+
+    def __repr__(self) -> str:
+        return "\n".join(f"{name:16s} {said}" for name, said in self._lines())
+
+    def _repr_html_(self) -> str:
+        return html_table(("compared", "candidate against reference"), self._lines())
+
+    def _lines(self) -> Iterator[tuple[str, str]]:
+        """Every comparison in per cent, the restitution as it is."""
+        for name, value in vars(self).items():
+            share = value if value is None or name == "restitution" else 100.0 * value
+            yield name, "undefined" if share is None else f"{share:+.4g}{'' if name == 'restitution' else ' %'}"
 
 
 def score(reference: History | Curve, candidate: History | Curve) -> Score:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, fields
 from functools import cached_property
@@ -39,8 +39,10 @@ from lumped.scene.tables import (
     read,
 )
 from lumped.schema import Table
+from lumped.schema.files import overridden
 from lumped.schema.keys import check_fields
 from lumped.schema.members import Folder
+from lumped.schema.shown import html_table
 from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
 
@@ -174,19 +176,46 @@ class Scene:
 
     def to_dict(self) -> Table:
         """The tables of a scene file that gives this scene back."""
+        motion = {"impacts": self.motion.impacts} | self._ending()
+        given = {**self._bodies(), "model": vars(self.model).copy(), "motion": motion, "law": self._law()}
+        return {"name": self.name} | {key: table for key, table in given.items() if table}
+
+    def __repr__(self) -> str:
+        return "\n  ".join([f"Scene {self.name}", *(f"{part}: {said}" for part, said in self._lines())])
+
+    def _repr_html_(self) -> str:
+        return html_table((self.name, ""), self._lines())
+
+    def _lines(self) -> Iterator[tuple[str, str]]:
+        """Every table in words, but what the model has by default."""
+        plain = vars(Model())
+        model = {key: value for key, value in vars(self.model).items() if value != plain[key]}
+        motion = {} if self.motion.impacts == 1 else {"impacts": self.motion.impacts}
+        for part, table in {**self._bodies(), "model": model, "motion": motion, "law": self._law()}.items():
+            material = table.pop("material", {})
+            for path, one in ((part, table), (f"{part}.material", material)):
+                if one:
+                    yield path, ", ".join(f"{key} {_short(value)}" for key, value in one.items())
+
+    def _bodies(self) -> dict[str, Table]:
+        """The tables of striker and target."""
         striker: Table = {"mass": self.mass, "velocity": self.velocity}
         target: Table = {} if self.target_mass is None else {"mass": self.target_mass}
         if self.shape is not None and self.material is not None:
             own, held = tables(self.shape, self.target, self.material, self.striker_material)
             striker, target = own | striker, held | target
-        given = {
-            "striker": striker,
-            "target": target,
-            "model": vars(self.model).copy(),
-            "motion": {"impacts": self.motion.impacts} | self._ending(),
-            "law": {} if self.law is None else {"name": self.law.name, **self.law.values},
-        }
-        return {"name": self.name} | {key: table for key, table in given.items() if table}
+        return {"striker": striker, "target": target}
+
+    def _law(self) -> Table:
+        """The table of the law that the scene names; empty without one."""
+        return {} if self.law is None else {"name": self.law.name, **self.law.values}
+
+    def changed(self, keys: Mapping[str, object]) -> Scene:
+        """The scene with dotted keys of its tables changed; an end that nobody asked for follows. Raises BadInput."""
+        tables = self.to_dict()
+        if self.motion.end_time is None:
+            tables["motion"].pop("end_time", None)
+        return Scene.from_dict(overridden(tables, keys, self.source), self.source)
 
     def addressed(self) -> AbstractContextManager[None]:
         """Inside, what a part refuses is said of this scene's file and keys."""
@@ -226,6 +255,14 @@ class Scene:
         """The end time, where the scene alone tells it."""
         known = self.motion.end_time is not None or self.has_geometry or self.law is not None
         return {"end_time": self.end_time} if known else {}
+
+
+def _short(value: object) -> str:
+    """A value with six digits; of a list its first ones."""
+    if isinstance(value, list | tuple):
+        shown = ", ".join(_short(one) for one in value[:4])
+        return f"[{shown}{', ...' if len(value) > 4 else ''}]"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 class _Timed(Protocol):

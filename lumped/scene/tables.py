@@ -15,6 +15,7 @@ from typing import Annotated, ClassVar, Protocol, TypeVar
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Material
+from lumped.materials.energies.base import energy_of
 from lumped.materials.networks import NETWORKS
 from lumped.schema import Table
 from lumped.schema.files import SCENES, overridden, parsed
@@ -72,6 +73,11 @@ class Model(Record):
     def finite(self) -> bool:
         """Whether displacements and strains may be large."""
         return self.kinematics == "finite"
+
+    def resolved(self, material: Material | None) -> Table:
+        """What a record says of it: its keys, and the elastic energy of a material that is strained much."""
+        energy = {"energy": energy_of(material.hyperelastic).formula} if self.finite and material is not None else {}
+        return vars(self) | energy
 
 
 @dataclass(frozen=True)

@@ -22,11 +22,15 @@ Made = TypeVar("Made", covariant=True)
 
 
 class Kind(Protocol):
-    """A kind of value: says what it accepts, and turns a raw value into a checked one."""
+    """A kind of value: says what it accepts, to people and to editors, and turns a raw value into a checked one."""
 
     @property
     def accepted(self) -> str:
         """What is accepted, in words, with the range and the unit."""
+
+    @property
+    def schema(self) -> Table:
+        """The same as a JSON Schema, as far as one can say it."""
 
     def read(self, value: object) -> object:
         """The checked value; raises ValueError when it is refused, its text what to say instead of `accepted`."""
@@ -64,6 +68,10 @@ class Number:
         end = f", {self.low:g} excluded" if self.above else ""
         return f"a number from {self.low:g} to {self.high:g} {self.unit}".rstrip() + end
 
+    @property
+    def schema(self) -> Table:
+        return {"type": "number", "exclusiveMinimum" if self.above else "minimum": self.low, "maximum": self.high}
+
     def read(self, value: object) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise ValueError
@@ -84,6 +92,10 @@ class Count:
     def accepted(self) -> str:
         return f"a whole number from {self.low} to {self.high}"
 
+    @property
+    def schema(self) -> Table:
+        return {"type": "integer", "minimum": self.low, "maximum": self.high}
+
     def read(self, value: object) -> int:
         if isinstance(value, bool) or not isinstance(value, int) or not self.low <= value <= self.high:
             raise ValueError
@@ -101,6 +113,10 @@ class Numbers:
     def accepted(self) -> str:
         return f"a list of 1 to {self.most} values, each {self.each.accepted}"
 
+    @property
+    def schema(self) -> Table:
+        return {"type": "array", "items": self.each.schema, "minItems": 1, "maxItems": self.most}
+
     def read(self, value: object) -> tuple[float, ...]:
         if not isinstance(value, (list, tuple)) or not 1 <= len(value) <= self.most:
             raise ValueError
@@ -117,6 +133,10 @@ class Choice:
     def accepted(self) -> str:
         return "one of " + ", ".join(self.options)
 
+    @property
+    def schema(self) -> Table:
+        return {"enum": list(self.options)}
+
     def read(self, value: object) -> str:
         if not isinstance(value, str) or value not in self.options:
             raise ValueError
@@ -129,6 +149,10 @@ class Flag:
 
     accepted: str = "true or false"
 
+    @property
+    def schema(self) -> Table:
+        return {"type": "boolean"}
+
     def read(self, value: object) -> bool:
         if not isinstance(value, bool):
             raise ValueError
@@ -140,6 +164,10 @@ class Text:
     """A printable text of one to 200 characters that may be part of a file's name."""
 
     accepted: str = "a printable text of 1 to 200 characters without / and \\"
+
+    @property
+    def schema(self) -> Table:
+        return {"type": "string", "pattern": r"^[^./\\][^/\\]*$"}
 
     def read(self, value: object) -> str:
         if not isinstance(value, str) or not 1 <= len(value.strip()) <= 200:
@@ -154,6 +182,10 @@ class File:
     """A file's name, maybe with folders before it; it reads as a path, which `placed` puts where it belongs."""
 
     accepted: str = "the name of a file, from the folder of the scene file"
+
+    @property
+    def schema(self) -> Table:
+        return {"type": "string", "pattern": r"\S"}
 
     def read(self, value: object) -> Path:
         if not isinstance(value, str | Path) or not str(value).strip() or not str(value).isprintable():

@@ -9,6 +9,7 @@ from pkgutil import iter_modules
 from typing import Generic, TypeVar
 
 from lumped.errors import BadInput, Fault, nearest, shown
+from lumped.schema import Table
 from lumped.schema.keys import Described, Key, Sets, optional
 
 NOT_MEMBERS = ("base",)
@@ -68,6 +69,10 @@ class Member:
     def accepted(self) -> str:
         return "one of " + ", ".join(available(self.package))
 
+    @property
+    def schema(self) -> Table:
+        return {"enum": list(available(self.package))}
+
     def read(self, value: object) -> str:
         if not isinstance(value, str):
             raise ValueError
@@ -81,6 +86,10 @@ class Anything:
     """A key of which nothing is known but its name."""
 
     accepted: str = "any value"
+
+    @property
+    def schema(self) -> Table:
+        return {}
 
     def read(self, value: object) -> object:
         return value

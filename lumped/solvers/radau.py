@@ -43,7 +43,7 @@ class Nodes(NamedTuple):
     leaving: Array
     places: Array
 
-    def graded(self, power: int, begun: float = 0.0, mirrored: bool = False) -> Nodes:
+    def graded(self, power: int, begun: float, mirrored: bool = False) -> Nodes:
         """The same places, run through at another pace."""
         points, pace = paced(self.places, power, begun, mirrored)
         points[-1] = 1.0

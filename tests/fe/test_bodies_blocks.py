@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+import meshes
 from fe_contact.indentation import indent, press, settings
 from lumped import BadInput, Material, Relaxation
 from lumped.load_curves.layer import LayerPunch, PointLayer
@@ -108,6 +109,13 @@ def test_a_covered_washer_on_a_sliding_base_is_strained_alike_everywhere(height:
     np.testing.assert_allclose(found.contact_radius, 0.01)
 
 
+def test_a_punch_may_cover_a_washer_whatever_digits_its_radius_has() -> None:
+    """Gmsh is told ten of them: the rim is the outer radius before and after."""
+    for outer in np.random.default_rng(3).uniform(1.0, 3.0, 8):
+        mesh = meshes.washer(0.5, 0.9, float(outer), float(outer), bonded=False)
+        assert mesh.p[0].max() == pytest.approx(outer, rel=1e-9)
+
+
 def test_a_bonded_washer_is_stiffer_than_a_sliding_one_and_softer_than_a_confined_one() -> None:
     sliding, bonded = (indent(washer(0.02, base), (DEPTH,), {}).force[0] for base in ("sliding", "bonded"))
     assert sliding < bonded < sliding * confined(0.3) / YOUNG
@@ -127,6 +135,15 @@ def test_the_bar_of_a_washer_covers(radius: float, nu: float, base: str) -> None
     )
     assert abs(found.force[0] - found.modulus * finest.force[0]) <= found.force_error[0]
     assert found.force_error[0] < 1e-4 * found.force[0]
+
+
+def test_the_bar_of_a_washer_with_a_narrow_hole_covers() -> None:
+    """Displacements go as 1/r about it, over less than what an element elsewhere is long."""
+    scene = Indenter(Punch(0.0184), polymer(0.49), Washer(1.2e-4, 0.0211, 0.004, "bonded"))
+    given = {"order": 4, "elements_per_contact": 2.6}
+    found = indent(scene, (DEPTH,), given)
+    finest = press(scene, np.array([DEPTH]), found.contact_radius, settings({"elements_per_contact": 5.0}, scene.shape))
+    assert abs(found.force[0] - found.modulus * finest.force[0]) <= found.force_error[0]
 
 
 @pytest.mark.parametrize(("base", "outer_radius"), [("bonded", 0.1), ("sliding", 1.0)])

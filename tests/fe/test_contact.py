@@ -342,6 +342,20 @@ def test_one_solve_of_two_that_fails_fails_the_correction(failing: int, monkeypa
 
 @pytest.mark.parametrize("name", ENFORCEMENTS.names)
 @given(SEEDS)
+def test_a_stiffer_body_presses_as_much_harder_over_the_same_contact(name: str, seed: int) -> None:
+    """Nor has it a modulus of its own, where surfaces part neither: what is missing to touch counts in one unit."""
+    rng, enforce = np.random.default_rng(seed), ENFORCEMENTS.get(name).enforce
+    unknowns = int(rng.integers(2, 10))
+    chain = np.diag(rng.uniform(1, 3, unknowns)) - 0.4 * (np.eye(unknowns, k=1) + np.eye(unknowns, k=-1))
+    surface, start = PressedSurface(chain, np.eye(unknowns), rng.uniform(0.5, 2, unknowns)), np.ones(unknowns, bool)
+    problem = ContactProblem(surface, rng.uniform(-1, 1, unknowns), 1e3)
+    stiffer = ContactProblem(replace(surface, stiffness=1e6 * chain), problem.overlap, 1e9)
+    one, other = (enforce(which, start).signed_pressure for which in (problem, stiffer))
+    np.testing.assert_allclose(other / 1e6, one, atol=1e-9 * np.abs(one).max())
+
+
+@pytest.mark.parametrize("name", ENFORCEMENTS.names)
+@given(SEEDS)
 def test_a_larger_overlap_of_the_same_form_presses_as_much_harder(name: str, seed: int) -> None:
     """No threshold decides what touches: contact without adhesion has no size of its own, at any number of metres."""
     rng, enforce = np.random.default_rng(seed), ENFORCEMENTS.get(name).enforce

@@ -122,7 +122,7 @@ def test_what_cannot_be_struck_says_so() -> None:
     material = Material(Relaxation(1e6), 0.3)
     with pytest.raises(BadInput, match="datum_depth"):
         Scene(Cylinder(0.01, 0.02), 0.1, 0.01, material, model=Model())
-    with pytest.raises(BadInput, match="mdr is for the half-space"):
+    with pytest.raises(BadInput, match="mdr is not for this layer, but for the half-space"):
         laws.mdr.of(random_scene(0))
 
 

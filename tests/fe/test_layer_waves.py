@@ -193,6 +193,19 @@ def test_the_ledger_knows_what_inertia_takes_from_the_peak(campaign_size: Callab
     assert min(told) > 1.0 / 1.5, told
 
 
+@pytest.mark.parametrize("plane", [False, True])
+def test_what_moves_as_one_meets_the_impedance_of_all_its_side(plane: bool) -> None:
+    """density c on every point of a cylinder of height 2, or of two sides of unit length."""
+    unit = layer.unit_layer((2.0, 1.0, 2.0, 5.0), 2, False, plane, "consistent")
+    area = 2.0 * (2.0 if plane else 2.0 * math.pi * float(unit.basis.doflocs[0].max()))
+    for component, dashpots in enumerate(unit.dashpots):
+        free = unit.free % 2 == component
+        moved = dashpots @ free.astype(float)
+        # at the base, which is held across, nothing moves
+        assert float(moved[free].sum()) == pytest.approx(area, rel=0.2 if component else 1e-12)
+        assert np.abs(moved[~free]).max(initial=0.0) == 0.0
+
+
 @pytest.mark.parametrize("base", ["bonded", "sliding"])
 def test_the_moving_mass_is_that_of_the_field_at_rest(base: str) -> None:
     """density int |u|^2 dV under a flat end, as wide as a third of the thickness to ten times."""

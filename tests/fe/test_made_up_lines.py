@@ -102,6 +102,13 @@ def test_steps_that_agree_by_chance_make_no_bar_too_small() -> None:
     assert found.error("duration", "mesh") <= 1e-6 * END
 
 
+def test_what_a_quarter_of_the_steps_changes_counts_beside_what_half_of_them_do_nearby() -> None:
+    """Peaks of half the steps agree by chance, and nearly so about them: a quarter of them tells of the error."""
+    found = line(swelling(), swelling(lambda share: 1e-4 * (share - 0.5)), swelling(lambda share: 0.1 + 0.0 * share))
+    assert found.error("peak_force", "time_step") >= 0.05 * PUSH
+    assert found.error("restitution", "time_step") >= 0.05 * PUSH * END / (MASS * SPEED)
+
+
 def test_another_method_that_agrees_at_one_instant_makes_no_bar_too_small() -> None:
     """Two histories cross at the top: about it they do not."""
     crossing = swelling(lambda share: 0.05 * (share - 0.5))

@@ -113,6 +113,12 @@ def test_two_materials_of_different_nu_agree_with_finer_settings(
         agree(fe_contact.run(scene, TOLERANCE), fe_contact.run(scene, numerics=finer))
 
 
+def test_the_datum_lies_in_the_mesh_however_near_that_ends(uncovered: Callable[..., dict[str, float]]) -> None:
+    scene = Scene.load("polymer-half-plane")
+    found = fe_contact.run(scene, numerics={"far_radius": 2.0})
+    assert not uncovered(found, simulate(laws.ting.of(scene), scene, 1e-6))
+
+
 @pytest.mark.parametrize("order", [3, 4])
 @pytest.mark.parametrize("shape", [Roller(0.01, 0.02), Sphere(0.01)])
 def test_half_as_many_elements_tell_what_the_rim_of_a_support_adds(shape: Roller | Sphere, order: int) -> None:

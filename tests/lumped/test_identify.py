@@ -26,6 +26,7 @@ ROWS = 300
 SPEEDS = (1.0, 3.0, 0.3)  # of the histories of one case, over the first
 WEIGHT = {"mass": 0.05, "velocity": 0.05}
 STRIKERS = ({"shape": "sphere", "radius": 0.006, **WEIGHT}, {"shape": "cone", "angle": 20.0, **WEIGHT})
+POWER: dict[str, Any] = {"shape": "power", "coefficient": 80.0, "exponent": 2.0, **WEIGHT}
 SLS, PRONY = ("E0", "R1", "R2"), ("E_inf", "E")
 
 
@@ -213,18 +214,38 @@ def test_at_an_end_all_others_are_chosen_anew() -> None:
         assert growth == pytest.approx(stdtrit(freedom, 0.95) ** 2, rel=0.1)
 
 
-@pytest.mark.tenth
-def test_what_the_curves_do_not_tell_is_said() -> None:
-    """On the half-space E0 and nu are one number, E*; on a bonded layer they are two."""
-    rng = np.random.default_rng(SEED)
-    table = scene(STRIKERS[0], {"law": "elastic", "E": 1e6})
-    curves = {"curve": curve_of(rng, *history_by_springs(table, {}), 0.005 * rng.normal(size=ROWS))}
-    free = ["target.material.E", "target.material.nu"]
-    found = identify(curves, table, free)
-    assert [(one.low, one.high) for one in found.parameters.values()] == [(None, None)] * 2
-    assert sum("do not tell it" in warning for warning in found.warnings) == 2
-    alone = identify(curves, table, free[:1]).parameters["target.material.E"]
-    assert (alone.low or np.inf) <= 1e6 <= (alone.high or 0.0)
+@pytest.mark.parametrize(
+    ("striker", "material", "free"),
+    [
+        (STRIKERS[0], {"law": "elastic", "E": 1e6}, ("target.material.E", "target.material.nu")),
+        (POWER, {"law": "elastic", "E": 1e6}, ("target.material.E", "striker.coefficient")),
+        (STRIKERS[1], {"law": "sls", "E0": 1e6, "R1": 1.0, "R2": 0.01}, ("target.material.E0", "striker.angle")),
+    ],
+)
+def test_what_no_curve_can_tell_apart_is_refused_by_name(
+    striker: dict[str, Any], material: dict[str, Any], free: tuple[str, ...]
+) -> None:
+    """On the half-space modulus and Poisson's ratio are one number, E*, and the factor of the load curve is another."""
+    table = scene(striker, material)
+    curves = {"curve": curve_of(np.random.default_rng(SEED), *history_by_springs(table, {}), np.zeros(ROWS))}
+    others = [f"target.material.{name}" for name in ("R1", "R2") if name in material]
+    with pytest.raises(BadInput, match=f"tells only a combination of {free[1]}, {free[0]}|{free[0]}, {free[1]}; "):
+        identify(curves, table, [*free, *others])
+
+
+def test_an_exponent_is_told_beside_its_factor() -> None:
+    """F = factor depth^(1 + 1/n): both by their short names, from a first guess far away."""
+    rng = np.random.default_rng(SEED + 1)
+    table = scene(POWER, {"law": "elastic", "E": 1e6})
+    curve = curve_of(rng, *history_by_springs(table, {}), 0.003 * rng.normal(size=ROWS))
+    table["striker"]["exponent"] = 3.5
+    found = identify({"curve": curve}, table, ["exponent", "coefficient"])
+    for name in ("exponent", "coefficient"):
+        one = found.parameters[f"striker.{name}"]
+        assert (one.low or np.inf) <= POWER[name] <= (one.high or 0.0)
+    one = found.parameters["striker.exponent"]
+    assert (one.high or np.inf) - (one.low or 0.0) < 0.15
+    assert any("coefficient and striker.exponent are correlated" in warning for warning in found.warnings)
 
 
 def test_coloured_noise_widens_the_intervals_as_its_memory_asks() -> None:

@@ -148,7 +148,7 @@ def test_an_effect_is_judged_by_what_it_certainly_is() -> None:
     assert large.verdict(0.1) != LedgerEntry("b", "neglected", 0.2).verdict(0.1) == f"{ABOVE}: {NO_KEY}"
     assert sufficient((tiny, open_one, unknown), 0.1)
     assert not sufficient((tiny, large), 0.1)
-    assert good_to((tiny, open_one, unknown)) == "this model is good to about 0.2 of the peak force, for c; unknown: d"
+    assert good_to((tiny, open_one, unknown)) == "this model is good to about 20 % of the peak force, for c; unknown: d"
     assert good_to((unknown,)) == ""
 
 

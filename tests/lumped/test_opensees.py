@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
-from lumped import BadInput, Scene, laws
-from lumped.fit import opensees
+from lumped import BadInput, Scene, laws, simulate
+from lumped.fit import fit, opensees
 from lumped.scene.tables import LawChoice
 from lumped.solvers.point.bodies import Stage
 
@@ -112,3 +113,53 @@ def test_a_law_without_a_material_names_those_that_have_one() -> None:
     scene = replace(BODY, law=LawChoice("hertz", {"k": 1e7}))
     with pytest.raises(BadInput, match=re.escape("'apdl' is not accepted; accepted: tcl, python")):
         opensees.lines(laws.get("hertz").of(scene), scene, language="apdl")
+
+
+def printed_peak(values: list[str], mass: float, velocity: float) -> tuple[float, float, float]:
+    """Peak force, duration and restitution of an impact on Hertzdamp's line, integrated anew."""
+    stiffness, damping, _, power = map(float, values)
+
+    def force(y: np.ndarray) -> float:
+        return float(stiffness * (1.0 + damping * y[1] / velocity) * max(y[0], 0.0) ** power)
+
+    out = lambda t, y: y[0] + (0.0 if t else 1.0)  # noqa: E731 - read in place
+    out.terminal, out.direction = True, -1  # type: ignore[attr-defined]
+    run = solve_ivp(
+        lambda t, y: [y[1], -force(y) / mass], (0.0, 1.0), [0.0, velocity], "DOP853", events=out, rtol=1e-11,
+        atol=1e-15, dense_output=True,
+    )  # fmt: skip
+    end = float(run.t[-1])
+    forces = [force(run.sol(time)) for time in np.linspace(0.0, end, 4001)]
+    return max(forces), end, -float(run.y[1, -1]) / velocity
+
+
+def test_a_law_that_remembers_has_a_stand_in_and_its_departures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The line, integrated anew at every velocity against the exact impact, errs by what the table beside it says."""
+    monkeypatch.setattr(opensees, "STAND_INS", {"hertzdamp": opensees.STAND_INS["hertzdamp"]})
+    monkeypatch.setattr(opensees, "SHARES", opensees.SHARES[::2])
+    scene = replace(Scene.load("polymer-sphere"), law=LawChoice("kelvin", {"gap": 0.004}))
+    *said, command = opensees.lines(laws.get("ting").of(scene), scene).splitlines()
+    name, tag, *values = command.split()[1:]
+    assert (name, tag, values[2]) == ("Hertzdamp", "1", "-0.004")
+    table = [line[1:].replace(" %", "").split() for line in said if re.match(r"# +\d", line)]
+    assert len(table) == len(opensees.SHARES)
+    for velocity, *cells in (map(float, row) for row in table):
+        exact = simulate(laws.get("ting").of(scene), replace(scene, velocity=velocity), 1e-7).quantities
+        peak, duration, restitution = printed_peak(values, scene.mass, velocity)
+        for cell, ours, quantity in ((cells[0], peak, "peak_force"), (cells[2], duration, "duration")):
+            assert cell == pytest.approx(100.0 * (ours / (exact[quantity].value or 0.0) - 1.0), abs=0.006)
+        assert cells[3] == pytest.approx(restitution - (exact["restitution"].value or 0.0), abs=6e-4)
+
+
+@pytest.mark.tenth
+def test_an_elastic_impact_is_stood_in_for_by_its_own_spring() -> None:
+    """Hertz's, at every velocity; and no law of OpenSees that is fitted alone comes nearer."""
+    scene = Scene.load("steel-ball")
+    law = laws.get("correspondence").of(scene)
+    found = opensees.stand_in(law, scene)
+    assert found.normalized_error < 1e-4
+    assert found.values["alpha"] == pytest.approx(1.5, abs=1e-3)
+    told = opensees.departures(law, scene, found)
+    assert all(abs(value or 0.0) < 1e-3 for values in told.values() for value in values.values())
+    history = simulate(law, scene).history
+    assert all(found.normalized_error <= fit(history, name, scene).normalized_error for name in ("kelvin", "hertz"))

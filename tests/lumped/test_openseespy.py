@@ -61,3 +61,21 @@ def test_the_exported_material_gives_the_history(name: str) -> None:
         force = force_of(opensees.lines(law, scene, language="python"), scene.mass, scene.velocity, end_time)
     ours = history.force_at(end_time / STEPS * np.arange(1, STEPS + 1))
     assert np.linalg.norm(force - ours) < 1e-4 * np.linalg.norm(ours)
+
+
+@pytest.mark.parametrize("name", ["ting", "correspondence"])
+def test_the_stand_in_of_a_law_that_remembers_gives_its_own_history(name: str) -> None:
+    """At the velocity where it was fitted and at others: what OpenSees runs is what the table is about."""
+    scene = replace(Scene.load("polymer-sphere"), law=LawChoice("kelvin", {"gap": 0.0}))
+    law = laws.get(name).of(scene)
+    found = opensees.stand_in(law, scene)
+    fitted = laws.get(found.law).of(found.scene)
+    command = opensees.lines(fitted, found.scene, language="python")
+    assert opensees.lines(law, scene, language="python").splitlines()[-1] == command.splitlines()[-1]
+    for share in opensees.SHARES[::2]:
+        history = simulate(fitted, replace(found.scene, velocity=share * scene.velocity), 1e-8).history
+        end_time = 0.995 * float(history.time[-1])
+        with contextlib.redirect_stderr(None):
+            force = force_of(command, scene.mass, share * scene.velocity, end_time)
+        ours = history.force_at(end_time / STEPS * np.arange(1, STEPS + 1))
+        assert np.linalg.norm(force - ours) < 1e-4 * np.linalg.norm(ours)

@@ -32,13 +32,11 @@ def enforce(problem: ContactProblem, *guesses: Touching) -> ContactSolution:
     for iteration in range(1, contact.MAX_ITERATIONS + 1):
         pressure = np.zeros_like(free)
         pressure[held] = np.linalg.solve(yielding[np.ix_(held, held)], free[held])
-        left = free - yielding @ pressure
-        left[held] = 0.0
-        wanted = left + size * pressure > 0.0
-        if (wanted == held).all():
-            return _solution(shapes @ (pressure + left / size), iteration, True)
-        held = wanted
-    return _solution(shapes @ (pressure + left / size), iteration, False)
+        signed = np.where(held, pressure, (free - yielding @ pressure) / size)
+        if (held == (signed > 0.0)).all():
+            return _solution(shapes @ signed, iteration, True)
+        held = signed > 0.0
+    return _solution(shapes @ signed, iteration, False)
 
 
 @lru_cache(maxsize=SURFACES_KEPT)

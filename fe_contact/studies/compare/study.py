@@ -28,7 +28,7 @@ from fe_contact.studies.compare.deviations import (
 )
 from fe_contact.studies.files import write_study
 from lumped import simulate
-from lumped.errors import FeContactError
+from lumped.errors import BadInput, FeContactError
 from lumped.laws import get
 from lumped.load_curves.sampled import SampledCurve
 from lumped.result.result import RULED_RELATIVE, Result
@@ -113,7 +113,7 @@ def compare(
         try:
             laws[name] = simulate(member.of(scene), scene, LAW_TOLERANCE)
         except FeContactError as failure:  # what has no answer is told, and the others go on
-            refused[name] = str(failure)
+            refused[name] = _reason(name, failure)
     told = Told.of(reference) if solved is None else Told.by(solved)
     judged = [_law(solved, told, reference, law, curve_error) for law in laws.values()]
     judged += [] if measured is None else [_curve(told, reference, measured)]
@@ -182,8 +182,14 @@ def verdicts(comparison: Comparison) -> tuple[str, ...]:
     reasons: dict[str, list[str]] = {}
     for name, reason in comparison.refused.items():
         reasons.setdefault(reason.replace(name, "it"), []).append(name)
-    refused = [f"{', '.join(names)}: no answer: {reason}" for reason, names in reasons.items()]
+    refused = [f"{', '.join(names)}: {reason}" for reason, names in reasons.items()]
     return (*judged(comparison), *refused)
+
+
+def _reason(name: str, failure: FeContactError) -> str:
+    """Why a law has no answer, without its own name and without what would be accepted: no one asked to change that."""
+    said = failure.faults[0].message.partition("; accepted")[0] if isinstance(failure, BadInput) else str(failure)
+    return said.removeprefix(f"{name} is ") if said.startswith(f"{name} is ") else f"no answer: {said}"
 
 
 def judged(comparison: Comparison) -> tuple[str, ...]:

@@ -144,10 +144,10 @@ class ImpactExponents:
         ]
 
 
-def impacts(quick: bool, where: Path, progress: Progress = silent) -> tuple[ImpactExponents, ...]:
+def impacts(quick: bool, where: Path, progress: Progress = silent, jobs: int = 1) -> tuple[ImpactExponents, ...]:
     """Every impact of the study; rows are kept in the folder `where`. Raises NotReached."""
     calls = {impact.named: partial(impact_exponents, *impact) for impact in cases(quick)}
-    return tuple(journal.rows(where / KEPT, calls, progress).values())
+    return tuple(journal.rows(where / KEPT, calls, progress, jobs).values())
 
 
 def cases(quick: bool) -> Iterator[Impact]:

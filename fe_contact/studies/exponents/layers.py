@@ -271,7 +271,7 @@ class Check:
         )
 
 
-def checks(quick: bool, where: Path, progress: Progress = silent) -> tuple[Check, ...]:
+def checks(quick: bool, where: Path, progress: Progress = silent, jobs: int = 1) -> tuple[Check, ...]:
     """Every named profile at a few places; rows are kept in the folder `where`. Raises NotReached."""
     calls = {
         f"{profile.label}, {named(base, nu)}, FE at a/h = {ratio:g}": partial(check, profile, base, nu, ratio)
@@ -280,7 +280,7 @@ def checks(quick: bool, where: Path, progress: Progress = silent) -> tuple[Check
         for (base, nu), tried in (QUICK_PLACES if quick else PLACES).items()
         for ratio in tried
     }
-    return tuple(journal.rows(where / KEPT, calls, progress).values())
+    return tuple(journal.rows(where / KEPT, calls, progress, jobs).values())
 
 
 def check(profile: Profile, base: str, nu: float | None, ratio: float) -> Check:

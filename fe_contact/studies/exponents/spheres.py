@@ -56,14 +56,14 @@ class Pair:
         )
 
 
-def pairs(quick: bool, where: Path, progress: Progress = silent) -> tuple[Pair, ...]:
+def pairs(quick: bool, where: Path, progress: Progress = silent, jobs: int = 1) -> tuple[Pair, ...]:
     """Both supports with each nu; rows are kept in the folder `where`. Raises NotReached."""
     calls = {
         f"finite spheres, {support}, nu = {nu:g}": partial(pair, support, nu)
         for support in SUPPORTS
         for nu in (FEW_RATIOS if quick else RATIOS)
     }
-    return tuple(journal.rows(where / KEPT, calls, progress).values())
+    return tuple(journal.rows(where / KEPT, calls, progress, jobs).values())
 
 
 def pair(support: str, nu: float) -> Pair:

@@ -59,11 +59,11 @@ class Exponents:
         return write_study(where, "exponents", content, tables)
 
 
-def study(quick: bool, where: Path, progress: Progress = silent) -> Exponents:
-    """Every row; they are kept in the folder `where`. Raises NotReached."""
+def study(quick: bool, where: Path, progress: Progress = silent, jobs: int = 1) -> Exponents:
+    """Every row, finite elements by so many processes; rows are kept in the folder `where`. Raises NotReached."""
     return Exponents(
         curves(quick, where, progress),
-        checks(quick, where, progress),
-        pairs(quick, where, progress),
-        impacts(quick, where, progress),
+        checks(quick, where, progress, jobs),
+        pairs(quick, where, progress, jobs),
+        impacts(quick, where, progress, jobs),
     )

@@ -120,7 +120,9 @@ def _panel(axes: Axes, table: Mapping[tuple[int, int], float | None], measure: M
                 colour = "white" if dark else style.BLACK
                 axes.text(place[1], place[0], f"{value:.2g}", fontsize=5.0, color=colour, ha="center", va="center")
     axes.set_facecolor(NOT_ASKED)
-    axes.imshow(colours, cmap="RdBu_r", norm=TwoSlopeNorm(0.0, -DECADES, DECADES), aspect="auto")
+    ends = [np.arange(count + 1) - 0.5 for count in reversed(shape)]
+    axes.pcolormesh(*ends, np.ma.masked_invalid(colours), cmap="RdBu_r", norm=TwoSlopeNorm(0.0, -DECADES, DECADES))
+    axes.invert_yaxis()
 
 
 def _table(

@@ -51,6 +51,11 @@ class Methods:
         """In words."""
         return f"a list of methods, of {', '.join(methods.names())}"
 
+    @property
+    def schema(self) -> Table:
+        """For editors."""
+        return {"type": "array", "items": {"enum": list(methods.names())}, "minItems": 1}
+
     def read(self, value: object) -> tuple[str, ...]:
         """The names; raises ValueError for one that is none."""
         if not isinstance(value, list) or not value:
@@ -65,6 +70,11 @@ class Subtable:
     """A table within the file."""
 
     accepted: str = "a table"
+
+    @property
+    def schema(self) -> Table:
+        """For editors."""
+        return {"type": "object"}
 
     def read(self, value: object) -> Mapping[str, object]:
         """The same; raises ValueError."""

@@ -33,6 +33,7 @@ COLUMNS, ROW_HEIGHT = 4, 0.185  # of the legend; height of a row, in
 FEW_DECADES = 1.5  # of an axis below which powers of ten are too few ticks
 COLOURS = (style.BLUE, style.GREEN, style.ORANGE, style.SKY, style.BLACK, style.VERMILION)
 MARKERS = ("o", "s", "^", "v")
+ALL_METHODS = "front of all methods"
 STAR: Look = {"color": "#F0E442", "markeredgecolor": style.BLACK, "markeredgewidth": 0.7}
 EXACT: tuple[Look, ...] = (
     {"color": style.BLACK, "marker": "^"},
@@ -61,9 +62,7 @@ def plot_tradeoff(found: Tradeoff, where: Path) -> tuple[Path, Path]:
     with style.sheet(where, "tradeoff", title, lines, PANELS, width=TITLE_WIDTH, **room) as sheet:
         if finite_elements(points):
             left, right = sheet.panels(1, 2, 0.082, 0.985, wspace=0.24, width_ratios=(1.3, 1.0))
-            _finite_elements(right, points, signs, lambda point: point.work["operations"])
-            right.set(xlabel="counted work, operations", ylabel="error")
-            ticks(right)
+            _counted(right, points, signs)
             style.label(right, "b", "finite elements: error over counted work")
         else:
             (left,) = sheet.panels(1, 1, 0.082, 0.985)
@@ -73,6 +72,27 @@ def plot_tradeoff(found: Tradeoff, where: Path) -> tuple[Path, Path]:
                             handletextpad=0.5, labelspacing=0.55, borderaxespad=0.0)  # fmt: skip
         style.footnote(sheet.figure, caption(scene))
     return sheet.paths
+
+
+def plot_work(found: Tradeoff, lines: list[str], where: Path) -> tuple[Path, Path]:
+    """Write ``work.svg`` and ``work.png`` into ``where``, finite elements over counted work alone: the same on every
+    machine; their paths.
+    """
+    signs = Signs.of(found.points)
+    with style.sheet(
+        where, "work", f"What accuracy costs: {found.scene.name}", lines, PANELS, width=TITLE_WIDTH
+    ) as sheet:
+        (axes,) = sheet.panels(1, 1, 0.082, 0.68)
+        _counted(axes, found.points, signs)
+        legend = [sign for sign in signs.legend(found.points) if sign.get_label() != ALL_METHODS]
+        axes.legend(handles=legend, loc="upper left", bbox_to_anchor=(1.03, 1.0), labelspacing=0.8)
+    return sheet.paths
+
+
+def _counted(axes: Axes, points: Sequence[Point], signs: Signs) -> None:
+    _finite_elements(axes, points, signs, lambda point: point.work["operations"])
+    axes.set(xlabel="counted work, operations", ylabel="error")
+    ticks(axes)
 
 
 def looks(points: Sequence[Point]) -> dict[str, Look]:
@@ -202,7 +222,7 @@ class Signs:
             found.append(line(color=style.GREY, linewidth=0.9, label="front of finite elements"))
             found.append(_sign("|", style.GREY, "up to the claimed error bar", markersize=9.0))
             found.append(_sign("*", label="default for a tolerance", markersize=9.0, **STAR))
-        found.append(line(color=style.BLACK, linewidth=0.9, linestyle="--", label="front of all methods"))
+        found.append(line(color=style.BLACK, linewidth=0.9, linestyle="--", label=ALL_METHODS))
         found.append(line(color=style.BLACK, linewidth=0.7, linestyle=":", label="bar of the truth"))
         return found
 

@@ -113,7 +113,8 @@ def tradeoff(scene: Scene, given: Given, quick: bool, where: Path, progress: Pro
         defaults = _defaults(scene, given, _marked(tolerance, quick, bool(exact)), attempts)
         base = _base(scene, defaults)
         exact = exact or _finer(scene, base, attempts)
-        elements = [*defaults, *_around(scene, given, base, quick, defaults[0].attempt.cpu, attempts)]
+        seconds = expected(scene, {**given, "tolerance": tolerance})[1]
+        elements = [*defaults, *_around(scene, given, base, quick, seconds, attempts)]
     else:
         elements = []
     truths = {name: Truth.of(one.reached) for name, one in exact.items()}
@@ -174,10 +175,14 @@ def _finer(scene: Scene, base: Numerics, attempts: Attempts) -> dict[str, Attemp
     return attempts({name: partial(_by_elements, scene, fixed(finer))})
 
 
-def _around(scene: Scene, given: Given, base: Numerics, quick: bool, cpu: float, attempts: Attempts) -> Iterator[Tried]:
-    """Settings around the default's, all fixed; of a quick study as many as it has time for, at ``cpu``, s, each."""
+def _around(
+    scene: Scene, given: Given, base: Numerics, quick: bool, seconds: float, attempts: Attempts
+) -> Iterator[Tried]:
+    """Settings around the default's, all fixed; of a quick study as many as it has time for if each takes so many
+    ``seconds``, as is expected of the default: the same on a slower machine.
+    """
     chosen = varied(base, given, variations(scene, base, quick))
-    chosen = chosen[: max(FEWEST, int(QUICK / cpu))] if quick else chosen
+    chosen = chosen[: max(FEWEST, int(QUICK / seconds))] if quick else chosen
     names = (f"finite elements {place} of {len(chosen)}" for place in range(1, len(chosen) + 1))
     calls = {name: partial(_by_elements, scene, fixed(one)) for name, one in zip(names, chosen, strict=True)}
     for one, attempt in zip(chosen, attempts(calls).values(), strict=True):
@@ -251,10 +256,11 @@ def write_tradeoff(found: Tradeoff, where: Path) -> Table:
         "verdict": found.verdict,
         "points": described,
     }
-    return write_study(where, "tradeoff", content, {"tradeoff": [_line(point) for point in found.points]})
+    return write_study(where, "tradeoff", content, {"tradeoff": [line_of(point) for point in found.points]})
 
 
-def _line(point: Point) -> Line:
+def line_of(point: Point) -> Line:
+    """Its row of tradeoff.csv."""
     return {
         "method": point.method,
         **{key: point.settings.get(key) for key in SETTING_COLUMNS},

@@ -22,7 +22,7 @@ def verdict(points: Sequence[Point], tolerance: float) -> tuple[str, ...]:
     """Advice first; then a sentence a default, what errors are measured from, whether bars cover."""
     tried = finite_elements(points)
     sentences = [distance(point, points) for point in tried if point.default_for is not None]
-    return (advice(points, tolerance), *sentences, _known(points), *([_covered(tried, points)] if tried else []))
+    return (advice(points, tolerance), *sentences, known(points), *([covered(tried, points)] if tried else []))
 
 
 def advice(points: Sequence[Point], tolerance: float) -> str:
@@ -116,13 +116,13 @@ def known_to(points: Iterable[Point]) -> float:
     return max((point.bar or 0.0 for point in points if point.method == REFERENCE), default=0.0)
 
 
-def _known(points: Iterable[Point]) -> str:
+def known(points: Iterable[Point]) -> str:
     """What errors are measured from, and how well that is known."""
     said = [f"{p.settings['from']}, known to {brief(p.bar or 0.0)}" for p in points if p.method == REFERENCE]
     return f"errors are measured from {'; from '.join(said)}"
 
 
-def _covered(tried: Sequence[Point], points: Sequence[Point]) -> str:
+def covered(tried: Sequence[Point], points: Sequence[Point]) -> str:
     """Of the settings that claim anything: a bar beyond every accepted tolerance says that nothing is known."""
     claiming = [point for point in tried if (point.bar or 0.0) <= WIDEST]
     covered = sum(point.error <= (point.bar or 0.0) + known_to(points) for point in claiming)

@@ -20,6 +20,7 @@ from fe_contact.studies.transfer.verdict import QUANTITIES, TransferRow, holds, 
 from lumped import laws, simulate
 from lumped.errors import BadInput, Fault, FeContactError, shown
 from lumped.fit import fit
+from lumped.fit.opensees import SHARES
 from lumped.fit.space import damping_names, own_keys, space_of
 from lumped.laws._force_law import ForceLaw, between_masses
 from lumped.laws._parameters import COMMON, EXPONENT
@@ -27,14 +28,11 @@ from lumped.result.result import Result
 from lumped.scene.scene import Scene
 from lumped.scene.tables import LawChoice
 from lumped.schema import Table
-from lumped.schema.files import overridden
 from lumped.schema.keys import Number
 from lumped.solvers.point.bodies import Stage
 
 SCHEMA = "fe-contact/transfer/1"
 VELOCITY = "striker.velocity"
-# Of the velocity, where nobody says over what: from a third to three times, in equal ratios.
-SHARES = tuple(3.0 ** (0.5 * i) for i in (-2, -1, 0, 1, 2))
 LAW_TOLERANCE = 1e-6  # of a law's own integration: far below any reference's bar
 WITHIN, TOLERATED = 0.05, Number(0.0, 1.0)  # of the verdict `within`: where nobody asks for another; accepted ones
 SceneWith = Callable[[Mapping[str, object]], Scene]  # the scene with dotted keys changed; raises BadInput
@@ -206,14 +204,6 @@ def transfer(scene_with: SceneWith, given: Given, asked: Asked, progress: Progre
         row for name in names for state in states for row in _rows(name, state, calibrations, refused, asked.within)
     ]
     return TransferStudy(begin.name, asked, start, reference, states, calibrations, refused, tuple(rows))
-
-
-def changed(scene: Scene, keys: Mapping[str, object]) -> Scene:
-    """A scene with dotted keys of its tables changed; ends that nobody asked for follow. Raises BadInput."""
-    tables = scene.to_dict()
-    if scene.motion.end_time is None:
-        tables["motion"].pop("end_time", None)
-    return Scene.from_dict(overridden(tables, keys, scene.source), scene.source)
 
 
 def calibrated(name: str, scene: Scene, reference: Result, how: str) -> Calibration:

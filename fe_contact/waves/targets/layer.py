@@ -131,7 +131,7 @@ def unit_layer(
 
 def _side(basis: Basis, plane: bool, component: int) -> Matrix:
     """Unit impedance of one component of the motion on the side, sparse (2 N, 2 N)."""
-    facets = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["side"], intorder=2 * basis.elem.maxdeg)
+    facets = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["side"])
     radius = np.asarray(facets.global_coordinates())[0]
     tensor = np.zeros((2, 2, *radius.shape))
     tensor[component, component] = 1.0

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from numpy.polynomial import polynomial
 
 from lumped.materials.energies.base import Invariants, Jet
 from lumped.numbers import Array
@@ -45,16 +46,11 @@ def _function(invariants: Invariants, series: Array, closed: Callable[[Array], t
     """Of q, by its coefficients, and by its value, derivative in b and s(f) at b."""
     ratio = invariants.shape * (0.5 * invariants.area**-1.0)
     small = ratio.value < SMALL
-    found = []
-    for order in range(3):
-        found.append(np.polynomial.polynomial.polyval(np.where(small, ratio.value, 0.0), _derived(series, order)))
+    near = np.where(small, ratio.value, 0.0)
+    found = [polynomial.polyval(near, polynomial.polyder(series, order)) for order in range(3)]
     q = np.where(small, 1.0, ratio.value)
     sine = np.sqrt(q * (q + 2.0))
     value, slope, source = closed(0.5 * np.arcsinh(sine))
     first = slope / (2.0 * sine)
     second = (source - (1.0 + q) * first) / (q * (q + 2.0))
     return ratio.of(*(np.where(small, low, high) for low, high in zip(found, (value, first, second), strict=True)))
-
-
-def _derived(series: Array, order: int) -> Array:
-    return np.asarray(np.polynomial.polynomial.polyder(series, order))

@@ -62,7 +62,7 @@ def logarithm(jet: Jet, less_one: Array) -> Jet:
 
 @dataclass(frozen=True, eq=False)
 class Invariants:
-    """``shape`` D, ``area`` j and ``hoop`` t as jets; ``area_rise`` j - 1 and ``hoop_rise`` t - 1 to all digits, (...)."""
+    """``shape`` D, ``area`` j, ``hoop`` t as jets; ``area_rise`` j - 1, ``hoop_rise`` t - 1, (...), to all digits."""
 
     shape: Jet
     area: Jet
@@ -124,8 +124,8 @@ def compression(invariants: Invariants, shear: float, lame: float) -> Jet:
 
 
 @dataclass(frozen=True)
-class Energy:
-    """A member of this folder: its ``formula``, as a record spells it, and ``density`` W(invariants, mu, lambda), Pa."""
+class StrainEnergy:
+    """A member of this folder: its ``formula``, as a record spells it; ``density`` W(invariants, mu, lambda), Pa."""
 
     formula: str
     density: Callable[[Invariants, float, float], Jet]
@@ -149,7 +149,7 @@ BENT_AREA = np.array(
 )
 
 
-def strained(energy: Energy, gradient: Array, shear: float, lame: float) -> Strained:
+def strained(energy: StrainEnergy, gradient: Array, shear: float, lame: float) -> Strained:
     """What an energy answers to a displacement gradient (5, ...), of components (rr, rz, zr, zz, tt).
 
     `shear` mu and `lame` lambda, Pa. Infinite energy, and no stress, where any volume or stretch is not positive.
@@ -171,5 +171,10 @@ def strained(energy: Energy, gradient: Array, shear: float, lame: float) -> Stra
     return Strained(density.value, stress, tangent)
 
 
-ENERGIES = Folder[Energy]("lumped.materials.energies", "material", "hyperelastic")
+ENERGIES = Folder[StrainEnergy]("lumped.materials.energies", "material", "hyperelastic")
 DEFAULT = "neo_hooke"
+
+
+def energy_of(name: str | None) -> StrainEnergy:
+    """The energy a material names, or the one that stands for its silence."""
+    return ENERGIES.get(name or DEFAULT)

@@ -1,7 +1,7 @@
 """Hencky: linear in logarithmic strains."""
 
 from lumped.materials.energies._stretches import log_difference_squared
-from lumped.materials.energies.base import Energy, Invariants, Jet
+from lumped.materials.energies.base import Invariants, Jet, StrainEnergy
 
 
 def density(invariants: Invariants, shear: float, lame: float) -> Jet:
@@ -10,4 +10,4 @@ def density(invariants: Invariants, shear: float, lame: float) -> Jet:
     return strain * shear + invariants.log_volume**2.0 * (0.5 * lame)
 
 
-MEMBER = Energy("mu dev(ln U):dev(ln U) + kappa/2 (ln J)^2", density)
+MEMBER = StrainEnergy("mu dev(ln U):dev(ln U) + kappa/2 (ln J)^2", density)

@@ -1,6 +1,6 @@
 """Mooney and Rivlin with the volume apart; a fifth of the shear modulus by the second invariant, C01 = C10/4."""
 
-from lumped.materials.energies.base import Energy, Invariants, Jet, compression
+from lumped.materials.energies.base import Invariants, Jet, StrainEnergy, compression
 
 SECOND = 0.2  # physics: share of the shear modulus by the second invariant, usual of rubber
 
@@ -11,4 +11,4 @@ def density(invariants: Invariants, shear: float, lame: float) -> Jet:
     return first + invariants.second_isochoric * (0.5 * SECOND * shear) + compression(invariants, shear, lame)
 
 
-MEMBER = Energy("0.4 mu (J^(-2/3) I1 - 3) + 0.1 mu (J^(-4/3) I2 - 3) + kappa/2 (J - 1)^2", density)
+MEMBER = StrainEnergy("0.4 mu (J^(-2/3) I1 - 3) + 0.1 mu (J^(-4/3) I2 - 3) + kappa/2 (J - 1)^2", density)

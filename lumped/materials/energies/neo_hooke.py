@@ -1,6 +1,6 @@
 """Neo-Hooke, compressible: as FElupe's NeoHookeCompressible, Bonet and Wood, Kratos."""
 
-from lumped.materials.energies.base import Energy, Invariants, Jet
+from lumped.materials.energies.base import Invariants, Jet, StrainEnergy
 
 
 def density(invariants: Invariants, shear: float, lame: float) -> Jet:
@@ -12,4 +12,4 @@ def density(invariants: Invariants, shear: float, lame: float) -> Jet:
     return (0.5 * invariants.shape + flat + out) * shear + invariants.log_volume**2.0 * (0.5 * lame)
 
 
-MEMBER = Energy("mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2", density)
+MEMBER = StrainEnergy("mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2", density)

@@ -1,6 +1,6 @@
 """Neo-Hooke with its volume apart: as Abaqus and CalculiX, C10 = mu/2, D1 = 2/kappa."""
 
-from lumped.materials.energies.base import Energy, Invariants, Jet, compression
+from lumped.materials.energies.base import Invariants, Jet, StrainEnergy, compression
 
 
 def density(invariants: Invariants, shear: float, lame: float) -> Jet:
@@ -8,4 +8,4 @@ def density(invariants: Invariants, shear: float, lame: float) -> Jet:
     return invariants.first_isochoric * (0.5 * shear) + compression(invariants, shear, lame)
 
 
-MEMBER = Energy("mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2", density)
+MEMBER = StrainEnergy("mu/2 (J^(-2/3) I1 - 3) + kappa/2 (J - 1)^2", density)

@@ -1,7 +1,7 @@
 """Ogden's three terms of vulcanised rubber, with the volume apart; doi 10.1098/rspa.1972.0026."""
 
 from lumped.materials.energies._stretches import hyperbolic_cosine
-from lumped.materials.energies.base import Energy, Invariants, Jet, compression
+from lumped.materials.energies.base import Invariants, Jet, StrainEnergy, compression
 
 # Physics: exponents, and moduli in kg/cm2, of Treloar's rubber; the latter are scaled to the shear modulus.
 POWERS, MODULI = (1.3, 5.0, -2.0), (6.3, 0.012, -0.1)
@@ -18,7 +18,7 @@ def density(invariants: Invariants, shear: float, lame: float) -> Jet:
     return found
 
 
-MEMBER = Energy(
+MEMBER = StrainEnergy(
     "sum mu_p/a_p (l1^a_p + l2^a_p + l3^a_p - 3) + kappa/2 (J - 1)^2, l of J^(-1/3) F, a = (1.3, 5, -2), "
     "mu_p in proportion to (6.3, 0.012, -0.1)",
     density,

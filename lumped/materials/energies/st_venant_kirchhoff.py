@@ -3,7 +3,7 @@
 It softens in compression and is then no longer elliptic.
 """
 
-from lumped.materials.energies.base import Energy, Invariants, Jet
+from lumped.materials.energies.base import Invariants, Jet, StrainEnergy
 
 
 def density(invariants: Invariants, shear: float, lame: float) -> Jet:
@@ -18,4 +18,4 @@ def density(invariants: Invariants, shear: float, lame: float) -> Jet:
     return squares * (0.25 * shear) + trace * trace * (0.125 * lame)
 
 
-MEMBER = Energy("lambda/2 (tr E)^2 + mu E:E", density)
+MEMBER = StrainEnergy("lambda/2 (tr E)^2 + mu E:E", density)

@@ -96,8 +96,8 @@ class ReboundPieces:
                 return None
             if size <= CONVERGED * scale or float(np.abs(weights @ change).max()) <= ROUNDING * now.time[-1]:
                 values = Trial(self.problem, self.past.turn, weights, state, then, pace).values()
-                forth = bool(np.all(np.diff(values[TIME]) >= -ROUNDING * values[TIME, -1]))
-                return HereditaryPiece(values, step) if forth else None
+                ascends = bool(np.all(np.diff(values[TIME]) >= -ROUNDING * values[TIME, -1]))
+                return HereditaryPiece(values, step) if ascends else None
         return None
 
     def _paces(self, over: Array) -> Iterator[Array]:

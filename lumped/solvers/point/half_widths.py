@@ -57,7 +57,8 @@ def half_widths(track: PointTrack, bodies: Bodies, exit_rule: str, outcome: Outc
     highest = max(float(np.abs(part.force).max()) for part in found)
     peak, peak_time = _peak(found, outcome.peak_time)
     duration, rate = _end(track, bodies, exit_rule, found[-1])
-    restitution = rate / bodies.velocity + rounding
+    fastest = max(bodies.velocity, *(float(np.abs(part.rate).max()) for part in found))
+    restitution = (rate + rounding * fastest) / bodies.velocity
     passed = bodies.mass * (bodies.velocity * restitution + abs(bodies.gravity) * duration)
     return HalfWidths(
         force=SAFETY * max(float(np.abs(part.lacking_force).max()) for part in found) + of_force * highest,
@@ -72,15 +73,19 @@ def half_widths(track: PointTrack, bodies: Bodies, exit_rule: str, outcome: Outc
 
 
 def _end(track: PointTrack, bodies: Bodies, exit_rule: str, last: Deviation) -> tuple[float, float]:
-    """By how much a contact may end at another time, s, and with another rate, m/s, rounding of time included."""
+    """By how much a contact may end at another time, s, and with another rate, m/s, rounding of time included.
+
+    A weight may press far deeper than the velocity at touch would, and what is rounded there is carried to the end.
+    """
     one = track.motion.contacts[0]
     depth, rate, force = (float(part[-1, -1]) for part in last[5:])
     if one.end is not End.SEPARATED:
         return 0.0, SAFETY * abs(rate)
     event, step = leaving(track.law, exit_rule), one.phases[-1].last
-    unmet, around = (depth, step.depth) if event.surfaces else (force, step.force)
-    later = -unmet / event.slope(step)
-    noise = ROUNDING * float(np.abs(around / event.slope(step)).max()) + ROUNDING_OF_TIME * one.end_time
+    later = -(depth if event.surfaces else force) / event.slope(step)
+    carried = [step for phase in one.phases for step in phase.steps] if bodies.gravity > 0.0 else [step]
+    around = max(float(np.abs(event.value(step)).max()) for step in carried)
+    noise = ROUNDING * around / abs(event.slope(step)) + ROUNDING_OF_TIME * one.end_time
     acceleration = bodies.gravity - float(step.force[-1]) / bodies.mass
     return SAFETY * abs(later) + noise, SAFETY * abs(rate + acceleration * later) + abs(acceleration) * noise
 

@@ -219,7 +219,7 @@ class PointMarch:
         """The nodes of a step of another length, s, which ends with an event."""
         left = self.law.grading(self.stage) if event.surfaces and step.nodes.power == 1 else 1
         if left > 1:
-            return NODES.graded(left, mirrored=True)
+            return NODES.graded(left, begun=0.0, mirrored=True)
         power, begun = step.nodes.power, step.nodes.begun * step.length / length
         return NODES.graded(power, begun) if power > 1 else NODES
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from fe_contact.studies import style
-from fe_contact.studies.pound import motions_of
+from fe_contact.studies.pound.study import motions_of
 from fe_contact.studies.style import Look, prefixed, readable
 from lumped.pounding.frames import Gap
 from lumped.pounding.result import FramesResult
@@ -21,12 +22,12 @@ WITHOUT: Look = {"color": style.GREY, "linestyle": (0, (3, 1.5)), "linewidth": 0
 MARKERS = "osD^vP"
 
 
-def plot_study(study: PoundStudy, where: Path) -> tuple[Path, Path]:
-    """Write ``pound.svg`` and ``pound.png`` into the folder ``where``; their paths."""
+def plot_study(study: PoundStudy, where: Path, beside: Sequence[str] = ()) -> tuple[Path, Path]:
+    """Write ``pound.svg`` and ``pound.png`` into the folder ``where``; their paths. ``beside``: what else to say."""
     gaps = list(study.case.frames.gaps)
-    rows = 3 if gaps else 2
+    rows, lines = 3 if gaps else 2, [*_lines(study), *beside]
     height = PANEL * rows + BETWEEN * (rows - 1)
-    with style.sheet(where, "pound", study.case.name, _lines(study), height, width=TITLE_WIDTH, above=0.38) as sheet:
+    with style.sheet(where, "pound", study.case.name, lines, height, width=TITLE_WIDTH, above=0.38) as sheet:
         grid = sheet.grid(rows, 1, 0.085, 0.975, hspace=BETWEEN / PANEL)
         top = sheet.figure.add_subplot(grid[0])
         _storeys(top, study)

@@ -30,10 +30,11 @@ CONTACT_COLUMNS = {
 }
 
 
-def write_pound(study: PoundStudy, where: Path) -> Table:
+def write_pound(study: PoundStudy, where: Path, beside: Table | None = None) -> Table:
     """Write ``response.csv``, ``contacts.csv`` and ``pound.json`` into a folder; the content of the last.
 
-    The rows of other laws go into ``response-<law>.csv``. SI units, null where undefined.
+    The rows of other laws go into ``response-<law>.csv``. SI units, null where undefined. ``beside``: what else the
+    record is to say.
     """
     content = {
         "schema": SCHEMA,
@@ -48,6 +49,7 @@ def write_pound(study: PoundStudy, where: Path) -> Table:
             "energy": study.apart.energy.to_dict(),
         },
         "provenance": provenance(),
+        **(beside or {}),
     }
     tables = {"response": lines_of(dict(_columns(study.main)))}
     for name, motion in list(study.motions.items())[1:]:

@@ -1,0 +1,174 @@
+"""An elastic impact with large strains: by the body's load curve, which a few slow indentations tell.
+
+Quasi-static and without memory, the body gives back all that it takes: the force over the depth is one curve, and the
+motion one quadrature of it. ln F - n ln d is smooth in the root of the depth, and so is a polynomial in it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+
+from fe_contact.budget import plan as statics
+from fe_contact.indentation import indent
+from fe_contact.progress import Progress, silent
+from fe_contact.settings import DEFAULT_TOLERANCE, Given, check_kind
+from fe_contact.threads import one_thread
+from lumped.errors import BadInput, Fault, NotReached
+from lumped.indentation import Indentation
+from lumped.laws import ting
+from lumped.load_curves.sampled import SampledCurve
+from lumped.numbers import Clock
+from lumped.result.model_ledger import Peak, model_ledger
+from lumped.result.result import UNITS, Result, provenance, unmet
+from lumped.scene.indenter import Indenter
+from lumped.scene.scene import Answered, Scene
+
+DEPTHS = 10  # that tell the curve
+SHALLOWEST = 0.12  # root of the least of them over the largest; below it lies a share of 2e-5 of the work
+DEGREE = 6  # of the polynomials through them
+SPARE = 1.12  # largest depth over the one that small strains would have
+MORE = 1.2  # the same over the one reached, where that was too little
+ROUNDS = 4  # work: of such enlargements
+SAMPLES = 160  # work: depths at which the polynomials are handed on
+LEAST_SAMPLE = 1e-4  # the smallest of them over the largest depth
+SHARE = 0.8  # of the tolerance that the curve may err by: the bars of an impact are about as wide
+SECONDS = 3.0  # processor time of an impact to 1e-3, about: it ranks methods, no more
+FINE_INTEGRATION = 1e-2  # of the tolerance
+
+
+def check_impact(scene: Scene) -> None:
+    """Raise BadInput for an impact with large strains that is not built."""
+    faults, source = list[Fault](), scene.source
+    if not scene.geometry.material.young.is_elastic:
+        reason = "relaxes: an impact with model.kinematics = 'finite' is of an elastic body in this version"
+        faults.append(Fault(source, "target.material.law", f"{reason}; accepted: elastic, or kinematics = 'small'"))
+    if scene.motion.impacts > 1:
+        reason = f"{scene.motion.impacts}: with model.kinematics = 'finite' one is followed; accepted: 1"
+        faults.append(Fault(source, "motion.impacts", reason))
+    if faults:
+        raise BadInput(faults)
+
+
+@one_thread
+def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
+    """Force history by finite elements with large strains, and error bars.
+
+    Raises BadInput for what is not built, NotReached where an equilibrium is lost.
+    """
+    check_kind(given, False, scene.source)
+    check_impact(scene)
+    clock, tolerance = Clock(), float(given.get("tolerance", DEFAULT_TOLERANCE))
+    deepest = SPARE * statics.scales(scene, statics.plan(scene, {}).numerics).peak_depth
+    for _ in range(ROUNDS):
+        known = _known(scene, deepest, {**given, "tolerance": SHARE * tolerance}, progress)
+        found = known.impact(scene, tolerance)
+        reached = found.quantities["peak_depth"].value or 0.0
+        if reached <= deepest:
+            return _result(scene, known, found, tolerance, clock)
+        deepest = MORE * reached
+    raise NotReached(f"the striker goes deeper than {deepest:.3g} m; cure: a lower striker.velocity or striker.mass")
+
+
+@dataclass(frozen=True, eq=False)
+class KnownCurve:
+    """Slow ``pressed`` depths and polynomials in the root of the depth through ln F - n ln d and ln a - m ln d."""
+
+    pressed: Indentation
+    deepest: float
+    powers: tuple[float, float]
+    force: Chebyshev
+    radius: Chebyshev
+
+    @property
+    def errors(self) -> Mapping[str, float]:
+        """Relative errors of the force by cause: those of the depths, and of what lies between them."""
+        lower = _fitted(self.pressed, self.deepest, self.powers, DEGREE - 1)[0]
+        place = np.linspace(SHALLOWEST, 1.0, 2 * SAMPLES)
+        between = float(np.abs(self.force(place) - lower(place)).max())
+        return {cause: float(error.max()) for cause, error in self.pressed.budget.items()} | {"curve": between}
+
+    def impact(self, scene: Scene, tolerance: float, uniform: float = 0.0, tilted: float = 0.0) -> Result:
+        """On the curve, or one that errs by these relative changes, of all alike and of shallow against deep."""
+        depth = self.deepest * np.geomspace(LEAST_SAMPLE, 1.0, SAMPLES)
+        place = np.sqrt(depth / self.deepest)
+        changed = 1.0 + uniform - tilted * np.cos(np.pi * place)
+        unit = scene.contact_modulus.relaxed * scene.geometry.shape.total
+        force = np.exp(self.force(place)) * depth ** self.powers[0] * changed / unit
+        radius = np.exp(self.radius(place)) * depth ** self.powers[1]
+        curve = SampledCurve(tuple(depth.tolist()), tuple(force.tolist()), tuple(radius.tolist()))
+        answered = Answered.by(scene, curve)
+        return ting.MEMBER.of(answered).simulate(answered, FINE_INTEGRATION * tolerance)
+
+
+def _known(scene: Scene, deepest: float, given: Given, progress: Progress) -> KnownCurve:
+    """The curve up to a depth, m. Raises NotReached."""
+    geometry = scene.geometry
+    indenter = Indenter(geometry.shape, geometry.material, geometry.target, geometry.striker_material, scene.model,
+                        scene.name, scene.source)  # fmt: skip
+    middle, half = 0.5 * (1.0 + SHALLOWEST), 0.5 * (1.0 - SHALLOWEST)
+    place = middle - half * np.cos(np.pi * np.arange(DEPTHS) / (DEPTHS - 1))
+    pressed = indent(indenter, tuple((deepest * place**2).tolist()), given, progress=progress)
+    exponent = geometry.shape.exponent_of_force
+    powers = (exponent, exponent - 1.0)
+    return KnownCurve(pressed, deepest, powers, *_fitted(pressed, deepest, powers, DEGREE))
+
+
+def _fitted(
+    pressed: Indentation, deepest: float, powers: tuple[float, float], degree: int
+) -> tuple[Chebyshev, Chebyshev]:
+    """Polynomials in the root of the depth over the deepest."""
+    place = np.sqrt(pressed.depth / deepest)
+    found = [
+        Chebyshev.fit(place, np.log(values / pressed.depth**power), degree, domain=[0.0, 1.0])
+        for values, power in zip((pressed.force, pressed.contact_radius), powers, strict=True)
+    ]
+    return found[0], found[1]
+
+
+def _result(scene: Scene, known: KnownCurve, found: Result, tolerance: float, clock: Clock) -> Result:
+    """The record: every cause's bar is what as large an error of the curve changes, of all depths or of some."""
+    budget = {"integration": {name: quantity.error or 0.0 for name, quantity in found.quantities.items()}}
+    for cause, error in known.errors.items():
+        others = [known.impact(scene, tolerance, error, 0.0), known.impact(scene, tolerance, 0.0, error)]
+        budget[cause] = {name: sum(_distance(found, other, name) for other in others) for name in UNITS}
+    quantities = {
+        name: replace(quantity, error=None if quantity.value is None else sum(row[name] for row in budget.values()))
+        for name, quantity in found.quantities.items()
+    }
+    peak = quantities["peak_force"].value or math.inf
+    relative = sum(known.errors.values())
+    history = replace(found.history, force_error=2.0 * relative * found.history.force)
+    missed = unmet(quantities, tolerance)
+    return replace(
+        found,
+        method="fe",
+        scene=scene,
+        model=scene.model,
+        converged=not missed and found.separated,
+        tolerance=tolerance,
+        history=history,
+        quantities=quantities,
+        numerics=known.pressed.numerics,
+        error_budget={cause: row["peak_force"] / peak for cause, row in budget.items()},
+        error_budget_by_quantity=budget,
+        model_ledger=model_ledger(scene, Peak.of(quantities, history)),
+        provenance=provenance(),
+        timing=clock.read(),
+        work=dict(known.pressed.work),
+        message=missed,
+    )
+
+
+def _distance(first: Result, second: Result, name: str) -> float:
+    """Of a quantity of two impacts, in its unit; of their histories, over the norm of the first."""
+    if name != "history_l2":
+        values = [one.quantities[name].value for one in (first, second)]
+        return 0.0 if None in values else abs((values[0] or 0.0) - (values[1] or 0.0))
+    time = first.history.time
+    apart = first.history.force - np.interp(time, second.history.time, second.history.force, right=0.0)
+    return float(math.sqrt(np.trapezoid(apart**2, time) / np.trapezoid(first.history.force**2, time)))

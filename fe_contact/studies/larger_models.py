@@ -1,0 +1,142 @@
+"""What a scene's model leaves out, measured: the next larger model run beside it, and the smallest that is sufficient.
+
+An estimate of the model ledger is a formula. Where it names a key, the larger model can be asked instead: one coarse
+run with the key, one without, both by finite elements with their error bars, and the change of the peak force between
+them. Which effects a scene needs follows from the ledger alone, before anything is run.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+
+from fe_contact.errors import faults_of
+from fe_contact.progress import Progress, silent
+from fe_contact.reference import check_target, expected, fe, plan
+from fe_contact.settings import DEFAULT_TOLERANCE, Given
+from lumped.errors import FeContactError
+from lumped.result.result import LedgerEntry, Quantity, Result
+from lumped.scene.scene import Scene
+from lumped.schema import Table
+
+# The tolerance of both runs is a third of the effect that they are to show, within what waves reach and what is cheap.
+SHARE, FINEST, COARSEST = 3.0, 3e-3, 3e-2
+
+
+@dataclass(frozen=True)
+class MeasuredEffect:
+    """An effect that the ledger estimates, as two runs find it: ``change`` of the peak force with its ``error``, both
+    relative; None, and the ``reason``, where the larger model has no answer.
+    """
+
+    effect: str
+    setting: str
+    estimate: float | None
+    change: float | None = None
+    error: float | None = None
+    reason: str = ""
+
+    def __str__(self) -> str:
+        estimate = "none" if self.estimate is None else f"{self.estimate:.2g}"
+        if self.change is None or self.error is None:
+            return f"{self.effect}: estimate {estimate} | not measured: {self.reason}"
+        return f"{self.effect} ({self.setting}): estimate {estimate} | measured {self.change:+.2g} +- {self.error:.1g}"
+
+    def to_json(self) -> Table:
+        """Its fields."""
+        return asdict(self)
+
+
+@dataclass(frozen=True)
+class SufficientModel:
+    """A scene with every effect that certainly exceeds the tolerance, as far as there is a model of it.
+
+    ``taken``: those entries; ``left``: the ones above the tolerance all the same, each with the reason.
+    """
+
+    scene: Scene
+    taken: tuple[LedgerEntry, ...] = ()
+    left: Mapping[str, str] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        took = [f"{entry.effect} ({entry.setting}), estimated {entry.size:.2g}" for entry in self.taken]
+        said = f"the model takes in {', '.join(took)}" if took else "the model is the scene's own"
+        return "; ".join([said, *(f"{effect} is left out: {reason}" for effect, reason in self.left.items())])
+
+
+def above(ledger: Sequence[LedgerEntry], tolerance: float) -> list[LedgerEntry]:
+    """Effects that exceed the tolerance certainly or possibly, and have a larger model, the largest first."""
+    found = [entry for entry in ledger if entry.key and entry.size > tolerance]
+    return sorted(found, key=lambda entry: -entry.size)
+
+
+def measure(scene: Scene, given: Given, progress: Progress = silent) -> tuple[MeasuredEffect, ...]:
+    """Every effect above the tolerance that has a larger model, by one coarse run each. Raises BadInput, NotReached."""
+    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    effects = above(plan(scene, given).ledger, tolerance)
+    if not effects:
+        return ()
+    finest = min(_tolerance_of(entry) for entry in effects)
+    progress("the scene's own model")
+    own = fe(scene, {**given, "tolerance": finest})
+    found = []
+    for count, entry in enumerate(effects):
+        progress(f"with {entry.effect}", count, len(effects))
+        found.append(_measured(scene, entry, own))
+    return tuple(found)
+
+
+def _tolerance_of(entry: LedgerEntry) -> float:
+    return min(max(entry.size / SHARE, FINEST), COARSEST)
+
+
+def _measured(scene: Scene, entry: LedgerEntry, own: Result) -> MeasuredEffect:
+    """By the larger model, with settings of its own."""
+    without = MeasuredEffect(entry.effect, entry.setting, entry.estimate)
+    try:
+        larger = fe(scene.changed({entry.key: entry.value}), {"tolerance": _tolerance_of(entry)})
+        change, error = change_of(own.quantities["peak_force"], larger.quantities["peak_force"])
+    except FeContactError as refused:
+        return replace(without, reason=str(refused))
+    return replace(without, change=change, error=error)
+
+
+def change_of(own: Quantity, larger: Quantity) -> tuple[float, float]:
+    """Relative change of a quantity and what both bars leave open of it."""
+    ours, theirs = own.value or math.nan, larger.value or math.nan
+    ratio = theirs / ours
+    return ratio - 1.0, ((larger.error or 0.0) + ratio * (own.error or 0.0)) / ours
+
+
+def sufficient(scene: Scene, given: Given) -> SufficientModel:
+    """The smallest set of effects with which nothing that can be judged exceeds the tolerance.
+
+    Each effect is judged by its own estimate, so that the set is that of all which exceed it; an effect taken in may
+    change the others' estimates, and the ledger is asked again. Raises BadInput, NotReached.
+    """
+    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    taken, left = list[LedgerEntry](), dict[str, str]()
+    while True:
+        ledger = plan(scene, given).ledger
+        needed = [entry for entry in ledger if entry.exceeds(tolerance) and entry.effect not in left]
+        if not needed:
+            return SufficientModel(scene, tuple(taken), left)
+        entry = max(needed, key=lambda one: one.size)
+        if not entry.key:
+            left[entry.effect] = f"about {entry.size:.2g}, no larger model here"
+            continue
+        try:
+            scene = _answered(scene.changed({entry.key: entry.value}), given)
+            taken.append(entry)
+        except FeContactError as refused:
+            left[entry.effect] = f"about {entry.size:.2g}; {refused}"
+
+
+def _answered(scene: Scene, given: Given) -> Scene:
+    """The scene, where finite elements have an answer to it. Raises BadInput, NotReached."""
+    with faults_of(scene):
+        expected(scene, given)
+        if not scene.model.inertia:
+            check_target(scene)
+    return scene

@@ -1,0 +1,1 @@
+"""Frames that pound on each other: study, files, chart."""

@@ -1,0 +1,104 @@
+"""The paper's numbers, printed and recomputed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from fe_contact.studies.paper import told, write_paper
+from fe_contact.studies.validate.base import (
+    DIFFERS,
+    HOLDS,
+    Column,
+    Figure,
+    Headline,
+    Listing,
+    Made,
+    ReportPart,
+    Request,
+    Section,
+    named,
+)
+from lumped.paper import Examples
+from lumped.paper.claims import JudgedClaim, counts, study
+from lumped.paper.rules import AGREES, UNDECIDED, UNKNOWN
+from lumped.paper.rules import DIFFERS as DIFFERING
+
+MOST = 3  # look: claims that the first screen names
+FIGURES = (
+    Figure("fig6", "Figure 6 again: force of the steel ball by every model", ("paper.csv",)),
+    Figure("fig7", "Figure 7 again: R1 varied, the exact law beside the clipped one", ("grid.csv",)),
+    Figure("fig8", "Figure 8 again: R2 varied, the exact law beside the clipped one", ("grid.csv",)),
+    Figure("fig10", "Figure 10 again: concrete, cut at the measured peak", ("paper.csv",)),
+    Figure("fig15", "Figure 15 as numbers: what the surface remembers between contacts", ("paper.csv",)),
+)
+LISTINGS = (
+    Listing(
+        "paper.csv",
+        "Every number that the paper claims",
+        (
+            Column("id", "claim"),
+            Column("place", "place"),
+            Column("quantity", "quantity"),
+            Column("unit", "unit"),
+            Column("printed", "printed"),
+            Column("recomputed", "recomputed"),
+            Column("deviation", "deviation"),
+            Column("verdict", "verdict"),
+        ),
+    ),
+    Listing(
+        "assumptions.csv",
+        "Assumptions behind the examples",
+        (
+            Column("example", "example"),
+            Column("assumption", "assumption"),
+            Column("criterion", "criterion"),
+            Column("recomputed", "recomputed"),
+            Column("verdict", "verdict"),
+        ),
+    ),
+    Listing(
+        "misprints.csv",
+        "Misprints and contradictions",
+        (
+            Column("place", "place"),
+            Column("printed", "printed"),
+            Column("correct", "correct"),
+            Column("proof", "proof"),
+        ),
+    ),
+)
+
+
+def make(asked: Request) -> Made:
+    """Every claim, judged by rule."""
+    examples = Examples.load({})
+    found = study(examples, asked.progress)
+
+    def write(where: Path) -> None:
+        from fe_contact.studies.paper_chart import plot_paper
+
+        write_paper(found, where)
+        plot_paper(found, where)
+
+    return Made(Section((headline(found.claims),), tuple(told(found)[-2:]), FIGURES, LISTINGS), write)
+
+
+def headline(claims: Sequence[JudgedClaim]) -> Headline:
+    """How many claims agree, and which differ."""
+    number = counts(claims)
+    differing = [f"{one.claim.quantity} ({one.claim.id})" for one in claims if one.verdict == DIFFERING]
+    judged = number[AGREES] + number[DIFFERING] + number[UNDECIDED]
+    where = f"; it differs in {named(differing, MOST)}" if differing else ""
+    said = f"The paper's numbers: {number[AGREES]} of {judged} that can be recomputed agree{where}."
+    return Headline(DIFFERS if differing else HOLDS, f"{said} {number[UNKNOWN]} {UNKNOWN}.")
+
+
+MEMBER = ReportPart(
+    rank=70,
+    title="The paper's numbers",
+    question="What of the source paper's printed numbers is found again, and where does it differ?",
+    command="fe-contact paper",
+    make=make,
+)

@@ -1,0 +1,82 @@
+"""Restitution asked for against obtained, law by law."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from fe_contact.studies.restitution import RestitutionLine, table, write_restitution
+from fe_contact.studies.validate.base import (
+    DIFFERS,
+    HOLDS,
+    Column,
+    Figure,
+    Headline,
+    Listing,
+    Made,
+    ReportPart,
+    Request,
+    Section,
+)
+from lumped.restitution import EXACT
+from lumped.schema.csv_file import write_csv
+
+WITHIN = 1e-6  # of a restitution that counts as the one asked for: ten times the tolerance of each impact
+COLUMNS = ("law", "damping", "exit", "difference", "at")
+FIGURE = Figure("restitution", "Restitution asked for and obtained, by every law and published damping",
+                ("restitution.csv",))  # fmt: skip
+LISTING = Listing(
+    "formulas.csv",
+    "Every damping formula at its worst",
+    (
+        Column("law", "law"),
+        Column("damping", "damping"),
+        Column("exit", "contact ends at zero"),
+        Column("difference", "obtained less asked, at worst"),
+        Column("at", "at e ="),
+    ),
+)
+
+
+def make(asked: Request) -> Made:
+    """One impact a law, formula, exit and restitution."""
+    asked.progress("impacts")
+    lines = table()
+
+    def write(where: Path) -> None:
+        from fe_contact.studies.restitution_chart import plot_restitution
+
+        write_restitution(lines, where)
+        rows = [(one.law, one.damping, one.exit, *(one.worst or (None, None))) for one in lines]
+        write_csv(where / "formulas.csv", COLUMNS, rows)
+        plot_restitution(lines, where)
+
+    return Made(Section((headline(lines),), (), (FIGURE,), (LISTING,)), write)
+
+
+def headline(lines: Sequence[RestitutionLine]) -> Headline:
+    """Whether the exact dampings give what is asked, and the worst of the published ones."""
+    exact = [one for one in lines if one.damping == EXACT and one.worst]
+    published = [one for one in lines if one.damping != EXACT and one.worst]
+    given = sum(abs(_off(one)) <= WITHIN for one in exact)
+    most = max(published, key=lambda one: abs(_off(one)))
+    said = (
+        f"Restitution asked for is obtained to {max(abs(_off(one)) for one in exact):.0e} by {given} of {len(exact)} "
+        f"exact dampings; of {len(published)} published ones {sum(abs(_off(one)) <= WITHIN for one in published)} give "
+        f"it, the worst is {most.damping.replace('_', ' ')} in {most.law.replace('_', ' ')}, off by {_off(most):+.2f}."
+    )
+    return Headline(HOLDS if given == len(exact) else DIFFERS, said)
+
+
+def _off(line: RestitutionLine) -> float:
+    assert line.worst is not None
+    return line.worst[0]
+
+
+MEMBER = ReportPart(
+    rank=60,
+    title="Restitution",
+    question="Does a law bounce as hard as it was asked to?",
+    command="fe-contact restitution",
+    make=make,
+)

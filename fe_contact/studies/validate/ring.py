@@ -1,0 +1,90 @@
+"""Rings pressed and struck, against the paper's (27)-(32)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+from fe_contact.studies.rings import RingCurve, RingStruck, cases, missed, rings, struck, verdict, write_rings
+from fe_contact.studies.validate.base import (
+    DIFFERS,
+    HOLDS,
+    Column,
+    Figure,
+    Headline,
+    Listing,
+    Made,
+    ReportPart,
+    Request,
+    Section,
+)
+
+FIGURE = Figure("ring", "Force over the paper's row, and the local exponent, over depth", ("ring.csv",))
+LISTINGS = (
+    Listing(
+        "ring_impacts.csv",
+        "The paper's ring struck: by finite elements, and how far its (30)-(32) are off",
+        (
+            Column("ring", "ring"),
+            Column("velocity_m_per_s", "velocity, m/s"),
+            Column("peak_depth", "peak depth, m", "peak_depth_error"),
+            Column("peak_depth_row_deviation", "row, off by", "peak_depth_row_deviation_error"),
+            Column("duration", "duration, s", "duration_error"),
+            Column("duration_row_deviation", "row, off by", "duration_row_deviation_error"),
+            Column("restitution", "restitution", "restitution_error"),
+            Column("restitution_row_deviation", "row, off by", "restitution_row_deviation_error"),
+            Column("verdict", "verdict"),
+        ),
+    ),
+    Listing(
+        "ring.csv",
+        "Rings pressed",
+        (
+            Column("ring", "ring"),
+            Column("depth_m", "depth, m"),
+            Column("strain", "strain"),
+            Column("force_N", "force, N", "force_error_N"),
+            Column("row_force_N", "by (27)-(29), N"),
+            Column("row_deviation", "off by"),
+            Column("exponent", "exponent", "exponent_error"),
+        ),
+    ),
+)
+
+
+def make(asked: Request) -> Made:
+    """Press, strike, judge."""
+    curves = rings(cases(), asked.where, asked.progress, asked.jobs)
+    impacts = struck(cases(), asked.where, asked.progress)
+
+    def write(where: Path) -> None:
+        from fe_contact.studies.rings_chart import plot_rings
+
+        write_rings(curves, where, impacts)
+        plot_rings(curves, where)
+
+    judged = [(curve.case.name, verdict(curve)) for curve in curves]
+    said = [f"{name}: (27)-(29) {one.word}: {one.sentence}" for name, one in judged]
+    said += [f"{one.ring} at {1e3 * one.velocity:.3g} mm/s: (30)-(32) {one.verdict}" for one in impacts]
+    section = Section((headline(curves, impacts),), tuple(said), (FIGURE,), LISTINGS, missed=missed(curves, impacts))
+    return Made(section, write)
+
+
+def headline(curves: Sequence[RingCurve], impacts: Sequence[RingStruck]) -> Headline:
+    """For how many rings and impacts the paper's formulas hold."""
+    words = Counter(verdict(curve).word for curve in curves)
+    pressed = ", ".join(f"{word} for {count}" for word, count in words.items())
+    held = sum(one.holds for one in impacts)
+    said = f"Rings: the paper's (27)-(29) {pressed} of {len(curves)} that are pressed"
+    word = HOLDS if held == len(impacts) and set(words) == {"holds"} else DIFFERS
+    return Headline(word, f"{said}; its (30)-(32) hold in {held} of {len(impacts)} impacts.")
+
+
+MEMBER = ReportPart(
+    rank=40,
+    title="Rings",
+    question="Does a rod in a ring push back as the paper's formulas say?",
+    command="fe-contact ring",
+    make=make,
+)

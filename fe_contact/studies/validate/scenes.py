@@ -1,0 +1,223 @@
+"""Every packaged scene: what was held against what, and by how much of its bar it errs."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import defaultdict
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+from fe_contact.methods import FE
+from fe_contact.studies import journal
+from fe_contact.studies.files import Line, write_study
+from fe_contact.studies.validate._scenes import SceneAnswer, answered, chosen, largest
+from fe_contact.studies.validate.base import (
+    DIFFERS,
+    HOLDS,
+    LARGER,
+    VERIFIED,
+    Column,
+    Figure,
+    Headline,
+    Listing,
+    Made,
+    ReportPart,
+    Request,
+    Section,
+    Worst,
+    named,
+)
+from lumped.numbers import Array
+from lumped.result.result import Quantity
+from lumped.schema.csv_file import write_columns
+from lumped.schema.files import SCENES
+
+SCHEMA = "fe-contact/validate-scenes/1"
+KEPT, HISTORIES = "scenes.jsonl", "histories.json"
+DIGITS = 5  # look: of a curve that is drawn
+MOST = 2  # look: scenes that the first screen names of a kind
+TOLD = ("peak_force", "peak_depth", "duration", "restitution")
+
+
+def make(asked: Request) -> Made:
+    """All scenes; rows are kept one by one."""
+    names = chosen(asked.quick)
+    calls = {name: partial(answered, name) for name in names}
+    found = journal.rows(asked.where / KEPT, calls, asked.progress, asked.jobs)
+    return of_answers([found[name] for name in sorted(names)], [*sorted({*SCENES.names} - {*names})])
+
+
+def of_answers(found: Sequence[SceneAnswer], left_out: Sequence[str] = ()) -> Made:
+    """The section of such answers, and of the scenes that were not asked."""
+    return Made(
+        Section(
+            headlines(found),
+            tuple(sentences(found, left_out)),
+            (Figure("scenes", "Error over its bar, quantity by quantity, against the exact answer", ("checks.csv",)),),
+            (SCENES_TABLE, CHECKS_TABLE),
+            _worst(found),
+            HISTORIES,
+        ),
+        partial(write, found),
+    )
+
+
+def headlines(found: Sequence[SceneAnswer]) -> tuple[Headline, ...]:
+    """What was held against what and whether it held; which scenes need a larger model."""
+    held = [one for one in found if one.exact]
+    elements = [one for one in found if one.method == FE]
+    apart = [one.scene for one in held if not one.agrees]
+    names = ", ".join(sorted({one.exact.replace("_", " ") for one in held}))
+    but = f", all but {named(apart, MOST)}" if apart else ""
+    said = (
+        f"{len(held) - len(apart)} of {len(held)} scenes by finite elements agree with an exact answer ({names}) "
+        f"within both error bars{but}; {len(elements) - len(held)} more have an error bar, and no exact answer."
+    )
+    return Headline(DIFFERS if apart else VERIFIED, said), _model(found)
+
+
+def _model(found: Sequence[SceneAnswer]) -> Headline:
+    """Which scenes need a larger model, by what it would follow."""
+    needed = defaultdict[str, list[str]](list)
+    for one in sorted(found, key=lambda one: -(one.estimate or 0.0)):
+        if one.larger:
+            needed[one.larger].append(one.scene)
+    if not needed:
+        return Headline(HOLDS, "No scene needs a larger model at its tolerance.")
+    said = "; ".join(f"{effect}: {named(names, MOST)}" for effect, names in needed.items())
+    count = sum(map(len, needed.values()))
+    return Headline(LARGER, f"{count} of {len(found)} scenes need a larger model at their tolerance. {said}.")
+
+
+def sentences(found: Sequence[SceneAnswer], left_out: Sequence[str]) -> list[str]:
+    """What was asked, what failed or missed its tolerance, what moved since it was published."""
+    failed = [f"{one.scene}: no answer: {one.failure}" for one in found if one.failure]
+    missed = [f"{one.scene}: {one.missed}" for one in found if one.missed]
+    published = [one for one in found if one.published]
+    moved = [one.scene for one in published if not largest(one.published) <= 1.0]
+    said = [f"{len(published) - len(moved)} of {len(published)} answers agree with what is published of them, in "
+            f"data/references/{': all but ' + ', '.join(moved) if moved else ''}."]  # fmt: skip
+    if left_out:
+        said.append(f"Left out of a quick answer, for they take minutes: {', '.join(left_out)}.")
+    return [*said, *failed, *missed]
+
+
+def _worst(found: Sequence[SceneAnswer]) -> Worst | None:
+    pairs = [(one, move) for one in found for move in one.differences]
+    if not pairs:
+        return None
+    one, most = max(pairs, key=lambda pair: math.inf if pair[1].moved is None else pair[1].moved)
+    place = f"{one.scene}, {most.quantity} against {one.exact}".replace("_", " ")
+    return Worst(most.moved, len(pairs), place)
+
+
+SCENES_TABLE = Listing(
+    "scenes.csv",
+    "Every scene, its answer and its bars",
+    (
+        Column("scene", "scene"),
+        Column("method", "method"),
+        Column("peak_force_N", "peak force, N", "peak_force_error_N"),
+        Column("peak_depth_m", "peak depth, m", "peak_depth_error_m"),
+        Column("duration_s", "duration, s", "duration_error_s"),
+        Column("restitution", "restitution", "restitution_error"),
+        Column("exact", "exact answer"),
+        Column("error_over_bar", "error over bar"),
+        Column("tolerance_reached", "tolerance reached"),
+        Column("larger_model", "needs a larger model for"),
+        Column("share_of_peak", "share of the peak"),
+        Column("key", "selected by"),
+    ),
+)
+CHECKS_TABLE = Listing(
+    "checks.csv",
+    "Every quantity against its exact answer",
+    (
+        Column("scene", "scene"),
+        Column("exact", "exact answer"),
+        Column("quantity", "quantity"),
+        Column("exact_value", "exact"),
+        Column("found", "finite elements"),
+        Column("bars", "both bars"),
+        Column("error_over_bar", "error over bar"),
+    ),
+)
+
+
+def _line(one: SceneAnswer) -> Line:
+    """A row of scenes.csv."""
+    cells: dict[str, object] = {"scene": one.scene, "method": one.method or None}
+    for name in TOLD:
+        quantity = one.quantities.get(name, Quantity(None, None, "1"))
+        unit = "" if name == "restitution" else "_N" if name == "peak_force" else "_m" if "depth" in name else "_s"
+        cells |= {f"{name}{unit}": quantity.value, f"{name}_error{unit}": quantity.error}
+    return cells | {
+        "exact": one.exact or None,
+        "error_over_bar": None if math.isnan(one.ratio) else one.ratio,
+        "tolerance": one.tolerance,
+        "tolerance_reached": "no answer" if one.failure else "no" if one.missed else "yes",
+        "larger_model": one.larger or None,
+        "share_of_peak": one.estimate,
+        "key": one.key or None,
+        "said": one.failure or one.missed or None,
+    }
+
+
+def _checks(one: SceneAnswer) -> list[Line]:
+    """Rows of checks.csv."""
+    return [
+        {
+            "scene": one.scene,
+            "exact": one.exact,
+            "quantity": move.quantity,
+            "exact_value": move.published,
+            "found": move.found,
+            "bars": move.bars,
+            "error_over_bar": move.moved,
+        }
+        for move in one.differences
+    ]
+
+
+def write(found: Sequence[SceneAnswer], where: Path) -> None:
+    """Write ``scenes.csv``, ``checks.csv``, ``scenes.json``, a CSV a curve, ``histories.json`` and the chart."""
+    from fe_contact.studies.validate._scenes_chart import plot_scenes
+
+    lines = {"scenes": [_line(one) for one in found], "checks": [line for one in found for line in _checks(one)]}
+    headers = {"checks": ("scene", "exact", "quantity", "exact_value", "found", "bars", "error_over_bar")}
+    write_study(where, "scenes", {"schema": SCHEMA, "scenes": lines["scenes"]}, lines, headers)
+    for one in found:
+        _write_curves(one, where)
+    histories = {one.scene: _histories(one) for one in found if one.curves}
+    (where / HISTORIES).write_text(json.dumps(histories, separators=(",", ":")), encoding="utf-8")
+    plot_scenes(found, where)
+
+
+def _write_curves(one: SceneAnswer, where: Path) -> None:
+    """A CSV a curve: each has times of its own."""
+    for name, curve in one.curves.items():
+        columns = [curve.time, curve.force, curve.error]
+        write_columns(where / f"{one.scene}-{name}.csv", ("time_s", "force_N", "force_error_N"), columns)
+
+
+def _histories(one: SceneAnswer) -> dict[str, object]:
+    """The curves of a scene as the page draws them, and which of them is exact."""
+    columns = ("time", "force", "error")
+    curves = {name: {key: _rounded(getattr(curve, key)) for key in columns} for name, curve in one.curves.items()}
+    return {"exact": one.exact, "curves": curves}
+
+
+def _rounded(column: Array) -> list[float]:
+    return [float(f"{value:.{DIGITS}g}") for value in column]
+
+
+MEMBER = ReportPart(
+    rank=10,
+    title="Packaged scenes",
+    question="Do finite elements give the exact answer, where there is one, within the error bar that they claim?",
+    command="fe-contact validate --sections scenes",
+    make=make,
+    quick="scenes that take minutes",
+)

@@ -1,0 +1,77 @@
+"""Where methods break, and whether the defaults do not."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from fe_contact.studies.stability.bars import DEFAULT, KEYS
+from fe_contact.studies.stability.base import Row, rows_of, studies, told, write_stability
+from fe_contact.studies.validate.base import (
+    DIFFERS,
+    HOLDS,
+    Column,
+    Figure,
+    Headline,
+    Listing,
+    Made,
+    ReportPart,
+    Request,
+    Section,
+)
+
+LISTING = Listing(
+    "table.csv",
+    "A bouncing bar over ten periods",
+    (
+        Column("scheme", "scheme"),
+        Column("mass", "mass"),
+        Column("tip", "tip"),
+        Column("enforcement", "enforcement"),
+        Column("cfl", "CFL"),
+        Column("drift", "energy drift"),
+        Column("ripple", "ripple"),
+        Column("duration_steps", "duration, steps"),
+        Column("start", "start, periods"),
+        Column("all_kept", "all limits kept"),
+        Column("failure", "failure"),
+    ),
+)
+
+
+def make(asked: Request) -> Made:
+    """Every case of every study."""
+    rows = rows_of(asked.quick, asked.jobs, asked.where, asked.progress)
+
+    def write(where: Path) -> None:
+        from fe_contact.studies.stability._chart import plot_stability
+
+        write_stability(rows, where)
+        plot_stability(rows, where)
+
+    drawn = dict.fromkeys(row["study"] for row in rows)
+    figures = tuple(Figure(name, studies()[name].title, (f"{name}.csv",)) for name in drawn)
+    return Made(Section((headline(rows),), tuple(told(rows)), figures, (LISTING,)), write)
+
+
+def headline(rows: Sequence[Row]) -> Headline:
+    """Whether the defaults keep all limits, how many ways do, how many cases end as a named failure."""
+    judged = [row for row in rows if "all_kept" in row]
+    default = [row["all_kept"] for row in judged if all(row[key] == DEFAULT[key] for key in KEYS) and row["cfl"] == 1.0]
+    failed, kept = sum(bool(row["failure"]) for row in rows), sum(row["all_kept"] for row in judged)
+    good = bool(default) and all(default)
+    said = (
+        f"Stability: over ten periods of a bouncing bar the default {'keeps' if good else 'breaks'} every limit, "
+        f"{kept} of {len(judged)} ways tried do; {failed} of {len(rows)} cases end as a named failure."
+    )
+    return Headline(HOLDS if good else DIFFERS, said)
+
+
+MEMBER = ReportPart(
+    rank=80,
+    title="Stability",
+    question="Where do methods break, and do the defaults hold there?",
+    command="fe-contact stability",
+    make=make,
+    quick="elements, steps and penalties",
+)

@@ -1,0 +1,139 @@
+"""What the curves say: intervals over all valleys, the noise, whether the law explains them, what to be warned of."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.fit.noise import Whiteness, autocovariance, memory, whiteness
+from lumped.identify.ensemble import posterior_of
+from lumped.identify.histories import Histories
+from lumped.identify.profile import LikelihoodProfile, Valley, correlation_of, quantile
+from lumped.identify.record import ByReference, FittedCurve, Identified, Interval, Posterior, ToldValley, hull
+from lumped.numbers import Array
+
+CORRELATED = 0.95  # named in a warning
+ENOUGH = 100  # independent draws: five of them lie beyond either end of a band
+
+
+def answer(
+    histories: Histories,
+    valleys: Sequence[Valley],
+    names: Sequence[str],
+    sample: int = 0,
+    by_reference: ByReference | None = None,
+) -> Identified:
+    """At the most likely place, and in the other valleys; `names`: of the curves; `sample`: draws of the posterior."""
+    sought = valleys[0].sought
+    whitened = histories.whitened(histories.differences(sought))
+    tested = whiteness(_inside(histories, sought, whitened))
+    widened = 1.0 if tested.noise else max(map(memory, whitened))
+    bound, least = quantile(histories) * widened, histories.squares(sought)
+    profiles, told = _apart([LikelihoodProfile(histories, one, least + bound, bound) for one in valleys], least)
+    posterior, bands = posterior_of(histories, profiles, widened, sample) if sample else (None, None)
+    parameters = {name: hull([one.parameters[name] for one in told]) for name in told[0].parameters}
+    curves = tuple(_fitted(histories, sought, names, bands or [np.zeros(0)] * len(names)))
+    table = histories.file.with_values(histories.keys, sought[: len(histories.keys)])
+    warnings = (
+        *_warnings(parameters, told),
+        *_of_residuals(tested, widened, curves),
+        *_of_the_sample(posterior, told),
+        *_of_the_reference(by_reference, parameters),
+    )
+    source = histories.file.source
+    return Identified(source, parameters, told, curves, tested, widened, table, warnings, posterior, by_reference)
+
+
+def _apart(
+    profiles: Sequence[LikelihoodProfile], least: float
+) -> tuple[list[LikelihoodProfile], tuple[ToldValley, ...]]:
+    """The valleys, and what they say of the keys, without those that lie within the intervals of one before."""
+    apart, found = list[LikelihoodProfile](), list[ToldValley]()
+    for one in profiles:
+        sought, p = one.valley.sought, len(one.histories.keys)
+        values = {key.name: key.at(place) for key, place in zip(one.histories.keys, sought.tolist(), strict=False)}
+        if not any(before.holds(values) for before in found):
+            growth = one.histories.squares(sought) - least
+            found.append(ToldValley(one.intervals(), correlation_of(one.slopes)[:p, :p], growth))
+            apart.append(one)
+    return apart, tuple(found)
+
+
+def _inside(histories: Histories, sought: Array, columns: Sequence[Array]) -> list[Array]:
+    """The rows during the contact: where no force is, no law errs."""
+    every = zip(histories.pressed(sought), columns, strict=True)
+    return [column[pressed[-column.size :]] for pressed, column in every]
+
+
+def _fitted(histories: Histories, sought: Array, names: Sequence[str], bands: Sequence[Array]) -> Iterator[FittedCurve]:
+    told = zip(names, histories.touches(sought), bands, strict=True)
+    left_of, rows_of = histories.differences(sought), histories.pressed(sought)
+    known = zip(histories.samples, histories.noises, left_of, rows_of, strict=True)
+    for (name, touch, band), (one, noise, left, pressed) in zip(told, known, strict=True):
+        deviation, error = _noise_and_error(left, pressed, noise.colour)
+        found = (deviation, noise.colour, one.peak, error / one.peak, band)
+        yield FittedCurve(name, one.time, one.force, one.force - left, touch, *found)
+
+
+def _noise_and_error(left: Array, pressed: NDArray[np.bool_], colour: Array) -> tuple[float, float]:
+    """Deviation of the noise, and what is left of the law's beside it, N.
+
+    White noise is in the power of the rows alone, and not in what neighbours have alike; silence tells a coloured one.
+    """
+    (power, alike), silence = autocovariance(left[pressed], 1).tolist(), left[~pressed]
+    noise = power - alike if not colour.size else float(np.mean(silence**2)) if silence.size else power
+    return math.sqrt(min(noise, power)), math.sqrt(max(power - noise, 0.0))
+
+
+def _warnings(parameters: Mapping[str, Interval], valleys: Sequence[ToldValley]) -> Iterator[str]:
+    names, correlation = list(parameters), valleys[0].correlation
+    for name, one in parameters.items():
+        if one.unfound:
+            yield f"{name}: the search for its {' and '.join(one.unfound)} end did not converge; hold another key"
+        elif one.low is None and one.high is None:
+            yield f"{name}: the curves do not tell it; hold it, or add a history at another velocity"
+        elif one.low is None or one.high is None:
+            side = "below" if one.low is None else "above"
+            yield f"{name}: its interval is open {side}: no value there is excluded"
+    for i, j in combinations(range(len(names)), 2):
+        if abs(correlation[i, j]) > CORRELATED:
+            told = f"{names[i]} and {names[j]} are correlated by {correlation[i, j]:+.3f}"
+            yield f"{told}: hold one, or rely on both together"
+    for other in valleys[1:]:
+        values = ", ".join(f"{name} = {one.value:.4g}" for name, one in other.parameters.items())
+        cure = "the intervals hold both, and a history at another velocity decides"
+        yield f"{values} tell the curves about as well (sum of squares {other.growth:+.2g}): {cure}"
+
+
+def _of_residuals(tested: Whiteness, widened: float, curves: Sequence[FittedCurve]) -> Iterator[str]:
+    if not tested.noise:
+        worst = max(curves, key=lambda curve: curve.error)
+        told = f"what is left is no noise (Ljung-Box, p = {tested.probability:.1g}): the model errs by about"
+        cause = f"{told} {100.0 * worst.error:.2g} % of the peak, or the noise is coloured (--corner)"
+        yield f"{cause}; the intervals are {math.sqrt(widened):.2g} times as wide, and not to be trusted"
+
+
+def _of_the_sample(posterior: Posterior | None, valleys: Sequence[ToldValley]) -> Iterator[str]:
+    if posterior is not None and posterior.effective < ENOUGH:
+        draws = len(posterior.values)
+        more = f"{1.5 * draws * ENOUGH / posterior.effective:.1g}"
+        told = f"{draws} draws tell as much as {posterior.effective:.0f} independent ones"
+        yield f"{told}, and the ends of a band need {ENOUGH}; cure: --sample {float(more):.0f}"
+    if posterior is not None and len(valleys) > 1:
+        yield "walkers hardly pass from one valley to another: how many draws lie in each says nothing"
+
+
+def _of_the_reference(found: ByReference | None, parameters: Mapping[str, Interval]) -> Iterator[str]:
+    if found is None:
+        return
+    for name, one in found.parameters.items():
+        known = parameters[name]
+        if known.low is not None and known.high is not None and 2.0 * one.bar > known.high - known.low:
+            moved = f"{name}: the finite elements' bars can move it by {one.bar:.2g}"
+            yield f"{moved}, more than half of its interval; cure: a smaller --tolerance"
+    if found.others:
+        yield f"finite elements corrected the likeliest of {found.others + 1} valleys alone"

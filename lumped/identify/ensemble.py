@@ -1,0 +1,150 @@
+"""Draws from a density by an ensemble of walkers: the stretch move of Goodman and Weare, 10.2140/camcos.2010.5.65.
+
+A walker moves along the line through another one, so that scaling or shearing all places changes nothing. The halves
+of the ensemble move in turn, each along lines through the other, doi 10.1086/670067.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lumped.fit.noise import autocovariance
+from lumped.identify.histories import Histories
+from lumped.identify.profile import LikelihoodProfile
+from lumped.identify.record import LEVEL, Posterior
+from lumped.numbers import Array
+
+STRETCH = 2.0  # the authors' choice: a move lands between 1/2 and 2 of the distance
+FADED = 0.05  # a correlation below which a walker has forgotten where it was
+WALKERS, LEAST_BURNED = 4, 40  # work: walkers over what is sought, and four more; steps to forget the start
+FARTHEST, DEEPEST = 1.0, -10.0  # of a start: from its valley, and the logarithm of its density there at least
+SEED = 1  # of the draws: the same sample every day
+BANDS = 200  # work: draws of which the bands of the force are made
+
+Density = Callable[[Array], float]
+Places = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Draws:
+    """Places (steps, walkers, size) with the logarithms of their density, (steps, walkers); share of moves taken."""
+
+    places: Array
+    logarithms: Array
+    taken: float
+
+    @property
+    def rows(self) -> Array:
+        """All places, (steps walkers, size), step by step."""
+        return self.places.reshape(-1, self.places.shape[2])
+
+    @property
+    def effective(self) -> float:
+        """As many independent draws would tell the means as well: the worst coordinate's number of draws over
+        1 + 2 sum rho_k, the correlation rho_k of a walker with itself k steps later.
+        """
+        steps, walkers, size = self.places.shape
+        return float(min(steps * walkers / self._memory(i) for i in range(size)))
+
+    def _memory(self, coordinate: int) -> float:
+        series = self.places[:, :, coordinate] - self.places[:, :, coordinate].mean()
+        covariance = np.mean([autocovariance(one, len(series) - 1) for one in series.T], axis=0)
+        if not covariance[0] > 0.0:
+            return 1.0
+        correlation = covariance[1:] / covariance[0]
+        faded = np.flatnonzero(correlation < FADED)
+        kept = correlation[: faded[0] if faded.size else None]
+        return 1.0 + 2.0 * float(kept.sum())
+
+
+def draws_of(density: Density, start: Array, steps: int, burned: int, rng: np.random.Generator) -> Draws:
+    """So many steps of walkers from their start, (walkers, size), after those that are `burned` to forget it.
+
+    `density`: its logarithm at a place, -inf where there is none. There are as many walkers as twice the coordinates
+    and two, or more, an even number.
+    """
+    walkers, size = start.shape
+    here, logs = start.copy(), np.array([density(place) for place in start])
+    places, kept, taken = np.empty((steps, walkers, size)), np.empty((steps, walkers)), 0
+    halves = np.arange(walkers // 2), np.arange(walkers // 2, walkers)
+    for step in range(-burned, steps):
+        for moving, others in (halves, halves[::-1]):
+            moved = _moved(density, here, logs, moving, others, rng)
+            taken += moved if step >= 0 else 0
+        if step >= 0:
+            places[step], kept[step] = here, logs
+    return Draws(places, kept, taken / (steps * walkers))
+
+
+def _moved(density: Density, here: Array, logs: Array, moving: Places, others: Places, rng: np.random.Generator) -> int:
+    """Move one half where chance takes it: z with the density 1/sqrt(z), taken by z^(size - 1) p'/p; how many."""
+    size, count = here.shape[1], moving.size
+    z = (1.0 + (STRETCH - 1.0) * rng.random(count)) ** 2 / STRETCH
+    through, chance = here[rng.choice(others, count)], np.log(rng.random(count))
+    there = through + z[:, None] * (here[moving] - through)
+    found = np.array([density(place) for place in there])
+    taken = chance < (size - 1) * np.log(z) + found - logs[moving]
+    here[moving[taken]], logs[moving[taken]] = there[taken], found[taken]
+    return int(taken.sum())
+
+
+def posterior_of(
+    histories: Histories, profiles: Sequence[LikelihoodProfile], widened: float, count: int
+) -> tuple[Posterior, list[Array]]:
+    """At least so many draws of what is sought, and of every curve the band of the law's force, N, (2, n).
+
+    The likelihood has the noise's deviation integrated out, as the bound of the profiles has, S^(-(n - p)/2); the prior
+    is flat where the search looks: in the logarithm of what is above zero. `widened`: see the record.
+    """
+    least = histories.squares(profiles[0].valley.sought)
+    every = np.array([one.valley.limits for one in profiles])
+    low, high = every[:, 0].min(axis=0), every[:, 1].max(axis=0)
+
+    def density(place: Array) -> float:
+        if np.any(place < low) or np.any(place > high):
+            return -math.inf
+        alone = replace(histories, known={})  # thousands of impacts would fill the memory
+        return -0.5 * histories.freedom / widened * math.log(max(alone.squares(place), least) / least)
+
+    rng, walkers = np.random.default_rng(SEED), WALKERS * histories.size + 4
+    start = np.array([_begun(density, profiles[i % len(profiles)], low, high, rng) for i in range(walkers)])
+    steps = -(-count // walkers)
+    burned = max(LEAST_BURNED, steps // 2)
+    draws = draws_of(density, start, steps, burned, rng)
+    return _in_units(histories, draws, walkers, burned), _bands(histories, draws)
+
+
+def _begun(density: Density, profile: LikelihoodProfile, low: Array, high: Array, rng: np.random.Generator) -> Array:
+    """A place drawn from the linearized likelihood of a valley, nearer where that is no place of the real one."""
+    _, singular, axes = np.linalg.svd(profile.slopes, full_matrices=False)
+    step = axes.T @ (rng.normal(size=singular.size) * np.minimum(1.0 / np.maximum(singular, 1e-300), FARTHEST))
+    best = profile.valley.sought
+    while True:
+        place = np.clip(best + step, low, high)
+        if density(place) > DEEPEST or float(np.abs(step).max()) < 1e-9:  # rounding: the valley itself
+            return np.asarray(place)
+        step = 0.5 * step
+
+
+def _in_units(histories: Histories, draws: Draws, walkers: int, burned: int) -> Posterior:
+    rows, p = draws.rows, len(histories.keys)
+    values = [[key.at(place) for key, place in zip(histories.keys, row, strict=False)] for row in rows[:, :p].tolist()]
+    touches = np.array([histories.touches(row) for row in rows])
+    logarithms = draws.logarithms.ravel()
+    return Posterior(np.array(values), touches, logarithms, walkers, burned, draws.taken, draws.effective)
+
+
+def _bands(histories: Histories, draws: Draws) -> list[Array]:
+    """Of every curve where the law's force lies at the level of the intervals, N, (2, n)."""
+    some = draws.rows[np.linspace(0, len(draws.rows) - 1, min(BANDS, len(draws.rows))).astype(int)]
+    forces = [list[Array]() for _ in histories.samples]
+    for row in some:
+        left = replace(histories, known={}).differences(row)
+        for column, one, rest in zip(forces, histories.samples, left, strict=True):
+            column.append(one.force - rest)
+    return [np.quantile(column, [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL], axis=0) for column in forces]

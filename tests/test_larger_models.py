@@ -1,0 +1,72 @@
+"""The larger models of a ledger: measured as exact laws find them, and chosen no larger than a scene needs."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+
+from fe_contact.cli import main
+from fe_contact.reference import plan
+from fe_contact.studies.larger_models import measure, sufficient
+from lumped import Scene, laws, simulate
+
+BULK = {"target.material.constant": "bulk"}
+
+
+def test_what_is_measured_is_what_an_exact_law_finds() -> None:
+    """A half-space knows its material by E*(t) alone, so that Ting's law follows either constant."""
+    scene = Scene.load("steel-ball-sls", {"target.material.R2": 1e-4})
+    answers = [simulate(laws.get("ting").of(one), one, 1e-5) for one in (scene, scene.changed(BULK))]
+    peaks = [answer.quantities["peak_force"].value or math.nan for answer in answers]
+    (found,) = measure(scene, {"tolerance": 1e-2})
+    assert found.setting == "target.material.constant=bulk"
+    assert found.change is not None
+    assert found.error is not None
+    assert abs(found.change - (peaks[1] / peaks[0] - 1.0)) <= found.error < 0.05 * abs(found.change)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-2, 1e-1])
+def test_the_sufficient_model_takes_what_exceeds_the_tolerance_and_nothing_else(tolerance: float) -> None:
+    given = {"tolerance": tolerance}
+    scene = Scene.load("polymer-cone", {"target.material.E2": 2e6, "model.profile": "parabola"})
+    found = sufficient(scene, given)
+    before = {entry.effect for entry in plan(scene, given).ledger if entry.exceeds(tolerance)}
+    after = {entry.effect for entry in plan(found.scene, given).ledger if entry.exceeds(tolerance)}
+    assert after == set(found.left)
+    assert {entry.effect for entry in found.taken} <= before
+    assert found.scene.model.inertia is (tolerance == 1e-3)
+    assert (found.scene.geometry.material.constant == "bulk") is (tolerance < 1e-1)
+
+
+def test_a_scene_that_needs_nothing_stays_as_it_is() -> None:
+    scene = Scene.load("steel-ball")
+    found = sufficient(scene, {})
+    assert found.scene is scene
+    assert str(found) == "the model is the scene's own"
+
+
+def test_an_effect_without_a_model_is_named() -> None:
+    found = sufficient(Scene.load("polymer-punch"), {"tolerance": 0.03})
+    assert found.left == {"target inertia": "about 0.05, no larger model here"}
+
+
+def test_run_says_which_effects_it_takes_in(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["run", "polymer-sphere", "--method", "ting", "--tolerance", "1e-2", "--quiet"]
+    assert main([*words, "--out", str(tmp_path / "given")]) == 0
+    assert "takes in" not in capsys.readouterr().out
+    assert main([*words, "--out", str(tmp_path / "larger"), "--model", "sufficient"]) == 0
+    assert (
+        "takes in constant nu against constant bulk modulus (target.material.constant=bulk)" in capsys.readouterr().out
+    )
+    results = [json.loads((tmp_path / name / "result.json").read_text()) for name in ("given", "larger")]
+    assert [result["model_sufficient"] for result in results] == [False, True]
+
+
+def test_plan_measures_where_asked(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["plan", "polymer-sphere", "--tolerance", "1e-2", "--measure", "--json"]) == 0
+    (found,) = json.loads(capsys.readouterr().out)["measured"]
+    assert found["setting"] == "target.material.constant=bulk"
+    assert -found["estimate"] < found["change"] < 0.0

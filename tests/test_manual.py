@@ -1,0 +1,169 @@
+"""The manual: built whole, without the network, with no link into nothing; and every example in it runs."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import tomllib
+from collections.abc import Callable, Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from fe_contact.cli import main, parser
+from fe_contact.commands import COMMANDS
+from fe_contact.manual.schemas import RESULT
+from fe_contact.manual.site import HERE, MENU
+from lumped.paper.claims import misprints
+from lumped.shapes import SHAPES
+
+FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+PAGES = [name for group in MENU.values() for name in group]
+CHEAPEST_FIRST = (
+    "adding",
+    "choosing",
+    "start",
+    "exponents",
+    "experiment",
+    "pounding",
+    "identify",
+    "sweeps",
+    "transfer",
+)
+
+
+class Example(NamedTuple):
+    page: str
+    kind: str
+    text: str
+
+    @property
+    def lines(self) -> list[list[str]]:
+        """Of a shell, by words."""
+        return [shlex.split(line) for line in self.text.replace("\\\n", " ").splitlines() if line.strip()]
+
+
+def examples() -> Iterator[Example]:
+    for path in sorted(HERE.glob("*.md")):
+        for kind, text in FENCE.findall(path.read_text(encoding="utf-8")):
+            yield Example(path.stem, kind, text)
+
+
+class Collected(HTMLParser):
+    """Anchors and links of a page, and what it loads."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.anchors: list[str] = []
+        self.links: list[str] = []
+        self.loads: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        known = {name: value or "" for name, value in attrs}
+        self.anchors += [known["id"]] if "id" in known else []
+        if tag == "a":
+            self.links.append(known["href"])
+        elif "src" in known or tag == "link":
+            self.loads.append(known.get("src") or known["href"])
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    where = tmp_path_factory.mktemp("manual")
+    assert main(["manual", "--out", str(where), "--quiet"]) == 0
+    return where
+
+
+@pytest.fixture(scope="module")
+def collected(site: Path) -> dict[str, Collected]:
+    return {path.name: Collected(path.read_text(encoding="utf-8")) for path in site.glob("*.html")}
+
+
+def test_every_page_is_in_the_menu_once_and_built(site: Path) -> None:
+    assert len(PAGES) == len({*PAGES})
+    assert {path.stem for path in HERE.glob("*.md")} <= {*PAGES}
+    assert {path.stem for path in site.glob("*.html")} == {*PAGES, "index"}
+    assert {page for page, _, _ in examples()} <= {*CHEAPEST_FIRST} | {
+        example.page for example in examples() if example.kind == "text"
+    }
+
+
+def test_no_link_leads_into_nothing_and_nothing_is_loaded_from_elsewhere(
+    site: Path, collected: dict[str, Collected]
+) -> None:
+    for page, found in collected.items():
+        assert all((site / name).is_file() for name in found.loads), page
+        assert len(found.anchors) == len({*found.anchors}), page
+        for link in found.links:
+            file, _, anchor = link.partition("#")
+            if not link.startswith("https://"):
+                assert file in collected, (page, link)
+                assert not anchor or anchor in collected[file].anchors, (page, link)
+
+
+def test_every_section_can_be_found(site: Path, collected: dict[str, Collected]) -> None:
+    text = (site / "sections.js").read_text(encoding="utf-8")
+    sections = json.loads(text.removeprefix("const SECTIONS = ").removesuffix(";\n"))
+    for section in sections:
+        page, _, anchor = section["url"].partition("#")
+        assert anchor in collected[page].anchors
+    assert sum(len(one.anchors) for one in collected.values()) - 2 * len(PAGES) == len(sections)
+    assert any("Ting 1966" in section["text"] for section in sections)
+
+
+def test_what_is_written_of_the_code_names_all_of_it(site: Path) -> None:
+    keys, commands, errata = (
+        (site / f"{name}.html").read_text(encoding="utf-8") for name in ("keys", "commands", "errata")
+    )
+    assert all(f"<code>{name}</code>" in keys for name in RESULT)
+    for shape in SHAPES.members.values():
+        for table in shape.sets:
+            assert all(key.meaning in keys for key in table.values())
+    assert all(f">{name}</h2>" in commands for name in COMMANDS.names)
+    assert errata.count("<tr>") == len(misprints()) + 1
+
+
+def test_every_example_is_one() -> None:
+    """Its options and keys are there: a parser takes every command, a file has the tables of its kind."""
+    found = [*examples()]
+    for example in found:
+        if example.kind == "sh":
+            for program, *arguments in example.lines:
+                assert program == "fe-contact"
+                parser().parse_args(arguments)
+        elif example.kind == "python":
+            compile(example.text, example.page, "exec")
+        elif example.kind == "toml":
+            assert tomllib.loads(example.text)
+        else:
+            assert example.kind == "text", f"{example.page}: a block of no kind"
+    assert {example.kind for example in found} == {"sh", "python", "toml", "text"}
+
+
+def test_what_the_manual_tells_to_do_can_be_done(
+    empty: Path,
+    campaign_size: Callable[[int], int],
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Page by page, each in a folder of its own, block after block; all of them with --full."""
+    for page in CHEAPEST_FIRST[: campaign_size(30)]:
+        folder = empty / page
+        folder.mkdir()
+        monkeypatch.chdir(folder)
+        for example in examples():
+            if example.page == page:
+                done(example)
+                capsys.readouterr()
+
+
+def done(example: Example) -> None:
+    if example.kind == "sh":
+        for _, *arguments in example.lines:
+            assert main(arguments) == 0, arguments
+    elif example.kind == "python":
+        exec(compile(example.text, example.page, "exec"), {"__name__": "manual"})

@@ -1,0 +1,360 @@
+"""The report: what it says follows from what was found, it is made again byte by byte, and a browser can show it."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import runpy
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fe_contact.cli import main
+from fe_contact.studies.references import Move
+from fe_contact.studies.validate import _scenes_chart, _study, scenes
+from fe_contact.studies.validate._page import inlined, written
+from fe_contact.studies.validate._scenes import SceneAnswer, SceneCurve, answered, thinned
+from fe_contact.studies.validate.base import (
+    DIFFERS,
+    FAILED,
+    LARGER,
+    NOTHING_MEASURED,
+    VERIFIED,
+    Made,
+    ReportPart,
+    Request,
+    parts,
+)
+from lumped.errors import NotReached
+from lumped.result.result import Quantity
+
+TESTS = Path(__file__).parent
+BROWSER = runpy.run_path(str(TESTS / "browser.py"))
+WAITS_FOR_NOBODY = BROWSER["program"]() is None and not os.environ.get("CI")
+
+
+def made_up(name: str, ratio: float, **changed: Any) -> SceneAnswer:
+    """Finite elements that differ by so much of their bar from an exact force."""
+    time = np.linspace(0.0, 1e-3, 41)
+    force = 5.0 * np.sin(np.pi * time / time[-1])
+    curve = SceneCurve(time, force, np.full_like(time, 0.05))
+    differences = tuple(
+        Move(name, quantity, 1.0, 1.0 + 0.01 * share, 0.01, share)
+        for quantity, share in (("peak_force", ratio), ("duration", 0.5 * ratio), ("restitution", 0.1))
+    )
+    quantities = {"peak_force": Quantity(5.0, 0.05, "N"), "duration": Quantity(1e-3, 1e-6, "s")}
+    found = SceneAnswer(name, "fe", 1e-3, quantities, "ting", differences)
+    return replace(found, curves={"fe": curve, "ting": replace(curve, force=1.01 * force)}, **changed)
+
+
+ANSWERS = [
+    made_up("soft-ball", 0.25),
+    made_up("<stiff> & ball", 0.75, larger="finite strain", estimate=0.08, key="model.kinematics"),
+    SceneAnswer("lost-ball", failure="no answer"),
+]
+
+
+def broken(asked: Request) -> Made:
+    raise NotReached("did not converge <here>")
+
+
+def two_parts(answers: list[SceneAnswer], asked: list[str]) -> dict[str, ReportPart]:
+    """The section of scenes with such answers, which notes that it was made, and one that fails."""
+
+    def make(request: Request) -> Made:
+        asked.append("scenes")
+        return scenes.of_answers(answers, ["long-waves"])
+
+    failing = ReportPart(99, "Broken", "Does it?", "false", broken)
+    return {"scenes": replace(scenes.MEMBER, make=make), "broken": failing}
+
+
+CHART = '<svg width="518pt" viewBox="0 0 518 200"><path id="a" d="M 0 0 L 518 200"/></svg>'
+Report = tuple[Path, int, list[str]]
+Make = Callable[..., Report]
+
+
+@pytest.fixture
+def make(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
+    """The command, on made-up answers: the report's folder, the exit code, which sections were made."""
+
+    def plot(found: object, where: Path) -> None:
+        (where / "scenes.svg").write_text(CHART, encoding="utf-8")
+
+    def made(name: str = "report", answers: list[SceneAnswer] = ANSWERS, *options: str) -> Report:
+        asked = list[str]()
+        monkeypatch.setattr(_scenes_chart, "plot_scenes", plot)
+        monkeypatch.setattr(_study, "parts", lambda: two_parts(answers, asked))
+        return tmp_path / name, main(["validate", "--out", str(tmp_path / name), "--quiet", *options]), asked
+
+    return made
+
+
+def content(folder: Path) -> dict[str, bytes]:
+    """Every file of a report but the one that tells when and where it was made."""
+    found = (path for path in folder.rglob("*") if path.is_file() and path.name != "provenance.json")
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in found}
+
+
+def test_the_first_screen_says_what_was_found(make: Make, capsys: pytest.CaptureFixture[str]) -> None:
+    folder, code, _ = make()
+    said = json.loads((folder / "validate.json").read_text(encoding="utf-8"))
+    words = [line["word"] for line in said["headlines"]]
+    assert code == 3, "a part failed"
+    assert words == [VERIFIED, VERIFIED, LARGER, FAILED]
+    first, worst, larger, failed = (line["text"] for line in said["headlines"])
+    assert first.startswith("2 of 2 scenes")
+    assert "0.75 of its bar" in worst
+    assert "6 numbers" in worst
+    assert "<stiff> & ball" in worst
+    assert "1 of 3 scenes need a larger model" in larger
+    assert "did not converge" in failed
+    page = (folder / "index.html").read_text(encoding="utf-8")
+    assert "did not converge &lt;here&gt;" in page
+    assert NOTHING_MEASURED.replace("'", "&#39;") in page
+    out, err = capsys.readouterr()
+    assert first in out
+    assert "broken failed" in err
+
+
+def test_nothing_is_verified_that_lies_beyond_its_bar(make: Make) -> None:
+    folder, _, _ = make("apart", [made_up("soft-ball", 1.25), made_up("ball", 0.5)])
+    lines = json.loads((folder / "validate.json").read_text(encoding="utf-8"))["headlines"]
+    assert [line["word"] for line in lines][:2] == [DIFFERS, DIFFERS]
+    assert "1 of 2 scenes" in lines[0]["text"]
+    assert "soft-ball" in lines[0]["text"]
+    assert "1.25 of its bar" in lines[1]["text"]
+
+
+def test_an_answer_that_only_one_side_has_is_apart(make: Make) -> None:
+    one = made_up("ball", 0.5)
+    undefined = replace(one.differences[0], moved=None)
+    folder, _, _ = make("undefined", [replace(one, differences=(undefined, *one.differences[1:]))])
+    lines = json.loads((folder / "validate.json").read_text(encoding="utf-8"))["headlines"]
+    assert lines[0]["word"] == DIFFERS
+    assert "one side has none: ball, peak force" in lines[1]["text"]
+    assert make("undefined", [], "--resume")[2] == [], "and it can be read again"
+
+
+def test_made_twice_it_is_the_same_and_resumed_it_makes_the_rest_alone(make: Make) -> None:
+    folder, _, asked = make("one")
+    known = content(folder)
+    assert asked == ["scenes"]
+    assert content(make("two")[0]) == known
+    assert make("one", ANSWERS, "--resume")[2] == [], "it is there"
+    assert content(folder) == known
+    (folder / "sections" / "scenes" / "section.json").unlink()
+    assert make("one", ANSWERS, "--resume")[2] == ["scenes"], "it is not whole"
+    assert content(folder) == known
+    assert make("one", ANSWERS, "--resume", "--quick")[2] == ["scenes"], "another question"
+    assert make("one", ANSWERS)[2] == ["scenes"], "all anew"
+    assert content(folder) == known
+
+
+def test_interrupted_it_leaves_the_older_report_whole(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder, _, _ = make()
+    known = content(folder)
+
+    def stopped(found: object, where: Path) -> None:
+        (where / "scenes.csv").write_text("half", encoding="utf-8")
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(scenes, "write", stopped)
+        assert make()[1] == 130
+    left = content(folder)
+    assert {name: left[name] for name in left if name != "sections/scenes/asked.json"} == {
+        name: known[name] for name in known if name != "sections/scenes/asked.json"
+    }
+    make("report", ANSWERS, "--resume")
+    assert content(folder) == known
+
+
+def test_an_unknown_section_is_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["validate", "--sections", "scene", "--out", str(tmp_path / "out")]) == 2
+    assert "scenes" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_every_section_asks_and_can_be_made_alone() -> None:
+    found = parts()
+    assert next(iter(found)) == "scenes"
+    assert len({one.rank for one in found.values()}) == len(found)
+    for part in found.values():
+        assert part.question.endswith("?")
+        assert part.command.startswith("fe-contact ")
+
+
+def test_an_exact_answer_and_a_published_one_are_found_for_a_packaged_scene() -> None:
+    found = answered("rod-absorbing")
+    assert found.exact == "rod_waves"
+    assert found.ratio <= 1.0
+    assert {"fe", "rod_waves"} <= found.curves.keys()
+    assert found.published
+    assert all(move.agrees for move in found.published)
+
+
+@given(st.lists(st.floats(-10.0, 10.0), min_size=2, max_size=60), st.floats(1e-3, 5.0))
+def test_a_thinned_curve_misses_no_row_by_more_than_is_allowed(force: list[float], allowed: float) -> None:
+    time, column = np.arange(len(force), dtype=float), np.array(force)
+    kept = thinned(time, column, allowed)
+    assert {kept[0], kept[-1]} == {0, len(force) - 1}
+    assert np.abs(np.interp(time, time[kept], column[kept]) - column).max() <= allowed * (1.0 + 1e-12)
+
+
+@given(st.floats(-1e12, 1e12), st.floats(1e-9, 1.0))
+def test_a_number_with_its_bar_reads_back_within_a_tenth_of_it(value: float, share: float) -> None:
+    error = share * (abs(value) or 1.0)
+    text = written(value, error).replace("−", "-")
+    raised = dict(zip("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789", strict=True))
+    power = re.search(r"·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)$", text)
+    shown, bar = text.partition("·")[0].strip("()").split(" ± ")
+    scale = 10.0 ** int("".join(map(raised.__getitem__, power[1]))) if power else 1.0
+    assert abs(float(shown) * scale - value) <= max(0.1 * error, 1e-6 * abs(value))
+    assert float(bar) * scale == pytest.approx(error, rel=0.5)
+
+
+def test_two_figures_of_one_page_share_no_name() -> None:
+    inner = '<path id="a" d="M 0.123456 1"/><use href="#a"/><g clip-path="url(#a)"/>'
+    svg = f'<?xml?><svg width="3pt" viewBox="0 0 3 3">{inner}</svg>'
+    one, other = (inlined(svg, name, 'what "it" shows') for name in ("one", "two"))
+    assert set(re.findall(r'id="([^"]+)"', one)) == {"one-a"}
+    assert 'href="#one-a"' in one
+    assert "url(#one-a)" in one
+    assert "one-a" not in other
+    assert 'd="M 0.12 1"' in one
+    assert "&quot;it&quot;" in one
+
+
+class Links(HTMLParser):
+    """What a page points at, loads, and names."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.links, self.loaded, self.names = list[str](), list[str](), list[str]()
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        found = dict(attributes)
+        if "id" in found:
+            self.names.append(found["id"] or "")
+        if tag == "a":
+            self.links.append(found.get("href") or "")
+        self.loaded += [found[key] or "" for key in ("src", "srcset", "data") if key in found]
+        self.loaded += [found["href"] or ""] if tag == "link" else []
+
+
+def test_the_page_needs_nothing_but_itself_and_its_links_lead_somewhere(make: Make) -> None:
+    folder, _, _ = make()
+    page = (folder / "index.html").read_text(encoding="utf-8")
+    found = Links()
+    found.feed(page)
+    assert all(one.startswith("data:") for one in found.loaded)
+    assert not re.search(r"@import|url\((?!#)", page)
+    assert len(found.names) == len(set(found.names)), "a name twice"
+    assert found.links
+    for link in found.links:
+        assert link[1:] in found.names if link.startswith("#") else (folder / link).is_file(), link
+
+
+# in a browser
+
+
+@pytest.fixture
+def browser() -> Iterator[Any]:
+    with BROWSER["Browser"]() as one:
+        yield one
+
+
+FIGURES = """
+[...document.querySelectorAll(".canvas svg, .chart, .gallery svg")].map(one => {
+  const box = one.getBoundingClientRect(); return box.width > 40 && box.height > 15; })
+"""
+RATIOS = "[...document.querySelectorAll('.listing')][0].querySelectorAll('tbody tr:not([hidden])')"
+AXE = """
+axe.run(document, { resultTypes: ["violations"] }).then(found => found.violations
+  .filter(one => one.impact === "serious" || one.impact === "critical")
+  .map(one => one.id + ": " + one.nodes.map(node => node.target + " " + node.failureSummary).join("; ")))
+"""
+
+
+@pytest.mark.skipif(WAITS_FOR_NOBODY, reason="no Chromium here; on CI, where CI is set, it has to be there")
+def test_a_browser_shows_it(make: Make, browser: Any) -> None:
+    folder, _, _ = make()
+    for scheme in ("light", "dark"):
+        browser.prefer(scheme)
+        for width in BROWSER["WIDTHS"].values():
+            browser.resize(width)
+            browser.open(folder / "index.html")
+            seen = browser.run(FIGURES)
+            assert len(seen) == 4
+            assert all(seen), width
+            assert browser.run("document.documentElement.scrollWidth <= innerWidth"), f"wider than {width}"
+        browser.run((TESTS / "vendor" / "axe.min.js").read_text(encoding="utf-8") + ";0")
+        assert browser.run(AXE) == []
+    sorts_and_filters(browser)
+    switches(browser)
+    reads_values_off(browser)
+    prints(browser)
+    assert browser.said == []
+
+
+def sorts_and_filters(browser: Any) -> None:
+    """By its name a column is sorted, by the keyboard too; words leave the rows that hold them all."""
+    names = f"[...{RATIOS}].map(row => row.cells[0].textContent)"
+    head = "document.querySelectorAll('.listing th button')[7]"
+    browser.run(f"{head}.focus()")
+    browser.press("Enter")
+    assert browser.run(f"{head}.parentElement.ariaSort") == "ascending"
+    assert browser.run(names) == ["soft-ball", "<stiff> & ball", "lost-ball"], "empty cells last"
+    browser.press("Enter")
+    assert browser.run(names) == ["<stiff> & ball", "soft-ball", "lost-ball"]
+    words = "document.querySelector('.listing input').value = '%s';"
+    heard = "document.querySelector('.listing input').dispatchEvent(new Event('input'));"
+    assert browser.run(words % "ball SOFT" + heard + names) == ["soft-ball"]
+    assert browser.run("document.querySelector('.listing output').textContent") == "1 row"
+    assert len(browser.run(words % "" + heard + names)) == 3
+
+
+def switches(browser: Any) -> None:
+    """Light and dark, and curves on and off."""
+    ground = "getComputedStyle(document.body).backgroundColor"
+    before = browser.run(ground)
+    browser.run("document.getElementById('theme').focus()")
+    browser.press("Enter")
+    assert browser.run(ground) != before
+    drawn = "document.querySelectorAll('.chart .curve').length"
+    assert browser.run(drawn) == 2
+    assert browser.run(f"document.querySelectorAll('.curves input')[1].click(), {drawn}") == 1
+
+
+def reads_values_off(browser: Any) -> None:
+    """By arrow keys and by pointing: the straight line between rows; zoomed, the axis is shorter."""
+    browser.run("document.querySelector('.zoom button:last-child').click(), document.querySelector('.plot').focus()")
+    for _ in range(50):
+        browser.press("ArrowRight")
+    told = browser.run("document.querySelector('.readout').textContent")
+    assert "t = 0.5000 ms" in told
+    assert re.search(r"finite elements 5\.0000 ± 0\.050 N", told)
+    ticks = "[...document.querySelectorAll('.chart text')].map(one => one.textContent)"
+    browser.press("+")
+    assert browser.run(ticks)[0] == "250", "half of the time, around the cursor"
+    browser.press("Escape")
+    chosen = "document.querySelectorAll('.gallery button')[1].click(), document.querySelector('.scene').value"
+    assert browser.run(chosen) == "<stiff> & ball"
+    links = browser.run("[...document.querySelectorAll('.csv a')].map(one => one.getAttribute('href'))")
+    assert links[0].endswith("-fe.csv")
+
+
+def prints(browser: Any) -> None:
+    """On paper there are no buttons to press, and nothing is cut off."""
+    browser.prefer("light", "print")
+    assert browser.run("getComputedStyle(document.querySelector('header')).display") == "none"
+    assert browser.run("getComputedStyle(document.querySelector('.scroll')).maxHeight") == "none"
