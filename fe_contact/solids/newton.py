@@ -142,7 +142,8 @@ def balanced(
         return pressing.at(displacement, depth, stiffness, state)
 
     if touching is not None:
-        start = start + _step(pressing.at(start, depth, stiffness, state, touching))[1]
+        guess = pressing.at(start, depth, stiffness, state, touching)
+        start = start + _whole(guess, _step(guess)[1])
     here = at(start)
     if not np.isfinite(here.energy):
         raise EquilibriumLost(f"an element is inverted at depth {depth:.3g}")

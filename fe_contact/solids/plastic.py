@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fe_contact.assembly.forms import Array
-from fe_contact.solids.base import Answer, State
+from fe_contact.solids.base import PointAnswer, State
 from lumped.materials.plasticity import Yielding
 
 
@@ -15,7 +15,7 @@ class Plastic:
 
     material: Yielding
 
-    def respond(self, gradient: Array, state: State) -> Answer:
+    def respond(self, gradient: Array, state: State) -> PointAnswer:
         """See :class:`fe_contact.solids.base.Response`."""
         found = self.material.flowed(gradient, *state)
-        return Answer(found.stress, found.tangent, found.energy, (found.strain, found.amount))
+        return PointAnswer(found.stress, found.tangent, found.energy, (found.strain, found.amount))

@@ -101,9 +101,9 @@ def test_work_is_stored_or_plastic() -> None:
     """Along a straight path: the work of the stress, in many steps, is what is stored and what was worked."""
     law, path = material(10.0), np.linspace(0.0, 4.0 * STRENGTH / YOUNG, 4001)
     direction = np.array([0.3, 0.8, 0.1, -1.0, 0.4])
-    state, before, work = at_rest(), np.zeros(5), 0.0
+    state, before, work, gradient = at_rest(), np.zeros(5), 0.0, np.zeros(5)
     for step in np.diff(path):
-        gradient = (path[0] + step) * direction if not before.any() else gradient + step * direction
+        gradient = gradient + step * direction
         found = law.flowed(gradient, *state)
         work += 0.5 * float((before + found.stress) @ direction) * step
         state, before = (found.strain, found.amount), found.stress
