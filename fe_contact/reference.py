@@ -13,7 +13,7 @@ import numpy as np
 from fe_contact import large_strains
 from fe_contact.assembly.forms import check_compressible
 from fe_contact.budget import plan as statics
-from fe_contact.budget.budget import CAUSES, Solution, shares_of
+from fe_contact.budget.budget import CAUSES, Budget, Solution, shares_of
 from fe_contact.budget.certify import Certified, certify
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, ImpactWay, dominant, refine
@@ -242,6 +242,8 @@ def result_of(scene: Scene, solved: SolvedBy[Solution]) -> Result:
     found, recovery = solved.certified, None
     if isinstance(found, Several) and len(found.row) == 1 and recovers(scene, found.curve):
         recovery = indentation_left(found)
+    if isinstance(found, Budget) and scene.model.plasticity:
+        recovery = yielding.dent(found)
     if isinstance(found, Several) and scene.motion.impacts > 1:
         found = Row(found)
     by_quantity = {name: {cause: found.error(name, cause) for cause in CAUSES} for name in UNITS}

@@ -36,7 +36,7 @@ from fe_contact.settings import Given, Numerics, check_kind
 from fe_contact.steppers.steps import March, Strike, Work
 from lumped.errors import BadInput, Fault
 from lumped.result.model_ledger import Peak, model_ledger
-from lumped.result.result import LedgerEntry, meets
+from lumped.result.result import IndentationLeft, LedgerEntry, meets
 from lumped.scene.scene import Scene
 
 SECONDS = 12.0  # processor time of an impact to 1e-3, about
@@ -326,6 +326,18 @@ class Striking:
     def ledger(self, found: Budget) -> tuple[LedgerEntry, ...]:
         """What the model leaves out of the impact that was found."""
         return model_ledger(self.scene, Peak.of(found.quantities, found.history()))
+
+
+def dent(found: Budget) -> IndentationLeft:
+    """What is left for ever, with its bar: nothing recovers."""
+    left = found.curve.depth[-1:]
+    apart = [
+        one.factor * np.abs(one.first.depth[-1:] - one.second.depth[-1:])
+        for causes in found.changes.values()
+        for one in causes
+        if isinstance(one, Variation)
+    ]
+    return IndentationLeft(np.zeros(1), left, np.asarray(np.sum(apart, axis=0)), float(left[0]), ())
 
 
 def plan(scene: Scene, given: Given) -> Plan:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,8 +14,6 @@ from lumped import Result, Scene
 from lumped.errors import BadInput
 from lumped.indentation import Indentation
 from lumped.materials.plasticity import first_yield
-from lumped.result.history import History
-from lumped.result.model_ledger import FLOW, Peak, model_ledger
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import SceneReader
 from lumped.schema import Table
