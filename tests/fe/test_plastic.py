@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import restitution_laws as published
 
 import fe_contact
 from fe_contact.indentation import indent
@@ -14,6 +15,7 @@ from lumped import Result, Scene
 from lumped.errors import BadInput
 from lumped.indentation import Indentation
 from lumped.materials.plasticity import first_yield
+from lumped.result.model_ledger import FLOW
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import SceneReader
 from lumped.schema import Table
@@ -29,7 +31,7 @@ def modulus(nu: float) -> float:
 
 def yield_depth(nu: float) -> float:
     """Of a sphere, by Hertz, m."""
-    return RADIUS * (math.pi * first_yield(nu)[0] * STRENGTH / (2.0 * modulus(nu))) ** 2
+    return float(RADIUS * (math.pi * first_yield(nu)[0] * STRENGTH / (2.0 * modulus(nu))) ** 2)
 
 
 def yield_energy(nu: float) -> float:
@@ -76,6 +78,24 @@ def test_an_impact_balances_its_energy_and_leaves_a_dent() -> None:
     assert found.recovery is not None
     assert found.recovery.permanent == pytest.approx(found.history.depth[-1])
     assert 0.1 < found.recovery.permanent / (found.quantities["peak_depth"].value or 1.0) < 0.4
+    restitution = found.quantities["restitution"].value or 0.0
+    assert restitution == pytest.approx(published.jackson_green_marghitu(6.0), abs=0.03)
+    assert published.thornton(6.0) < restitution < published.johnson(6.0)
+
+
+@pytest.mark.tenth
+def test_forces_lie_among_the_published_ones_and_where_the_ledger_says() -> None:
+    """Sphere on half-space: the published ones flatten spheres; mean pressure rises from 1.08 Y to 2.8 to 3.0 Y."""
+    depth = np.array([1.5, 3.0, 6.0, 12.0, 24.0, 60.0])
+    found = pressed((depth * yield_depth(0.3)).tolist(), COARSE | {"steps": 20})
+    share = found.force / (4.0 / 3.0 * modulus(0.3) * math.sqrt(RADIUS) * found.depth**1.5)
+    for law in (published.jackson_green, published.kogut_etsion):
+        assert share == pytest.approx([law(one) for one in depth], rel=0.1)
+    lost, estimate = 1.0 - share, FLOW * np.log(depth) ** 2
+    assert lost == pytest.approx(estimate / (1.0 + estimate), rel=0.3, abs=5e-3)
+    mean = found.force / (np.pi * found.contact_radius**2 * STRENGTH)
+    assert np.all(np.diff(mean) > 0.0)
+    assert 2.4 < mean[-1] < 3.1
 
 
 @pytest.mark.tenth
@@ -92,7 +112,10 @@ def test_what_cannot_yield_here_is_refused_by_name() -> None:
         ({"model": {"gravity": 9.81}}, "model.gravity"),
         ({"model": {"kinematics": "finite"}}, "model.kinematics"),
         ({"motion": {"impacts": 2}}, "motion.impacts"),
-        ({"striker": {"shape": "cylinder", "length": 0.01}}, "striker.shape"),
+        (
+            {"striker": {"shape": "rounded_punch", "flat_radius": 0.01, "edge_radius": 0.01, "radius": 0.0}},
+            "striker.shape",
+        ),
     ):
         table = tables(mass=MASS, velocity=0.1)
         merged = {name: table.get(name, {}) | change.get(name, {}) for name in (*table, *change)}
