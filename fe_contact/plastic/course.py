@@ -34,10 +34,11 @@ SPARE = 1.15  # widest contact over the radius up to which undeformed surfaces o
 STRIDE = 6.0  # over the settings' steps: of a step in depth, over the depth
 SMALLEST = 1.5e-3  # contact over the widest one: no mesh is finer
 BISECTIONS = 60  # work
-ELEMENTS = 11.0  # along the contact radius, at tolerance 1e-3
+ELEMENTS = 9.0  # along the contact radius, at tolerance 1e-3
 RIM_ELEMENTS = 2.0  # the same under a rim, which the mesh is refined to
 ORDER = 3  # of the elements: they do not lock where flow keeps the volume
-STEPS = 40
+STEPS = 32
+COARSEST, FINEST = 0.6, 2.0  # times as many elements and steps as at 1e-3, which follow the root of the tolerance
 FEWEST_STEPS = 4  # of a run that tells anything
 DEFAULTS: Given = {
     "order": ORDER,
@@ -51,7 +52,7 @@ DEFAULTS: Given = {
 def settings(given: Given, rim: bool) -> Numerics:
     """Settings of a body that yields: what the user left open."""
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
-    finer = max(1.0, (DEFAULT_TOLERANCE / tolerance) ** 0.5)
+    finer = min(max((DEFAULT_TOLERANCE / tolerance) ** 0.5, COARSEST), FINEST)
     elements = (RIM_ELEMENTS if rim else ELEMENTS) * finer
     steps = 4 * round(STEPS * finer / 4)
     chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "steps": steps}

@@ -20,7 +20,7 @@ from lumped.scene.indenter import Indenter
 
 AROUND = 0.7  # in ln depth: a change counts as the error of its neighbours, for it may vanish where it changes sign
 DENSE = 80  # depths at which changes are read
-ROUNDS = 1  # of refinement
+ROUNDS = 0  # of refinement: settings follow the tolerance, and a finer mesh is four times as dear
 KEPT = ("tolerance", "elements_per_contact", "order", "penalty", "steps", "far_radius")
 
 

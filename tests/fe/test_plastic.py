@@ -22,6 +22,7 @@ from lumped.schema import Table
 
 YOUNG, STRENGTH, RADIUS, MASS = 2e11, 4e8, 0.005, 4e-3
 COARSE = {"elements_per_contact": 3.0, "steps": 12, "tolerance": 0.05}
+ROUNDED = {"shape": "rounded_punch", "flat_radius": 0.01, "edge_radius": 0.01}
 ABOUT = {"elements_per_contact": 5.0, "steps": 20, "tolerance": 0.01}
 
 
@@ -42,7 +43,7 @@ def yield_energy(nu: float) -> float:
 def tables(nu: float = 0.3, hardening: float = 0.0, **striker: Any) -> Table:
     material = {"law": "elastic", "E": YOUNG, "nu": nu, "yield_strength": STRENGTH, "hardening_modulus": hardening}
     return {
-        "striker": {"shape": "sphere", "radius": RADIUS} | striker,
+        "striker": {"shape": "sphere", "radius": RADIUS} | striker if "shape" not in striker else striker,
         "target": {"shape": "half_space", "material": material},
         "model": {"plasticity": True},
     }
@@ -101,7 +102,7 @@ def test_forces_lie_among_the_published_ones_and_where_the_ledger_says() -> None
 @pytest.mark.tenth
 def test_a_cone_is_self_similar() -> None:
     """No length: F ~ depth^2, whatever it flows."""
-    found = pressed([1e-6, 3e-6, 1e-5], ABOUT, shape="cone", angle=2.0, radius=None)
+    found = pressed([1e-6, 3e-6, 1e-5], ABOUT, shape="cone", angle=2.0)
     share = found.force / found.depth**2
     assert np.all(np.abs(share / share[-1] - 1.0) < (found.force_error / found.force) + 5e-3)
 
@@ -119,5 +120,7 @@ def test_what_cannot_yield_here_is_refused_by_name() -> None:
     ):
         table = tables(mass=MASS, velocity=0.1)
         merged = {name: table.get(name, {}) | change.get(name, {}) for name in (*table, *change)}
+        if change.get("striker") is ROUNDED:
+            del merged["striker"]["radius"]
         with pytest.raises(BadInput, match=key):
             Scene.from_dict(merged)
