@@ -33,11 +33,13 @@ FEWEST = 6  # forces of a smooth curve at least
 SPARE = 1.15  # widest contact over the radius up to which undeformed surfaces overlap: plastic flow piles up
 STRIDE = 6.0  # over the settings' steps: of a step in depth, over the depth
 SMALLEST = 1.5e-3  # contact over the widest one: no mesh is finer
+SHALLOWEST = 1e-6  # depth of the first step over the largest: no mesh is finer
+FORGOTTEN = 0.3  # of the shallowest depth, the first step of what flows from the touch on: the next ones forget it
 BISECTIONS = 60  # work
 ELEMENTS = 9.0  # along the contact radius, at tolerance 1e-3
 RIM_ELEMENTS = 2.0  # the same under a rim, which the mesh is refined to
 ORDER = 3  # of the elements: they do not lock where flow keeps the volume
-STEPS = 32
+STEPS = 32  # of a loading, over six e-folds of the depth or so, at tolerance 1e-3
 COARSEST, FINEST = 0.6, 2.0  # times as many elements and steps as at 1e-3, which follow the root of the tolerance
 FEWEST_STEPS = 4  # of a run that tells anything
 DEFAULTS: Given = {
@@ -137,7 +139,8 @@ class Course:
         strength = material.yield_strength
         assert strength is not None  # see plasticity_faults
         faint, firm = (_depth_of(profile, share * strength / modulus, deepest) for share in (FAINT, FIRM))
-        first = min(max(faint, 1e-6 * deepest), shallowest, deepest / 4.0)
+        shallow = min(shallowest, deepest / 4.0)
+        first = min(max(faint, SHALLOWEST * deepest), shallow) if faint > 0.0 else FORGOTTEN * shallow
         return cls(
             profile=profile,
             poisson=material.nu,

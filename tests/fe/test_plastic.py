@@ -113,10 +113,7 @@ def test_what_cannot_yield_here_is_refused_by_name() -> None:
         ({"model": {"gravity": 9.81}}, "model.gravity"),
         ({"model": {"kinematics": "finite"}}, "model.kinematics"),
         ({"motion": {"impacts": 2}}, "motion.impacts"),
-        (
-            {"striker": {"shape": "rounded_punch", "flat_radius": 0.01, "edge_radius": 0.01, "radius": 0.0}},
-            "striker.shape",
-        ),
+        ({"striker": ROUNDED}, "striker.shape"),
     ):
         table = tables(mass=MASS, velocity=0.1)
         merged = {name: table.get(name, {}) | change.get(name, {}) for name in (*table, *change)}

@@ -1,5 +1,5 @@
-"""Published laws of bodies that yield without hardening, over V* = V/V_y and w = depth/depth_y, both over those of first
-yield; each with how far finite elements of others lie from it.
+"""Published laws of bodies that yield without hardening, over V* = V/V_y and w = depth/depth_y, both over those of
+first yield; each with how far finite elements of others lie from it.
 """
 
 from __future__ import annotations
