@@ -20,6 +20,7 @@ from fe_contact.budget.plan import DEFAULTS, ELEMENTS, RIM_PENALTY
 from fe_contact.budget.refine import Finer, dominant, refine
 from fe_contact.budget.variation import factor
 from fe_contact.errors import faults_of
+from fe_contact.plastic import indent as plastic
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, check_kind
 from fe_contact.solids import pressing as solids
@@ -62,6 +63,8 @@ def indent(
     clock = Clock()
     with faults_of(indenter):
         check_kind(given, False, indenter.source)
+        if indenter.model.plasticity:
+            return plastic.indent(indenter, depths, given, progress)
         modulus, asked = indenter.modulus(instant), len(indenter.checked(depths))
         depth = _accompanied(np.array(depths), FEWEST_LARGE if indenter.model.finite else FEWEST)
         elastic, numerics = indenter.elastic(instant), settings(given, indenter.shape, indenter.model.finite)

@@ -79,7 +79,7 @@ def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
 
 @dataclass(frozen=True, eq=False)
 class KnownCurve:
-    """Slow ``pressed`` depths, and polynomials through ln F and ln a, from 0 at the least to 1 at the ``deepest``, m."""
+    """Slow ``pressed`` depths; polynomials through ln F and ln a, from 0 at the least to 1 at the ``deepest``, m."""
 
     pressed: Indentation
     deepest: float

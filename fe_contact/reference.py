@@ -13,7 +13,7 @@ import numpy as np
 from fe_contact import large_strains
 from fe_contact.assembly.forms import check_compressible
 from fe_contact.budget import plan as statics
-from fe_contact.budget.budget import CAUSES, Solution, shares_of
+from fe_contact.budget.budget import CAUSES, Budget, Solution, shares_of
 from fe_contact.budget.certify import Certified, certify
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, ImpactWay, dominant, refine
@@ -21,6 +21,7 @@ from fe_contact.budget.runs import operations
 from fe_contact.budget.several import Row, Several
 from fe_contact.errors import faults_of
 from fe_contact.march.impacts import UNFOLLOWED
+from fe_contact.plastic import impact as yielding
 from fe_contact.progress import Progress, silent
 from fe_contact.recovery import indentation_left, recovers
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, WaveNumerics, check_kind
@@ -73,6 +74,10 @@ Solved = SolvedBy[Certified]  # without waves
 
 def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
     """Force history of a scene by finite elements, with waves or without, and error bars; see :func:`solve`."""
+    if scene.model.plasticity:
+        with faults_of(scene):
+            flowed = _solved(scene, given, progress, yielding.Striking.of)
+        return result_of(scene, flowed)
     if scene.model.finite:
         return large_strains.fe(scene, given, progress)
     if not scene.model.inertia:
@@ -97,6 +102,8 @@ def plan(scene: Scene, given: Given) -> Plan:
     Raises NotReached where even a coarse estimate does not come to an end.
     """
     with faults_of(scene):
+        if scene.model.plasticity:
+            return yielding.plan(scene, given)
         if not scene.model.inertia:
             return statics.plan(scene, given)
         check_kind(given, True, scene.source)
@@ -200,16 +207,21 @@ def expected(scene: Scene, given: Given) -> tuple[float, float]:
             target, chosen = with_waves(scene), plan(scene, given).numerics
             assert isinstance(chosen, WaveNumerics)
             return chosen.tolerance, target.cost(scene, chosen).seconds
-        check_target(scene)
         tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+        if scene.model.plasticity:
+            return tolerance, yielding.SECONDS
+        check_target(scene)
         tighter = max(DEFAULT_TOLERANCE / tolerance, 1.0)
         return tolerance, scene.motion.impacts * tighter * seconds_of_impact(scene.geometry)
 
 
 def check_target(scene: Scene) -> None:
-    """Raise BadInput for a target which no impact is marched on, and for waves, which are marched elsewhere."""
+    """Raise BadInput for a target which no impact is marched on, and for what is found elsewhere: waves, flow."""
     geometry = scene.geometry
     check_compressible(scene)
+    if scene.model.plasticity:
+        reason = "true: this command does not know it in this version; accepted: false, or fe-contact run"
+        raise BadInput(Fault(scene.source, "model.plasticity", reason))
     if scene.model.finite:
         reason = "finite: this command is for small displacements in this version; accepted: small, or fe-contact run"
         raise BadInput(Fault(scene.source, "model.kinematics", reason))
@@ -230,6 +242,8 @@ def result_of(scene: Scene, solved: SolvedBy[Solution]) -> Result:
     found, recovery = solved.certified, None
     if isinstance(found, Several) and len(found.row) == 1 and recovers(scene, found.curve):
         recovery = indentation_left(found)
+    if isinstance(found, Budget) and scene.model.plasticity:
+        recovery = yielding.dent(found)
     if isinstance(found, Several) and scene.motion.impacts > 1:
         found = Row(found)
     by_quantity = {name: {cause: found.error(name, cause) for cause in CAUSES} for name in UNITS}

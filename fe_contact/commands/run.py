@@ -47,7 +47,7 @@ def _modelled(args: argparse.Namespace, scene: Scene, table: Table) -> tuple[Sce
 def _impact(args: argparse.Namespace, scene: Scene, table: Table, where: Path, taken: list[str]) -> int:
     from fe_contact.methods import settings, simulate
 
-    if args.method == "fe" and not scene.model.inertia and not scene.model.finite:
+    if args.method == "fe" and not (scene.model.inertia or scene.model.finite or scene.model.plasticity):
         from fe_contact.reference import result_of, solve
 
         solved = solve(scene, settings(table, None, scene.source), base.progress_of(args))
@@ -86,6 +86,8 @@ def _check(args: argparse.Namespace, scene: Scene) -> None:
     from fe_contact.fields import check_fields
     from fe_contact.reference import with_waves
 
+    if scene.model.plasticity:
+        raise BadInput(Fault("--fields", "", "not with model.plasticity in this version; cure: leave it out"))
     if scene.model.finite:
         reason = "finite: no fields of large strains in this version; accepted with --fields: small"
         raise BadInput(Fault(scene.source, "model.kinematics", reason))

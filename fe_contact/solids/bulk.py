@@ -17,7 +17,7 @@ import scipy.sparse as sparse
 from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, vector_dofs
 from fe_contact.assembly.interior import factorized
 from fe_contact.solids.base import AXIAL, RADIAL, PointAnswer, Response, State
-from fe_contact.solids.chart import Chart
+from fe_contact.solids.rolled import Rolled
 
 NOISE = 1e-11  # rounding: of an entry of a stiffness of which all has been taken away
 
@@ -36,16 +36,16 @@ class Bulk:
     size: int
 
     @classmethod
-    def of(cls, basis: Basis, plane: bool, elements: Indices, chart: Chart | None = None) -> Bulk:
-        """Some elements of a scalar basis, axisymmetric or, of both halves, in plane strain, there maybe on a chart."""
+    def of(cls, basis: Basis, plane: bool, elements: Indices, rolled: Rolled | None = None) -> Bulk:
+        """Some elements of a scalar basis, axisymmetric or, of both halves, in plane strain, maybe ``rolled`` flat."""
         flat = np.asarray(basis.global_coordinates())
         radius = flat[0]
         gradient = np.stack([np.asarray(shape[0].grad) for shape in basis.basis], axis=-1)
         value = np.stack([np.broadcast_to(np.asarray(shape[0]), radius.shape) for shape in basis.basis], axis=-1)
         hoop = np.zeros_like(value) if plane else value / radius[:, :, None]
         weight = np.asarray(basis.dx) * (2.0 if plane else 2.0 * np.pi * radius)
-        if chart is not None:
-            gradient, weight = chart.slopes(gradient, flat), weight * chart.stretch(flat)
+        if rolled is not None:
+            gradient, weight = rolled.slopes(gradient, flat), weight * rolled.stretch(flat)
         slopes = np.concatenate([gradient, hoop[None]])[:, elements]
         return cls(slopes, weight[elements], vector_dofs(basis.element_dofs)[elements], 2 * int(basis.N))
 

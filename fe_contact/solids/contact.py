@@ -11,12 +11,14 @@ from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array, Indices, vector_dofs
 from fe_contact.assembly.surface import FACET_POINTS, Surface, lagrange
-from fe_contact.solids.chart import Chart
+from fe_contact.solids.rolled import Rolled
 from lumped.shapes import Shape
 
+Points = npt.NDArray[np.bool_]  # which of them, (facets, points)
 BEND = 1e-5  # rounding: step of the quotient that tells a profile's curvature, over the radius
 
 
@@ -120,8 +122,8 @@ class Skin:
     size: int
 
     @classmethod
-    def of(cls, surface: Surface, places: Array, order: int, size: int, chart: Chart | None) -> Skin:
-        """Of a boundary, straight on the ``chart``; ``places`` (2, n_s) of its nodes, of elements of an ``order``."""
+    def of(cls, surface: Surface, places: Array, order: int, size: int, rolled: Rolled | None) -> Skin:
+        """Of a boundary, straight where ``rolled`` flat; ``places`` (2, n_s) of its nodes, of elements of an ``order``."""
         corners = surface.corners(order)
         count = corners.size - 1
         gauss, weight = np.polynomial.legendre.leggauss(order + FACET_POINTS)
@@ -131,18 +133,24 @@ class Skin:
         place = ends[:, :-1, None] + (ends[:, 1:] - ends[:, :-1])[:, :, None] * share
         coordinate = corners[:-1, None] + np.diff(corners)[:, None] * share
         weights = 0.5 * np.diff(corners)[:, None] * weight * surface.measure(coordinate)
-        rolled = place if chart is None else chart.place(place)
-        return cls(rolled, weights, lagrange(share, order), vector_dofs(surface.dofs[nodes].T), size)
+        bent = place if rolled is None else rolled.place(place)
+        return cls(bent, weights, lagrange(share, order), vector_dofs(surface.dofs[nodes].T), size)
 
     def displacement(self, whole: Array) -> Array:
         """At the points, (2, facets, points), from that of the mesh (2 N,)."""
         local = whole[self.dofs]
         return np.stack([local[:, c::2] @ self.trace.T for c in (0, 1)])
 
-    def pressed(self, whole: Array, obstacle: Obstacle, depth: float, stiffness: float) -> Touch:
-        """What a striker does to the body displaced by ``whole`` (2 N,); ``stiffness`` of the penalty, Pa/m."""
+    def pressed(
+        self, whole: Array, obstacle: Obstacle, depth: float, stiffness: float, touching: Points | None = None
+    ) -> Touch:
+        """What a striker does to the body displaced by ``whole`` (2 N,); ``stiffness`` of the penalty, Pa/m.
+
+        ``touching``: points (facets, points) that stick to it, pulled or pushed; None: those within it.
+        """
         displacement = self.displacement(whole)
-        return Touch(self, displacement, obstacle.overlap(self.place, displacement, depth), stiffness)
+        overlap = obstacle.overlap(self.place, displacement, depth)
+        return Touch(self, displacement, overlap, stiffness, overlap.depth > 0.0 if touching is None else touching)
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,16 +161,22 @@ class Touch:
     displacement: Array
     overlap: Overlap
     stiffness: float
+    touching: Points
+
+    @cached_property
+    def pressure(self) -> Array:
+        """At every point, (facets, points), Pa."""
+        return np.where(self.touching, self.stiffness * self.overlap.depth, 0.0)
 
     @cached_property
     def _pushed(self) -> Array:
         """Force at every point, N."""
-        return np.asarray(self.stiffness * self.skin.weights * np.maximum(self.overlap.depth, 0.0))
+        return self.skin.weights * self.pressure
 
     @cached_property
     def energy(self) -> float:
         """Of the penalty, J."""
-        return float(0.5 * np.vdot(self._pushed, np.maximum(self.overlap.depth, 0.0)))
+        return float(0.5 * np.vdot(self._pushed, self.pressure) / self.stiffness)
 
     @property
     def force(self) -> float:
@@ -172,7 +186,7 @@ class Touch:
     @property
     def normal(self) -> Array:
         """Derivative of the overlap, zero where nothing touches."""
-        return np.where(self.overlap.depth > 0.0, self.overlap.normal, 0.0)
+        return np.where(self.touching, self.overlap.normal, 0.0)
 
     @cached_property
     def forces(self) -> Array:
@@ -188,7 +202,7 @@ class Touch:
     @cached_property
     def _bend(self) -> Array:
         """Second derivative of the overlap, (2, 2, facets, points), zero where nothing touches."""
-        return np.where(self.overlap.depth > 0.0, self.overlap.bend, 0.0)
+        return np.where(self.touching, self.overlap.bend, 0.0)
 
     def _nodal(self, force: Array) -> Array:
         """Nodal forces (2 N,) of forces (2, facets, points) at the points."""
@@ -199,8 +213,7 @@ class Touch:
 
     def matrices(self, convex: bool = False) -> Array:
         """Tangent of every facet, (facets, 2 k, 2 k); ``convex``: without what the striker's bend takes from it."""
-        touching = self.overlap.depth > 0.0
-        springs, trace = self.stiffness * self.skin.weights * touching, self.skin.trace
+        springs, trace = self.stiffness * self.skin.weights * self.touching, self.skin.trace
         local = np.empty((*self.skin.dofs.shape, self.skin.dofs.shape[1]))
         for i in (0, 1):
             for j in (0, 1):

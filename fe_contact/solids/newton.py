@@ -12,7 +12,7 @@ from fe_contact.assembly.forms import Array, Matrix
 from fe_contact.assembly.interior import factorized
 from fe_contact.solids.base import State
 from fe_contact.solids.bulk import CoredBody, Loaded, Pattern
-from fe_contact.solids.contact import Obstacle, Skin, Touch
+from fe_contact.solids.contact import Obstacle, Points, Skin, Touch
 from lumped.errors import NotReached
 
 MOST_ITERATIONS = 60  # work: a step that needs more is made in halves
@@ -44,10 +44,12 @@ class Encounter:
         blocks = [body.core.dofs, skin.dofs, body.rim[None]]
         return cls(body, skin, Pattern.of(blocks, body.free, body.core.size), obstacle)
 
-    def at(self, displacement: Array, depth: float, stiffness: float, state: State = ()) -> Balance:
-        """Body and striker with the mesh displaced so, (2 N,), after ``state``."""
+    def at(
+        self, displacement: Array, depth: float, stiffness: float, state: State = (), touching: Points | None = None
+    ) -> Balance:
+        """Body and striker with the mesh displaced so, (2 N,), after ``state``; ``touching`` as of a skin."""
         loaded = self.body.core.answered(displacement, self.body.response, state)
-        touch = self.skin.pressed(displacement, self.obstacle, depth, stiffness)
+        touch = self.skin.pressed(displacement, self.obstacle, depth, stiffness, touching)
         return Balance(self, displacement, depth, loaded, touch)
 
 
@@ -121,21 +123,36 @@ class Equilibrium:
         return abs(left) / max(balance.force, np.finfo(float).tiny)
 
 
-def balanced(encounter: Encounter, start: Array, depth: float, stiffness: float, state: State = ()) -> Equilibrium:
-    """From a displacement (2 N,) to begin with. Raises EquilibriumLost."""
+def balanced(
+    encounter: Encounter,
+    start: Array,
+    depth: float,
+    stiffness: float,
+    state: State = (),
+    touching: Points | None = None,
+    settled: float = SETTLED,
+) -> Equilibrium:
+    """From a displacement (2 N,) to begin with. Raises EquilibriumLost.
+
+    ``touching``: points (facets, points) that are to touch in the first iteration; ``settled``: of the energy, what the
+    last one still changes.
+    """
 
     def at(displacement: Array) -> Balance:
         return encounter.at(displacement, depth, stiffness, state)
 
+    if touching is not None:
+        guess = encounter.at(start, depth, stiffness, state, touching)
+        start = start + _whole(guess, _step(guess)[1])
     here = at(start)
     if not np.isfinite(here.energy):
         raise EquilibriumLost(f"an element is inverted at depth {depth:.3g}")
     for iteration in range(1, MOST_ITERATIONS + 1):
         solve, step = _step(here)
         slope = float(here.residual @ step)
-        settled = -slope <= SETTLED * here.energy
-        there = at(here.displacement + _whole(here, step)) if settled else _descended(here, step, slope, at)
-        if settled:
+        done = -slope <= settled * here.energy
+        there = at(here.displacement + _whole(here, step)) if done else _descended(here, step, slope, at)
+        if done:
             rate = _whole(there, solve(-there.touch.stiffening[there.encounter.body.free]))
             return Equilibrium(there, rate, iteration)
         here = there

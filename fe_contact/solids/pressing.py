@@ -20,10 +20,10 @@ from fe_contact.errors import ContactTooWide
 from fe_contact.settings import Numerics
 from fe_contact.solids.block import press as pressed_alike
 from fe_contact.solids.bulk import Bulk, CoredBody
-from fe_contact.solids.chart import Chart
 from fe_contact.solids.contact import OnDeformed, OnRound, Skin
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Balance, Encounter, Equilibrium, EquilibriumLost, balanced
+from fe_contact.solids.rolled import Rolled
 from fe_contact.targets.base import TARGETS
 from lumped.errors import BadInput, Fault
 from lumped.materials.energies.base import energy_of
@@ -61,19 +61,19 @@ class Solid:
         assert make is not None
         mesh = make(indenter, radii, numerics)
         body, unit, profile = mesh.body, mesh.unit, indenter.profile
-        chart = None if mesh.inner_radius is None else Chart(mesh.inner_radius)
+        rolled = None if mesh.inner_radius is None else Rolled(mesh.inner_radius)
         bulk, shear = moduli(indenter.material.nu)
         energy = energy_of(indenter.material.hyperelastic)
         response = Hyperelastic(energy, shear, bulk - 2.0 * shear / 3.0)
         elements = np.arange(body.basis.nelems) if mesh.ends else _core(body)
-        core = Bulk.of(body.basis, body.surface.dimension == 2, elements, chart)
+        core = Bulk.of(body.basis, body.surface.dimension == 2, elements, rolled)
         places = body.basis.doflocs[:, body.surface.dofs]
-        skin = Skin.of(body.surface, places, numerics.order, core.size, chart)
+        skin = Skin.of(body.surface, places, numerics.order, core.size, rolled)
         if mesh.ends:
             whole = CoredBody.whole(core, response, body.fixed)
         else:
             whole = CoredBody.of(core, response, body.stiffness(bulk, shear), body.fixed)
-        striker = OnDeformed(profile, unit) if chart is None else OnRound((profile.tip_radius or 0.0) / unit)
+        striker = OnDeformed(profile, unit) if rolled is None else OnRound((profile.tip_radius or 0.0) / unit)
         return cls(Encounter.of(whole, skin, striker), unit, body.surface.dimension - 1, core.size, mesh.ends)
 
 

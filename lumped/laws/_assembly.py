@@ -170,7 +170,7 @@ def assemble(
     # The rows themselves add what linear interpolation errs by, less than the tolerance; the bar is for the
     # rows.
     history = History(times, depth, velocity, force, radius, np.full(times.size, force_error))
-    resolved = model or replace(scene.model, inertia=False, kinematics="small")
+    resolved = model or replace(scene.model, inertia=False, kinematics="small", plasticity=False)
     missed = unmet(quantities, tolerance)
     peak = quantities["peak_force"].value or 1.0
     return Result(

@@ -98,7 +98,7 @@ class ForceLaw(PointLaw):
 
     def resolved(self, scene: Scene) -> Model:
         """The scene's model as this law has it: its stiffness stands for a parabola, and no body for waves."""
-        small = replace(scene.model, inertia=False, kinematics="small")
+        small = replace(scene.model, inertia=False, kinematics="small", plasticity=False)
         return replace(small, profile="parabola") if scene.has_geometry else scene.model
 
 

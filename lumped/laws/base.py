@@ -98,9 +98,11 @@ def check(scene: Scene, name: str) -> None:
 
 
 def waves(scene: Scene) -> str:
-    """What a law of small displacements without inertia leaves out of a scene, where that has any of it."""
+    """What an elastic law of small displacements without inertia leaves out of a scene, where that has any of it."""
     if scene.model.finite:
         return "large strains, which model.kinematics asks for"
+    if scene.model.plasticity:
+        return "plastic flow, which model.plasticity asks for"
     return "waves in the bodies, which have inertia here" if scene.model.inertia else ""
 
 

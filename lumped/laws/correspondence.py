@@ -126,8 +126,8 @@ class HereditaryForce(ForceLaw):
         return self.rule == "reset" or bool(surface.at(since)[0] <= FORGOTTEN * surface.at(0.0)[0])
 
     def resolved(self, scene: Scene) -> Model:
-        """The scene's own profile."""
-        return scene.model
+        """The scene's own profile; nothing yields."""
+        return replace(scene.model, plasticity=False)
 
     @property
     def _step(self) -> StepLoad:

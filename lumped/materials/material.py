@@ -12,6 +12,7 @@ from lumped.schema import Table
 from lumped.schema.keys import Choice, Key, Number, Record, written
 from lumped.schema.members import Member
 
+HARDENING = Number(0.0, 1e16, "Pa")
 MODULUS, DENSITY = Number(1e-3, 1e16, "Pa"), Number(1e-3, 1e6, "kg/m3")
 POISSON = Number(-1.0, 0.5, above=True)
 
@@ -31,6 +32,9 @@ class Material(Record):
     constant: Annotated[str, Key(Choice(("poisson", "bulk")), "what does not relax")] = "poisson"
     bulk_modulus: Annotated[float | None, Key(MODULUS, "constant bulk modulus of a fluid")] = None
     yield_strength: Annotated[float | None, Key(MODULUS, "stress at which it yields")] = None
+    hardening_modulus: Annotated[
+        float | None, Key(HARDENING, "slope of the yield stress over the amount of plastic strain")
+    ] = None
     work_of_adhesion: Annotated[float | None, Key(Number(1e-9, 1e6, "J/m2"), "work to part two surfaces")] = None
     hyperelastic: Annotated[
         str | None, Key(Member("lumped.materials.energies"), "elastic energy of large strains", required=False)

@@ -36,7 +36,7 @@ UNITS = {
 # `tolerance` rules these relatively; restitution and history_l2 absolutely; peak_time not at all.
 RULED_RELATIVE = ("peak_force", "peak_depth", "duration", "impulse")
 RULED_ABSOLUTE = ("restitution", "history_l2")
-ENERGY_TERMS = ("in", "out", "stored", "viscous", "radiated", "contact", "numerical", "residual")
+ENERGY_TERMS = ("in", "out", "stored", "viscous", "plastic", "radiated", "contact", "numerical", "residual")
 WITHIN, ABOVE, OPEN, UNKNOWN = "within tolerance", "above it", "open", "unknown"
 NO_KEY = "no larger model here"
 LEFT_OUT = ("neglected", "none assumed")  # how a ledger's effect is treated that is not there at all

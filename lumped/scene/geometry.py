@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from lumped.errors import BadInput, Fault
 from lumped.load_curves import HertzImpact
 from lumped.materials import Creep, Material, Relaxation
+from lumped.scene.tables import Model
 from lumped.schema import Table
 from lumped.shapes import Shape
 from lumped.shapes._block import Block
 from lumped.targets import Target
 
+YIELDING_UNDER = ("sphere", "cone", "power", "punch")  # strikers under which a half-space may yield
 SPARE_MASS = 0.01  # of a whole body with inertia, which its density gives way to
 
 
@@ -125,6 +127,35 @@ def flying_faults(source: str, geometry: Geometry, mass: float, target_mass: flo
             reason = f"{said}; with model.inertia a {body.name} has the mass of its density; accepted: {whole:.6g} kg"
             faults.append(Fault(source, f"{part}.mass", f"{reason} within {SPARE_MASS:.0%}, or another density"))
     return faults
+
+
+def plasticity_faults(source: str, model: Model, geometry: Geometry | None, impacts: int = 1) -> list[Fault]:
+    """What stands beside `model.plasticity = true` and cannot, or is missing; `geometry` None: a law's parameters."""
+    if not model.plasticity:
+        return []
+    if geometry is None:
+        return [Fault(source, "model.plasticity", "true: a law of its own has no material; accepted: false")]
+    material, state, shapes = geometry.material, "with model.plasticity", ", ".join(YIELDING_UNDER)
+    wrong = [
+        (material.yield_strength is None, "target.material.yield_strength", f"missing, in Pa; {state} it is needed"),
+        (
+            not material.young.is_elastic,
+            "target.material.law",
+            f"no viscosity {state} in this version; accepted: elastic",
+        ),
+        (model.inertia, "model.inertia", f"true: no waves {state} in this version; accepted: false"),
+        (model.finite, "model.kinematics", f"finite: no large strains {state} in this version; accepted: small"),
+        (model.gravity != 0.0, "model.gravity", f"{model.gravity:g}: no weight {state} in this version; accepted: 0"),
+        (impacts > 1, "motion.impacts", f"{impacts}: one impact {state} in this version; accepted: 1"),
+        (geometry.striker_material is not None, "striker.material", f"the striker is rigid {state}; leave it out"),
+        (geometry.target.name != "half_space", "target.shape", f"{geometry.target.name}: {state} accepted half_space"),
+        (
+            geometry.shape.name not in YIELDING_UNDER,
+            "striker.shape",
+            f"{geometry.shape.name}: {state} accepted {shapes}",
+        ),
+    ]
+    return [Fault(source, key, reason) for refused, key, reason in wrong if refused]
 
 
 def places(shape: Shape, target: Target, deep: str) -> dict[str, str]:

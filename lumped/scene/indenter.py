@@ -10,7 +10,7 @@ from pathlib import Path
 from lumped.errors import BadInput, Fault, addressed
 from lumped.materials import Material
 from lumped.numbers import Array
-from lumped.scene.geometry import Geometry, check_striker_material, contact_modulus, places, tables
+from lumped.scene.geometry import Geometry, check_striker_material, contact_modulus, places, plasticity_faults, tables
 from lumped.scene.tables import Model, load_indenter
 from lumped.schema import Table
 from lumped.schema.keys import Number
@@ -40,6 +40,9 @@ class Indenter:
     def __post_init__(self) -> None:
         self.target.check_striker(self.source, self.shape)
         check_striker_material(self.source, self.target, self.shape, self.striker_material, inertia=False)
+        faults = plasticity_faults(self.source, self.model, self.geometry)
+        if faults:
+            raise BadInput(faults)
         if self.target.only_with_inertia:
             reason = f"{self.target.name}: made of waves, it has no slow indentation; accepted: another target"
             raise BadInput(Fault(self.source, "target.shape", reason))

@@ -19,6 +19,7 @@ from lumped.scene.geometry import (
     contact_modulus,
     flying_faults,
     places,
+    plasticity_faults,
     relaxed_impact,
     tables,
 )
@@ -83,6 +84,9 @@ class Scene:
         faults = inertia_faults(self.source, self.model.inertia, density, target)
         faults += mass_faults(self.source, self.mass, self.swinging_mass)
         faults += gravity_faults(self.source, self.model)
+        faults += plasticity_faults(
+            self.source, self.model, self.geometry if self.has_geometry else None, self.motion.impacts
+        )
         if self.model.inertia and self.has_geometry:
             faults += flying_faults(self.source, self.geometry, self.mass, self.target_mass)
         if faults:

@@ -66,6 +66,7 @@ class Model(Record):
     gravity: Annotated[float, Key(Number(-1e6, 1e6, "m/s2"), "gravity along the motion")] = 0.0
     direction: Annotated[str, Key(Choice(DIRECTIONS), "where the motion leads")] = DIRECTIONS[0]
     kinematics: Annotated[str, Key(Choice(KINEMATICS), "how large displacements and strains may be")] = KINEMATICS[0]
+    plasticity: Annotated[bool, Key(Flag(), "whether the target yields, by von Mises")] = False
     name: ClassVar[str] = "model"
 
     @property

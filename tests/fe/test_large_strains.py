@@ -147,7 +147,7 @@ def press_once(scene: Scene, depth: float) -> float:
 
 REFUSED = {
     "striker.shape": ("polymer-punch", {}),
-    "target.shape": ("rod-in-ring", {}),
+    "target.shape": ("two-spheres", {}),
     "numerics.enforcement": ("polymer-sphere", {}),
 }
 

@@ -10,7 +10,7 @@ from fe_contact.assembly.forms import Array
 
 
 @dataclass(frozen=True)
-class Chart:
+class Rolled:
     """From (x, z), x the arc on the circle of ``radius``, z = radius - distance from its middle, to the plane.
 
     The middle is at (0, radius), the lowest point of the circle at the origin.

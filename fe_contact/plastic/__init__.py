@@ -1,0 +1,1 @@
+"""Bodies that yield, without inertia: pressed, released, and struck."""

@@ -1,0 +1,331 @@
+"""A loading of a half-space that yields, and its release: from a scene's bodies and settings to smooth curves.
+
+Where a contact ends in an element changes from step to step, and with it the force, by 1e-3 where the body flows
+freely: noise without a trend. So a force is a smooth function of the depth through those of all steps, some of which go
+deeper than asked; two meshes then differ by their trends, and a third of their noise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Generic, NamedTuple, TypeVar
+
+import numpy as np
+
+from fe_contact.assembly.forms import Array, check_compressible
+from fe_contact.budget.variation import SAFETY
+from fe_contact.plastic.ground import Ground, Sizes, yielding_of
+from fe_contact.plastic.path import ELASTIC_RATIO, Presser, Station
+from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
+from lumped.errors import BadInput, Fault
+from lumped.scene.indenter import Indenter
+from lumped.scene.scene import Scene
+from lumped.shapes import Shape
+
+Told = TypeVar("Told")
+BEYOND = 1.2  # of the largest depth: up to there forces are found, so that it lies amid them
+KNOTS = 0.5  # between knots of a smooth force, in ln depth: two elements or more along the contact radius
+RIM_KNOTS = 0.25  # the same under a rim, where no edge moves
+FAINT, FIRM = 0.5, 0.9  # of the yield strength, mean elastic pressures: before them nothing yields, and hardly anything
+FEWEST = 6  # forces of a smooth curve at least
+SPARE = 1.15  # widest contact over the radius up to which undeformed surfaces overlap: plastic flow piles up
+STRIDE = 6.0  # over the settings' steps: of a step in depth, over the depth
+SMALLEST = 1.5e-3  # contact over the widest one: no mesh is finer
+SHALLOWEST = 1e-6  # depth of the first step over the largest: no mesh is finer
+FORGOTTEN = 0.3  # of the shallowest depth, the first step of what flows from the touch on: the next ones forget it
+BISECTIONS = 60  # work
+ELEMENTS = 9.0  # along the contact radius, at tolerance 1e-3
+RIM_ELEMENTS = 2.0  # the same under a rim, which the mesh is refined to
+ORDER = 3  # of the elements: they do not lock where flow keeps the volume
+STEPS = 32  # of a loading, over six e-folds of the depth or so, at tolerance 1e-3
+COARSEST, FINEST = 0.6, 2.0  # times as many elements and steps as at 1e-3, which follow the root of the tolerance
+FEWEST_STEPS = 4  # of a run that tells anything
+DEFAULTS: Given = {
+    "order": ORDER,
+    "penalty": 4000.0,
+    "enforcement": "corrected",
+    "scheme": "galerkin",
+    "far_radius": 20.0,
+}
+
+
+def settings(given: Given, rim: bool) -> Numerics:
+    """Settings of a body that yields: what the user left open."""
+    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    finer = min(max((DEFAULT_TOLERANCE / tolerance) ** 0.5, COARSEST), FINEST)
+    elements = (RIM_ELEMENTS if rim else ELEMENTS) * finer
+    steps = 4 * round(STEPS * finer / 4)
+    chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "steps": steps}
+    return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
+
+
+def check_given(given: Given, source: str) -> None:
+    """Raise BadInput for settings of bodies that do not yield."""
+    found = [
+        Fault(source, f"numerics.{key}", f"{given[key]}: with model.plasticity there is no choice; leave it out")
+        for key in ("scheme", "enforcement")
+        if key in given and given[key] != DEFAULTS[key]
+    ]
+    if found:
+        raise BadInput(found)
+
+
+@dataclass(frozen=True, eq=False)
+class Forces:
+    """Forces (n,), N, and contact radii, m, at depths (n,), m, and the smooth curves through them."""
+
+    depth: Array
+    force: Array
+    radius: Array
+    power: float
+    knots: float
+
+    @cached_property
+    def _logarithm(self) -> Callable[[Array], Array]:
+        return smooth(np.log(self.depth), np.log(self.force), self.knots)
+
+    @cached_property
+    def _squared(self) -> Callable[[Array], Array]:
+        return smooth(np.log(self.depth), np.log(self.radius), self.knots)
+
+    def logarithm(self, depth: Array) -> Array:
+        """Of the force at depths, m; before the first one it is a power of the depth."""
+        inside = np.clip(depth, self.depth[0], self.depth[-1])
+        before = np.minimum(np.log(np.maximum(depth, np.finfo(float).tiny) / self.depth[0]), 0.0)
+        return np.asarray(self._logarithm(np.log(inside)) + self.power * before)
+
+    def contact_radius(self, depth: Array) -> Array:
+        """At depths, m; there in proportion to the root of force over depth."""
+        inside = np.clip(depth, self.depth[0], self.depth[-1])
+        before = np.minimum(np.log(np.maximum(depth, np.finfo(float).tiny) / self.depth[0]), 0.0)
+        return np.asarray(np.exp(self._squared(np.log(inside)) + (self.power - 1.0) * before))
+
+
+def smooth(x: Array, y: Array, spacing: float) -> Callable[[Array], Array]:
+    """The cubic spline nearest to samples (n,), its knots a ``spacing`` apart at least."""
+    from scipy.interpolate import make_lsq_spline  # late: only what yields needs it
+
+    intervals = max(1, min(round((x[-1] - x[0]) / spacing), (x.size - 4) // 2))
+    inner = np.linspace(x[0], x[-1], intervals + 1)
+    knots = np.concatenate([np.full(3, x[0]), inner, np.full(3, x[-1])])
+    found: Callable[[Array], Array] = make_lsq_spline(x, y, knots, 3)
+    return found
+
+
+@dataclass(frozen=True)
+class Course:
+    """What is pressed into what, and how deep; m, Pa. ``first``, ``firm``: depths before which nothing yields, and
+    hardly anything; ``smallest`` and ``widest`` contact to expect.
+    """
+
+    profile: Shape
+    poisson: float
+    modulus: float
+    strength: float
+    hardening: float
+    first: float
+    firm: float
+    deepest: float
+
+    @classmethod
+    def of(cls, scene: Scene | Indenter, shallowest: float, deepest: float) -> Course:
+        """From and to a depth, m, which has to be known about."""
+        check_compressible(scene)
+        geometry = scene.geometry
+        material, profile = geometry.material, scene.profile
+        modulus = geometry.shape.modulus(material).relaxed
+        strength = material.yield_strength
+        assert strength is not None  # see plasticity_faults
+        faint, firm = (_depth_of(profile, share * strength / modulus, deepest) for share in (FAINT, FIRM))
+        shallow = min(shallowest, deepest / 4.0)
+        first = min(max(faint, SHALLOWEST * deepest), shallow) if faint > 0.0 else FORGOTTEN * shallow
+        return cls(
+            profile=profile,
+            poisson=material.nu,
+            modulus=modulus,
+            strength=strength,
+            hardening=material.hardening_modulus or 0.0,
+            first=first,
+            firm=max(firm, first),
+            deepest=deepest,
+        )
+
+    def outgrown(self, numerics: Numerics) -> Course:
+        """For wider contacts, where the settings say that they outgrew what was expected."""
+        return replace(self, deepest=self.deepest * numerics.contact_radius**2)
+
+    @property
+    def rim(self) -> bool:
+        """Whether all contacts end at a rim."""
+        return self.profile.fixed_radius is not None
+
+    @cached_property
+    def unit(self) -> float:
+        """The widest contact to expect, m."""
+        return self.profile.fixed_radius or SPARE * overlapping(self.profile, BEYOND * self.deepest)
+
+    @property
+    def power(self) -> float:
+        """Of the depth that a force is in proportion to before anything yields."""
+        return self.profile.exponent_of_force
+
+    def ground(self, numerics: Numerics, cut: bool = False) -> Ground:
+        """The half-space meshed. Raises BodyTooFine."""
+        smallest = 1.0 if self.rim else 0.5 * overlapping(self.profile, self.first) / self.unit
+        sizes = Sizes(
+            elements=numerics.elements_per_contact,
+            order=numerics.order,
+            smallest=min(max(smallest, SMALLEST), 1.0),
+            far_radius=numerics.far_radius,
+            rim=self.rim,
+            cut=cut,
+        )
+        yielding = yielding_of(self.poisson, self.strength / self.modulus, self.hardening / self.modulus)
+        return Ground.of(self.profile, self.unit, yielding, self.poisson, sizes)
+
+    def depths(self, steps: int, end: float) -> Array:
+        """Ends of the steps, m: coarse where nothing yields."""
+        firm = min(self.firm, end)
+        before = _spread(self.first, firm, ELASTIC_RATIO) if firm > self.first else np.array([self.first])
+        after = _spread(before[-1], end, 1.0 + STRIDE / steps) if end > before[-1] else before[-1:]
+        found = np.concatenate([before, after[1:]])
+        return found if found.size > FEWEST else np.geomspace(self.first, end, FEWEST + 1)
+
+
+def _spread(start: float, end: float, ratio: float) -> Array:
+    """Depths from start to end, no further apart than a ratio."""
+    count = max(1, int(np.ceil(np.log(end / start) / np.log(ratio) - 1e-9)))
+    return np.geomspace(start, end, count + 1)
+
+
+def overlapping(profile: Shape, depth: float) -> float:
+    """Radius up to which the undeformed surfaces overlap, m."""
+    return _largest(lambda radius: float(profile.height(radius)) < depth, depth)
+
+
+def _depth_of(profile: Shape, pressure: float, deepest: float) -> float:
+    """Depth, m, at which the mean elastic pressure reaches one over E*; zero where it is higher from the touch on."""
+    curve = profile.load_curve
+
+    def lower(depth: float) -> bool:
+        area = np.pi * float(curve.contact_radius(depth)) ** 2
+        return bool(float(curve.force(depth)) < pressure * area)
+
+    if not lower(1e-9 * deepest):
+        return 0.0
+    return min(_largest(lower, 1e-9 * deepest, 16.0 * deepest), 16.0 * deepest)
+
+
+def _largest(holds: Callable[[float], bool], start: float, most: float = np.inf) -> float:
+    """The largest number for which something holds, by doubling and bisection."""
+    low, high = 0.0, start
+    while high < most and holds(high):
+        low, high = high, 2.0 * high
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return high
+
+
+@dataclass(eq=False)
+class PlasticLoading:
+    """A loading step by step: places at their ends."""
+
+    course: Course
+    numerics: Numerics
+    presser: Presser
+    ends: list[Station]
+
+    @classmethod
+    def of(cls, course: Course, numerics: Numerics, cut: bool = False) -> PlasticLoading:
+        """Nothing is pressed yet."""
+        ground = course.ground(numerics, cut)
+        return cls(course, numerics, Presser(ground, numerics.penalty, course.unit), [])
+
+    def to(self, end: float) -> None:
+        """On to a depth, m, whatever was reached. Raises PlasticFlowLost, MemoryTooSmall."""
+        course = self.course
+        depths = course.depths(self.numerics.steps, end) / course.unit
+        if not self.ends:
+            radius = 0.7 * overlapping(course.profile, course.first) / course.unit
+            here = self.presser.first(float(depths[0]), 1.0 if course.rim else radius)
+            self.ends = [here]
+        for depth in depths[depths > self.ends[-1].depth * (1.0 + 1e-9)]:
+            self.step(float(depth))
+
+    def step(self, depth: float) -> None:
+        """One step further, to a depth in units of the course."""
+        before = self.ends[-2] if len(self.ends) > 1 else self.presser.at_rest()
+        self.ends += self.presser.loaded(before, self.ends[-1], depth)
+
+    @property
+    def pressed(self) -> Forces:
+        """The forces so far."""
+        course = self.course
+        depth, force, radius = columns(self.ends)
+        return Forces(
+            depth=course.unit * depth,
+            force=course.modulus * course.unit**2 * force,
+            radius=course.unit * radius,
+            power=course.power,
+            knots=RIM_KNOTS if course.rim else KNOTS,
+        )
+
+
+def columns(places: list[Station]) -> Array:
+    """Depths, forces and contact radii of places, (3, n)."""
+    return np.array([(place.depth, place.force, place.radius) for place in places]).T
+
+
+class Varied(NamedTuple, Generic[Told]):
+    """What runs with different settings tell.
+
+    ``base`` has the finest mesh; of all others, ``same`` its steps, ``finer`` twice as many, ``fewer`` half as many;
+    as many as that ``softer`` with half the penalty, ``nearer`` with a mesh that ends half as far away.
+    """
+
+    base: Told
+    same: Told
+    finer: Told
+    fewer: Told
+    softer: Told
+    nearer: Told
+
+    @classmethod
+    def of(cls, run: Callable[[Numerics, bool], Told], numerics: Numerics) -> Varied[Told]:
+        """Of a ``run`` with settings, on a mesh that is cut or not."""
+        coarse = coarser(numerics)
+        few = coarse.varied(steps=max(coarse.steps // 2, FEWEST_STEPS))
+        return cls(
+            base=run(numerics, False),
+            same=run(coarse, False),
+            finer=run(coarse.varied(steps=2 * coarse.steps), False),
+            fewer=run(few, False),
+            softer=run(few.varied(penalty=0.5 * few.penalty), False),
+            nearer=run(few, True),
+        )
+
+    def mended(self, onwards: Callable[[Told, Told, Told, float], Told]) -> Told:
+        """The finest mesh with what the others know of the steps: their square counts out (Richardson).
+
+        ``onwards(one, fine, coarse, weight)``: one + weight (fine - coarse).
+        """
+        return onwards(self.base, self.finer, self.same, 4.0 / 3.0)
+
+    def pairs(self, onwards: Callable[[Told, Told, Told, float], Told]) -> dict[str, tuple[Told, Told, float]]:
+        """By cause two answers, and the factor that makes an error of what they differ by."""
+        fine = onwards(self.finer, self.finer, self.same, 1.0 / 3.0)
+        coarse = onwards(self.same, self.same, self.fewer, 1.0 / 3.0)
+        return {
+            "mesh": (self.base, self.same, SAFETY),
+            "penalty": (self.fewer, self.softer, SAFETY),
+            "time_step": (fine, coarse, SAFETY / 3.0),
+            "far_field": (self.fewer, self.nearer, SAFETY / 3.0),
+        }
+
+
+def coarser(numerics: Numerics) -> Numerics:
+    """The mesh on which all but itself is varied."""
+    return replace(numerics, elements_per_contact=numerics.elements_per_contact / np.sqrt(2.0))

@@ -1,0 +1,397 @@
+"""An impact on a half-space that yields: without inertia of its own it knows depths alone, and no time.
+
+The force is one function of the depth until the striker's energy is spent, another one from there on. Work and time are
+their integrals; every setting is varied once, and each of these runs has a greatest depth of its own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.budget import CAUSES, Budget, TotalWork, shares_of
+from fe_contact.budget.curve import Curve
+from fe_contact.budget.plan import Plan
+from fe_contact.budget.refine import Finer, dominant
+from fe_contact.budget.variation import Variation
+from fe_contact.errors import MemoryTooSmall
+from fe_contact.march.impact import balanced
+from fe_contact.plastic.course import (
+    BEYOND,
+    Course,
+    PlasticLoading,
+    Varied,
+    check_given,
+    columns,
+    overlapping,
+    settings,
+)
+from fe_contact.plastic.indent import ROUNDS
+from fe_contact.plastic.path import Station, parting
+from fe_contact.progress import Progress
+from fe_contact.settings import Given, Numerics, check_kind
+from fe_contact.steppers.steps import March, Strike, Work
+from lumped.errors import BadInput, Fault
+from lumped.result.model_ledger import Peak, model_ledger
+from lumped.result.result import IndentationLeft, LedgerEntry, meets
+from lumped.scene.scene import Scene
+
+SECONDS = 12.0  # processor time of an impact to 1e-3, about
+ROWS = 400  # of each half of an impact: the line between two errs by 1e-5 of the force
+GRID = 500  # depths at which a loading is told
+SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting on
+DEGREE = 5  # of the polynomial through the forces of a release, to the power that makes them a line
+SPRINGING = 0.3  # of a release over those of the settings
+PILOT: Given = {"elements_per_contact": 3.0, "steps": 16}  # of the run that tells how deep an impact will go
+SOFTEST = 0.75  # of the yield strength, on what overlaps: hardly a lower force while a body yields
+
+
+@dataclass(frozen=True, eq=False)
+class Answered:
+    """What a body answers: ln of the force, N, and contact radius, m, at depths (n,), m; of a release from the greatest
+    depth the share of it that ``springs`` back, force^(1/power) and contact radius over their own there at ``SPRUNG``;
+    energy ``stored`` and ``plastic`` work in the end, J.
+    """
+
+    depth: Array
+    logarithm: Array
+    radius: Array
+    springs: float
+    roots: Array
+    shrunk: Array
+    stored: float
+    plastic: float
+
+    @classmethod
+    def of(cls, loading: PlasticLoading) -> Answered:
+        """Of a loading; its release is not known yet."""
+        course, pressed = loading.course, loading.pressed
+        depth = np.geomspace(course.first, BEYOND * course.deepest, GRID)
+        return cls(depth, pressed.logarithm(depth), pressed.contact_radius(depth), 1.0, SPRUNG, SPRUNG, 0.0, 0.0)
+
+
+def _onwards(one: Answered, fine: Answered, coarse: Answered, weight: float) -> Answered:
+    """``one`` and ``weight`` times what ``fine`` changes of ``coarse``; the depths of all are the same."""
+
+    def of(name: str) -> Array:
+        found: Array = getattr(one, name) + weight * (getattr(fine, name) - getattr(coarse, name))
+        return found
+
+    return replace(
+        one,
+        logarithm=of("logarithm"),
+        roots=of("roots"),
+        springs=float(of("springs")),
+        stored=float(of("stored")),
+        plastic=float(of("plastic")),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Rebound:
+    """A striker of ``mass``, kg, and ``energy``, J, on a body that answers so; forces ~ (what is left)^``power``."""
+
+    answered: Answered
+    mass: float
+    energy: float
+    power: float
+    start: float
+
+    def force(self, depth: Array) -> Array:
+        """While it comes in, N; below the first depth known a power of the depth."""
+        known = self.answered
+        inside = np.log(np.clip(depth, known.depth[0], known.depth[-1]))
+        before = np.minimum(np.log(np.maximum(depth, 1e-300) / known.depth[0]), 0.0)
+        return np.asarray(np.exp(np.interp(inside, np.log(known.depth), known.logarithm) + self.start * before))
+
+    def work(self) -> tuple[Array, Array]:
+        """Depths, m, and the work up to them, J."""
+        depth = np.concatenate([[0.0], self.answered.depth])
+        between = 0.5 * (depth[1:] + depth[:-1])
+        thirds = (self.force(depth[:-1]) + 4.0 * self.force(between) + self.force(depth[1:])) * np.diff(depth) / 6.0
+        thirds[0] = self.force(depth[1:2])[0] * depth[1] / (self.start + 1.0)
+        return depth, np.concatenate([[0.0], np.cumsum(thirds)])
+
+    @property
+    def deepest(self) -> float:
+        """Where the energy is spent, m; infinite where that is deeper than is known."""
+        depth, work = self.work()
+        if work[-1] <= self.energy:
+            return float("inf")
+        after = int(np.searchsorted(work, self.energy))
+        low, high = float(depth[after - 1]), float(depth[after])
+        for _ in range(50):
+            middle = 0.5 * (low + high)
+            mean = (
+                self.force(np.array([depth[after - 1], 0.5 * (depth[after - 1] + middle), middle])) @ [1, 4, 1]
+            ) / 6.0
+            spent = work[after - 1] + mean * (middle - depth[after - 1])
+            low, high = (middle, high) if spent < self.energy else (low, middle)
+        return high
+
+    def march(self, work: Work) -> March:
+        """Rows of the whole contact."""
+        deepest, known = self.deepest, self.answered
+        share = np.linspace(0.0, 1.0, ROWS + 1)
+        coming = deepest * (1.0 - (1.0 - share) ** 2)  # from the greatest depth as the square of the time left
+        here = self.force(coming)
+        inward = _fallen(deepest, here[::-1], self.mass)
+        sprung = known.springs * deepest
+        top = float(here[-1])
+        going = deepest - sprung * share**2
+        left = 1.0 - share**2
+        back = top * np.maximum(np.interp(left, SPRUNG, known.roots), 0.0) ** self.power
+        outward = _fallen(sprung, back, self.mass)
+        time = np.concatenate([inward.time[-1] - inward.time[::-1], inward.time[-1] + outward.time[1:]])
+        speed = np.sqrt(2.0 * self.energy / self.mass)
+        velocity = np.concatenate([inward.speed[::-1], -outward.speed[1:]])
+        radius_in = np.exp(np.interp(np.log(np.maximum(coming, 1e-300)), np.log(known.depth), np.log(known.radius)))
+        faint = coming < known.depth[0]
+        radius_in[faint] = known.radius[0] * (coming[faint] / known.depth[0]) ** (self.start - 1.0)
+        radius = np.concatenate([radius_in, radius_in[-1] * np.interp(left, SPRUNG, known.shrunk)[1:]])
+        return March(
+            time=time,
+            depth=np.concatenate([coming, going[1:]]),
+            impulse=self.mass * (speed - velocity),
+            first_force=0.0,
+            radius_time=time[1:-1],
+            radius=radius[1:-1],
+            separated=True,
+            photograph=tuple,
+            energy=self._account(float(outward.speed[-1])),
+            end_spread=0.0,
+            work=work,
+        )
+
+    def _account(self, speed: float) -> dict[str, float]:
+        none = dict.fromkeys(("viscous", "radiated", "contact", "numerical"), 0.0)
+        own = {name: getattr(self.answered, name) for name in ("stored", "plastic")}
+        return balanced({"in": self.energy, "out": 0.5 * self.mass * speed**2, **own, **none})
+
+
+@dataclass(frozen=True, eq=False)
+class Fallen:
+    """A mass driven from rest: ``time``, s, and ``speed``, m/s, at equal steps of the root of its way."""
+
+    time: Array
+    speed: Array
+
+
+def _fallen(way: float, force: Array, mass: float) -> Fallen:
+    """Over a ``way``, m, by forces (n,), N, at ``way`` x^2, x from 0 to 1 in equal steps.
+
+    Its speed is in proportion to x but for a smooth factor, so that time is smooth in x.
+    """
+    x = np.linspace(0.0, 1.0, force.size)
+    step = 1.0 / (force.size - 1)
+    driven = np.concatenate([[0.0], np.cumsum(_simpson(2.0 * way * force * x, step))])
+    with np.errstate(invalid="ignore", divide="ignore"):
+        factor = np.sqrt(2.0 * driven / mass) / x
+    factor[0] = np.sqrt(2.0 * force[0] * way / mass)
+    slowness = 2.0 * way / factor
+    return Fallen(np.concatenate([[0.0], np.cumsum(_simpson(slowness, step))]), factor * x)
+
+
+def _simpson(values: Array, step: float) -> Array:
+    """Integral over every step of values (n,) by the cubics through the nearest four, (n - 1,)."""
+    inner = (13.0 * (values[1:-2] + values[2:-1]) - values[:-3] - values[3:]) / 24.0
+    first = (9.0 * values[0] + 19.0 * values[1] - 5.0 * values[2] + values[3]) / 24.0
+    last = (9.0 * values[-1] + 19.0 * values[-2] - 5.0 * values[-3] + values[-4]) / 24.0
+    return step * np.concatenate([[first], inner, [last]])
+
+
+def answered(loading: PlasticLoading, known: Answered, deepest: float, power: float) -> Answered:
+    """What is ``known`` of a loading, and a release from the greatest depth of an impact, m."""
+    course, presser = loading.course, loading.presser
+    last = [place.depth < deepest / course.unit * (1.0 - 1e-6) for place in loading.ends].index(False) - 1
+    before = loading.ends[last - 1] if last else presser.at_rest()
+    taken = list(presser.loaded(before, loading.ends[last], deepest / course.unit))
+    places = presser.released(taken[-1], max(8, round(SPRINGING * loading.numerics.steps)), power)
+    springs, roots, shrunk = _release(places, power)
+    scale, final = course.modulus * course.unit**3, places[-1]
+    return replace(
+        known,
+        springs=springs,
+        roots=roots,
+        shrunk=np.ones_like(shrunk) if course.rim else shrunk,
+        stored=scale * presser.ground.stored(final.displacement, final.state),
+        plastic=scale * presser.ground.worked(final.state),
+    )
+
+
+def _release(places: list[Station], power: float) -> tuple[float, Array, Array]:
+    """Share of the depth that springs back; force^(1/power) and contact radius at ``SPRUNG``, over those at first."""
+    depth, force, radius = columns(places)
+    top = depth[0]
+    fit = np.polynomial.Polynomial.fit(depth, (force / force[0]) ** (1.0 / power), min(DEGREE, depth.size - 2))
+    end = parting(places[-2], places[-1], power)
+    for _ in range(20):
+        end -= fit(end) / fit.deriv()(end)
+    roots = fit(end + SPRUNG * (top - end))
+    left = (depth[::-1] - end) / (top - end)
+    shrunk = np.interp(SPRUNG, np.concatenate([[0.0], left]), np.concatenate([[0.0], radius[::-1] / radius[0]]))
+    return float((top - end) / top), roots / roots[-1], shrunk
+
+
+def released_power(course: Course) -> float:
+    """Of what is left to spring back, that the force of a release ends with: dents are round, rims stay."""
+    return 1.0 if course.rim else 1.5
+
+
+@dataclass(frozen=True, eq=False)
+class Pilot:
+    """How an impact will go, about: greatest depth, m, and its march. It enters no value."""
+
+    course: Course
+    march: March
+
+    @classmethod
+    def of(cls, scene: Scene) -> Pilot:
+        """By a coarse mesh and few steps. Raises NotReached."""
+        energy = 0.5 * scene.reduced_mass * scene.velocity**2
+        deepest = _at_most(scene, energy)
+        course = Course.of(scene, deepest, deepest)
+        numerics = settings(PILOT, course.rim)
+        loading = PlasticLoading.of(course, numerics)
+        loading.to(BEYOND * deepest)
+        power = released_power(course)
+        found = Rebound(Answered.of(loading), scene.reduced_mass, energy, power, course.power)
+        deepest = found.deepest
+        return cls(Course.of(scene, deepest, deepest), found.march(Work()))
+
+
+def _at_most(scene: Scene, energy: float) -> float:
+    """A depth, m, that no impact of this energy, J, goes far beyond: elastic, or little resistance of what overlaps."""
+    geometry, profile = scene.geometry, scene.profile
+    modulus = geometry.shape.modulus(geometry.material).relaxed
+    strength = SOFTEST * (geometry.material.yield_strength or np.inf)
+    curve, depth = profile.load_curve, profile.hertz_impact(modulus, scene.reduced_mass, scene.velocity).depth
+
+    def work(deepest: float) -> float:
+        places = deepest * (np.arange(64) + 0.5) / 64
+        areas = np.pi * np.array([(profile.fixed_radius or overlapping(profile, float(d))) ** 2 for d in places])
+        return float(np.minimum(modulus * np.asarray(curve.force(places)), strength * areas).mean() * deepest)
+
+    while work(depth) < energy:
+        depth *= 1.15
+    return depth
+
+
+@dataclass(frozen=True, eq=False)
+class Striking:
+    """The way of an impact on what yields."""
+
+    scene: Scene
+    chosen: Plan
+    progress: Progress
+    course: Course
+    rounds: ClassVar[int] = ROUNDS
+
+    @classmethod
+    def of(cls, scene: Scene, chosen: Plan, progress: Progress) -> Striking:
+        """Raises NotReached where not even a coarse mesh tells how deep it goes."""
+        return cls(scene, chosen, progress, Pilot.of(scene).course)
+
+    def certified(self, numerics: Numerics) -> Budget:
+        """The contact and its bars. Raises NotReached."""
+        runner = Runner(self.scene, self.course.outgrown(numerics), self.progress)
+        runs = Varied.of(runner.run, numerics)
+        told, works = Varied(*(run.answered for run in runs)), [run.work for run in runs]
+        march = runner.motion(told.mended(_onwards)).march(runs.base.work)
+        curve = Curve.of(march, Strike.of(self.scene))
+        self._check_end(curve.duration)
+        changes = {
+            cause: (Variation(runner.curve(first), runner.curve(second), factor),)
+            for cause, (first, second, factor) in told.pairs(_onwards).items()
+        }
+        work = TotalWork.of(works, runs.base.unknowns, sum(one.iterations for one in works), 0)
+        return Budget(curve, march, changes, work, numerics)
+
+    def _check_end(self, duration: float) -> None:
+        """Raise BadInput for an end of the motion amid the contact."""
+        if duration > self.scene.end_time:
+            told = f"{self.scene.end_time:g} s: the contact lasts {duration:.3g} s; accepted: longer, or none"
+            raise BadInput(Fault(self.scene.source, "motion.end_time", told))
+
+    def finer(self, found: Budget) -> Finer:
+        """Less of the causes that stand in the way."""
+        if meets(found.quantities, found.numerics.tolerance):
+            return Finer(None)
+        excess = {cause: float(shares_of(found, cause).max()) for cause in CAUSES}
+        return Finer(dominant(excess, found.numerics, self.chosen.pinned, least=1.0))
+
+    def ledger(self, found: Budget) -> tuple[LedgerEntry, ...]:
+        """What the model leaves out of the impact that was found."""
+        return model_ledger(self.scene, Peak.of(found.quantities, found.history()))
+
+
+def dent(found: Budget) -> IndentationLeft:
+    """What is left for ever, with its bar: nothing recovers."""
+    left = found.curve.depth[-1:]
+    apart = [
+        one.factor * np.abs(one.first.depth[-1:] - one.second.depth[-1:])
+        for causes in found.changes.values()
+        for one in causes
+        if isinstance(one, Variation)
+    ]
+    return IndentationLeft(np.zeros(1), left, np.asarray(np.sum(apart, axis=0)), float(left[0]), ())
+
+
+def plan(scene: Scene, given: Given) -> Plan:
+    """Settings and ledger, by a coarse run. Raises NotReached."""
+    check_kind(given, False, scene.source)
+    check_given(given, scene.source)
+    pilot = Pilot.of(scene)
+    numerics = settings(given, pilot.course.rim)
+    march = pilot.march
+    curve = Curve.of(march, Strike.of(scene))
+    known = curve.quantities
+    peak = Peak(
+        known["peak_force"] or 0.0, known["peak_depth"] or 0.0, float(march.radius.max()), known["duration"] or 0.0
+    )
+    return Plan(numerics, frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
+
+
+@dataclass(frozen=True, eq=False)
+class YieldRun:
+    """One impact with some settings: what the body ``answered``, and what it cost."""
+
+    answered: Answered
+    work: Work
+    unknowns: int
+
+
+@dataclass(frozen=True, eq=False)
+class Runner:
+    """Impacts of a scene with settings varied."""
+
+    scene: Scene
+    course: Course
+    progress: Progress
+
+    def run(self, numerics: Numerics, cut: bool) -> YieldRun:
+        """A loading beyond where the energy is spent, and a release from there. Raises NotReached."""
+        self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")
+        loading = PlasticLoading.of(self.course, numerics, cut)
+        loading.to(BEYOND * self.course.deepest)
+        known = Answered.of(loading)
+        deepest = self.motion(known).deepest
+        if deepest > known.depth[-1]:
+            raise MemoryTooSmall(self.course.unit)
+        found = answered(loading, known, deepest, released_power(self.course))
+        counts = loading.presser.counts
+        work = Work(len(loading.ends), counts.problems, counts.iterations)
+        return YieldRun(found, work, loading.presser.ground.unknowns)
+
+    def motion(self, answer: Answered) -> Rebound:
+        """The striker's, on what answers so."""
+        mass = self.scene.reduced_mass
+        energy = 0.5 * mass * self.scene.velocity**2
+        return Rebound(answer, mass, energy, released_power(self.course), self.course.power)
+
+    def curve(self, answer: Answered) -> Curve:
+        """The same, for comparison."""
+        return Curve.of(self.motion(answer).march(Work()), Strike.of(self.scene))

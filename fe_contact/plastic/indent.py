@@ -1,0 +1,122 @@
+"""Slow indentation of a half-space that yields, its bars from what every setting changes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import ClassVar
+
+import numpy as np
+
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.refine import Finer, dominant, refine
+from fe_contact.plastic.course import BEYOND, Course, Forces, PlasticLoading, Varied, check_given, settings
+from fe_contact.progress import Progress
+from fe_contact.settings import Given, Numerics
+from lumped.indentation import Indentation
+from lumped.numbers import Clock
+from lumped.scene.indenter import Indenter
+
+AROUND = 0.7  # in ln depth: a change counts as the error of its neighbours, for it may vanish where it changes sign
+DENSE = 80  # depths at which changes are read
+ROUNDS = 0  # of refinement: settings follow the tolerance, and a finer mesh is four times as dear
+KEPT = ("tolerance", "elements_per_contact", "order", "penalty", "steps", "far_radius")
+
+
+@dataclass(frozen=True, eq=False)
+class ForcesFound:
+    """ln of the force at depths (n,), m, extrapolated in the steps; ``pressed`` the finest run; errors by cause."""
+
+    depth: Array
+    logarithm: Array
+    pressed: Forces
+    budget: Mapping[str, Array]
+    numerics: Numerics
+    work: Mapping[str, int]
+
+
+def indent(indenter: Indenter, depths: tuple[float, ...], given: Given, progress: Progress) -> Indentation:
+    """Press to every depth, m; refine once where bars exceed the tolerance.
+
+    Raises BadInput for depths that cannot be, NotReached where nothing settles.
+    """
+    clock = Clock()
+    check_given(given, indenter.source)
+    asked = np.array(indenter.checked(depths))
+    course = Course.of(indenter, float(asked.min()), float(asked.max()))
+    way = YieldingWay(course, asked, frozenset(given) - {"tolerance"}, progress)
+    found, _ = refine(way, settings(given, course.rim))
+    radius = found.pressed.contact_radius(asked)
+    indenter.check_contacts(asked, radius)
+    force = np.exp(np.interp(asked, found.depth, found.logarithm))
+    budget = {cause: np.interp(asked, found.depth, error) for cause, error in found.budget.items()}
+    return Indentation(
+        indenter=indenter,
+        method="fe",
+        modulus=course.modulus,
+        tolerance=found.numerics.tolerance,
+        depth=asked,
+        force=force,
+        contact_radius=radius,
+        force_error=np.sum(list(budget.values()), axis=0) * force,
+        budget=budget,
+        numerics={key: value for key, value in found.numerics.as_dict().items() if key in KEPT},
+        timing=clock.read(),
+        work=found.work,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class YieldingWay:
+    """The way of an indentation of what yields."""
+
+    course: Course
+    asked: Array
+    pinned: frozenset[str]
+    progress: Progress
+    rounds: ClassVar[int] = ROUNDS
+
+    def certified(self, numerics: Numerics) -> ForcesFound:
+        """Forces and what each setting changes of them. Raises NotReached where nothing settles."""
+        depth = np.unique(np.concatenate([np.geomspace(self.asked.min(), self.asked.max(), DENSE), self.asked]))
+        loadings = Varied.of(partial(self._run, self.course.outgrown(numerics)), numerics)
+        told = Varied(*(loading.pressed.logarithm(depth) for loading in loadings))
+        return ForcesFound(
+            depth=depth,
+            logarithm=told.mended(_onwards),
+            pressed=loadings.base.pressed,
+            budget={
+                cause: around(depth, factor * np.abs(first - second))
+                for cause, (first, second, factor) in told.pairs(_onwards).items()
+            },
+            numerics=numerics,
+            work={
+                "degrees_of_freedom": loadings.base.presser.ground.unknowns,
+                "contact_problems": sum(loading.presser.counts.problems for loading in loadings),
+                "iterations": sum(loading.presser.counts.iterations for loading in loadings),
+            },
+        )
+
+    def finer(self, found: ForcesFound) -> Finer:
+        """Less of what dominates, until the tolerance is met."""
+        errors = {cause: float(error.max()) for cause, error in found.budget.items()}
+        if sum(errors.values()) <= found.numerics.tolerance:
+            return Finer(None)
+        return Finer(dominant(errors, found.numerics, self.pinned))
+
+    def _run(self, course: Course, numerics: Numerics, cut: bool) -> PlasticLoading:
+        self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")
+        loading = PlasticLoading.of(course, numerics, cut)
+        loading.to(BEYOND * self.course.deepest)
+        return loading
+
+
+def _onwards(one: Array, fine: Array, coarse: Array, weight: float) -> Array:
+    return one + weight * (fine - coarse)
+
+
+def around(depth: Array, error: Array) -> Array:
+    """The largest error near every depth."""
+    near = np.abs(np.log(depth[:, None] / depth[None])) <= AROUND
+    return np.asarray(np.where(near, error[None], 0.0).max(axis=1))

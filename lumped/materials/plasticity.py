@@ -1,0 +1,116 @@
+"""J2 plasticity with linear isotropic hardening at small strain: the radial return of a step, and the first yield.
+
+Strains and stresses of a plane of revolution in components (rr, rz, zz, tt), tensor components, symmetric.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from lumped.numbers import Array
+
+ROOT = math.sqrt(1.5)  # von Mises' stress over the length of the deviator
+# Displacement gradient (rr, rz, zr, zz, tt) to strain (rr, rz, zz, tt), and how often each component stands in a sum.
+SYMMETRIC = np.array([[1.0, 0, 0, 0, 0], [0, 0.5, 0.5, 0, 0], [0, 0, 0, 1.0, 0], [0, 0, 0, 0, 1.0]])
+GRADIENT = [0, 1, 1, 2, 3]  # components of a symmetric tensor by those of a gradient
+OFTEN = np.array([1.0, 2.0, 1.0, 1.0])
+VOLUME = np.array([1.0, 0.0, 0.0, 1.0, 1.0])  # of a gradient: its trace
+DEEPEST = 2.0  # contact radii: below them the axis' shear stress only falls
+
+
+@dataclass(frozen=True, eq=False)
+class PlasticStep:
+    """What points answer at the end of a step, of any shape (...): ``stress`` (5, ...) by the components of the
+    gradient, Pa; ``tangent`` its consistent derivative (5, 5, ...); ``energy`` (...), J/m3, the incremental potential
+    of both; ``strain`` (4, ...) and ``amount`` (...) of plastic strain in the end.
+    """
+
+    stress: Array
+    tangent: Array
+    energy: Array
+    strain: Array
+    amount: Array
+
+
+@dataclass(frozen=True)
+class Yielding:
+    """Bulk and shear modulus, yield strength and hardening modulus, Pa: it yields at Y + H alpha, von Mises.
+
+    alpha is the amount of plastic strain, sqrt(2/3) times the length of its path.
+    """
+
+    bulk: float
+    shear: float
+    strength: float
+    hardening: float = 0.0
+
+    def flowed(self, gradient: Array, strain: Array, amount: Array) -> PlasticStep:
+        """The step to a displacement ``gradient`` (5, ...) from plastic ``strain`` (4, ...) of an ``amount`` (...).
+
+        Backward Euler's radial return, de Souza Neto et al. 2008 (ISBN 978-0-470-69452-7), box 7.5, with the tangent of
+        Simo and Taylor 1985 (10.1016/0045-7825(85)90070-2). Its potential is K/2 tr^2 + G d:d - <f>^2/(2 (3G + H)), d
+        the trial deviator and f how far it lies beyond yield.
+        """
+        shear, rigid = self.shear, 3.0 * self.shear + self.hardening
+        volume, trial, length = self._trial(gradient, strain)
+        mises = 2.0 * shear * ROOT * length
+        beyond = np.maximum(mises - self.strength - self.hardening * amount, 0.0)
+        more, yields = beyond / rigid, beyond > 0.0
+        direction = trial / np.where(length > 0.0, length, 1.0)
+        kept = np.where(yields, 1.0 - 3.0 * shear * more / np.where(yields, mises, 1.0), 1.0)
+        deviator = 2.0 * shear * kept * trial
+        stress = deviator[GRADIENT] + np.multiply.outer(VOLUME, self.bulk * volume)
+        softer = np.where(yields, 3.0 * shear / rigid - (1.0 - kept), 0.0)
+        return PlasticStep(
+            stress=stress,
+            tangent=self._tangent(kept, softer, direction),
+            energy=0.5 * self.bulk * volume**2 + shear * length**2 - beyond**2 / (2.0 * rigid),
+            strain=strain + ROOT * more * direction,
+            amount=amount + more,
+        )
+
+    def stored(self, gradient: Array, strain: Array) -> Array:
+        """Elastic energy, J/m3, (...), at a displacement gradient (5, ...) and plastic strain (4, ...)."""
+        volume, _, length = self._trial(gradient, strain)
+        return np.asarray(0.5 * self.bulk * volume**2 + self.shear * length**2)
+
+    def worked(self, amount: Array) -> Array:
+        """Plastic work, J/m3, (...), along any path to an ``amount`` (...) of plastic strain: Y alpha + H alpha^2/2."""
+        return np.asarray((self.strength + 0.5 * self.hardening * amount) * amount)
+
+    def _trial(self, gradient: Array, strain: Array) -> tuple[Array, Array, Array]:
+        """Volume (...), deviator (4, ...) and its length (...) of the elastic strain if nothing flowed."""
+        volume = gradient[0] + gradient[3] + gradient[4]
+        whole = np.stack([gradient[0], 0.5 * (gradient[1] + gradient[2]), gradient[3], gradient[4]])
+        whole[[0, 2, 3]] -= volume / 3.0
+        trial = whole - strain
+        return volume, trial, np.sqrt(np.einsum("c,c...,c...->...", OFTEN, trial, trial))
+
+    def _tangent(self, kept: Array, softer: Array, direction: Array) -> Array:
+        """K 1(x)1 + 2G (kept I_dev - softer n(x)n), (5, 5, ...)."""
+        deviatoric = SYMMETRIC.T @ (OFTEN[:, None] * SYMMETRIC) - np.outer(VOLUME, VOLUME) / 3.0
+        normal = direction[GRADIENT]
+        tangent = -2.0 * self.shear * softer * normal[:, None] * normal[None]
+        tangent += 2.0 * self.shear * np.multiply.outer(deviatoric, kept)
+        fixed = self.bulk * np.outer(VOLUME, VOLUME)
+        tangent += fixed.reshape(5, 5, *[1] * kept.ndim)
+        return np.asarray(tangent)
+
+
+@cache
+def first_yield(poisson: float) -> tuple[float, float]:
+    """C = p_0/Y of Hertz' contact as it begins to yield, and at which depth under the axis, in contact radii.
+
+    Of the exact stresses on the axis, Johnson, Contact Mechanics (1985), (3.45); 1.613 and 0.48 at nu = 0.3.
+    """
+    depth = np.linspace(0.0, DEEPEST, 20_001)
+    safe = np.maximum(depth, 1e-12)
+    side = 1.0 / (1.0 + depth**2)
+    radial = -(1.0 + poisson) * (1.0 - depth * np.arctan(1.0 / safe)) + 0.5 * side
+    shear = np.abs(radial + side)
+    deepest = int(shear.argmax())
+    return 1.0 / float(shear[deepest]), float(depth[deepest])
