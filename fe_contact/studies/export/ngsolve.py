@@ -1,0 +1,53 @@
+"""NGSolve: a Python script that meshes, solves and, for an impact, marches in time. Weak form and steps stand in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from string import Template
+from typing import ClassVar
+
+import numpy as np
+
+from fe_contact.studies.export.base import ImpactCase, PressedCylinder, StaticCase
+
+PROFILE_POINTS, PROFILE_REACH = 2001, 1.6  # of the profile's table, and how far it goes, in contact radii
+
+
+@dataclass(frozen=True)
+class NGSolve:
+    """See the module."""
+
+    suffix: ClassVar[str] = ".py"
+    how: ClassVar[str] = "pip install ngsolve, then python {file}"
+
+    def static(self, case: StaticCase) -> str:
+        """As the contract says."""
+        return _filled("static", case.body, case.name, case.said, YOUNG=case.young, DEPTH=case.depth)
+
+    def impact(self, case: ImpactCase) -> str:
+        """As the contract says."""
+        young = case.young
+        return _filled(
+            "impact", case.body, case.name, case.said, EQUILIBRIUM=young.equilibrium, MODULI=list(young.moduli),
+            TIMES=list(young.times), VISCOSITY=young.viscosity, MASS=case.mass, VELOCITY=case.velocity,
+            DURATION=case.duration,
+        )  # fmt: skip
+
+
+def _filled(kind: str, body: PressedCylinder, name: str, said: tuple[str, ...], **numbers: object) -> str:
+    """The common part and the one of this kind, with the case's numbers."""
+    distance = np.linspace(0.0, PROFILE_REACH * body.edge, PROFILE_POINTS)
+    heights = ", ".join(f"{float(height):.12g}" for height in body.height(distance))
+    given = numbers | {
+        "NU": body.nu, "EDGE": body.edge, "RADIUS": body.radius, "THICKNESS": body.thickness, "HELD": body.held,
+        "BONDED": body.bonded, "REACH": PROFILE_REACH,
+    }  # fmt: skip
+    table = "\n".join(f"{key} = {value!r}" for key, value in given.items())
+    text = "".join(
+        (Path(__file__).parent / f"ngsolve_{part}.txt").read_text(encoding="utf-8") for part in ("body", kind)
+    )
+    return Template(text).substitute(NAME=name, SAID="\n".join(said), NUMBERS=table, HEIGHTS=heights)
+
+
+MEMBER = NGSolve()
