@@ -76,6 +76,19 @@ def own_numbers(scene: Scene) -> Scene:
     return replace(scene, law=LawChoice(name, {"k": k, **{key: float(value) for key, value in own.items()}}))
 
 
+def test_a_law_of_the_material_is_carried_over_temperatures_and_a_spring_is_not() -> None:
+    """R1 and R2, fitted warm, belong to the reference temperature; k and chi know none."""
+    shift = {"temperature": 296.0, "reference_temperature": 293.15, "wlf": [17.44, 51.6]}
+    scene = Scene.load("polymer-sphere", {f"target.material.{key}": value for key, value in shift.items()})
+    key = "target.material.temperature"
+    study = fe_contact.transfer(scene, ("ting", "hunt_crossley"), over={key: (290.0, 299.0)}, method="ting")
+    assert study.start == {key: 296.0}
+    assert {row.verdict for row in study.rows if row.law == "ting"} == {TransferVerdict.INSIDE}
+    wrong = of(study, "hunt_crossley", "restitution")
+    assert wrong[290.0].predicted == wrong[299.0].predicted
+    assert wrong[290.0].reference != pytest.approx(wrong[299.0].reference, rel=0.01)
+
+
 @pytest.mark.family
 @pytest.mark.parametrize("law", ["kelvin", "hunt_crossley", "tsuji", "impact_bilinear"])
 def test_restitution_and_peak_are_met_where_they_were_measured(law: str) -> None:

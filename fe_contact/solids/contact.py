@@ -123,7 +123,7 @@ class Skin:
 
     @classmethod
     def of(cls, surface: Surface, places: Array, order: int, size: int, rolled: Rolled | None) -> Skin:
-        """Of a boundary, straight where ``rolled`` flat; ``places`` (2, n_s) of its nodes, of elements of an ``order``."""
+        """Of a boundary, straight where ``rolled`` flat; ``places`` (2, n_s) of its nodes, elements of an ``order``."""
         corners = surface.corners(order)
         count = corners.size - 1
         gauss, weight = np.polynomial.legendre.leggauss(order + FACET_POINTS)

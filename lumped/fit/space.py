@@ -148,14 +148,17 @@ def network_keys() -> dict[str, Number]:
 
 
 def _material(own: Material, values: Mapping[str, float]) -> Material:
-    """The material with `values`, the rest of its network's parameters its own. Raises BadInput."""
+    """The material with `values`, at its reference temperature, the rest of its network's parameters its own.
+
+    Raises BadInput.
+    """
     family, names = _network(own.young, values)
-    known = {**own_values(own.young), **values}
+    known = {**own_values(own.reference), **values}
     missing = [name for name in names if name not in known]
     if missing:
         reason = "missing; the scene's material does not tell it; accepted: free, or a fixed value"
         raise BadInput(Fault(FREE, name, reason) for name in missing)
-    return replace(own, young=NETWORKS.get(family).of(**{name: known[name] for name in names}))
+    return own.with_reference(NETWORKS.get(family).of(**{name: known[name] for name in names}))
 
 
 def own_values(young: Relaxation) -> dict[str, float]:

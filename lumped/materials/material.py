@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from lumped.errors import BadInput, Fault
 from lumped.materials.relaxation import Relaxation
 from lumped.schema import Table
-from lumped.schema.keys import Choice, Key, Number, Record, written
+from lumped.schema.keys import Choice, Key, Number, Numbers, Record, written
 from lumped.schema.members import Member
 
 HARDENING = Number(0.0, 1e16, "Pa")
 MODULUS, DENSITY = Number(1e-3, 1e16, "Pa"), Number(1e-3, 1e6, "kg/m3")
 POISSON = Number(-1.0, 0.5, above=True)
+TEMPERATURE = Number(0.0, 1e4, "K", above=True)
+GAS = 8.314462618  # physics: J/(mol K)
+SHIFTS = ("wlf", "activation_energy")
+MOST_SHIFT = 1e30  # rounding: of times, either way; beyond it a material is glass, or has relaxed
 
 
 @dataclass(frozen=True)
@@ -23,7 +27,11 @@ class Material(Record):
 
     `young` is the relaxation modulus of the network (Pa, s). `constant = "poisson"`: nu is constant and
     the network is Young's modulus. `"bulk"`: G(t) = young(t)/(2(1+nu)), and the bulk modulus is the constant
-    K = E_inf/(3(1-2 nu)); a fluid (E_inf = 0) gives `bulk_modulus`. Raises BadInput.
+    K = E_inf/(3(1-2 nu)); a fluid (E_inf = 0) gives `bulk_modulus`.
+
+    With a `temperature`, K, `young` is the network as it is there: all its times at the `reference_temperature`
+    multiplied by the shift a_T of `wlf`, log10 a_T = -C1 (T - T_ref)/(C2 + T - T_ref) (Williams, Landel and Ferry 1955,
+    doi 10.1021/ja01619a008), or of Arrhenius' `activation_energy`, J/mol. Raises BadInput.
     """
 
     young: Relaxation
@@ -39,10 +47,42 @@ class Material(Record):
     hyperelastic: Annotated[
         str | None, Key(Member("lumped.materials.energies"), "elastic energy of large strains", required=False)
     ] = None
+    temperature: Annotated[float | None, Key(TEMPERATURE, "its own, which shifts all times of the network")] = None
+    reference_temperature: Annotated[float | None, Key(TEMPERATURE, "at which the network is given")] = None
+    wlf: Annotated[tuple[float, ...] | None, Key(Numbers(Number(0.0, 1e6), 2), "C1, and C2 in K, of the shift")] = None
+    activation_energy: Annotated[float | None, Key(Number(0.0, 1e8, "J/mol"), "of Arrhenius' shift")] = None
     name: ClassVar[str] = "material"
+
+    @classmethod
+    def of_reference(cls, network: Relaxation, **values: Any) -> Material:
+        """The material of a network at its reference temperature, with the other fields. Raises BadInput."""
+        return cls(network, **values).with_reference(network)
+
+    def with_reference(self, network: Relaxation) -> Material:
+        """The same with another network, as it is at the reference temperature."""
+        return replace(self, young=network.stretched(self.shift))
+
+    @property
+    def reference(self) -> Relaxation:
+        """The network at the reference temperature."""
+        return self.young.stretched(1.0 / self.shift)
+
+    @property
+    def shift(self) -> float:
+        """a_T, how much slower the network is than at its reference temperature; 1 without a temperature."""
+        if self.temperature is None or self.reference_temperature is None:
+            return 1.0
+        if self.wlf is None:
+            inverse = 1.0 / self.temperature - 1.0 / self.reference_temperature
+            exponent = (self.activation_energy or 0.0) / GAS * inverse
+        else:
+            warmer = self.temperature - self.reference_temperature
+            exponent = -math.log(10.0) * self.wlf[0] * warmer / (self.wlf[1] + warmer)
+        return math.exp(min(max(exponent, -700.0), 700.0))
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        self._check_shift()
         message = self._bulk_fault()
         if message:
             raise BadInput(Fault("material", "bulk_modulus", message))
@@ -93,7 +133,7 @@ class Material(Record):
 
     def to_dict(self) -> Table:
         """The table of a scene file that gives this material back."""
-        young = self.young
+        young = self.reference
         table: Table = {"law": "prony", "E_inf": young.equilibrium}
         if young.moduli:
             table |= {"E": list(young.moduli), "tau": list(young.times)}
@@ -101,6 +141,21 @@ class Material(Record):
             table["eta"] = young.viscosity
         table |= _fit_keys(young)
         return table | written(self)
+
+    def _check_shift(self) -> None:
+        """Raise BadInput for a temperature without all that a shift needs, and for a shift beyond all use."""
+        given = [key for key in ("temperature", "reference_temperature", *SHIFTS) if getattr(self, key) is not None]
+        if not given:
+            return
+        if len(given) != 3 or given[:2] != ["temperature", "reference_temperature"]:
+            accepted = f"accepted: temperature and reference_temperature with one of {', '.join(SHIFTS)}"
+            raise BadInput(Fault("material", "temperature", f"{', '.join(given)} given; {accepted}"))
+        if self.wlf is not None and len(self.wlf) != 2:
+            raise BadInput(Fault("material", "wlf", f"{len(self.wlf)} values; accepted: 2, C1 and C2 in K"))
+        lowest = (self.reference_temperature or 0.0) - self.wlf[1] if self.wlf is not None else 0.0
+        if (self.temperature or 0.0) <= lowest or not 1.0 / MOST_SHIFT <= self.shift <= MOST_SHIFT:
+            reason = f"{self.temperature:g} K: shifts all times by more than {MOST_SHIFT:.0e}; accepted: nearer to"
+            raise BadInput(Fault("material", "temperature", f"{reason} {self.reference_temperature:g} K"))
 
     def _bulk_fault(self) -> str:
         """Why this bulk modulus cannot stand with this network; empty when it can."""

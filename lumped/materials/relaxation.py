@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -123,6 +123,13 @@ class Relaxation:
         """The same times, every modulus and the viscosity multiplied by `factor` > 0."""
         moduli = tuple(factor * modulus for modulus in self.moduli)
         return Relaxation(factor * self.equilibrium, moduli, self.times, factor * self.viscosity, self.fidelity)
+
+    def stretched(self, factor: float) -> Relaxation:
+        """Everything `factor` > 0 times as slow: E(t/factor)."""
+        times, known = tuple(factor * time for time in self.times), self.fidelity
+        shortest, longest = known.window if known else (0.0, 0.0)
+        window = known and replace(known, window=(factor * shortest, factor * longest))
+        return Relaxation(self.equilibrium, self.moduli, times, factor * self.viscosity, window)
 
     def creep(self) -> Creep:
         """The creep compliance J(t) of the same material: E(s) J(s) = 1/s^2."""

@@ -255,7 +255,7 @@ class TableReader:
         young = self.made(path, law.of, placed(values, self.folder), "material", "samples", "prony fit")
         if young is None:
             return None
-        return self.made(path, partial(Material, young), common, "material")
+        return self.made(path, partial(Material.of_reference, young), common, "material")
 
 
 class SceneReader(TableReader):

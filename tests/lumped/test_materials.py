@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumped import BadInput, Material, Relaxation
+from lumped import BadInput, Material, Relaxation, Scene, laws, simulate
 from lumped.materials.networks import kelvin_voigt, maxwell, operators, prony, sls
 
 FREQUENCIES = np.logspace(-6, 6, 61)
@@ -128,3 +130,59 @@ def test_impossible_materials_are_refused() -> None:
     with pytest.raises(BadInput, match="bulk_modulus"):
         Material(Relaxation(1.0), 0.3, constant="bulk", bulk_modulus=2.0)
     assert Material(fluid, 0.3, constant="bulk", bulk_modulus=2.0).contact_modulus().relaxed == 0.0
+
+
+SHIFTS: list[dict[str, Any]] = [{"wlf": [17.44, 51.6]}, {"activation_energy": 9e4}]
+
+
+def warmed(temperature: float, shift: dict[str, Any], **others: float) -> Scene:
+    own = {"temperature": temperature, "reference_temperature": 293.15, **shift}
+    keys = {f"target.material.{key}": value for key, value in own.items()}
+    return Scene.load("polymer-sphere", keys | {f"striker.{key}": value for key, value in others.items()})
+
+
+@pytest.mark.parametrize("shift", SHIFTS)
+@pytest.mark.parametrize("law", ["ting", "correspondence"])
+def test_a_shift_in_temperature_is_a_change_of_the_clock(law: str, shift: dict[str, Any]) -> None:
+    """All times a_T as long: at the reference the impact of the mass over a_T squared, a_T as fast, on its clock."""
+    for temperature in (291.0, 296.0):
+        scene = warmed(temperature, shift)
+        if "wlf" in shift:
+            factor = 10.0 ** (-17.44 * (temperature - 293.15) / (51.6 + temperature - 293.15))
+        else:
+            factor = np.exp(9e4 / 8.314462618 * (1.0 / temperature - 1.0 / 293.15))
+        other = Scene.load(
+            "polymer-sphere", {"striker.mass": scene.mass / factor**2, "striker.velocity": scene.velocity * factor}
+        )
+        ours, theirs = (simulate(laws.get(law).of(one), one, 1e-7).quantities for one in (scene, other))
+        for name in ("peak_force", "peak_depth", "restitution"):
+            assert ours[name].value == pytest.approx(theirs[name].value, rel=1e-9)
+        assert ours["duration"].value == pytest.approx(factor * (theirs["duration"].value or 0.0), rel=1e-9)
+
+
+def test_a_temperature_is_written_with_the_network_at_its_reference() -> None:
+    scene = warmed(299.0, SHIFTS[0])
+    table = scene.to_dict()
+    plain = Scene.load("polymer-sphere").to_dict()["target"]["material"]
+    assert table["target"]["material"]["tau"] == pytest.approx(plain["tau"], rel=1e-15)
+    assert Scene.from_dict(table).geometry.material.young.times == pytest.approx(
+        scene.geometry.material.young.times, rel=1e-15
+    )
+    assert warmed(293.15, SHIFTS[1]).geometry.material.young == Scene.load("polymer-sphere").geometry.material.young
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ({"temperature": 300.0}, "temperature given; accepted: temperature and reference_temperature with one of wlf"),
+        ({"temperature": 300.0, "reference_temperature": 293.0, "wlf": [17.0]}, "wlf: 1 values; accepted: 2"),
+        ({"temperature": 230.0, "reference_temperature": 293.0, "wlf": [17.0, 51.6]}, "230 K: shifts all times"),
+        (
+            {"temperature": 300.0, "reference_temperature": 293.0, "wlf": [17.0, 51.6], "activation_energy": 1e5},
+            "accepted: temperature and",
+        ),
+    ],
+)
+def test_half_a_shift_is_refused(keys: dict[str, Any], message: str) -> None:
+    with pytest.raises(BadInput, match=message):
+        Scene.load("polymer-sphere", {f"target.material.{key}": value for key, value in keys.items()})
