@@ -22,6 +22,7 @@ from fe_contact.studies.transfer.verdict import QUANTITIES, TransferRow, Transfe
 from lumped import BadInput, Scene, laws
 from lumped.result.result import Quantity
 from lumped.scene.tables import LawChoice
+from lumped.schema.files import data_folder
 
 VELOCITY = "striker.velocity"
 DAMPED = ("kelvin", "mahmoud", "jankowski", "hunt_crossley", "hertzdamp", "khatiwada", "kuwabara_kono", "tsuji")
@@ -308,3 +309,54 @@ def test_the_chart_is_reproducible(tmp_path: Path) -> None:
     study = fe_contact.transfer(body("jankowski", k=1e7, xi=0.2), ("jankowski", "kelvin"), over={VELOCITY: (2.0,)})
     first, again = (plot_transfer(study, tmp_path / name) for name in ("first", "again"))
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
+
+
+# what is published
+
+
+PUBLISHED = ("concrete-pole", "polymer-layer", "polymer-sphere", "rod-in-ring", "steel-ball-sls")
+
+
+def published(name: str) -> tuple[dict[str, Any], list[dict[str, str]]]:
+    """The packaged table of a scene: its record, and the rows of its CSV."""
+    folder = data_folder() / "transfer" / name
+    with (folder / "transfer.csv").open(encoding="utf-8", newline="") as file:
+        return json.loads((folder / "transfer.json").read_text(encoding="utf-8")), list(csv.DictReader(file))
+
+
+def test_published_tables_are_those_that_finite_elements_judged() -> None:
+    """Every verdict follows from the numbers beside it, and from no others."""
+    assert {path.name for path in (data_folder() / "transfer").iterdir()} == set(PUBLISHED)
+    for name in PUBLISHED:
+        record, rows = published(name)
+        assert (record["scene"], record["reference"]) == (name, "fe")
+        assert all(state["converged"] for state in record["references"])
+        assert {row["law"] for row in rows} == set(record["laws"]) == set(laws.available())
+        assert len(rows) == len(record["laws"]) * len(record["references"]) * len(QUANTITIES)
+        known = [row for row in rows if row["verdict"] != "refused" and row["predicted"] and row["reference"]]
+        assert len({row["law"] for row in known}) > 10
+        for row in known:
+            predicted, reference, bar = (float(row[key]) for key in ("predicted", "reference", "reference_error"))
+            off = predicted - reference
+            assert bar < 2e-3 * max(abs(reference), 1.0 if row["quantity"] == "restitution" else 0.0)
+            share = off if row["quantity"] == "restitution" else off / reference
+            assert float(row["deviation"]) == pytest.approx(share, abs=1e-12)
+            if row["verdict"] == "inside":
+                assert abs(off) <= 1.01 * bar + 1e-5 * abs(reference)
+            else:
+                assert (abs(share) <= record["within"]) == (row["verdict"] == "within")
+
+
+@pytest.mark.tenth
+def test_a_published_row_is_found_again(campaign_size: Callable[..., int]) -> None:
+    """A law and a state drawn by a seed: finite elements and the fit, anew."""
+    generator = np.random.default_rng(1966)
+    for name in generator.permutation(PUBLISHED)[: campaign_size(len(PUBLISHED), 1)].tolist():
+        rows = [row for row in published(name)[1] if row["verdict"] != "refused"]
+        drawn = rows[int(generator.integers(len(rows)))]
+        again = fe_contact.transfer(Scene.load(name), (drawn["law"],), over={drawn["key"]: (float(drawn["value"]),)})
+        found = of(again, drawn["law"], drawn["quantity"])[float(drawn["value"])]
+        assert found.verdict.value == drawn["verdict"]
+        bar = found.reference_error or 0.0
+        assert found.reference == pytest.approx(float(drawn["reference"]), abs=bar)
+        assert found.predicted == pytest.approx(float(drawn["predicted"]), abs=bar + 1e-4 * abs(found.predicted or 0.0))
