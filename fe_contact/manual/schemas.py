@@ -225,7 +225,7 @@ def result() -> Table:
     exact = {
         "quantities": _whole(quantity),
         "model_ledger": {"type": "array", "items": _told(ENTRY, (*(name for name in ENTRY if name != "value"),))},
-        "energy": _whole(dict.fromkeys(ENERGY_TERMS, NUMBER)),
+        "energy": _whole(dict.fromkeys(ENERGY_TERMS, NUMBER), plastic=NUMBER),
     }
     return _told({name: (exact.get(name, kind), says) for name, (kind, says) in RESULT.items()}, ALWAYS)
 
@@ -247,9 +247,10 @@ def _told(keys: Mapping[str, tuple[Table, str]], required: tuple[str, ...]) -> T
     return {"type": "object", "properties": known, "required": [*required], "additionalProperties": False}
 
 
-def _whole(properties: Mapping[str, Table]) -> Table:
-    """A table of all these keys and no other."""
-    return {"type": "object", "properties": dict(properties), "required": [*properties], "additionalProperties": False}
+def _whole(properties: Mapping[str, Table], **more: Table) -> Table:
+    """A table of all these keys, and of no other but perhaps ``more``."""
+    known = {**properties, **more}
+    return {"type": "object", "properties": known, "required": [*properties], "additionalProperties": False}
 
 
 def _part(table: str, inside: Table) -> Table:

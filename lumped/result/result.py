@@ -36,7 +36,8 @@ UNITS = {
 # `tolerance` rules these relatively; restitution and history_l2 absolutely; peak_time not at all.
 RULED_RELATIVE = ("peak_force", "peak_depth", "duration", "impulse")
 RULED_ABSOLUTE = ("restitution", "history_l2")
-ENERGY_TERMS = ("in", "out", "stored", "viscous", "plastic", "radiated", "contact", "numerical", "residual")
+# Every account has these; one whose bodies yield has its `plastic` work too.
+ENERGY_TERMS = ("in", "out", "stored", "viscous", "radiated", "contact", "numerical", "residual")
 WITHIN, ABOVE, OPEN, UNKNOWN = "within tolerance", "above it", "open", "unknown"
 NO_KEY = "no larger model here"
 LEFT_OUT = ("neglected", "none assumed")  # how a ledger's effect is treated that is not there at all
@@ -245,7 +246,7 @@ class Result:
             "error_budget": self.error_budget,
             "error_budget_by_quantity": self.error_budget_by_quantity,
             "model_ledger": [entry.to_json(self.tolerance) for entry in self.model_ledger],
-            "energy": {name: self.energy.get(name) for name in ENERGY_TERMS},
+            "energy": {**dict.fromkeys(ENERGY_TERMS), **self.energy},
             "energy_error": self.energy_error,
             "work": self.work,
             "provenance": self.provenance,

@@ -59,15 +59,15 @@ def decoded(kind: Any, content: Any, given: Sequence[object] = ()) -> Any:  # ty
     """The value of an annotated `kind` which :func:`encoded` made into `content`.
 
     A kind is a dataclass or a named tuple, a number, a text, an array, a tuple, a mapping whose keys are texts or
-    numbers, one of those or None, or object: plain data.
+    numbers, one of those or None, one of several plain ones, or object: plain data.
     """
     kind = getattr(kind, "__value__", kind)  # what an alias stands for, as NDArray is one from numpy 2.5 on
     origin, parts = get_origin(kind), get_args(kind)
     if isinstance(content, dict) and content.keys() == {GIVEN}:
         return given[content[GIVEN]]
     if NoneType in parts:
-        (other,) = (part for part in parts if part is not NoneType)
-        return None if content is None else decoded(other, content, given)
+        others = [part for part in parts if part is not NoneType]
+        return content if content is None or len(others) > 1 else decoded(others[0], content, given)
     if origin is np.ndarray:
         return np.array(content, dtype=float)
     if origin is tuple:

@@ -145,7 +145,7 @@ def test_result_files_hold_the_whole_schema_and_no_nan(tmp_path: Path) -> None:
     assert content["schema"] == "fe-contact/result/1"
     assert set(content["quantities"]) == set(UNITS)
     assert all(set(q) == {"value", "error", "unit"} for q in content["quantities"].values())
-    assert content["model"] == {"inertia": False, "profile": "exact", "gravity": 0.0, "direction": "unsaid"}
+    assert content["model"] == scene.to_dict()["model"]
     assert content["model_sufficient"] is False
     assert content["energy"]["in"] == pytest.approx(0.5 * 0.05 * 0.02**2)
     assert Scene.from_dict(content["scene"]).contact_modulus == scene.contact_modulus

@@ -358,7 +358,7 @@ def test_assumptions_of_the_examples(examples: Examples) -> None:
     found = {one.id: claims.judge_assumption(one, examples).verdict for one in claims.assumptions()}
     judged = {verdict: {name for name in found if found[name] == verdict} for verdict in (HOLDS, FAILS, OPEN)}
     assert judged[HOLDS] == {"steel.strain", "steel.inertia", "concrete.strain", "ring.inertia"}
-    assert judged[OPEN] == {"ring.loss"}
+    assert judged[OPEN] == {"ring.loss", "steel.yield"}, "steel of ball bearings just yields, and hardly moves the peak"
 
 
 def test_the_steel_yields_as_the_audit_says() -> None:

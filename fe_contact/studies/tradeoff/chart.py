@@ -188,8 +188,8 @@ class Signs:
     """``colours`` by the value of the setting ``key``, ``markers`` by mass."""
 
     key: str
-    colours: dict[Any, str]
-    markers: dict[Any, str]
+    colours: dict[object, str]
+    markers: dict[object, str]
 
     @classmethod
     def of(cls, points: Sequence[Point]) -> Signs:
