@@ -23,6 +23,7 @@ from lumped.shapes import SHAPES
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 PAGES = [name for group in MENU.values() for name in group]
 CHEAPEST_FIRST = (
+    "scenes",
     "adding",
     "choosing",
     "start",

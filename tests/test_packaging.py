@@ -21,10 +21,13 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 
-def blocks(language: str) -> list[str]:
-    """The README's code blocks of one language, in order."""
+MANUAL = {path.stem: path.read_text(encoding="utf-8") for path in (ROOT / "fe_contact" / "manual").glob("*.md")}
+
+
+def blocks(language: str, text: str = README) -> list[str]:
+    """Code blocks of one language, in order."""
     fenced = re.compile(rf"^```{language}\n(.*?)\n```$", re.DOTALL | re.MULTILINE)
-    return fenced.findall(README)
+    return fenced.findall(text)
 
 
 RUN_COMMAND, TEST_COMMAND = blocks("sh")
@@ -78,15 +81,19 @@ def test_the_readme_has_no_gaps() -> None:
     assert "@@" not in README
 
 
-def test_the_readme_names_only_what_exists() -> None:
-    quoted = re.findall(r"`((?:data|lumped|meshes|fe_contact|tests)/[\w/]*/)(?:NAME\.py)?`", README)
-    quoted += re.findall(r"`([A-Z]+(?:\.\w+)?)`", README)
+@pytest.mark.parametrize("page", ["README", "adding"])
+def test_only_what_exists_is_named(page: str) -> None:
+    text = README if page == "README" else MANUAL[page]
+    quoted = re.findall(
+        r"`((?:data|lumped|meshes|fe_contact|tests)/[\w/]*(?:/|\b(?!NAME)\w+\.\w+))(?:NAME\.py)?`", text
+    )
+    quoted += re.findall(r"`([A-Z]+\.\w+)`", README)
     assert quoted
     assert not [place for place in quoted if not (ROOT / place).exists()]
 
 
-def test_the_readme_scenes_are_packaged_ones() -> None:
-    examples = [tomllib.loads(text) for text in blocks("toml")]
+def test_example_scenes_are_packaged_ones() -> None:
+    examples = [tomllib.loads(text) for text in blocks("toml") + blocks("toml", MANUAL["scenes"])]
     assert len(examples) == 2
     for example in examples:
         packaged = ROOT / "data" / "scenes" / f"{example['name']}.toml"
