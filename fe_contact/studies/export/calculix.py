@@ -54,7 +54,7 @@ def block(r: Array, z: Array, first: int) -> Grid:
 
 def graded(fine: float, uniform: float, end: float) -> Array:
     """Places from 0 to ``end``, equal up to ``uniform``, then growing, with a middle in every interval."""
-    places = list(np.linspace(0.0, min(uniform, end), max(round(min(uniform, end) / fine), 2) + 1))
+    places = np.linspace(0.0, min(uniform, end), max(round(min(uniform, end) / fine), 2) + 1).tolist()
     size = fine
     while places[-1] < end:
         size *= GROWTH

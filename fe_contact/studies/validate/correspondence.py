@@ -67,8 +67,7 @@ class CorrespondenceMap:
     @property
     def agreeing(self) -> Array:
         """Whether finite elements agree with the exact law in everything; (places,)."""
-        found: Array = np.nanmax(self.ratios, axis=1) <= 1.0
-        return found
+        return np.asarray(np.nanmax(self.ratios, axis=1) <= 1.0)
 
     def place(self, table: SweepTable, case: int) -> str:
         """A case in words."""
