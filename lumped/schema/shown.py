@@ -12,7 +12,7 @@ import numpy as np
 
 from lumped.numbers import Array
 
-WIDTH, HEIGHT, LEFT, BELOW, ABOVE = 480, 230, 62, 38, 22  # look: of a picture and its margins, pixels
+WIDTH, HEIGHT, LEFT, RIGHT, BELOW, ABOVE = 480, 230, 62, 26, 38, 22  # look: of a picture and its margins, pixels
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")  # Okabe and Ito's, for every eye
 MOST_POINTS = 400  # look: of a curve as it is drawn
 TICKS = 5  # look: about so many on an axis
@@ -45,7 +45,7 @@ def html_table(header: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
 def curves(lines: Mapping[str, tuple[Array, Array]], x_label: str, y_label: str) -> Picture:
     """Curves by their names, x and y each (n,), on common axes that hold zero."""
     x_ticks, y_ticks = (_reach([line[axis] for line in lines.values()]) for axis in (0, 1))
-    across, up = WIDTH - LEFT - 12, HEIGHT - BELOW - ABOVE
+    across, up = WIDTH - LEFT - RIGHT, HEIGHT - BELOW - ABOVE
 
     def place(x: float, y: float) -> tuple[float, float]:
         """In pixels."""
@@ -58,7 +58,7 @@ def curves(lines: Mapping[str, tuple[Array, Array]], x_label: str, y_label: str)
         colour, rows = COLOURS[number % len(COLOURS)], np.linspace(0, len(x) - 1, min(len(x), MOST_POINTS)).astype(int)
         points = " ".join(f"{px:.1f},{py:.1f}" for px, py in (place(float(x[i]), float(y[i])) for i in rows))
         parts.append(f'<polyline points="{points}" fill="none" stroke="{colour}" stroke-width="1.6"/>')
-        parts.append(_text(WIDTH - 12, ABOVE + 14 * number, name, "end", colour))
+        parts.append(_text(WIDTH - RIGHT, ABOVE + 14 * number, name, "end", colour))
     style = 'font-family="sans-serif" font-size="11" style="background:#fff"'
     box = f'xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}"'
     return Picture(f"<svg {box} {style}>{''.join(parts)}</svg>")
