@@ -104,6 +104,8 @@ def plan(scene: Scene, given: Given) -> Plan:
     with faults_of(scene):
         if scene.model.plasticity:
             return yielding.plan(scene, given)
+        if scene.model.finite:
+            large_strains.check_impact(scene, given)
         if not scene.model.inertia:
             return statics.plan(scene, given)
         check_kind(given, True, scene.source)

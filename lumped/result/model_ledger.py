@@ -108,8 +108,8 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
     mass, geometry = scene.reduced_mass, scene.geometry
     pulse = Pulse(peak.force, peak.duration, mass, 0.5 * mass * scene.velocity**2, peak.contact_radius)
     estimate, note = scene.target.inertia_left_out(geometry.shape, geometry.material, pulse)
-    key = "model.inertia" if scene.target.waves_under(geometry.shape) else ""
-    return LedgerEntry(effect, "neglected", estimate, note, key, value=True if key else None)
+    built = scene.target.waves_under(geometry.shape) and not (model.finite or model.plasticity)
+    return LedgerEntry(effect, "neglected", estimate, note, "model.inertia" if built else "", value=built or None)
 
 
 def gravity(scene: Scene, model: Model, force: float, mass: float) -> LedgerEntry:
@@ -281,9 +281,9 @@ def plasticity(scene: Scene | Indenter, model: Model, peak: Peak, share: float =
     pressure = 1.5 * peak.force / (math.pi * peak.contact_radius**2)
     over = pressure / (FIRST_YIELD * material.yield_strength)
     softer = FLOW * math.log(max(over, 1.0) ** 2) ** 2
-    refused = plasticity_faults("", replace(model, plasticity=True), scene.geometry)
-    key = "" if refused else "model.plasticity"
-    return LedgerEntry(effect, "neglected", share * softer / (1.0 + softer), f"p0/(1.6 Y) = {over:.3g}", key)
+    built = not plasticity_faults("", replace(model, plasticity=True), scene.geometry)
+    change, note, key = share * softer / (1.0 + softer), f"p0/(1.6 Y) = {over:.3g}", "model.plasticity" if built else ""
+    return LedgerEntry(effect, "neglected", change, note, key, value=built or None)
 
 
 def adhesion(scene: Scene, peak: Peak) -> LedgerEntry:
