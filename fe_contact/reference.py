@@ -217,6 +217,16 @@ def expected(scene: Scene, given: Given) -> tuple[float, float]:
         return tolerance, scene.motion.impacts * tighter * seconds_of_impact(scene.geometry)
 
 
+def check(scene: Scene, given: Given) -> None:
+    """Raise BadInput for an impact that finite elements do not answer."""
+    if scene.model.finite:
+        large_strains.check_impact(scene, given)
+    elif scene.model.inertia:
+        with_waves(scene).check(scene)
+    elif not scene.model.plasticity:
+        check_target(scene)
+
+
 def check_target(scene: Scene) -> None:
     """Raise BadInput for a target which no impact is marched on, and for what is found elsewhere: waves, flow."""
     geometry = scene.geometry

@@ -39,7 +39,7 @@ def execute(args: argparse.Namespace) -> int:
         base.say(args, methods | nothing, lines, title)
         return base.DONE
     chosen = plan(scene, given)
-    takes, refused = _takes(scene, chosen)
+    takes, refused = _takes(scene, chosen, given)
     measured = _measured(args, scene, given)
     ledger = [entry.to_json(float(chosen.numerics.tolerance)) for entry in chosen.ledger]
     content = methods | {
@@ -85,14 +85,14 @@ def _measured_lines(measured: tuple[MeasuredEffect, ...] | None) -> list[str]:
     return ["measured, as a change of the peak force:", *found]
 
 
-def _takes(scene: Scene, chosen: Plan) -> tuple[Cost | None, FeContactError | None]:
+def _takes(scene: Scene, chosen: Plan, given: Table) -> tuple[Cost | None, FeContactError | None]:
     """What waves take, None without them, and why finite elements refuse the scene, None where they do not."""
-    from fe_contact.reference import check_target, with_waves
+    from fe_contact.reference import check, with_waves
     from fe_contact.settings import WaveNumerics
 
     try:
         if not scene.model.inertia:
-            check_target(scene)
+            check(scene, given)
             return None, None
         assert isinstance(chosen.numerics, WaveNumerics)
         takes = with_waves(scene).cost(scene, chosen.numerics)

@@ -152,9 +152,9 @@ class Course:
             deepest=deepest,
         )
 
-    def outgrown(self, numerics: Numerics) -> Course:
-        """For wider contacts, where the settings say that they outgrew what was expected."""
-        return replace(self, deepest=self.deepest * numerics.contact_radius**2)
+    def outgrown(self, wider: float) -> Course:
+        """For contacts so many times as wide, where they outgrew what was expected."""
+        return replace(self, deepest=self.deepest * wider**2)
 
     @property
     def rim(self) -> bool:

@@ -297,7 +297,8 @@ class Striking:
 
     def certified(self, numerics: Numerics) -> Budget:
         """The contact and its bars. Raises NotReached."""
-        runner = Runner(self.scene, self.course.outgrown(numerics), self.progress)
+        wider = numerics.contact_radius / self.chosen.numerics.contact_radius
+        runner = Runner(self.scene, self.course.outgrown(wider), self.progress)
         runs = Varied.of(runner.run, numerics)
         told, works = Varied(*(run.answered for run in runs)), [run.work for run in runs]
         march = runner.motion(told.mended(_onwards)).march(runs.base.work)
@@ -345,13 +346,15 @@ def plan(scene: Scene, given: Given) -> Plan:
     check_kind(given, False, scene.source)
     check_given(given, scene.source)
     pilot = Pilot.of(scene)
-    numerics = settings(given, pilot.course.rim)
-    march = pilot.march
-    curve = Curve.of(march, Strike.of(scene))
-    known = curve.quantities
-    peak = Peak(
-        known["peak_force"] or 0.0, known["peak_depth"] or 0.0, float(march.radius.max()), known["duration"] or 0.0
+    radius, known = float(pilot.march.radius.max()), Curve.of(pilot.march, Strike.of(scene)).quantities
+    duration, peak_time = known["duration"] or 0.0, known["peak_time"] or 0.0
+    numerics = replace(
+        settings(given, pilot.course.rim),
+        contact_radius=radius,
+        contact_time=duration,
+        peak_share=peak_time / duration,
     )
+    peak = Peak(known["peak_force"] or 0.0, known["peak_depth"] or 0.0, radius, duration)
     return Plan(numerics, frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
 
 

@@ -80,7 +80,7 @@ class YieldingWay:
     def certified(self, numerics: Numerics) -> ForcesFound:
         """Forces and what each setting changes of them. Raises NotReached where nothing settles."""
         depth = np.unique(np.concatenate([np.geomspace(self.asked.min(), self.asked.max(), DENSE), self.asked]))
-        loadings = Varied.of(partial(self._run, self.course.outgrown(numerics)), numerics)
+        loadings = Varied.of(partial(self._run, self.course.outgrown(numerics.contact_radius)), numerics)
         told = Varied(*(loading.pressed.logarithm(depth) for loading in loadings))
         return ForcesFound(
             depth=depth,
