@@ -23,11 +23,12 @@ def execute(args: argparse.Namespace) -> int:
     progress("our own answer")
     if args.depth is not None:
         indenter, table = base.read_indenter(args)
-        case = StaticCase.of(indenter, base.number(args.depth, "--depth"), settings(table, None, indenter.source))
+        depth = base.number(args.depth, "--depth")
+        case = StaticCase.of(indenter, depth, args.refined, settings(table, None, indenter.source))
         text, name = program.static(case), f"{case.name}-depth{program.suffix}"
     else:
         scene, table = base.read_scene(args)
-        struck = ImpactCase.of(scene, settings(table, None, scene.source))
+        struck = ImpactCase.of(scene, args.refined, settings(table, None, scene.source))
         text, name = program.impact(struck), f"{struck.name}-impact{program.suffix}"
     where = base.folder(args, "export", Path(name).stem)
     runs = program.how.format(file=name, stem=Path(name).stem)
@@ -50,6 +51,7 @@ MEMBER = base.Command(
         *base.SCENE,
         base.option("--to", required=True, choices=available(PACKAGE), help="the program"),
         base.option("--depth", metavar="D", help="slow indentation to this depth, m; without it the impact"),
+        base.option("--refined", type=int, choices=(1, 2, 3, 4), default=1, help="elements and steps divided so often"),
         *base.OUTPUT,
     ),
     execute,

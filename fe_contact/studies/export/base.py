@@ -10,6 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
+import numpy as np
+
 from fe_contact.indentation import indent
 from fe_contact.methods import simulate
 from fe_contact.settings import Given
@@ -23,17 +25,21 @@ from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
 from lumped.targets.layer import Layer
 
-# A half-space is cut off so many contact radii away, fixed there: its force at a depth is larger by 1.3 over this number.
-FAR = 200.0
+# A half-space is cut off so many contact radii away, fixed there: its force at a depth is larger by about 1.3 over it.
+FAR = 20_000.0
 # A layer is free at its side, this many contact radii plus thicknesses away.
 SIDE = 10.0
+# Of a lattice: how far its lines are as dense as at the contact, along the surface and below it, in contact radii, and
+# how the distances beyond grow.
+REACH, DEEP, GROWTH = 1.5, 0.5, 1.5
 
 
 @dataclass(frozen=True, eq=False)
 class PressedCylinder:
     """A cylinder that is pressed at its top, and the profile of the striker: lengths in m.
 
-    `height`: of the profile over its tip, m, at a distance from the axis, m. `edge`: the largest contact radius.
+    `height`: of the profile over its tip, m, at a distance from the axis, m. `edge`: the largest contact radius. What
+    is beyond `reach` is never touched.
     `held`: whether the side and the base are fixed, as those of a body cut off from an infinite one; else the side is
     free, and the base `bonded` or sliding.
     """
@@ -60,33 +66,68 @@ class PressedCylinder:
         reason = f"{target.name}: accepted for another program: half_space, layer"
         raise BadInput(Fault(source, "target.shape", reason))
 
+    @property
+    def reach(self) -> float:
+        """Of the contact along the surface, m."""
+        return REACH * self.edge
+
+    def lattice(self, elements: int, refined: int) -> tuple[Array, Array]:
+        """Lines of a mesh of rectangles: distances from the axis and heights from the base up to 0, m.
+
+        There are so many `elements` a contact radius, each then divided into `refined` a side: of two meshes one
+        divides the other, and their answers tell how far both are from the exact one.
+        """
+        across = _graded(self.edge / elements, self.reach, self.radius)
+        down = _graded(self.edge / elements, DEEP * self.edge, self.thickness)
+        return _divided(across, refined), _divided(-down[::-1], refined)
+
+
+def _graded(fine: float, dense: float, end: float) -> Array:
+    """Places from 0 to ``end``, at equal distances of about ``fine`` up to ``dense``, then growing."""
+    dense = min(dense, end)
+    places = np.linspace(0.0, dense, max(round(dense / fine), 2) + 1).tolist()
+    size = fine
+    while places[-1] < end:
+        size *= GROWTH
+        places.append(places[-1] + size if places[-1] + 1.5 * size < end else end)
+    return np.asarray(places)
+
+
+def _divided(places: Array, parts: int) -> Array:
+    """Every interval in equal parts."""
+    return np.interp(np.arange(parts * (places.size - 1) + 1) / parts, np.arange(places.size), places)
+
 
 @dataclass(frozen=True, eq=False)
 class StaticCase:
-    """An elastic body, `young` in Pa, pressed to a `depth`, m; `said`: what this suite finds, a line each."""
+    """An elastic body, `young` in Pa, pressed to a `depth`, m.
+
+    `refined`: into how many its mesh's elements are divided a side. `said`: what this suite finds, a line each.
+    """
 
     name: str
     body: PressedCylinder
     young: float
     depth: float
+    refined: int
     said: tuple[str, ...]
 
     @classmethod
-    def of(cls, indenter: Indenter, depth: float, given: Given) -> StaticCase:
+    def of(cls, indenter: Indenter, depth: float, refined: int, given: Given) -> StaticCase:
         """Of the relaxed material; our answer is made. Raises BadInput, NotReached."""
         found = indent(indenter, (depth,), given)
         edge = float(found.contact_radius[0])
         body = PressedCylinder.of(indenter.source, indenter.profile, indenter.target, indenter.material.nu, edge)
         force, error = float(found.force[0]), float(found.force_error[0])
         said = f"fe-contact indent --depths {depth:.9g}: {force:.6g} +- {error:.2g} N, contact radius {edge:.4g} m"
-        return cls(indenter.name, body, indenter.material.young.relaxed, depth, (said,))
+        return cls(indenter.name, body, indenter.material.young.relaxed, depth, refined, (said,))
 
 
 @dataclass(frozen=True, eq=False)
 class ImpactCase:
     """A rigid `mass`, kg, that comes with a `velocity`, m/s, upon a body without inertia of the modulus E(t), `young`.
 
-    `duration`: of the contact, s.
+    `duration`: of the contact, s. `refined` and `said` as of a StaticCase, time's steps divided too.
     """
 
     name: str
@@ -95,10 +136,11 @@ class ImpactCase:
     mass: float
     velocity: float
     duration: float
+    refined: int
     said: tuple[str, ...]
 
     @classmethod
-    def of(cls, scene: Scene, given: Given) -> ImpactCase:
+    def of(cls, scene: Scene, refined: int, given: Given) -> ImpactCase:
         """Our answer is made. Raises BadInput for inertia, gravity, a free second mass; NotReached."""
         model, geometry = scene.model, scene.geometry
         if model.inertia or model.gravity or model.finite or scene.target_mass is not None or scene.motion.impacts > 1:
@@ -115,7 +157,8 @@ class ImpactCase:
             f"fe-contact run: {name} {one.value:.6g} +- {one.error or 0.0:.2g} {one.unit}" for name, one in shown
         )
         duration = found.quantities["duration"].value or found.scene.end_time
-        return cls(scene.name, body, geometry.material.young, scene.mass, scene.velocity, duration, said)
+        young, speed = geometry.material.young, scene.velocity
+        return cls(scene.name, body, young, scene.mass, speed, duration, refined, said)
 
 
 class Program(Protocol):

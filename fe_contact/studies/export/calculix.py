@@ -15,8 +15,8 @@ from fe_contact.studies.export.base import ImpactCase, StaticCase
 from lumped.errors import BadInput, Fault
 from lumped.numbers import Array
 
-FINE, REACH, GROWTH = 24, 1.4, 1.25  # elements a contact radius, how far they go in radii, how those beyond grow
-ROWS = 4  # of the striker's elements
+ELEMENTS, ROWS = 12, 4  # of a contact radius; of the striker, one above another
+DENSER = 1.3  # the striker's face is denser than the ground: no node of one lies on one of the other
 STIFF, PENALTY = 1e4, 1e3  # striker over body; pressure over overlap, in Young's moduli over the contact radius
 
 
@@ -52,14 +52,8 @@ def block(r: Array, z: Array, first: int) -> Grid:
     )  # fmt: skip
 
 
-def graded(fine: float, uniform: float, end: float) -> Array:
-    """Places from 0 to ``end``, equal up to ``uniform``, then growing, with a middle in every interval."""
-    places = np.linspace(0.0, min(uniform, end), max(round(min(uniform, end) / fine), 2) + 1).tolist()
-    size = fine
-    while places[-1] < end:
-        size *= GROWTH
-        places.append(places[-1] + size if places[-1] + 1.5 * size < end else end)
-    corners = np.asarray(places)
+def _with_middles(corners: Array) -> Array:
+    """Places and those in the middle of every interval."""
     return np.sort(np.concatenate([corners, 0.5 * (corners[1:] + corners[:-1])]))
 
 
@@ -83,11 +77,10 @@ class CalculiX:
 
 def _deck(case: StaticCase) -> Iterator[str]:
     """Line by line."""
-    body, fine = case.body, case.body.edge / FINE
-    r = graded(fine, REACH * body.edge, body.radius)
-    deep = -graded(fine, 0.5 * body.edge, body.thickness)[::-1]
-    pressed = block(r, np.repeat(deep[:, None], r.size, axis=1), 1)
-    across = np.linspace(0.0, REACH * body.edge, 2 * round(REACH * FINE * 1.3) + 1)
+    body = case.body
+    r, z = map(_with_middles, body.lattice(ELEMENTS, case.refined))
+    pressed = block(r, np.repeat(z[:, None], r.size, axis=1), 1)
+    across = np.linspace(0.0, body.reach, 2 * round(body.reach / body.edge * ELEMENTS * DENSER) * case.refined + 1)
     face = body.height(across)
     up = np.linspace(0.0, 1.0, 2 * ROWS + 1)[:, None]
     striker = block(across, face + up * (face[-1] + body.edge - face), max(pressed.nodes) + 1)
