@@ -20,6 +20,7 @@ from lumped.materials import Relaxation
 from lumped.numbers import Array
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
+from lumped.scene.tables import Model
 from lumped.schema.members import Folder
 from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
@@ -52,20 +53,6 @@ class PressedCylinder:
     bonded: bool
     nu: float
 
-    @classmethod
-    def of(cls, source: str, shape: Shape, target: Target, nu: float, edge: float) -> PressedCylinder:
-        """Raises BadInput for what is no round profile on a half-space or a layer."""
-        if shape.plane or shape.fixed_radius is not None:
-            reason = f"{shape.name}: accepted for another program: a round profile, as sphere, cone, power"
-            raise BadInput(Fault(source, "striker.shape", reason))
-        if isinstance(target, HalfSpace):
-            return cls(shape.height, edge, FAR * edge, FAR * edge, held=True, bonded=True, nu=nu)
-        if isinstance(target, Layer):
-            wide, bonded = SIDE * (edge + target.thickness), target.base == "bonded"
-            return cls(shape.height, edge, wide, target.thickness, held=False, bonded=bonded, nu=nu)
-        reason = f"{target.name}: accepted for another program: half_space, layer"
-        raise BadInput(Fault(source, "target.shape", reason))
-
     @property
     def reach(self) -> float:
         """Of the contact along the surface, m."""
@@ -80,6 +67,22 @@ class PressedCylinder:
         across = _graded(self.edge / elements, self.reach, self.radius)
         down = _graded(self.edge / elements, DEEP * self.edge, self.thickness)
         return _divided(across, refined), _divided(-down[::-1], refined)
+
+
+def pressed(source: str, shape: Shape, target: Target, nu: float) -> Callable[[float], PressedCylinder]:
+    """What it is by its largest contact radius, m. Raises BadInput for no round profile on a half-space or a layer."""
+    if shape.plane or shape.fixed_radius is not None:
+        reason = f"{shape.name}: accepted for another program: a round profile, as sphere, cone, power"
+        raise BadInput(Fault(source, "striker.shape", reason))
+    if isinstance(target, HalfSpace):
+        return lambda edge: PressedCylinder(shape.height, edge, FAR * edge, FAR * edge, held=True, bonded=True, nu=nu)
+    if isinstance(target, Layer):
+        thickness, bonded = target.thickness, target.base == "bonded"
+        return lambda edge: PressedCylinder(
+            shape.height, edge, SIDE * (edge + thickness), thickness, held=False, bonded=bonded, nu=nu
+        )
+    reason = f"{target.name}: accepted for another program: half_space, layer"
+    raise BadInput(Fault(source, "target.shape", reason))
 
 
 def _graded(fine: float, dense: float, end: float) -> Array:
@@ -115,12 +118,13 @@ class StaticCase:
     @classmethod
     def of(cls, indenter: Indenter, depth: float, refined: int, given: Given) -> StaticCase:
         """Of the relaxed material; our answer is made. Raises BadInput, NotReached."""
+        check_linear(indenter.source, indenter.model)
+        body = pressed(indenter.source, indenter.profile, indenter.target, indenter.material.nu)
         found = indent(indenter, (depth,), given)
         edge = float(found.contact_radius[0])
-        body = PressedCylinder.of(indenter.source, indenter.profile, indenter.target, indenter.material.nu, edge)
         force, error = float(found.force[0]), float(found.force_error[0])
         said = f"fe-contact indent --depths {depth:.9g}: {force:.6g} +- {error:.2g} N, contact radius {edge:.4g} m"
-        return cls(indenter.name, body, indenter.material.young.relaxed, depth, refined, (said,))
+        return cls(indenter.name, body(edge), indenter.material.young.relaxed, depth, refined, (said,))
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,29 +147,36 @@ class ImpactCase:
     def of(cls, scene: Scene, refined: int, given: Given) -> ImpactCase:
         """Our answer is made. Raises BadInput for inertia, gravity, a free second mass; NotReached."""
         model, geometry = scene.model, scene.geometry
-        if model.inertia or model.gravity or model.finite or scene.target_mass is not None or scene.motion.impacts > 1:
-            reason = "accepted for another program: one impact of one mass, without inertia, gravity, large strains"
+        check_linear(scene.source, model)
+        if model.inertia or model.gravity or scene.target_mass is not None or scene.motion.impacts > 1:
+            reason = "accepted for another program: one impact of one mass, without inertia and gravity"
             raise BadInput(Fault(scene.source, "model", reason))
         if geometry.material.constant != "poisson" or geometry.striking is not None:
             reason = 'accepted for another program: constant = "poisson", and a rigid striker'
             raise BadInput(Fault(scene.source, "target.material", reason))
+        body = pressed(scene.source, scene.profile, scene.target, geometry.material.nu)
         found = simulate(scene, "fe", given)
         edge = float(found.history.contact_radius.max())
-        body = PressedCylinder.of(scene.source, scene.profile, scene.target, geometry.material.nu, edge)
         shown = [(name, found.quantities[name]) for name in ("peak_force", "peak_depth", "duration", "restitution")]
-        said = tuple(
-            f"fe-contact run: {name} {one.value:.6g} +- {one.error or 0.0:.2g} {one.unit}" for name, one in shown
-        )
+        said = tuple(f"fe-contact run: {name} {one}" for name, one in shown)
         duration = found.quantities["duration"].value or found.scene.end_time
         young, speed = geometry.material.young, scene.velocity
-        return cls(scene.name, body, young, scene.mass, speed, duration, refined, said)
+        return cls(scene.name, body(edge), young, scene.mass, speed, duration, refined, said)
+
+
+def check_linear(source: str, model: Model) -> None:
+    """Raise BadInput for a body that is not linear."""
+    for key, wrong in (("kinematics", model.finite), ("plasticity", model.plasticity)):
+        if wrong:
+            reason = "accepted for another program: kinematics = 'small', plasticity = false"
+            raise BadInput(Fault(source, f"model.{key}", reason))
 
 
 class Program(Protocol):
     """A member of this folder: how another program is told a case."""
 
     suffix: ClassVar[str]
-    how: ClassVar[str]  # what runs the file, {file} its name
+    how: ClassVar[str]  # what runs the file, {file} its name, {stem} that without its ending
 
     def static(self, case: StaticCase) -> str:
         """The input file of a slow indentation."""
