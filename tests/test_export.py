@@ -38,8 +38,13 @@ def blocks(deck: str) -> dict[str, list[list[str]]]:
 
 @pytest.mark.parametrize("scene", ["polymer-layer", "polymer-cone"])
 def test_a_deck_is_whole_and_its_striker_has_the_profile(scene: str, tmp_path: Path) -> None:
-    cards = blocks(exported(tmp_path, scene, "--to", "calculix", "--depth", "1e-5"))
-    nodes = {int(one): (float(r), float(z)) for one, r, z, _ in cards["*NODE, NSET=ALL"]}
+    deck = exported(tmp_path, scene, "--to", "calculix", "--depth", "1e-5")
+    assert "Lengths in mm, forces in N, moduli in MPa" in deck
+    cards = blocks(deck)
+    ((young, nu),) = cards["*ELASTIC"][:1]
+    material = Scene.load(scene).geometry.material
+    assert (float(young), float(nu)) == (pytest.approx(1e-6 * material.young.relaxed), material.nu)
+    nodes = {int(one): (1e-3 * float(r), 1e-3 * float(z)) for one, r, z, _ in cards["*NODE, NSET=ALL"]}
     assert np.isfinite([*nodes.values()]).all()
     parts = {name: cards[f"*ELEMENT, TYPE=CAX8, ELSET={name}"] for name in ("BODY", "STRIKER")}
     used = Counter(int(node) for rows in parts.values() for row in rows for node in row[1:])

@@ -1,6 +1,7 @@
 """CalculiX: an input deck of a slow indentation, with a mesh of its own of eight-node axisymmetric elements.
 
-CalculiX has no rigid analytic surface: the striker is a body a thousand times as stiff, its face nodes on the profile.
+CalculiX has no rigid analytic surface: the striker is a body ten thousand times as stiff, with face nodes on the
+profile. Lengths are in mm: an element of a thousandth of that, in m, is none to it.
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ from lumped.numbers import Array
 
 ELEMENTS, ROWS = 12, 4  # of a contact radius; of the striker, one above another
 DENSER = 1.3  # the striker's face is denser than the ground: no node of one lies on one of the other
-STIFF, PENALTY = 1e4, 1e3  # striker over body; pressure over overlap, in Young's moduli over the contact radius
+STIFF, PENALTY = 1e4, 1e4  # striker over body; pressure over overlap, in Young's moduli over the contact radius
+NO_PULL = 1e-9  # the tension that a gap may have, in Young's moduli
+MM, MPA = 1e3, 1e-6  # of a metre, of a pascal
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,11 +88,11 @@ def _deck(case: StaticCase) -> Iterator[str]:
     up = np.linspace(0.0, 1.0, 2 * ROWS + 1)[:, None]
     striker = block(across, face + up * (face[-1] + body.edge - face), max(pressed.nodes) + 1)
 
-    yield f"** {case.name}: a profile pressed {case.depth:.9g} m deep. Lengths in m, forces in N."
+    yield f"** {case.name}: a profile pressed {case.depth:.9g} m deep. Lengths in mm, forces in N, moduli in MPa."
     yield from (f"** {line}" for line in case.said)
     yield "*NODE, NSET=ALL"
     for part in (pressed, striker):
-        yield from (f"{one}, {x:.12g}, {y:.12g}, 0" for one, (x, y) in part.nodes.items())
+        yield from (f"{one}, {MM * x:.12g}, {MM * y:.12g}, 0" for one, (x, y) in part.nodes.items())
     for name, part in (("BODY", pressed), ("STRIKER", striker)):
         yield f"*ELEMENT, TYPE=CAX8, ELSET={name}"
         yield from (f"{one}, {', '.join(map(str, nodes))}" for one, nodes in part.elements.items())
@@ -101,16 +104,16 @@ def _deck(case: StaticCase) -> Iterator[str]:
     yield from ("*SURFACE, NAME=GROUND", *(f"{one}, S3" for one in pressed.highest))
     yield from ("*SURFACE, NAME=FACE", *(f"{one}, S1" for one in striker.lowest))
     for name, young in (("BODY", case.young), ("STRIKER", STIFF * case.young)):
-        yield from (f"*MATERIAL, NAME={name}", "*ELASTIC", f"{young:.9g}, {body.nu:.9g}")
+        yield from (f"*MATERIAL, NAME={name}", "*ELASTIC", f"{MPA * young:.9g}, {body.nu:.9g}")
         yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
     yield from ("*SURFACE INTERACTION, NAME=HARD", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR")
-    yield f"{PENALTY * case.young / body.edge:.9g}, {1e-6 * case.young:.9g}"
+    yield f"{PENALTY * MPA * case.young / (MM * body.edge):.9g}, {NO_PULL * MPA * case.young:.9g}"
     yield from ("*CONTACT PAIR, INTERACTION=HARD, TYPE=SURFACE TO SURFACE", "GROUND, FACE")
     yield from ("*BOUNDARY", "AXIS, 1, 1", "BASE, 2, 2")
     yield from ("BASE, 1, 1",) if body.bonded else ()
     yield from ("SIDE, 1, 2",) if body.held else ()
     yield from ("*STEP, INC=200", "*STATIC", "0.1, 1., 1e-4, 0.25")
-    yield from ("*BOUNDARY", f"STRIKER, 2, 2, {-case.depth:.12g}", "STRIKER, 1, 1, 0.")
+    yield from ("*BOUNDARY", f"STRIKER, 2, 2, {-MM * case.depth:.12g}", "STRIKER, 1, 1, 0.")
     yield from ("*NODE PRINT, NSET=STRIKER, TOTALS=ONLY", "RF", "*END STEP")
 
 
