@@ -304,9 +304,7 @@ def _once(problem: ContactProblem, touching: bytes) -> _Once:
 
 
 @lru_cache(maxsize=1)  # where a step's second solve begins its first one ended
-def _pressed(
-    surface: PressedSurface, penalty: float, touching: bytes
-) -> tuple[Array, Callable[[Array], Array], Array]:
+def _pressed(surface: PressedSurface, penalty: float, touching: bytes) -> tuple[Array, Callable[[Array], Array], Array]:
     """Springs (q,), what they leave of any overlap, and of a striker moved by one."""
     springs = penalty * surface.weights * np.frombuffer(touching, bool)
     left = surface.gaps(springs)
