@@ -74,9 +74,9 @@ def run() -> Iterator[Callable[[Sequence[str]], Ended]]:
 
 
 @pytest.fixture(scope="session")
-def hundredth(campaign_size: Callable[..., int]) -> Callable[..., int]:
-    """How many of a campaign's n cases to run: all with --full, a hundredth with --tenth, else a few; at `least`."""
-    return lambda n, least=100: campaign_size(campaign_size(n), least=least)
+def hundredth(campaign_size: Callable[..., int]) -> Callable[[int], int]:
+    """How many of a campaign's n cases to run: all with --full, a hundredth with --tenth, else a few."""
+    return lambda n: campaign_size(campaign_size(n), least=100)
 
 
 @pytest.fixture(scope="session")

@@ -11,7 +11,8 @@ import numpy as np
 
 from lumped import laws
 
-CURVES, FITS = 4_000, 25  # and the fewest, which cost a quarter of a second each
+CURVES = 4_000
+FITTED = [name for name in laws.available() if name != "mdr"]  # which fits what ting does at a hundred times the cost
 SEED = 20260513
 LINES_OF_FITS = r"--law: |steel-ball\.toml: |.*curve\.csv: "
 CELLS = ("", "nan", "inf", "-inf", "x", "1e400", "-1", "0", "1_0", "0x1", "\x1b[31m", "1;2", '"', "\u0661", "9" * 5000)
@@ -66,16 +67,16 @@ def spoiled(rng: random.Random) -> bytes:
 
 def test_a_spoiled_curve_is_fitted_or_refused_by_name(
     tmp_path: Path,
-    hundredth: Callable[..., int],
+    hundredth: Callable[[int], int],
     run: Callable[[Sequence[str]], Any],
     faults_of: Callable[..., list[str]],
 ) -> None:
     rng, wrong, codes = random.Random(SEED), [], set()
     curve = tmp_path / "curve.csv"
-    for _ in range(hundredth(CURVES, FITS)):
+    for _ in range(hundredth(CURVES)):
         content = spoiled(rng)
         curve.write_bytes(content)
-        command = ["fit", str(curve), "--law", rng.choice(laws.available()), "--scene", "steel-ball"]
+        command = ["fit", str(curve), "--law", rng.choice(FITTED), "--scene", "steel-ball"]
         ended = run(command)
         wrong += [f"{fault}\n{content[:300]!r}" for fault in faults_of(ended, LINES_OF_FITS, solves=True)]
         codes.add(ended.code)
