@@ -289,6 +289,7 @@ def test_what_did_not_converge_is_said_with_exit_3(empty: Path, capfd: pytest.Ca
 # charts
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(
     ("changed", "drawn"),
     [

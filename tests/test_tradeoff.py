@@ -261,6 +261,7 @@ def test_the_chart_is_reproducible(tmp_path: Path, found: Tradeoff) -> None:
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("decades", [0.05, 0.3, 0.9, 1.4, 1.6, 4.0, 9.0])
 @pytest.mark.parametrize("low", [1.3e-9, 0.07, 0.95])
 def test_tick_labels_do_not_collide(low: float, decades: float) -> None:

@@ -119,6 +119,7 @@ def test_the_datum_lies_in_the_mesh_however_near_that_ends(uncovered: Callable[.
     assert not uncovered(found, simulate(laws.ting.of(scene), scene, 1e-6))
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("order", [3, 4])
 @pytest.mark.parametrize("shape", [Roller(0.01, 0.02), Sphere(0.01)])
 def test_half_as_many_elements_tell_what_the_rim_of_a_support_adds(shape: Roller | Sphere, order: int) -> None:
