@@ -14,6 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg.lapack import dgesv
 
 from lumped.errors import BadInput, NotReached
 from lumped.numbers import Array
@@ -81,10 +82,10 @@ class PieceMotion:
                 velocity, bend = state[1] + weights @ a, problem.bend(depth, slope)
                 force += modulus.viscosity * slope * velocity
                 matrix += modulus.viscosity * (slope[:, None] * weights + (bend * velocity)[:, None] * twice)
-            change = np.linalg.solve(matrix + eye, problem.gravity - force - a)
+            _, _, change, singular = dgesv(matrix + eye, problem.gravity - force - a)
             a += change
             size = math.sqrt(change @ change)
-            if not size < DIVERGED:
+            if singular or not size < DIVERGED:
                 return None
             allowed = CONVERGED**2 * math.sqrt(a @ a)
             rests = size <= CONVERGED**2 * abs(problem.gravity) and np.all(
