@@ -22,7 +22,6 @@ DENSE, CLOSE = np.linspace(0.0, 1.0, 25), np.linspace(0.0, 1.0, 65)
 FEW = 100
 # Work: steps that place a time within its interval; rounding: halvings towards both ends in the table of times.
 NEWTON_STEPS, ENDS = 4, 34
-PLACED = 1e-8  # rounding: a step of this share of its interval leaves its square
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +74,7 @@ class Path:
     def field(self, index: int, places: Array) -> tuple[Array, Array]:
         """One field and its derivative at places (n,)."""
         basis, piece = self._basis(places)
-        own, rise = self.coefficients[:, index].T, self._rises[:, index].T
+        own, rise = self.coefficients[:, index].T, self._rises[index]
         return (own[:, piece] * basis).sum(axis=0), (rise[:, piece] * basis).sum(axis=0)
 
     def curve(self, index: int, near: float) -> tuple[Curve, Curve]:
@@ -92,9 +91,9 @@ class Path:
 
     @cached_property
     def _rises(self) -> Array:
-        """The coefficients of all derivatives."""
-        rises = self.coefficients @ slopes(self.coefficients.shape[2]).T
-        return np.asarray(rises * (2.0 / np.diff(self.breaks))[:, None, None])
+        """The coefficients of all derivatives, (fields, N+1, m)."""
+        count = self.coefficients.shape[2]
+        return np.asarray(slopes(count) @ self.coefficients.transpose(1, 2, 0) * (2.0 / np.diff(self.breaks)))
 
     @cached_property
     def places(self) -> Array:
@@ -242,8 +241,6 @@ class ByField:
             time, slope = self.path.field(0, place)
             step = np.divide(times - time, slope, out=np.zeros_like(time), where=slope > 0.0)
             place = np.minimum(np.maximum(place + step, low), high)
-            if not (np.abs(step) > PLACED * (high - low)).any():
-                break
         return np.asarray(place)
 
     @cached_property
