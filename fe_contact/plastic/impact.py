@@ -203,13 +203,18 @@ def _simpson(values: Array, step: float) -> Array:
     return step * np.concatenate([[first], inner, [last]])
 
 
-def answered(loading: PlasticLoading, known: Answered, deepest: float, power: float) -> Answered:
-    """What is ``known`` of a loading, and a release from the greatest depth of an impact, m."""
-    course, presser = loading.course, loading.presser
-    last = [place.depth < deepest / course.unit * (1.0 - 1e-6) for place in loading.ends].index(False) - 1
+def let_go(loading: PlasticLoading, deepest: float, power: float) -> list[Station]:
+    """Places of a release from the greatest depth of an impact, m, that one first."""
+    presser, depth = loading.presser, deepest / loading.course.unit
+    last = [place.depth < depth * (1.0 - 1e-6) for place in loading.ends].index(False) - 1
     before = loading.ends[last - 1] if last else presser.at_rest()
-    taken = list(presser.loaded(before, loading.ends[last], deepest / course.unit))
-    places = presser.released(taken[-1], max(8, round(SPRINGING * loading.numerics.steps)), power)
+    taken = list(presser.loaded(before, loading.ends[last], depth))
+    return presser.released(taken[-1], max(8, round(SPRINGING * loading.numerics.steps)), power)
+
+
+def answered(loading: PlasticLoading, known: Answered, places: list[Station], power: float) -> Answered:
+    """What is ``known`` of a loading, and a release by its places."""
+    course, presser = loading.course, loading.presser
     springs, roots, shrunk = _release(places, power)
     scale, final = course.modulus * course.unit**3, places[-1]
     return replace(
@@ -377,6 +382,14 @@ class Runner:
 
     def run(self, numerics: Numerics, cut: bool) -> YieldRun:
         """A loading beyond where the energy is spent, and a release from there. Raises NotReached."""
+        loading, known, places = self.pressed(numerics, cut)
+        found = answered(loading, known, places, released_power(self.course))
+        counts = loading.presser.counts
+        work = Work(len(loading.ends), counts.problems, counts.iterations)
+        return YieldRun(found, work, loading.presser.ground.unknowns)
+
+    def pressed(self, numerics: Numerics, cut: bool) -> tuple[PlasticLoading, Answered, list[Station]]:
+        """The same: loading, what is known by it, and places of the release."""
         self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")
         loading = PlasticLoading.of(self.course, numerics, cut)
         loading.to(BEYOND * self.course.deepest)
@@ -384,10 +397,7 @@ class Runner:
         deepest = self.motion(known).deepest
         if deepest > known.depth[-1]:
             raise MemoryTooSmall(self.course.unit)
-        found = answered(loading, known, deepest, released_power(self.course))
-        counts = loading.presser.counts
-        work = Work(len(loading.ends), counts.problems, counts.iterations)
-        return YieldRun(found, work, loading.presser.ground.unknowns)
+        return loading, known, let_go(loading, deepest, released_power(self.course))
 
     def motion(self, answer: Answered) -> Rebound:
         """The striker's, on what answers so."""
