@@ -36,12 +36,13 @@ SMALLEST = 1.5e-3  # contact over the widest one: no mesh is finer
 SHALLOWEST = 1e-6  # depth of the first step over the largest: no mesh is finer
 FORGOTTEN = 0.3  # of the shallowest depth, the first step of what flows from the touch on: the next ones forget it
 BISECTIONS = 60  # work
-ELEMENTS = 9.0  # along the contact radius, at tolerance 1e-3
+ELEMENTS = 20.0  # along the contact radius at the surface, at tolerance 1e-3
 RIM_ELEMENTS = 2.0  # the same under a rim, which the mesh is refined to
 ORDER = 3  # of the elements: they do not lock where flow keeps the volume
 STEPS = 32  # of a loading, over six e-folds of the depth or so, at tolerance 1e-3
-COARSEST, FINEST = 0.6, 2.0  # times as many elements and steps as at 1e-3, which follow the root of the tolerance
-FEWEST_STEPS = 4  # of a run that tells anything
+FOLLOWING = 0.4  # power of the tolerance that elements and steps follow
+COARSEST, FINEST = 0.3, 2.0  # times as many of both as at 1e-3
+FEWEST_STEPS = 6  # of a run that tells anything
 DEFAULTS: Given = {
     "order": ORDER,
     "penalty": 4000.0,
@@ -54,9 +55,9 @@ DEFAULTS: Given = {
 def settings(given: Given, rim: bool) -> Numerics:
     """Settings of a body that yields: what the user left open."""
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
-    finer = min(max((DEFAULT_TOLERANCE / tolerance) ** 0.5, COARSEST), FINEST)
+    finer = min(max((DEFAULT_TOLERANCE / tolerance) ** FOLLOWING, COARSEST), FINEST)
     elements = (RIM_ELEMENTS if rim else ELEMENTS) * finer
-    steps = 4 * round(STEPS * finer / 4)
+    steps = max(4 * round(STEPS * finer / 4), 2 * FEWEST_STEPS)
     chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "steps": steps}
     return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
 
@@ -242,7 +243,7 @@ class PlasticLoading:
     def of(cls, course: Course, numerics: Numerics, cut: bool = False) -> PlasticLoading:
         """Nothing is pressed yet."""
         ground = course.ground(numerics, cut)
-        return cls(course, numerics, Presser(ground, numerics.penalty, course.unit), [])
+        return cls(course, numerics, Presser(ground, numerics.penalty, course.unit, course.power - 1.0), [])
 
     def to(self, end: float) -> None:
         """On to a depth, m, whatever was reached. Raises PlasticFlowLost, MemoryTooSmall."""
@@ -282,8 +283,8 @@ def columns(places: list[Station]) -> Array:
 class Varied(NamedTuple, Generic[Told]):
     """What runs with different settings tell.
 
-    ``base`` has the finest mesh; of all others, ``same`` its steps, ``finer`` twice as many, ``fewer`` half as many;
-    as many as that ``softer`` with half the penalty, ``nearer`` with a mesh that ends half as far away.
+    On a coarser mesh ``same`` has the settings' steps, ``finer`` twice as many, ``fewer`` half as many; as many as that
+    ``base`` on the finest mesh, ``softer`` with half the penalty, ``nearer`` with a mesh that ends half as far away.
     """
 
     base: Told
@@ -299,7 +300,7 @@ class Varied(NamedTuple, Generic[Told]):
         coarse = coarser(numerics)
         few = coarse.varied(steps=max(coarse.steps // 2, FEWEST_STEPS))
         return cls(
-            base=run(numerics, False),
+            base=run(numerics.varied(steps=few.steps), False),
             same=run(coarse, False),
             finer=run(coarse.varied(steps=2 * coarse.steps), False),
             fewer=run(few, False),
@@ -312,16 +313,18 @@ class Varied(NamedTuple, Generic[Told]):
 
         ``onwards(one, fine, coarse, weight)``: one + weight (fine - coarse).
         """
-        return onwards(self.base, self.finer, self.same, 4.0 / 3.0)
+        return onwards(self.base, self._fine(onwards), self.fewer, 1.0)
+
+    def _fine(self, onwards: Callable[[Told, Told, Told, float], Told]) -> Told:
+        return onwards(self.finer, self.finer, self.same, 1.0 / 3.0)
 
     def pairs(self, onwards: Callable[[Told, Told, Told, float], Told]) -> dict[str, tuple[Told, Told, float]]:
         """By cause two answers, and the factor that makes an error of what they differ by."""
-        fine = onwards(self.finer, self.finer, self.same, 1.0 / 3.0)
         coarse = onwards(self.same, self.same, self.fewer, 1.0 / 3.0)
         return {
-            "mesh": (self.base, self.same, SAFETY),
+            "mesh": (self.base, self.fewer, SAFETY),
             "penalty": (self.fewer, self.softer, SAFETY),
-            "time_step": (fine, coarse, SAFETY / 3.0),
+            "time_step": (self._fine(onwards), coarse, SAFETY / 3.0),
             "far_field": (self.fewer, self.nearer, SAFETY / 3.0),
         }
 

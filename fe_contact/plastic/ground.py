@@ -151,7 +151,7 @@ def _mesh(sizes: Sizes) -> MeshTri:
     if sizes.rim:
         mesh = made(meshes.layer_under_rim, sizes.elements, far, far)
     else:
-        mesh = made(meshes.half_space_for_waves, sizes.elements, sizes.smallest, far)
+        mesh = made(meshes.half_space_under_contacts, sizes.elements, sizes.smallest, far)
     if sizes.cut:
         middles = mesh.p[:, mesh.t].mean(axis=1)
         mesh = mesh.restrict(np.flatnonzero(np.hypot(middles[0], middles[1]) < NEAR * far))

@@ -45,7 +45,7 @@ GRID = 500  # depths at which a loading is told
 SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting on
 DEGREE = 5  # of the polynomial through the forces of a release, to the power that makes them a line
 SPRINGING = 0.3  # of a release over those of the settings
-PILOT: Given = {"elements_per_contact": 3.0, "steps": 16}  # of the run that tells how deep an impact will go
+PILOT: Given = {"elements_per_contact": 5.0, "steps": 16}  # of the run that tells how deep an impact will go
 SOFTEST = 0.75  # of the yield strength, on what overlaps: hardly a lower force while a body yields
 
 
