@@ -15,7 +15,7 @@ from fe_contact.assembly.forms import Array, Basis, Indices
 from fe_contact.fields import Fields, subdivided, written
 from fe_contact.plastic.course import Course
 from fe_contact.plastic.ground import Ground
-from fe_contact.plastic.impact import Pilot, Runner, released_power
+from fe_contact.plastic.impact import Runner, pilot, released_power
 from fe_contact.plastic.path import Station, parting
 from fe_contact.progress import silent
 from fe_contact.settings import Numerics
@@ -46,7 +46,7 @@ class PressedAgain:
     @classmethod
     def of(cls, scene: Scene, result: Result) -> PressedAgain:
         """With the settings that the result ended with. Raises NotReached."""
-        course, numerics = Pilot.of(scene).course, Numerics(**result.numerics)
+        course, numerics = pilot(scene).course, Numerics(**result.numerics)
         power = released_power(course)
         loading, _, places = Runner(scene, course, silent).pressed(numerics, False)
         before, last = places[-2:]

@@ -7,10 +7,11 @@ their integrals; every setting is varied once, and each of these runs has a grea
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from fe_contact.assembly.cache import cached
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, TotalWork, shares_of
 from fe_contact.budget.curve import Curve
@@ -44,7 +45,7 @@ ROWS = 400  # of each half of an impact: the line between two errs by 1e-5 of th
 GRID = 500  # depths at which a loading is told
 SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting on
 DEGREE = 5  # of the polynomial through the forces of a release, to the power that makes them a line
-SPRINGING = 0.3  # of a release over those of the settings
+RELEASES = 8  # steps of a release: no step of what is all but elastic errs
 PILOT: Given = {"elements_per_contact": 5.0, "steps": 16}  # of the run that tells how deep an impact will go
 SOFTEST = 0.75  # of the yield strength, on what overlaps: hardly a lower force while a body yields
 
@@ -209,7 +210,7 @@ def let_go(loading: PlasticLoading, deepest: float, power: float) -> list[Statio
     last = [place.depth < depth * (1.0 - 1e-6) for place in loading.ends].index(False) - 1
     before = loading.ends[last - 1] if last else presser.at_rest()
     taken = list(presser.loaded(before, loading.ends[last], depth))
-    return presser.released(taken[-1], max(8, round(SPRINGING * loading.numerics.steps)), power)
+    return presser.released(taken[-1], RELEASES, power)
 
 
 def answered(loading: PlasticLoading, known: Answered, places: list[Station], power: float) -> Answered:
@@ -246,26 +247,25 @@ def released_power(course: Course) -> float:
     return 1.0 if course.rim else 1.5
 
 
-@dataclass(frozen=True, eq=False)
-class Pilot:
-    """How an impact will go, about: greatest depth, m, and its march. It enters no value."""
+class Pilot(NamedTuple):
+    """How an impact will go, about: its course to the greatest depth, and its march. It enters no value."""
 
     course: Course
     march: March
 
-    @classmethod
-    def of(cls, scene: Scene) -> Pilot:
-        """By a coarse mesh and few steps. Raises NotReached."""
-        energy = 0.5 * scene.reduced_mass * scene.velocity**2
-        deepest = _at_most(scene, energy)
-        course = Course.of(scene, deepest, deepest)
-        numerics = settings(PILOT, course.rim)
-        loading = PlasticLoading.of(course, numerics)
-        loading.to(BEYOND * deepest)
-        power = released_power(course)
-        found = Rebound(Answered.of(loading), scene.reduced_mass, energy, power, course.power)
-        deepest = found.deepest
-        return cls(Course.of(scene, deepest, deepest), found.march(Work()))
+
+@cached
+def pilot(scene: Scene) -> Pilot:
+    """By a coarse mesh and few steps. Raises NotReached."""
+    energy = 0.5 * scene.reduced_mass * scene.velocity**2
+    deepest = _at_most(scene, energy)
+    course = Course.of(scene, deepest, deepest)
+    loading = PlasticLoading.of(course, settings(PILOT, course.rim))
+    loading.to(BEYOND * deepest)
+    power = released_power(course)
+    found = Rebound(Answered.of(loading), scene.reduced_mass, energy, power, course.power)
+    deepest = found.deepest
+    return Pilot(Course.of(scene, deepest, deepest), found.march(Work()))
 
 
 def _at_most(scene: Scene, energy: float) -> float:
@@ -298,7 +298,7 @@ class Striking:
     @classmethod
     def of(cls, scene: Scene, chosen: Plan, progress: Progress) -> Striking:
         """Raises NotReached where not even a coarse mesh tells how deep it goes."""
-        return cls(scene, chosen, progress, Pilot.of(scene).course)
+        return cls(scene, chosen, progress, pilot(scene).course)
 
     def certified(self, numerics: Numerics) -> Budget:
         """The contact and its bars. Raises NotReached."""
@@ -350,16 +350,16 @@ def plan(scene: Scene, given: Given) -> Plan:
     """Settings and ledger, by a coarse run. Raises NotReached."""
     check_kind(given, False, scene.source)
     check_given(given, scene.source)
-    pilot = Pilot.of(scene)
-    radius, known = float(pilot.march.radius.max()), Curve.of(pilot.march, Strike.of(scene)).quantities
-    duration, peak_time = known["duration"] or 0.0, known["peak_time"] or 0.0
+    known = pilot(scene)
+    radius, about = float(known.march.radius.max()), Curve.of(known.march, Strike.of(scene)).quantities
+    duration, peak_time = about["duration"] or 0.0, about["peak_time"] or 0.0
     numerics = replace(
-        settings(given, pilot.course.rim),
+        settings(given, known.course.rim),
         contact_radius=radius,
         contact_time=duration,
         peak_share=peak_time / duration,
     )
-    peak = Peak(known["peak_force"] or 0.0, known["peak_depth"] or 0.0, radius, duration)
+    peak = Peak(about["peak_force"] or 0.0, about["peak_depth"] or 0.0, radius, duration)
     return Plan(numerics, frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
 
 
