@@ -36,12 +36,13 @@ SMALLEST = 1.5e-3  # contact over the widest one: no mesh is finer
 SHALLOWEST = 1e-6  # depth of the first step over the largest: no mesh is finer
 FORGOTTEN = 0.3  # of the shallowest depth, the first step of what flows from the touch on: the next ones forget it
 BISECTIONS = 60  # work
-ELEMENTS = 20.0  # along the contact radius at the surface, at tolerance 1e-3
-RIM_ELEMENTS = 2.0  # the same under a rim, which the mesh is refined to
+ELEMENTS = 6.0  # along the contact radius at the surface, at tolerance 1e-3, where a body begins to yield
+RIM_ELEMENTS = 1.2  # the same under a rim, which the mesh is refined to
+FEWEST_ELEMENTS, MOST_ELEMENTS, MOST_STEPS = 5.0, 32.0, 64  # to begin with; under a rim fewer
 ORDER = 3  # of the elements: they do not lock where flow keeps the volume
-STEPS = 32  # of a loading, over six e-folds of the depth or so, at tolerance 1e-3
+STEPS = 10  # of a loading there, over six e-folds of the depth or so
 FOLLOWING = 0.4  # power of the tolerance that elements and steps follow
-COARSEST, FINEST = 0.3, 2.0  # times as many of both as at 1e-3
+FURTHER, FURTHEST = 0.35, 40.0  # power of the depth over that of first yield that they follow too, up to there
 FEWEST_STEPS = 6  # of a run that tells anything
 DEFAULTS: Given = {
     "order": ORDER,
@@ -50,16 +51,6 @@ DEFAULTS: Given = {
     "scheme": "galerkin",
     "far_radius": 20.0,
 }
-
-
-def settings(given: Given, rim: bool) -> Numerics:
-    """Settings of a body that yields: what the user left open."""
-    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
-    finer = min(max((DEFAULT_TOLERANCE / tolerance) ** FOLLOWING, COARSEST), FINEST)
-    elements = (RIM_ELEMENTS if rim else ELEMENTS) * finer
-    steps = max(4 * round(STEPS * finer / 4), 2 * FEWEST_STEPS)
-    chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "steps": steps}
-    return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
 
 
 def check_given(given: Given, source: str) -> None:
@@ -228,6 +219,17 @@ def _largest(holds: Callable[[float], bool], start: float, most: float = np.inf)
         middle = 0.5 * (low + high)
         low, high = (middle, high) if holds(middle) else (low, middle)
     return high
+
+
+def settings(given: Given, course: Course) -> Numerics:
+    """Settings of a body that yields: what the user left open. The further it yields, the finer."""
+    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    finer = (DEFAULT_TOLERANCE / tolerance) ** FOLLOWING * min(course.deepest / course.firm, FURTHEST) ** FURTHER
+    elements, fewest = (RIM_ELEMENTS, RIM_ELEMENTS) if course.rim else (ELEMENTS, FEWEST_ELEMENTS)
+    elements = min(max(elements * finer, fewest), MOST_ELEMENTS)
+    steps = max(4 * round(min(STEPS * finer, MOST_STEPS) / 4), 2 * FEWEST_STEPS)
+    chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "steps": steps}
+    return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
 
 
 @dataclass(eq=False)

@@ -260,7 +260,7 @@ def pilot(scene: Scene) -> Pilot:
     energy = 0.5 * scene.reduced_mass * scene.velocity**2
     deepest = _at_most(scene, energy)
     course = Course.of(scene, deepest, deepest)
-    loading = PlasticLoading.of(course, settings(PILOT, course.rim))
+    loading = PlasticLoading.of(course, settings(PILOT, course))
     loading.to(BEYOND * deepest)
     power = released_power(course)
     found = Rebound(Answered.of(loading), scene.reduced_mass, energy, power, course.power)
@@ -354,7 +354,7 @@ def plan(scene: Scene, given: Given) -> Plan:
     radius, about = float(known.march.radius.max()), Curve.of(known.march, Strike.of(scene)).quantities
     duration, peak_time = about["duration"] or 0.0, about["peak_time"] or 0.0
     numerics = replace(
-        settings(given, known.course.rim),
+        settings(given, known.course),
         contact_radius=radius,
         contact_time=duration,
         peak_share=peak_time / duration,

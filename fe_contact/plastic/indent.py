@@ -20,7 +20,7 @@ from lumped.scene.indenter import Indenter
 
 AROUND = 0.7  # in ln depth: a change counts as the error of its neighbours, for it may vanish where it changes sign
 DENSE = 80  # depths at which changes are read
-ROUNDS = 0  # of refinement: settings follow the tolerance, and a finer mesh is four times as dear
+ROUNDS = 1  # of refinement: a finer mesh is four times as dear
 KEPT = ("tolerance", "elements_per_contact", "order", "penalty", "steps", "far_radius")
 
 
@@ -46,7 +46,7 @@ def indent(indenter: Indenter, depths: tuple[float, ...], given: Given, progress
     asked = np.array(indenter.checked(depths))
     course = Course.of(indenter, float(asked.min()), float(asked.max()))
     way = YieldingWay(course, asked, frozenset(given) - {"tolerance"}, progress)
-    found, _ = refine(way, settings(given, course.rim))
+    found, _ = refine(way, settings(given, course))
     radius = found.pressed.contact_radius(asked)
     indenter.check_contacts(asked, radius)
     force = np.exp(np.interp(asked, found.depth, found.logarithm))

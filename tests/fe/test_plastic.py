@@ -82,7 +82,7 @@ def test_it_yields_first_under_the_axis() -> None:
     indenter, _ = SceneReader("scene", tables()).indenter(Indenter)
     depth = 0.95 * yield_depth(0.3)
     course = Course.of(indenter, depth, depth)
-    ground = course.ground(settings({"elements_per_contact": 16.0}, False))
+    ground = course.ground(settings({"elements_per_contact": 16.0}, course))
     presser = Presser(ground, 4000.0, course.unit)
     here = presser.first(depth / course.unit, math.sqrt(RADIUS * depth) / course.unit)
     assert not np.any(here.state[1])
