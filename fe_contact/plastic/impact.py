@@ -45,7 +45,7 @@ ROWS = 400  # of each half of an impact: the line between two errs by 1e-5 of th
 GRID = 500  # depths at which a loading is told
 SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting on
 DEGREE = 5  # of the polynomial through the forces of a release, to the power that makes them a line
-RELEASES = 8  # steps of a release: no step of what is all but elastic errs
+RELEASES, RELEASING = 6, 0.25  # steps of a release at least, and over those of a loading
 PILOT: Given = {"elements_per_contact": 5.0, "steps": 16}  # of the run that tells how deep an impact will go
 SOFTEST = 0.75  # of the yield strength, on what overlaps: hardly a lower force while a body yields
 
@@ -210,7 +210,7 @@ def let_go(loading: PlasticLoading, deepest: float, power: float) -> list[Statio
     last = [place.depth < depth * (1.0 - 1e-6) for place in loading.ends].index(False) - 1
     before = loading.ends[last - 1] if last else presser.at_rest()
     taken = list(presser.loaded(before, loading.ends[last], depth))
-    return presser.released(taken[-1], RELEASES, power)
+    return presser.released(taken[-1], max(RELEASES, round(RELEASING * loading.numerics.steps)), power)
 
 
 def answered(loading: PlasticLoading, known: Answered, places: list[Station], power: float) -> Answered:
