@@ -7,7 +7,8 @@ deeper than asked; two meshes then differ by their trends, and a third of their 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping, Set
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Generic, NamedTuple, TypeVar
@@ -15,6 +16,7 @@ from typing import Generic, NamedTuple, TypeVar
 import numpy as np
 
 from fe_contact.assembly.forms import Array, check_compressible
+from fe_contact.budget.refine import Growth, missing
 from fe_contact.budget.variation import SAFETY
 from fe_contact.plastic.ground import Ground, Sizes, yielding_of
 from fe_contact.plastic.path import ELASTIC_RATIO, Presser, Station
@@ -36,14 +38,21 @@ SMALLEST = 1.5e-3  # contact over the widest one: no mesh is finer
 SHALLOWEST = 1e-6  # depth of the first step over the largest: no mesh is finer
 FORGOTTEN = 0.3  # of the shallowest depth, the first step of what flows from the touch on: the next ones forget it
 BISECTIONS = 60  # work
-ELEMENTS = 6.0  # along the contact radius at the surface, at tolerance 1e-3, where a body begins to yield
-RIM_ELEMENTS = 1.2  # the same under a rim, which the mesh is refined to
+ELEMENTS = 7.0  # along the contact radius at the surface, at tolerance 1e-3, where a body begins to yield
+RIM_ELEMENTS = 1.4  # the same under a rim, which the mesh is refined to
 FEWEST_ELEMENTS, MOST_ELEMENTS, MOST_STEPS = 5.0, 32.0, 64  # to begin with; under a rim fewer
 ORDER = 3  # of the elements: they do not lock where flow keeps the volume
-STEPS = 10  # of a loading there, over six e-folds of the depth or so
+STEPS = 12  # of a loading there, over six e-folds of the depth or so
 FOLLOWING = 0.4  # power of the tolerance that elements and steps follow
 FURTHER, FURTHEST = 0.35, 40.0  # power of the depth over that of first yield that they follow too, up to there
 FEWEST_STEPS = 6  # of a run that tells anything
+# Where an edge crosses elements, and flow turns under it, bars fall with the settings to 1.5 to 2.
+GROWTH = {
+    "mesh": Growth(order=1.5, step=1.1, most=1.6, work=2.0),
+    "penalty": Growth(order=1.0, step=2.0, most=4.0, work=0.1),
+    "time_step": Growth(order=1.5, step=1.2, most=2.0, work=0.7),
+    "far_field": Growth(order=2.0, step=1.5, most=2.0, work=0.3),
+}
 DEFAULTS: Given = {
     "order": ORDER,
     "penalty": 4000.0,
@@ -51,6 +60,16 @@ DEFAULTS: Given = {
     "scheme": "galerkin",
     "far_radius": 20.0,
 }
+
+
+def finer(shares: Mapping[str, Array], numerics: Numerics, pinned: Set[str]) -> Numerics | None:
+    """Settings with which errors are predicted to meet the tolerance, None where nothing helps.
+
+    ``shares`` (n,) of the tolerance, by cause.
+    """
+    found = missing(shares, GROWTH, numerics, pinned)
+    found = found.varied(steps=4 * math.ceil(found.steps / 4))
+    return None if found == numerics else found
 
 
 def check_given(given: Given, source: str) -> None:

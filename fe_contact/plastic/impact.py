@@ -16,7 +16,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, TotalWork, shares_of
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import Plan
-from fe_contact.budget.refine import Finer, dominant
+from fe_contact.budget.refine import Finer
 from fe_contact.budget.variation import Variation
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.march.impact import balanced
@@ -27,6 +27,7 @@ from fe_contact.plastic.course import (
     Varied,
     check_given,
     columns,
+    finer,
     overlapping,
     settings,
 )
@@ -326,8 +327,8 @@ class Striking:
         """Less of the causes that stand in the way."""
         if meets(found.quantities, found.numerics.tolerance):
             return Finer(None)
-        excess = {cause: float(shares_of(found, cause).max()) for cause in CAUSES}
-        return Finer(dominant(excess, found.numerics, self.chosen.pinned, least=1.0))
+        shares = {cause: shares_of(found, cause) for cause in CAUSES}
+        return Finer(finer(shares, found.numerics, self.chosen.pinned))
 
     def ledger(self, found: Budget) -> tuple[LedgerEntry, ...]:
         """What the model leaves out of the impact that was found."""

@@ -10,8 +10,8 @@ from typing import ClassVar
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.refine import Finer, dominant, refine
-from fe_contact.plastic.course import BEYOND, Course, Forces, PlasticLoading, Varied, check_given, settings
+from fe_contact.budget.refine import Finer, refine
+from fe_contact.plastic.course import BEYOND, Course, Forces, PlasticLoading, Varied, check_given, finer, settings
 from fe_contact.progress import Progress
 from fe_contact.settings import Given, Numerics
 from lumped.indentation import Indentation
@@ -100,10 +100,10 @@ class YieldingWay:
 
     def finer(self, found: ForcesFound) -> Finer:
         """Less of what dominates, until the tolerance is met."""
-        errors = {cause: float(error.max()) for cause, error in found.budget.items()}
-        if sum(errors.values()) <= found.numerics.tolerance:
+        shares = {cause: error / found.numerics.tolerance for cause, error in found.budget.items()}
+        if np.sum(list(shares.values()), axis=0).max() <= 1.0:
             return Finer(None)
-        return Finer(dominant(errors, found.numerics, self.pinned))
+        return Finer(finer(shares, found.numerics, self.pinned))
 
     def _run(self, course: Course, numerics: Numerics, cut: bool) -> PlasticLoading:
         self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")
