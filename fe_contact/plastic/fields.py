@@ -1,4 +1,4 @@
-"""Fields of a half-space that yields at the largest force, and the indentation left: its finest run, made once more.
+"""Fields of a half-space that yields at the largest force, and the indentation left: its finest mesh, pressed once more.
 
 Stress and plastic strain live at the points of the elements: in each they are read by the plane nearest to them, and a
 node takes the mean of its elements. The fields end where nothing may yield, four contact radii away.
@@ -46,7 +46,8 @@ class PressedAgain:
     @classmethod
     def of(cls, scene: Scene, result: Result) -> PressedAgain:
         """With the settings that the result ended with. Raises NotReached."""
-        course, numerics = pilot(scene).course, Numerics(**result.numerics)
+        known, numerics = pilot(scene), Numerics(**result.numerics)
+        course = known.course.outgrown(numerics.contact_radius / float(known.march.radius.max()))
         power = released_power(course)
         loading, _, places = Runner(scene, course, silent).pressed(numerics, False)
         before, last = places[-2:]
