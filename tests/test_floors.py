@@ -147,7 +147,7 @@ ROOMS = {  # lowest first
     ),
     "fe_contact": (
         "errors settings progress threads assembly contact schemes dynamics bodies steppers march targets solids "
-        "budget plastic indentation fields recovery waves large_strains reference methods studies manual commands cli "
+        "budget fields plastic indentation recovery waves large_strains reference methods studies manual commands cli "
         "__main__ __init__"
     ),
 }
