@@ -460,7 +460,3 @@ def test_laws_that_are_no_force_between_two_masses_are_refused_by_name() -> None
     for name in others - {"rod_waves", "bar_waves"}:  # which refuse the scene itself
         with pytest.raises(BadInput, match=f"{name} is no force between two masses"):
             force_of(name, Scene.load("polymer-sphere"))
-    with pytest.raises(BadInput, match=r"law.memory: continuous"):
-        force_of(
-            "correspondence", Scene.load("polymer-sphere", {"law": {"name": "correspondence", "memory": "continuous"}})
-        )
