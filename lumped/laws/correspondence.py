@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -157,8 +158,11 @@ class HereditaryDent(Dent):
 
     def forgotten(self, since: float) -> bool:
         """At once by the rule "reset", else when nothing is left that counts beside what was."""
-        first, now = (np.abs(self.surface.at(time)).max() for time in (0.0, since))
-        return self.law.rule == "reset" or bool(now <= FORGOTTEN * first)
+        return self.law.rule == "reset" or bool(np.abs(self.surface.at(since)).max() <= self._nothing)
+
+    @cached_property
+    def _nothing(self) -> float:
+        return FORGOTTEN * float(np.abs(self.surface.at(0.0)).max())
 
 
 def leaves_out(scene: Scene) -> str:

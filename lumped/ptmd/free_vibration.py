@@ -29,7 +29,7 @@ from lumped.solvers.point.memory import HereditaryLoad
 
 TIME = Number(1e-9, 1e9, "s")
 TIME_KEYS = {"end_time": Key(TIME, "when to stop", False), "window": Key(TIME, "of the root mean squares", False)}
-STEP_TOLERANCE = 1e-9  # default: error of a relative speed in one step of a contact, over the speed at touch
+STEP_TOLERANCE = 1e-7  # default: error of a relative speed in one step of a contact, over the speed at touch
 # Beyond this ratio of the shortest period to a relaxation time the digits that are promised are lost.
 STIFFEST = 6e6
 MOVING = 1e-12  # rounding: of the end of a window, for a row that stands there

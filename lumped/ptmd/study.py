@@ -13,7 +13,7 @@ from lumped.ptmd.system import PoundingDamper
 from lumped.result.result import LedgerEntry, sufficient
 
 FINER = 1e-2 * STEP_TOLERANCE  # of the second run that tells errors
-MOST_CHANGE, MOST_RESIDUAL = 1e-6, 1e-8  # safety: of a measure on finer rows, relative; of the energy balance
+MOST_CHANGE, MOST_RESIDUAL = 1e-6, 1e-8  # safety: of a measure in finer steps, relative; of the energy balance
 SMALL = 0.1  # a penetration beyond this share of a length of the ring is not small
 FULL, PLAIN, BARE = "pounding damper", "damper without ring", "structure alone"
 

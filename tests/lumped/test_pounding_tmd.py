@@ -509,7 +509,7 @@ def test_an_end_within_a_contact_leaves_energy_locked_in_the_ring(paper: PtmdRes
 
 
 def test_the_steps_do_not_decide_what_is_found(paper: PtmdResult) -> None:
-    again = simulate(paper.system, BOTH, tolerance=1e-7)
+    again = simulate(paper.system, BOTH, tolerance=1e-10)
     for name, value in again.measures.to_dict().items():
         assert value == pytest.approx(paper.measures.to_dict()[name], rel=1e-9)
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+from scipy.special import exprel
 
 from lumped.errors import BadInput, Fault
 from lumped.materials import Recovery, Relaxation
@@ -193,11 +194,7 @@ class FreeSurface:
         for amplitude, tau in zip(self.load.amplitudes, self.load.times, strict=True):
             # of two exponentials the slower one, and what the other fills of it
             apart, slower = np.abs(rates - 1.0 / tau), np.exp(-times * np.minimum(rates, 1.0 / tau))
-            full = np.broadcast_to(times, left.shape).copy()
-            filled = np.divide(
-                -np.expm1(-times * apart), apart, out=full, where=np.broadcast_to(apart, left.shape) != 0.0
-            )
-            memories = memories + amplitude * rates * slower * filled
+            memories = memories + amplitude * rates * slower * times * exprel(-times * apart)
         return np.concatenate([self.load(times)[None], memories])
 
 
