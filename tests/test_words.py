@@ -68,7 +68,9 @@ def test_scenes_say_what_each_is_for(capsys: pytest.CaptureFixture[str]) -> None
     assert len(said) == len(SCENES.names)
     for name, line in zip(SCENES.names, said, strict=True):
         first = SCENES.path(name).read_text(encoding="utf-8").splitlines()[0]
-        assert first.lstrip("# ").partition(". ")[0].rstrip(".") in line
+        sentence = first.lstrip("# ").partition(". ")[0].rstrip(".")
+        assert sentence in line
+        assert len(sentence) > 30, name
 
 
 def test_help_has_every_command_once_in_a_group_and_names_the_paper(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,7 +15,8 @@ from fe_contact.studies.export.base import ImpactCase, StaticCase
 from lumped.errors import BadInput, Fault
 from lumped.numbers import Array
 
-FINE, REACH, GROWTH = 24, 1.4, 1.25  # elements a contact radius, how far they go in radii, how those beyond grow
+FAR = 4000.0  # contact radii, where an infinite body ends
+REACH, GROWTH = 1.4, 1.25  # how far the fine elements go, in contact radii; how those beyond grow
 ROWS = 4  # of the striker's elements
 STIFF, PENALTY = 1e4, 1e3  # striker over body; pressure over overlap, in Young's moduli over the contact radius
 
@@ -72,22 +73,24 @@ class CalculiX:
         "ccx -i {stem}, then the vertical force of STRIKER in {stem}.dat times 180 (a wedge of 2 degrees)"
     )
 
-    def static(self, case: StaticCase) -> str:
-        """As the contract says."""
-        return "\n".join(_deck(case)) + "\n"
+    elements: ClassVar[int] = 12
 
-    def impact(self, case: ImpactCase) -> str:
+    def static(self, case: StaticCase, elements: int) -> str:
+        """As the contract says."""
+        return "\n".join(_deck(case, elements)) + "\n"
+
+    def impact(self, case: ImpactCase, elements: int) -> str:
         """Raises BadInput: CalculiX has no relaxation in time."""
         raise BadInput(Fault("--to", "calculix", f"{case.name}: slow indentation alone; accepted: --depth, or ngsolve"))
 
 
-def _deck(case: StaticCase) -> Iterator[str]:
+def _deck(case: StaticCase, elements: int) -> Iterator[str]:
     """Line by line."""
-    body, fine = case.body, case.body.edge / FINE
+    body, fine = case.body.cut_off(FAR), case.body.edge / elements
     r = graded(fine, REACH * body.edge, body.radius)
     deep = -graded(fine, 0.5 * body.edge, body.thickness)[::-1]
     pressed = block(r, np.repeat(deep[:, None], r.size, axis=1), 1)
-    across = np.linspace(0.0, REACH * body.edge, 2 * round(REACH * FINE * 1.3) + 1)
+    across = np.linspace(0.0, REACH * body.edge, 2 * round(REACH * elements * 1.3) + 1)
     face = body.height(across)
     up = np.linspace(0.0, 1.0, 2 * ROWS + 1)[:, None]
     striker = block(across, face + up * (face[-1] + body.edge - face), max(pressed.nodes) + 1)
