@@ -182,7 +182,11 @@ def _again(gap: int, dent: Dent, parted: float, time: float) -> GapEvent:
         since = time - parted + step.length * step.nodes.points
         return -dent.resistance(step.depth[gap], step.rate[gap], since)
 
-    return GapEvent(gap, Happening.AGAIN, value)
+    def rising(step: FrameStep) -> NDArray[np.bool_]:
+        begun = dent.resistance(step.first_depth[[gap]], step.first_rate[[gap]], np.array([time - parted]))
+        return np.asarray(np.diff(value(step), prepend=-begun) < 0.0)
+
+    return GapEvent(gap, Happening.AGAIN, value, rising)
 
 
 def _force_left(gap: int) -> Callable[[FrameStep], Array]:

@@ -112,6 +112,11 @@ class FrameTrial:
     def _first_rates(self) -> Array:
         return np.asarray(self._coefficients[0, 2 * self.rules.flow.size + len(self.at.gaps) :])
 
+    @property
+    def _precise(self) -> float:
+        """To what events are located, s."""
+        return PRECISE * (self.at.time + self.rules.flow.unit)
+
     @cached_property
     def _graded(self) -> tuple[int, float]:
         """The power of the grading, and the time of the last touch, s, from which forces still grow."""
@@ -133,7 +138,7 @@ class FrameTrial:
 
     def accepted(self, length: float, proposed: float) -> tuple[FrameStep, GapEvent | None, float]:
         """The step taken, at most `length` long, s, what ended it, and how long the next one may be, s."""
-        shortest = PRECISE * (self.at.time + self.rules.flow.unit) * SHORTEST
+        shortest = self._precise * SHORTEST
         guess = np.zeros((len(self._pressed), STAGES))
         while length > 0.0:
             nodes = self._nodes(length)
@@ -173,7 +178,9 @@ class FrameTrial:
         """The step, cut short at its first event; and again at one before that which only the shorter step shows."""
         event: GapEvent | None = None
         for _ in range(1 + 2 * len(self.at.gaps)):
-            found = None if step is None else self._first(step, event)
+            # what happens at once, but for rounding, nothing comes before
+            at_once = step is None or (event is not None and step.length <= self._precise)
+            found = None if step is None or at_once else self._first(step, event)
             if step is None or found is None:
                 break
             event = found
@@ -200,7 +207,6 @@ class FrameTrial:
         if nodes.mirrored != step.nodes.mirrored:
             guess = np.outer(step.force[:, place], nodes.pace)
         previous: tuple[float, float] | None = None
-        precise = PRECISE * (self.at.time + self.rules.flow.unit)
         trial: FrameStep | None = None
         for _ in range(LOCATIONS):
             trial = self._solved(length, nodes, guess[self._pressed])
@@ -216,7 +222,7 @@ class FrameTrial:
                 slope = float(trial.rate[event.gap, -1])
             low, high = (low, length) if at <= 0.0 else (length, high)
             following = length - at / slope if slope < 0.0 else low
-            if at == 0.0 or abs(following - length) <= precise or high - low <= precise:
+            if at == 0.0 or abs(following - length) <= self._precise or high - low <= self._precise:
                 return trial
             previous, length = (length, at), following if low < following < high else 0.5 * (low + high)
             nodes, guess = self._ending(event, length), trial.gain

@@ -295,6 +295,7 @@ SYSTEMS = {
     "fluid": (with_ring(lining(young=Relaxation(0.0, (1e6, 3e6), (0.02, 0.3)))), STRUCTURE),
     "fluid and dashpot": (with_ring(lining(young=Relaxation(0.0, (1e6,), (0.2,), 3e3))), BOTH),
     "no gap": (with_ring(replace(lining(), gap=0.0, memory=Memory.CONTINUOUS)), Start(0.05, 0.02, 0.0, 0.3)),
+    "hardly a gap": (with_ring(replace(lining(), gap=1e-6, memory=Memory.CONTINUOUS)), Start(0.05, 0.02, 0.0, 0.3)),
     "elastic": (with_ring(lining(young=ELASTIC)), STRUCTURE),
     "hertz": (with_ring(replace(lining(), coefficient=LENGTH * GAP**-0.5, exponent=1.5)), STRUCTURE),
 }
@@ -471,7 +472,7 @@ def test_rounding_decides_no_graze(
 
 
 @pytest.mark.family
-@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("name", sorted(SYSTEMS.keys() - {"no gap"}))  # where both sides switch at once
 def test_an_independent_integration_finds_the_same_motion(name: str) -> None:
     system, start = SYSTEMS[name]
     result = simulate(system, start, 0.8, 0.5)
