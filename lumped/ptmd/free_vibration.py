@@ -159,6 +159,8 @@ class PtmdTrack:
         self.acceleration = Peaks.of(1)
         self.lost_ring = self.cut_tension = 0.0
         self.last = FramesAt(0.0, bodies.start, self.depths(bodies.start), self.first_gaps)
+        sides = zip(self.first_gaps, self.last.depths.tolist(), strict=True)
+        self.held = [self.stored(side, gap, depth, 0.0) for side, (gap, depth) in enumerate(sides)]
 
     # the ring
 
@@ -234,16 +236,22 @@ class PtmdTrack:
         self._add(times, weights, step.states, step.force.T)
         self.acceleration.see(self.bodies.accelerations(step.states, step.force.T)[:, :1], step.nodes)
         for side, (gap, after) in enumerate(zip(at.gaps, to.gaps, strict=True)):
-            before = self.stored(side, gap, float(at.depths[side]), at.time)
             if gap.active:
                 ended = replace(gap, memory=step.memories[side])
-                before = self.stored(side, ended, float(step.depth[side, -1]), to.time)
+                self.held[side] = self.stored(side, ended, float(step.depth[side, -1]), to.time)
                 self.lost_ring += self._spent(at, step, side, weights)
                 self.cut_tension -= float(weights @ (step.tension[side] * step.rate[side])) if self.linear else 0.0
-            self.lost_ring += before - self.stored(side, after, float(to.depths[side]), to.time)
+            if after.mode is not gap.mode:
+                self._settle(side, to)
             if gap.mode is Mode.PRESSED:
                 self._press(side, at, step, None if after.mode is Mode.PRESSED else to.time)
         self.last = to
+
+    def _settle(self, side: int, at: FramesAt) -> None:
+        """What a side stored, and at an instant does no more, is lost."""
+        now = self.stored(side, at.gaps[side], float(at.depths[side]), at.time)
+        self.lost_ring += self.held[side] - now
+        self.held[side] = now
 
     def _press(self, side: int, at: FramesAt, step: FrameStep, end: float | None) -> None:
         if side not in self.open:
@@ -311,8 +319,8 @@ class PtmdTrack:
         closing = states[:, 3] - states[:, 2] if two else np.zeros(weights.size)
         first, last = self._held_at_start(), self.last
         kinetic, potential = self.bodies.energies(last.state)
-        sides = zip(last.gaps, last.depths.tolist(), strict=True)
-        stored = sum(self.stored(side, gap, depth, last.time) for side, (gap, depth) in enumerate(sides))
+        for side in range(len(self.laws)):
+            self._settle(side, last)
         return Energy(
             initial=sum(self.bodies.energies(self.bodies.start)) + first,
             kinetic=kinetic,
@@ -320,7 +328,7 @@ class PtmdTrack:
             lost_structure=one.damping * float(weights @ states[:, n] ** 2),
             lost_damper=two.damping * float(weights @ closing**2) if two else 0.0,
             lost_ring=self.lost_ring + (0.0 if self.linear else first),
-            stored_ring=stored if self.linear else None,
+            stored_ring=sum(self.held) if self.linear else None,
             cut_tension=self.cut_tension,
         )
 

@@ -259,7 +259,7 @@ def test_a_mirrored_start_gives_the_mirrored_motion(memory: Memory) -> None:
     system = with_ring(lining(memory=memory))
     start = Start(0.05, 0.01, 0.2, -0.4)
     mirrored = Start(-0.05, -0.01, -0.2, 0.4)
-    one, other = (simulate(system, s, 3.0) for s in (start, mirrored))
+    one, other = (simulate(system, s, 1.5) for s in (start, mirrored))
     assert other.motion.x1 == pytest.approx(-one.motion.x1, abs=1e-13)
     assert other.motion.force == pytest.approx(-one.motion.force, abs=1e-9)
     assert [contact.side for contact in other.contacts] == [-contact.side for contact in one.contacts]
@@ -397,8 +397,8 @@ def independent(system: PoundingDamper, start: Start, end: float) -> tuple[list[
 
 
 def test_a_graze_that_begins_below_zero_by_rounding_is_followed() -> None:
-    result = simulate(*GRAZING, 3.0, 0.5)
-    contacts, _ = independent(*GRAZING, 3.0)
+    result = simulate(*GRAZING, 1.5, 0.5)
+    contacts, _ = independent(*GRAZING, 1.5)
     assert min(contact.peak_force for contact in result.contacts) < 0.01
     for one, other in zip(result.contacts, contacts, strict=True):
         assert other[1] == pytest.approx(one.start, rel=1e-7)
@@ -492,7 +492,7 @@ def test_an_independent_integration_finds_the_same_motion(name: str) -> None:
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_every_energy_closes(name: str) -> None:
     system, start = SYSTEMS[name]
-    for end in (0.1, 1.2, 6.0):
+    for end in (0.1, 1.2, 4.0):
         energy = simulate(system, start, end).energy
         assert abs(energy.residual) < 1e-12 * energy.initial
         assert min(energy.lost_structure, energy.lost_damper, energy.lost_ring) >= -1e-13 * energy.initial
@@ -509,10 +509,10 @@ def test_an_end_within_a_contact_leaves_energy_locked_in_the_ring(paper: PtmdRes
     assert result.energy.stored_ring > 0.01 * result.energy.initial
 
 
-def test_the_steps_do_not_decide_what_is_found(paper: PtmdResult) -> None:
-    again = simulate(paper.system, BOTH, tolerance=1e-10)
-    for name, value in again.measures.to_dict().items():
-        assert value == pytest.approx(paper.measures.to_dict()[name], rel=1e-9)
+def test_the_steps_do_not_decide_what_is_found() -> None:
+    found, again = (simulate(with_ring(lining()), BOTH, 4.0, tolerance=one).measures for one in (1e-7, 1e-10))
+    known = {name: value for name, value in found.to_dict().items() if value is not None}
+    assert {name: again.to_dict()[name] for name in known} == pytest.approx(known, rel=1e-9)
 
 
 # what a motion costs
@@ -539,11 +539,11 @@ def test_any_exponent_costs_about_what_hertz_does(monkeypatch: pytest.MonkeyPatc
 # memory between contacts
 
 
-def test_memories_agree_where_contacts_are_many_relaxation_times_apart(paper: PtmdResult) -> None:
-    for memory in (Memory.RESET, Memory.CONTINUOUS):
-        result = simulate(with_ring(lining(memory=memory)), BOTH)
-        assert result.motion.x1[-1] == pytest.approx(paper.motion.x1[-1], abs=1e-9)
-        for one, other in zip(paper.contacts, result.contacts, strict=True):
+def test_memories_agree_where_contacts_are_many_relaxation_times_apart() -> None:
+    recovering, *others = (simulate(with_ring(lining(memory=memory)), BOTH, 4.0) for memory in Memory)
+    for result in others:
+        assert result.motion.x1[-1] == pytest.approx(recovering.motion.x1[-1], abs=1e-9)
+        for one, other in zip(recovering.contacts, result.contacts, strict=True):
             assert other.start == pytest.approx(one.start, abs=1e-9)
             assert other.peak_force == pytest.approx(one.peak_force, rel=1e-7)
 
