@@ -32,8 +32,7 @@ from fe_contact.studies.exponents.layers import (
 )
 from fe_contact.studies.exponents.layers_chart import plot_layers
 from fe_contact.studies.exponents.readers import Reader, Samples
-from fe_contact.studies.exponents.spheres import SHARES, Pair, pairs
-from fe_contact.studies.exponents.study import Exponents
+from fe_contact.studies.exponents.study import SHARES, Exponents, Pair, pairs
 from lumped import Scene, simulate
 from lumped.laws import ting
 from lumped.load_curves.layer import PointLayer
