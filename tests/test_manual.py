@@ -34,6 +34,7 @@ CHEAPEST_FIRST = (
     "identify",
     "sweeps",
     "transfer",
+    "yielding",
 )
 
 
