@@ -18,8 +18,8 @@ from fe_contact.bodies.pressing import PressedDepths, contact_end
 from fe_contact.contact.problem import ContactSolution
 from fe_contact.errors import ContactTooWide
 from fe_contact.settings import Numerics
-from fe_contact.solids.block import press as pressed_alike
 from fe_contact.solids.base import State
+from fe_contact.solids.block import press as pressed_alike
 from fe_contact.solids.bulk import Bulk, CoredBody
 from fe_contact.solids.contact import OnDeformed, OnRound, Skin
 from fe_contact.solids.finite import Hyperelastic
@@ -153,9 +153,7 @@ def advanced(encounter: Encounter, before: Equilibrium | None, depth: float, sti
     return replace(before, iterations=iterations)
 
 
-def pressed_first(
-    encounter: Encounter, depth: float, stiffness: float, start: Array, state: State = ()
-) -> Equilibrium:
+def pressed_first(encounter: Encounter, depth: float, stiffness: float, start: Array, state: State = ()) -> Equilibrium:
     """From a displacement ``start`` (2 N,) far away: a stiff penalty at once would turn elements inside out."""
     iterations = 0
     for share in RAMP:

@@ -4,7 +4,7 @@ S(t) = g_inf S0 + sum_i h_i ,  h_i' + h_i/tau_i = g_i S0' ,  S0 = dW/dE at the m
 
 (Simo 1987, doi 10.1016/0045-7825(87)90107-1, who relaxes the isochoric part alone; here it is the whole of S, as in
 FEBio's viscoelastic solid). At small strain it is the network with a constant Poisson's ratio. Over a step S0 changes
-evenly, so that S is ``at_once`` S0 + H with H known: the potential of that is at_once W + H:E, and its tangent symmetric.
+evenly, so that S is ``at_once`` S0 + H with H known: its potential is at_once W + H:E, its tangent symmetric.
 """
 
 from __future__ import annotations
