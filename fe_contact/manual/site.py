@@ -28,7 +28,7 @@ FIRST = "start"
 MENU: Mapping[str, Sequence[str]] = {
     "Start here": ("start", "experiment", "exponents", "choosing"),
     "Work": ("sweeps", "identify", "transfer", "pounding"),
-    "Look up": ("scenes", "keys", "commands", "running", "theory", "error_bars", "dictionary"),
+    "Look up": ("scenes", "keys", "commands", "running", "theory", "large_strains", "error_bars", "dictionary"),
     "Know": ("limits", "errata", "adding"),
 }
 EXTENSIONS = ("tables", "fenced_code", "toc", "sane_lists")
