@@ -34,6 +34,7 @@ CHEAPEST_FIRST = (
     "sweeps",
     "transfer",
     "yielding",
+    "large_strains",
 )
 
 
