@@ -29,7 +29,7 @@ ONE_IMPORTER = {
     "jinja2": "fe_contact/studies/validate/_page.py",
     "markdown": "fe_contact/manual/site.py",
     "pandas": "lumped/result/history.py",
-    "pyarrow": "fe_contact/studies/sweep/table.py",
+    "pyarrow": "fe_contact/studies/files.py",
 }
 FINITE_ELEMENTS = LUMPED | MESHES | {"fe_contact", "matplotlib", "threadpoolctl", *ONE_IMPORTER}
 ALLOWED = {"lumped": LUMPED, "meshes": MESHES, "fe_contact": FINITE_ELEMENTS}

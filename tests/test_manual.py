@@ -26,6 +26,7 @@ CHEAPEST_FIRST = (
     "scenes",
     "adding",
     "choosing",
+    "others",
     "start",
     "exponents",
     "experiment",
