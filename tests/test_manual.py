@@ -26,6 +26,7 @@ CHEAPEST_FIRST = (
     "scenes",
     "adding",
     "choosing",
+    "others",
     "start",
     "exponents",
     "experiment",
@@ -33,6 +34,7 @@ CHEAPEST_FIRST = (
     "identify",
     "sweeps",
     "transfer",
+    "yielding",
     "large_strains",
 )
 
