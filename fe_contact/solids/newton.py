@@ -167,7 +167,7 @@ def balanced(
 
 
 def _step(here: Balance) -> tuple[Callable[[Array], Array], Array]:
-    """Factors and Newton's step (free,); where the energy would climb by a convex model, at last of the body at rest."""
+    """Factors and Newton's step (free,); where the energy would climb by a convex model, then of a body at rest."""
     for convex, unstrained in ((False, False), (True, False), (True, True)):
         solve = factorized(here.tangent(convex, unstrained))
         step = solve(-here.residual)
