@@ -39,7 +39,8 @@ CORRECTED = "corrected"
 CORE = 0.5  # of the way from the contact to the end of the mesh strains may be large
 RAMP = (0.02, 0.2, 1.0)  # shares of the penalty with which a body is pressed for the first time
 FARTHEST = 2.0  # a depth over the one before it, beyond which another is put between
-SPLITS = 6  # work: of the way to a depth that cannot be reached at once
+LEAST_BEGUN = 0.05  # of a depth, that a body has to be pressed by from rest at once
+SPLITS = 12  # work: of the way to a depth that cannot be reached at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +136,9 @@ def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) ->
 def advanced(encounter: Encounter, before: Equilibrium | None, depth: float, stiffness: float) -> Equilibrium:
     """From an equilibrium to that of a larger depth, by as many steps as it takes. Raises EquilibriumLost."""
     if before is None:
-        return pressed_first(encounter, depth, stiffness, np.zeros(encounter.skin.size))
+        before = _begun(encounter, depth, stiffness)
+    if before.balance.depth == depth:
+        return before
     count = math.ceil(math.log(depth / before.balance.depth) / math.log(FARTHEST)) or 1
     left = list(np.geomspace(depth, before.balance.depth, count, endpoint=False))
     iterations, splits = 0, 0
@@ -151,6 +154,18 @@ def advanced(encounter: Encounter, before: Equilibrium | None, depth: float, sti
         before, iterations = found, iterations + found.iterations
         left.pop()
     return replace(before, iterations=iterations)
+
+
+def _begun(encounter: Encounter, depth: float, stiffness: float) -> Equilibrium:
+    """From rest to a depth, or to the part of it that can be reached at once. Raises EquilibriumLost."""
+    start, share = np.zeros(encounter.skin.size), 1.0
+    while True:
+        try:
+            return pressed_first(encounter, share * depth, stiffness, start)
+        except EquilibriumLost:
+            share *= 0.5
+            if share < LEAST_BEGUN:
+                raise
 
 
 def pressed_first(encounter: Encounter, depth: float, stiffness: float, start: Array, state: State = ()) -> Equilibrium:

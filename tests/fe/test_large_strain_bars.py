@@ -15,7 +15,8 @@ from lumped.materials.energies.base import ENERGIES
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import Model
 from lumped.shapes import Sphere
-from lumped.targets import HalfSpace, Layer
+from lumped.targets import HalfSpace
+from lumped.targets.layer import Layer
 
 SCENES, TOLERANCE = 60, 1e-2
 LEAST = 0.95  # share of them that converge
