@@ -32,8 +32,7 @@ from fe_contact.studies.exponents.layers import (
 )
 from fe_contact.studies.exponents.layers_chart import plot_layers
 from fe_contact.studies.exponents.readers import Reader, Samples
-from fe_contact.studies.exponents.spheres import SHARES, Pair, pairs
-from fe_contact.studies.exponents.study import Exponents
+from fe_contact.studies.exponents.study import SHARES, Exponents, Pair, pairs
 from lumped import Scene, simulate
 from lumped.laws import ting
 from lumped.load_curves.layer import PointLayer
@@ -100,6 +99,7 @@ def test_a_cylinder_has_no_half_space_to_start_from() -> None:
     assert gained == pytest.approx(2.0 * np.log(1e3), rel=1e-3)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("profile", PROFILES, ids=lambda one: one.label)
 def test_thin_layers_come_near_their_limit(profile: Profile) -> None:
     thin = curve(profile, "sliding", None, ENDS)

@@ -26,6 +26,7 @@ CHEAPEST_FIRST = (
     "scenes",
     "adding",
     "choosing",
+    "others",
     "start",
     "exponents",
     "experiment",
@@ -34,6 +35,7 @@ CHEAPEST_FIRST = (
     "sweeps",
     "transfer",
     "yielding",
+    "large_strains",
 )
 
 

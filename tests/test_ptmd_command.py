@@ -13,7 +13,8 @@ import pytest
 from fe_contact.cli import main
 from fe_contact.studies.ptmd_chart import plot_study
 from lumped.errors import BadInput
-from lumped.ptmd import Memory, free_vibration
+from lumped.pounding import march
+from lumped.ptmd import Memory
 from lumped.ptmd import study as studies
 from lumped.ptmd.case_file import CASES, load, read
 from lumped.ptmd.result import COLUMNS
@@ -100,9 +101,9 @@ def test_what_does_not_converge_is_written_and_said(
 def test_a_motion_that_cannot_be_followed_leaves_what_is_known(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(free_vibration, "MOST_SWITCHES", 2)
+    monkeypatch.setattr(march, "MOST_STEPS", 2)
     assert main(["ptmd", *SHORT, "--out", str(tmp_path)]) == 3
-    assert "switches of contact" in capsys.readouterr().err
+    assert "steps between" in capsys.readouterr().err
     known = json.loads((tmp_path / "ptmd.json").read_text(encoding="utf-8"))
     assert not known["converged"]
     assert known["case"]["ring"]["gap"] == 0.02

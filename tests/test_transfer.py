@@ -326,7 +326,7 @@ def published(name: str) -> tuple[dict[str, Any], list[dict[str, str]]]:
 
 def test_published_tables_are_those_that_finite_elements_judged() -> None:
     """Every verdict follows from the numbers beside it, and from no others."""
-    assert {path.name for path in (data_folder() / "transfer").iterdir()} == set(PUBLISHED)
+    assert {path.name for path in (data_folder() / "transfer").iterdir()} == {*PUBLISHED, "datapackage.json"}
     for name in PUBLISHED:
         record, rows = published(name)
         assert (record["scene"], record["reference"]) == (name, "fe")
@@ -345,6 +345,18 @@ def test_published_tables_are_those_that_finite_elements_judged() -> None:
                 assert abs(off) <= 1.01 * bar + 1e-5 * abs(reference)
             else:
                 assert (abs(share) <= record["within"]) == (row["verdict"] == "within")
+
+
+def test_the_package_describes_each_published_table_as_it_is() -> None:
+    package = json.loads((data_folder() / "transfer" / "datapackage.json").read_text(encoding="utf-8"))
+    assert package["licenses"]
+    assert [one["path"] for one in package["resources"]] == [f"{name}/transfer.csv" for name in PUBLISHED]
+    for one in package["resources"]:
+        fields = {field["name"]: field["type"] for field in one["schema"]["fields"]}
+        _, rows = published(one["name"])
+        assert [*rows[0]] == [*fields]
+        numbers = [name for name, kind in fields.items() if kind == "number"]
+        assert all(np.isfinite(float(row[name])) for row in rows for name in numbers if row[name])
 
 
 @pytest.mark.tenth

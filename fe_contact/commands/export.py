@@ -7,12 +7,10 @@ from functools import partial
 from pathlib import Path
 
 from fe_contact.commands import base
-from lumped.errors import BadInput, Fault
 from lumped.result.folder import publish
 from lumped.schema.members import available
 
 PACKAGE = "fe_contact.studies.export"
-MOST_ELEMENTS = 200  # work: of the other program
 
 
 def execute(args: argparse.Namespace) -> int:
@@ -21,30 +19,22 @@ def execute(args: argparse.Namespace) -> int:
     from fe_contact.studies.export.base import PROGRAMS, ImpactCase, StaticCase
 
     program = PROGRAMS.get(args.to)
-    elements = program.elements if args.elements is None else _count(args.elements)
     progress = base.progress_of(args)
     progress("our own answer")
     if args.depth is not None:
         indenter, table = base.read_indenter(args)
-        case = StaticCase.of(indenter, base.number(args.depth, "--depth"), settings(table, None, indenter.source))
-        text, name = program.static(case, elements), f"{case.name}-depth{program.suffix}"
+        depth = base.number(args.depth, "--depth")
+        case = StaticCase.of(indenter, depth, args.refined, settings(table, None, indenter.source))
+        text, name = program.static(case), f"{case.name}-depth{program.suffix}"
     else:
         scene, table = base.read_scene(args)
-        struck = ImpactCase.of(scene, settings(table, None, scene.source))
-        text, name = program.impact(struck, elements), f"{struck.name}-impact{program.suffix}"
+        struck = ImpactCase.of(scene, args.refined, settings(table, None, scene.source))
+        text, name = program.impact(struck), f"{struck.name}-impact{program.suffix}"
     where = base.folder(args, "export", Path(name).stem)
     runs = program.how.format(file=name, stem=Path(name).stem)
     content = publish(where, partial(_write, name=name, text=text, runs=runs))
     base.say(args, content, [f"written to {where / name}", f"to run it: {runs}"])
     return base.DONE
-
-
-def _count(text: str) -> int:
-    """A number of elements. Raises BadInput."""
-    found = base.number(text, "--elements")
-    if not (found.is_integer() and 2 <= found <= MOST_ELEMENTS):
-        raise BadInput(Fault("--elements", "", f"{text}: accepted: a whole number from 2 to {MOST_ELEMENTS}"))
-    return int(found)
 
 
 def _write(folder: Path, name: str, text: str, runs: str) -> None:
@@ -60,10 +50,8 @@ MEMBER = base.Command(
     (
         *base.SCENE,
         base.option("--to", required=True, choices=available(PACKAGE), help="the program"),
-        base.option(
-            "--elements", metavar="N", help="elements along a contact radius; twice as many tell what they err by"
-        ),
         base.option("--depth", metavar="D", help="slow indentation to this depth, m; without it the impact"),
+        base.option("--refined", type=int, choices=(1, 2, 3, 4), default=1, help="elements and steps divided so often"),
         *base.OUTPUT,
     ),
     execute,

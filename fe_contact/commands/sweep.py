@@ -14,10 +14,10 @@ from fe_contact.commands import base
 
 def execute(args: argparse.Namespace) -> int:
     """Ask for all cases, or for those that are left; write, say how they ended; 3 where some did not converge."""
+    from fe_contact.studies.files import require_parquet
     from fe_contact.studies.sweep.cases import load
     from fe_contact.studies.sweep.chart import plot_sweep
     from fe_contact.studies.sweep.study import run as run_sweep
-    from fe_contact.studies.sweep.table import require_parquet
     from fe_contact.studies.workers import checked_jobs
 
     begun = time.monotonic()

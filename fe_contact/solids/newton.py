@@ -68,7 +68,7 @@ class Balance:
         """Of core and rest, J."""
         body = self.encounter.body
         rim = self.displacement[body.rim]
-        return self.loaded.energy + 0.5 * float(rim @ body.rest @ rim)
+        return self.loaded.energy + float(rim @ (0.5 * body.rest @ rim + body.pull))
 
     @property
     def energy(self) -> float:
@@ -85,7 +85,7 @@ class Balance:
         """Forces that are not balanced, (free,)."""
         body = self.encounter.body
         forces = self.loaded.forces + self.touch.forces
-        forces[body.rim] += body.rest @ self.displacement[body.rim]
+        forces[body.rim] += body.rest @ self.displacement[body.rim] + body.pull
         return forces[body.free]
 
     def tangent(self, convex: bool) -> Matrix:
@@ -150,7 +150,7 @@ def balanced(
     for iteration in range(1, MOST_ITERATIONS + 1):
         solve, step = _step(here)
         slope = float(here.residual @ step)
-        done = -slope <= settled * here.energy
+        done = -slope <= settled * abs(here.energy)
         there = at(here.displacement + _whole(here, step)) if done else _descended(here, step, slope, at)
         if done:
             rate = _whole(there, solve(-there.touch.stiffening[there.encounter.body.free]))

@@ -18,6 +18,7 @@ from fe_contact.bodies.pressing import PressedDepths, contact_end
 from fe_contact.contact.problem import ContactSolution
 from fe_contact.errors import ContactTooWide
 from fe_contact.settings import Numerics
+from fe_contact.solids.base import State
 from fe_contact.solids.block import press as pressed_alike
 from fe_contact.solids.bulk import Bulk, CoredBody
 from fe_contact.solids.contact import OnDeformed, OnRound, Skin
@@ -123,7 +124,7 @@ def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) ->
         stiffness = numerics.penalty * solid.unit / float(radii[i])
         reached = advanced(solid.encounter, reached, float(depth[i]) / solid.unit, stiffness)
         force[i] = solid.unit**solid.dimension * reached.rigid_force
-        radius[i] = solid.unit * _contact_radius(reached.balance)
+        radius[i] = solid.unit * contact_radius(reached.balance)
         newton[i], iterations = reached.error, iterations + reached.iterations
         if not np.isfinite(radius[i]):
             raise ContactTooWide(float(depth[i]))
@@ -134,7 +135,7 @@ def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) ->
 def advanced(encounter: Encounter, before: Equilibrium | None, depth: float, stiffness: float) -> Equilibrium:
     """From an equilibrium to that of a larger depth, by as many steps as it takes. Raises EquilibriumLost."""
     if before is None:
-        return _first(encounter, depth, stiffness)
+        return pressed_first(encounter, depth, stiffness, np.zeros(encounter.skin.size))
     count = math.ceil(math.log(depth / before.balance.depth) / math.log(FARTHEST)) or 1
     left = list(np.geomspace(depth, before.balance.depth, count, endpoint=False))
     iterations, splits = 0, 0
@@ -152,17 +153,16 @@ def advanced(encounter: Encounter, before: Equilibrium | None, depth: float, sti
     return replace(before, iterations=iterations)
 
 
-def _first(encounter: Encounter, depth: float, stiffness: float) -> Equilibrium:
-    """From rest: a stiff penalty pressed in at once would turn elements inside out."""
-    found = balanced(encounter, np.zeros(encounter.skin.size), depth, RAMP[0] * stiffness)
-    iterations = found.iterations
-    for share in RAMP[1:]:
-        found = balanced(encounter, found.balance.displacement, depth, share * stiffness)
-        iterations += found.iterations
+def pressed_first(encounter: Encounter, depth: float, stiffness: float, start: Array, state: State = ()) -> Equilibrium:
+    """From a displacement ``start`` (2 N,) far away: a stiff penalty at once would turn elements inside out."""
+    iterations = 0
+    for share in RAMP:
+        found = balanced(encounter, start, depth, share * stiffness, state)
+        start, iterations = found.balance.displacement, iterations + found.iterations
     return replace(found, iterations=iterations)
 
 
-def _contact_radius(balance: Balance) -> float:
+def contact_radius(balance: Balance) -> float:
     """Where the surfaces part, on the deformed surface; infinite where the contact leaves the skin."""
     touch = balance.touch
     place = (touch.skin.place + touch.displacement).reshape(2, -1)

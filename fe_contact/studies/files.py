@@ -1,4 +1,4 @@
-"""What every study leaves: tables in CSV, and a record in JSON."""
+"""What every study leaves: tables in CSV, or as Parquet, and a record in JSON."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fe_contact.errors import import_of
 from lumped.schema import Table
 from lumped.schema.csv_file import write_csv
 from lumped.schema.json_file import plain, write_json
@@ -40,3 +41,18 @@ def lines_of(columns: Mapping[str, object]) -> list[Line]:
     length = max(column.size for column in columns.values() if isinstance(column, np.ndarray))
     filled = [one.tolist() if isinstance(one, np.ndarray) else [one] * length for one in columns.values()]
     return [dict(zip(columns, line, strict=True)) for line in zip(*filled, strict=True)]
+
+
+def require_parquet() -> None:
+    """Raises ExtraMissing, before any work, where no table could be written as Parquet."""
+    with import_of("parquet"):
+        import pyarrow.parquet  # noqa: F401 - whether it can be
+
+
+def write_parquet(path: Path, columns: Mapping[str, object]) -> None:
+    """A table of columns by their names; NaN is what is undefined. Raises ExtraMissing."""
+    with import_of("parquet"):
+        import pyarrow
+        from pyarrow import parquet
+    arrays = [pyarrow.array(column, from_pandas=True) for column in columns.values()]
+    parquet.write_table(pyarrow.table(arrays, names=[*columns]), path)

@@ -2,15 +2,16 @@
 
 They lie in `data/references/` as a Data Package (https://datapackage.org, version 2): a CSV file of the history and a
 JSON file of everything else a scene. Nothing reads them in place of a run: they are what a later suite is held against.
-A value has moved by its difference over the sum of both bars; up to 1 the two agree.
+A value has moved by its difference over the sum of both bars; up to 1 the two agree. For other tools they are written
+again in a format of theirs.
 """
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -18,14 +19,17 @@ import numpy as np
 from fe_contact import __version__
 from fe_contact.methods import simulate
 from fe_contact.progress import Progress, silent
-from fe_contact.studies.files import write_study
-from lumped.errors import BadInput, Fault, FeContactError, nearest
+from fe_contact.studies.files import Line, require_parquet, write_parquet, write_study
+from lumped import laws
+from lumped.errors import BadInput, Fault, FeContactError, nearest, shown
+from lumped.fit import opensees
+from lumped.numbers import Array
 from lumped.result.history import COLUMNS, History
 from lumped.result.result import Quantity, Result
 from lumped.scene.scene import Scene
 from lumped.scene.tables import load
 from lumped.schema import Table
-from lumped.schema.csv_file import write_columns
+from lumped.schema.csv_file import write_columns, write_csv
 from lumped.schema.files import SCENES, data_folder
 from lumped.schema.json_file import write_json
 
@@ -45,6 +49,7 @@ class Reference:
 
     history: History
     quantities: Mapping[str, Quantity]
+    content: Table = field(default_factory=dict)  # of its JSON file
 
     @classmethod
     def read(cls, folder: Path, name: str) -> Reference | None:
@@ -53,7 +58,12 @@ class Reference:
             return None
         content = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
         quantities = {key: Quantity(**quantity) for key, quantity in content["quantities"].items()}
-        return cls(History.read_csv(folder / f"{name}.csv"), quantities)
+        return cls(History.read_csv(folder / f"{name}.csv"), quantities, content)
+
+    @property
+    def columns(self) -> dict[str, Array]:
+        """The history by the names of its file's columns."""
+        return {header: getattr(self.history, name) for name, header in COLUMNS.items()}
 
 
 @dataclass(frozen=True)
@@ -195,10 +205,14 @@ def _write_package(renewals: Sequence[Renewal], where: Path) -> list[str]:
 def _write_scene(renewal: Renewal, where: Path) -> None:
     result = renewal.result
     assert result is not None
-    columns = [getattr(result.history, name) for name in COLUMNS]
-    write_columns(where / f"{renewal.scene}.csv", tuple(COLUMNS.values()), columns, DIGITS)
+    write_columns(where / f"{renewal.scene}.csv", *_table(result.history))
     content = {key: value for key, value in result.to_json().items() if key not in OURS}
     write_json(where / f"{renewal.scene}.json", content | {"suite": __version__})
+
+
+def _table(history: History) -> tuple[tuple[str, ...], list[Array], int]:
+    """Header, columns and digits of a history's file."""
+    return tuple(COLUMNS.values()), [getattr(history, name) for name in COLUMNS], DIGITS
 
 
 def _package(names: Sequence[str]) -> Table:
@@ -228,3 +242,93 @@ def _package(names: Sequence[str]) -> Table:
 
 def _unit(column: str) -> str:
     return next(unit for end, unit in UNITS.items() if column.endswith(end))
+
+
+def published(names: Sequence[str]) -> dict[str, Reference]:
+    """What is published of these scenes. Raises BadInput where nothing is of one."""
+    found = {name: Reference.read(folder(), name) for name in names}
+    if missing := [name for name, one in found.items() if one is None]:
+        raise BadInput(Fault("--scenes", "", f"{name}: no history of it is published") for name in missing)
+    return {name: one for name, one in found.items() if one is not None}
+
+
+def checked_format(name: str) -> str:
+    """A key of FORMATS. Raises BadInput for another name, and where its package is missing."""
+    if name not in FORMATS:
+        raise BadInput(Fault("--format", "", f"{shown(name)}: accepted {', '.join(FORMATS)}"))
+    if name == "parquet":
+        require_parquet()
+    return name
+
+
+def write_for_others(references: Mapping[str, Reference], name: str, where: Path, progress: Progress = silent) -> None:
+    """Write what is published of scenes in a format of FORMATS, and a record of it, into a folder."""
+    FORMATS[name](references, where, progress)
+    write_json(where / RECORD, {"schema": SCHEMA, "format": name, "scenes": [*references]})
+
+
+def _as_csv(references: Mapping[str, Reference], where: Path, progress: Progress) -> None:
+    """A table a scene, one of all quantities, and the package's description."""
+    for name, one in references.items():
+        write_columns(where / f"{name}.csv", *_table(one.history))
+    lines = _quantities(references)
+    write_csv(where / "quantities.csv", [*lines[0]], [[*line.values()] for line in lines])
+    write_json(where / PACKAGE, _package([*references]))
+
+
+def _as_json(references: Mapping[str, Reference], where: Path, progress: Progress) -> None:
+    """A file a scene, its history in it."""
+    for name, one in references.items():
+        write_json(
+            where / f"{name}.json",
+            one.content | {"history": {column: values.tolist() for column, values in one.columns.items()}},
+        )
+
+
+def _as_parquet(references: Mapping[str, Reference], where: Path, progress: Progress) -> None:
+    """All histories, and all quantities, in one table each. Raises ExtraMissing."""
+    lengths = [len(one.history) for one in references.values()]
+    columns = [np.concatenate([one.columns[column] for one in references.values()]) for column in COLUMNS.values()]
+    histories = {"scene": np.repeat([*references], lengths), **dict(zip(COLUMNS.values(), columns, strict=True))}
+    write_parquet(where / "histories.parquet", histories)
+    lines = _quantities(references)
+    write_parquet(where / "quantities.parquet", {key: [line[key] for line in lines] for key in lines[0]})
+
+
+def _as_opensees(references: Mapping[str, Reference], where: Path, progress: Progress) -> None:
+    """A Tcl file a scene: its force as a time series of two files, and the impact material that fits it best."""
+    for count, (name, one) in enumerate(references.items(), start=1):
+        progress(name, count - 1, len(references))
+        rising = np.diff(one.history.time, prepend=-math.inf) > 0.0
+        for column in ("time", "force"):
+            np.savetxt(where / f"{name}-{column}.txt", getattr(one.history, column)[rising], fmt=f"%.{DIGITS}g")
+        series = f"timeSeries Path {count} -fileTime {name}-time.txt -filePath {name}-force.txt"
+        text = [f"# {name}: force on the striker, N, over time, s, since touch", series, _material(name, one, count)]
+        (where / f"{name}.tcl").write_text("\n".join(text) + "\n", encoding="utf-8")
+
+
+def _material(name: str, one: Reference, tag: int) -> str:
+    """The law of the scene itself as OpenSees' lines, or of the one that fits its history; else why there is none."""
+    scene = Scene.load(name)
+    try:
+        if one.content["method"] != "fe":
+            return opensees.lines(laws.get(one.content["method"]).of(scene), scene, tag)
+        return opensees.lines_for(one.history, scene, tag)
+    except FeContactError as failure:
+        return f"# no impact material: {failure}"
+
+
+def _quantities(references: Mapping[str, Reference]) -> list[Line]:
+    return [
+        {"scene": name, "quantity": key, "value": one.value, "error": one.error, "unit": one.unit}
+        for name, reference in references.items()
+        for key, one in reference.quantities.items()
+    ]
+
+
+FORMATS: Mapping[str, Callable[[Mapping[str, Reference], Path, Progress], None]] = {
+    "csv": _as_csv,
+    "json": _as_json,
+    "parquet": _as_parquet,
+    "opensees": _as_opensees,
+}

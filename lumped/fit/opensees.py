@@ -31,6 +31,7 @@ from lumped.laws.linear_spring import LinearSpring
 from lumped.laws.mahmoud import Mahmoud
 from lumped.laws.mdr import SpringRow
 from lumped.laws.ting import Ting
+from lumped.result.history import History
 from lumped.scene.scene import Scene
 from lumped.scene.tables import LawChoice
 from lumped.schema import Table
@@ -120,12 +121,25 @@ def lines(law: Law, scene: Scene, tag: int = 1, language: str = "tcl") -> str:
     return "\n".join([*(f"# {text}" for text in said), command.format(name=found.name, values=values)])
 
 
+def lines_for(history: History, scene: Scene, tag: int = 1, language: str = "tcl") -> str:
+    """The lines of the law that fits a scene's force history best, and how well. Raises as `stand_in` does."""
+    fitted = best_fit(history, scene)
+    told = (
+        f"# fitted at {scene.velocity:.6g} m/s, normalized error {100.0 * fitted.normalized_error:.3g} %; not elsewhere"
+    )
+    return "\n".join([told, lines(between_masses(fitted.law, fitted.scene), fitted.scene, tag, language)])
+
+
 def stand_in(law: Law, scene: Scene) -> Fit:
     """The law of OpenSees that fits the impact of another one best, least squares in all its numbers.
 
     It has the scene's gap. Raises NotReached, or BadInput, of the last law tried, where none can be fitted.
     """
-    history = simulate(law, scene, FITTED_TO).history
+    return best_fit(simulate(law, scene, FITTED_TO).history, scene)
+
+
+def best_fit(history: History, scene: Scene) -> Fit:
+    """The law of OpenSees that fits a force history of a scene's impact best. Raises as `stand_in` does."""
     gap = {} if scene.law is None or GAP not in scene.law.values else {GAP: scene.law.values[GAP]}
     fits, failures = list[Fit](), list[FeContactError]()
     for name, (free, choices) in STAND_INS.items():

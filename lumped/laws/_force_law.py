@@ -61,6 +61,15 @@ class ForceLaw(PointLaw):
     remembers: ClassVar[bool] = False
 
     @property
+    def follows(self) -> bool:
+        """Whether the surface goes along without force where it would pull, and pushes again as soon as it can."""
+        return False
+
+    def at_start(self, depth: float, rate: float, memory: tuple[float, ...]) -> float:
+        """The force where a contact begins, N, of a law that follows."""
+        return math.nan
+
+    @property
     def parameters(self) -> dict[str, object]:
         """Its numbers by the names of the scene file."""
         return {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("load_curve", "source")}

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -33,8 +34,8 @@ from lumped.solvers.hereditary.closing import Closing, close
 from lumped.solvers.hereditary.march import Settings
 from lumped.solvers.hereditary.path import HereditaryPhase, Path, SinceTouch, UntilEnd
 from lumped.solvers.hereditary.problem import Hereditary
-from lumped.solvers.point.bodies import TINY, Bodies, Stage, State, Step
-from lumped.solvers.point.memory import RULES, FreeSurface, HereditaryLoad, StepLoad, rule_of
+from lumped.solvers.point.bodies import TINY, Bodies, Dent, Stage, State, Step
+from lumped.solvers.point.memory import RULES, FreeSurface, HeldSurface, HereditaryLoad, StepLoad, rule_of
 from lumped.solvers.point.phase import NODES
 from lumped.solvers.radau import through_zero
 
@@ -70,6 +71,10 @@ class HereditaryForce(ForceLaw):
     def remembered(self, depth: Array) -> tuple[float, ...]:
         """The memories at the end of the step."""
         return tuple(self._step.memories(depth)[:, -1].tolist())
+
+    def memories_within(self, start: State, length: float, depth: Array) -> Array:
+        """The memories at the points of a step, shape (K, s), m2, from the depths there."""
+        return StepLoad.of(self.load, start.memory, length, NODES).memories(depth)
 
     def force(self, depth: Real, rate: Real, stage: Stage) -> Real:
         """F at the points of the step, N."""
@@ -111,19 +116,19 @@ class HereditaryForce(ForceLaw):
         """As the rule has it."""
         return rule_of(self.rule)(self.load, bodies, last)
 
-    def resistance(self, depth: Array, rate: Array, stage: Stage, last: State, since: Array) -> Array:
-        """By how much the load of the depth is above that of the surface, which creeps back freely, m2."""
-        surface = FreeSurface.of(self.load, last)
-        return np.array([self.load.load(d) - surface.at(t)[0] for d, t in zip(depth, since, strict=True)])
+    @property
+    def follows(self) -> bool:
+        """By the rule "continuous", where it must not pull."""
+        return self.rule == "continuous" and self.exit == "force"
 
-    def recalled(self, last: State, since: float) -> tuple[float, ...]:
-        """The memories of the surface that creeps back."""
-        return tuple(FreeSurface.of(self.load, last).at(since)[1:].tolist())
+    def at_start(self, depth: float, rate: float, memory: tuple[float, ...]) -> float:
+        """F of the depth, its rate and the memories, N."""
+        return float(self.load.force(depth, rate, memory))
 
-    def forgotten(self, last: State, since: float) -> bool:
-        """At once by the rule "reset", else when the surface has crept back."""
-        surface = FreeSurface.of(self.load, last)
-        return self.rule == "reset" or bool(surface.at(since)[0] <= FORGOTTEN * surface.at(0.0)[0])
+    def dent(self, last: State, stage: Stage) -> Dent:
+        """As the rule has it; one that is left at depth zero by the rule "continuous" is none, but it remembers."""
+        surface = FreeSurface.of(self.load, last) if self.rule != "continuous" else HeldSurface.of(self.load, last)
+        return HereditaryDent(self, stage, surface)
 
     def resolved(self, scene: Scene) -> Model:
         """The scene's own profile; nothing yields."""
@@ -133,6 +138,31 @@ class HereditaryForce(ForceLaw):
     def _step(self) -> StepLoad:
         assert self.within_step is not None
         return self.within_step
+
+
+@dataclass(frozen=True)
+class HereditaryDent(Dent):
+    """A surface between contacts, free or held, by what it remembers."""
+
+    law: HereditaryForce
+    surface: FreeSurface | HeldSurface
+
+    def resistance(self, depth: Array, rate: Array, since: Array) -> Array:
+        """By how much the load of the depth, odd in it, is above that of the surface, m2."""
+        load = self.law.load
+        return np.asarray(load.load(depth) - load.load(-depth) - self.surface.at(since)[0])
+
+    def recalled(self, since: float) -> tuple[float, ...]:
+        """The memories by then."""
+        return tuple(self.surface.at(since)[1:].tolist())
+
+    def forgotten(self, since: float) -> bool:
+        """At once by the rule "reset", else when nothing is left that counts beside what was."""
+        return self.law.rule == "reset" or bool(np.abs(self.surface.at(since)).max() <= self._nothing)
+
+    @cached_property
+    def _nothing(self) -> float:
+        return FORGOTTEN * float(np.abs(self.surface.at(0.0)).max())
 
 
 def leaves_out(scene: Scene) -> str:
@@ -150,7 +180,8 @@ def law_of(scene: Scene, exit: str = "force", rule: str = "recovering") -> Hered
     """The law for a scene, on the load curve of its target. Raises BadInput where no load curve is known."""
     curve = scene.load_curve
     load = HereditaryLoad(curve, scene.contact_modulus.scaled(scene.geometry.shape.total))
-    return HereditaryForce(exit=exit, rule=rule, load=load, scale=scene.elastic_contact_time, load_curve=curve)
+    ends = "depth" if load.modulus.is_elastic else exit  # where an elastic force returns to zero
+    return HereditaryForce(exit=ends, rule=rule, load=load, scale=scene.elastic_contact_time, load_curve=curve)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,6 @@ from math import sqrt
 import numpy as np
 
 from lumped.numbers import Array
-from lumped.pounding.frames import PoundingFrames
 from lumped.pounding.ground import GroundMotion
 from lumped.solvers.point.bodies import TINY
 from lumped.solvers.radau import Nodes
@@ -26,7 +25,39 @@ FAINTEST = 1e-6  # of the fastest storey: what touches more slowly counts as so 
 TERMS = 18  # rounding: 1/18! is below 2e-16
 
 
-def longest_row(frames: PoundingFrames, ground: GroundMotion) -> float:
+@dataclass(frozen=True, eq=False)
+class LinearBodies:
+    """M q'' + C q' + K q = -M 1 a(t) - R^T F, and F >= 0 acts where the depth R q - distance is above zero.
+
+    `mass` (n,), kg; `stiffness` and `damping` (n, n), N/m and N s/m; `rows` R (m, n) and `distances` (m,), m, of the
+    gaps; `start`: displacements, m, then velocities, m/s, (2 n,).
+    """
+
+    mass: Array
+    stiffness: Array
+    damping: Array
+    rows: Array
+    distances: Array
+    start: Array
+
+    @cached_property
+    def reduced_masses(self) -> Array:
+        """What the force of each gap moves as one mass, kg, (m,)."""
+        return np.asarray(1.0 / (self.rows**2 / self.mass).sum(axis=1))
+
+    def accelerations(self, states: Array, forces: Array) -> Array:
+        """Total ones, m/s2, (..., n), of states (..., 2 n) and forces (..., m)."""
+        n = self.mass.size
+        pulls = states[..., :n] @ self.stiffness + states[..., n:] @ self.damping + forces @ self.rows
+        return np.asarray(-pulls / self.mass)
+
+    def energies(self, state: Array) -> tuple[float, float]:
+        """Kinetic and of strain, J."""
+        n = self.mass.size
+        return 0.5 * float(self.mass @ state[n:] ** 2), 0.5 * float(state[:n] @ self.stiffness @ state[:n])
+
+
+def longest_row(frames: LinearBodies, ground: GroundMotion) -> float:
     """The time, s, over which every series converges like that of exp(1): about a sixth of the shortest period."""
     stiffness = float((np.abs(frames.stiffness).sum(axis=1) / frames.mass).max())
     damping = float((np.abs(frames.damping).sum(axis=1) / frames.mass).max()) + ground.fastest
@@ -38,7 +69,7 @@ def longest_row(frames: PoundingFrames, ground: GroundMotion) -> float:
 class FrameFlow:
     """What is known of the motion once for all; time counts in `unit`, s, no step is longer."""
 
-    frames: PoundingFrames
+    frames: LinearBodies
     unit: float
 
     @property
@@ -83,7 +114,7 @@ class FrameFlow:
         """Of the (k + 1)-th iterated integral of the forces on the state, (A unit)^k B unit, and so on the depths and
         the rates: (TERMS, 2 n + 2 m, m).
         """
-        push = np.zeros((2 * self.size, len(self.frames.gaps)))
+        push = np.zeros((2 * self.size, self.frames.distances.size))
         push[self.size :] = -self.unit * self.frames.rows.T / self.frames.mass[:, None]
         found = [push]
         for _ in range(TERMS - 1):

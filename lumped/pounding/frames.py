@@ -16,6 +16,7 @@ import numpy as np
 
 from lumped.errors import BadInput, Fault
 from lumped.numbers import Array
+from lumped.pounding.flow import LinearBodies
 from lumped.schema.keys import Count, Key, Number, Numbers, Record
 
 MOST_STOREYS = 50  # work: of one frame
@@ -183,6 +184,11 @@ class PoundingFrames:
         return _blocks([np.eye(frame.size) - np.eye(frame.size, k=-1) for frame in self.frames.values()])
 
     @cached_property
+    def bodies(self) -> LinearBodies:
+        """The numbers that move."""
+        return LinearBodies(self.mass, self.stiffness, self.damping, self.rows, self.distances, self.start)
+
+    @cached_property
     def rows(self) -> Array:
         """R, shape (m, n), m the gaps."""
         rows = np.zeros((len(self.gaps), self.mass.size))
@@ -196,11 +202,6 @@ class PoundingFrames:
     def distances(self) -> Array:
         """Of the gaps, m, shape (m,)."""
         return np.array([gap.distance for gap in self.gaps.values()])
-
-    @cached_property
-    def reduced_masses(self) -> Array:
-        """Of the two storeys at each gap, kg, shape (m,)."""
-        return np.array([self.reduced_mass(gap) for gap in self.gaps.values()])
 
     def reduced_mass(self, gap: Gap) -> float:
         """Of the two storeys at a gap, kg; of the left one alone at a wall."""

@@ -114,12 +114,7 @@ class GapLaw:
 def force_of(name: str, scene: Scene) -> ForceLaw:
     """The law called so as a force between two masses, whatever it remembers. Raises BadInput where it is none."""
     law = laws.get(name).of(scene)
-    if not isinstance(law, Correspondence):
-        return between_masses(name, scene)
-    if law.memory == "continuous":
-        reason = "continuous: followed in free flight alone; accepted here: recovering, reset"
-        raise BadInput(Fault(scene.source, "law.memory", reason))
-    return law_of(scene, law.exit, law.memory)
+    return law_of(scene, law.exit, law.memory) if isinstance(law, Correspondence) else between_masses(name, scene)
 
 
 def exponent(law: GapLaw, frames: PoundingFrames, gap: Gap) -> float:

@@ -1,7 +1,8 @@
 """What a gap does: apart, pressed, or leaving a dent without force; and what ends each.
 
-A gap that is apart touches where its depth rises through zero. Where the depth may have come up to zero between two
-points of a step and gone again, the step is first cut at the closest approach, so that no touch is missed.
+A gap that is apart touches where its depth rises through zero, a dent is pressed again where its surface is met. Where
+the depth may have come up to zero between two points of a step and gone again, the step is first cut at the closest
+approach, so that no touch is missed.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from lumped.laws._force_law import ForceLaw
 from lumped.numbers import Array
-from lumped.solvers.point.bodies import Bodies, Stage, State
+from lumped.solvers.point.bodies import Bodies, Dent, Stage, State
 from lumped.solvers.point.contact import following
 from lumped.solvers.radau import Nodes
 
@@ -28,6 +29,7 @@ class Mode(Enum):
 
     APART = "the storeys are clear of each other"
     PRESSED = "they press each other"
+    FOLLOWED = "they would pull, but the surface goes along without force"
     LEAVING = "they have parted, but a dent is left between them"
 
 
@@ -47,7 +49,7 @@ class FrameStep(NamedTuple):
     """One step, `length` s long: states (s, 2 n), and depths, rates and forces of all gaps, (m, s), at its points.
 
     `gain`, N, is the force times the pace of the nodes; `first_depth` and `first_rate` are those where it begins, (m,);
-    `memories`: what the laws remember at its end.
+    `memories`: what the laws remember at its end; `tension`: the forces that followed surfaces are spared, (m, s).
     """
 
     length: float
@@ -60,6 +62,7 @@ class FrameStep(NamedTuple):
     force: Array
     gain: Array
     memories: tuple[tuple[float, ...], ...]
+    tension: Array
 
     def slope(self, values: Array) -> float:
         """Over time at its end of what has these values at its points; not a number for mirrored nodes."""
@@ -72,8 +75,7 @@ class GapState:
     """A gap where a step begins. `stage` counts while it is pressed or leaving, `corners` are those still ahead.
 
     `touched`: when it was touched, s, while the force still grows from depth zero, else None; `passed`: the closest
-    approach has just been here; `memory`: the law's; `parted`: how the last contact ended, and when, s, as long as a
-    dent is left.
+    approach has just been here; `memory`: the law's; `parted`: the dent of the last contact, and when it ended, s.
     """
 
     mode: Mode
@@ -82,7 +84,12 @@ class GapState:
     touched: float | None = None
     passed: bool = False
     memory: tuple[float, ...] = ()
-    parted: tuple[State, float] | None = None
+    parted: tuple[Dent, float] | None = None
+
+    @property
+    def active(self) -> bool:
+        """Whether the law runs along."""
+        return self.mode in (Mode.PRESSED, Mode.FOLLOWED)
 
 
 OPEN = GapState(Mode.APART)
@@ -94,6 +101,14 @@ def pressed(law: ForceLaw, depth: float, rate: float, slowest: float, time: floa
     stage = Stage(rate > 0.0 or depth <= 0.0, depth, speed, depth)
     touched = time if depth <= 0.0 else None
     return GapState(Mode.PRESSED, stage, law.corners(stage), touched, memory=law.touch(Bodies(1.0, speed)).memory)
+
+
+def again(law: ForceLaw, dent: Dent, since: float, *touch: float) -> GapState:
+    """A dent pressed again, as by :func:`pressed` with the arguments of `touch`; or followed, where it would pull."""
+    depth, rate = touch[:2]
+    memory = dent.recalled(since)
+    mode = Mode.FOLLOWED if law.follows and law.at_start(depth, rate, memory) < 0.0 else Mode.PRESSED
+    return replace(pressed(law, *touch), mode=mode, memory=memory)
 
 
 class GapEvent(NamedTuple):
@@ -117,18 +132,23 @@ def events_of(gap: int, state: GapState, law: ForceLaw, depth: float, noise: flo
     """What can end a step of a gap from `time`, s, and `depth`, m, on; `noise`: a depth that is rounding."""
     if state.mode is Mode.APART:
         return [_touch(gap, depth, noise), _nearest(gap, state, noise)]
+    left = GapEvent(gap, Happening.LEFT, lambda step: step.depth[gap])
     if state.parted is not None:
-        again = _again(gap, state, law, *state.parted, time)
-        return [again, GapEvent(gap, Happening.LEFT, lambda step: step.depth[gap])] if depth > 0.0 else [again]
+        met = [_again(gap, *state.parted, time), _nearest(gap, state, noise)]
+        return [*met, left] if depth > 0.0 else met
+    if state.mode is Mode.FOLLOWED:
+        return [GapEvent(gap, Happening.AGAIN, lambda step: step.tension[gap]), left]
     sign = 1.0 if state.stage.approaching else -1.0
     found = [GapEvent(gap, Happening.TURN, lambda step: sign * step.rate[gap])]
     if state.corners:
         corner = state.corners[0]
         found.append(GapEvent(gap, Happening.CORNER, lambda step: sign * (corner - step.depth[gap])))
+    by_force = law.tensile and law.exit == "force"
+    value = _force_left(gap) if by_force else lambda step: step.depth[gap]
     if not state.stage.approaching:
-        by_force = law.tensile and law.exit == "force"
-        value = _force_left(gap) if by_force else lambda step: step.depth[gap]
         found.append(GapEvent(gap, Happening.EXIT, value, surfaces=not by_force))
+    elif law.follows:
+        found.append(GapEvent(gap, Happening.EXIT, value, lambda step: np.maximum.accumulate(step.force[gap] > 0.0)))
     return found
 
 
@@ -155,14 +175,18 @@ def _nearest(gap: int, state: GapState, noise: float) -> GapEvent:
     return GapEvent(gap, Happening.NEAREST, lambda step: step.rate[gap], suspicious)
 
 
-def _again(gap: int, state: GapState, law: ForceLaw, last: State, parted: float, time: float) -> GapEvent:
+def _again(gap: int, dent: Dent, parted: float, time: float) -> GapEvent:
     """The law, which does not act here, would press again."""
 
     def value(step: FrameStep) -> Array:
         since = time - parted + step.length * step.nodes.points
-        return -law.resistance(step.depth[gap], step.rate[gap], state.stage, last, since)
+        return -dent.resistance(step.depth[gap], step.rate[gap], since)
 
-    return GapEvent(gap, Happening.AGAIN, value)
+    def rising(step: FrameStep) -> NDArray[np.bool_]:
+        begun = dent.resistance(step.first_depth[[gap]], step.first_rate[[gap]], np.array([time - parted]))
+        return np.asarray(np.diff(value(step), prepend=-begun) < 0.0)
+
+    return GapEvent(gap, Happening.AGAIN, value, rising)
 
 
 def _force_left(gap: int) -> Callable[[FrameStep], Array]:
@@ -191,17 +215,25 @@ def after(
         case Happening.CORNER:
             return replace(state, corners=state.corners[1:]), depth
         case Happening.AGAIN if state.parted is not None:
-            last, parted = state.parted
-            return replace(pressed(law, depth, rate, slowest, time), memory=law.recalled(last, time - parted)), depth
-        case Happening.EXIT if not event.surfaces or not law.forgotten(State(depth, rate, 0.0, state.memory), 0.0):
-            parted_now = State(depth, rate, 0.0, state.memory), time
-            return replace(state, mode=Mode.LEAVING, corners=(), touched=None, parted=parted_now), depth
+            dent, parted = state.parted
+            return again(law, dent, time - parted, depth, rate, slowest, time), depth
+        case Happening.AGAIN:
+            return replace(pressed(law, depth, rate, slowest, time), memory=state.memory), depth
+        case Happening.EXIT if law.follows:
+            return replace(state, mode=Mode.FOLLOWED, corners=(), touched=None), depth
+        case Happening.EXIT:
+            dent = law.dent(State(depth, rate, 0.0, state.memory), state.stage)
+            left = replace(state, mode=Mode.LEAVING, corners=(), touched=None, parted=(dent, time))
+            return (surfaced(left, 0.0, time), 0.0) if event.surfaces else (left, depth)
+        case _ if state.mode is Mode.FOLLOWED:
+            dent = law.dent(State(0.0, rate, 0.0, state.memory), state.stage)
+            return surfaced(replace(state, mode=Mode.LEAVING, parted=(dent, time)), 0.0, time), 0.0
         case _:
-            return surfaced(replace(state, mode=Mode.LEAVING), law, 0.0, time), 0.0
+            return surfaced(state, 0.0, time), 0.0
 
 
-def surfaced(state: GapState, law: ForceLaw, depth: float, time: float) -> GapState:
+def surfaced(state: GapState, depth: float, time: float) -> GapState:
     """The gap apart, where it has left a dent, at a depth, m, that is forgotten; else as it is."""
     if state.mode is not Mode.LEAVING or depth > 0.0:
         return state
-    return OPEN if state.parted is None or law.forgotten(state.parted[0], time - state.parted[1]) else state
+    return OPEN if state.parted is None or state.parted[0].forgotten(time - state.parted[1]) else state

@@ -6,6 +6,7 @@ Rows in which every gap stays far from touch are followed many at once: nothing 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -13,8 +14,7 @@ import numpy as np
 
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.numbers import Array
-from lumped.pounding.flow import TERMS, longest_row
-from lumped.pounding.frames import PoundingFrames
+from lumped.pounding.flow import TERMS, LinearBodies, longest_row
 from lumped.pounding.gaps import OPEN, FrameStep, GapEvent, GapState, Mode, after, pressed, surfaced
 from lumped.pounding.ground import GroundMotion
 from lumped.pounding.trial import NODES, FramesAt, FrameTrial, Rules
@@ -48,13 +48,16 @@ class FramesFlight:
     ground: Array
 
 
-def rows(frames: PoundingFrames, ground: GroundMotion, end_time: float) -> tuple[Array, float]:
+def rows(
+    frames: LinearBodies, ground: GroundMotion, end_time: float, marks: Sequence[float] = ()
+) -> tuple[Array, float]:
     """Times of the rows, s, from zero to the end, no kink of the ground between two of them; the longest apart.
 
-    Raises BadInput when they are too many.
+    The `marks`, s, before the end are among them. Raises BadInput when they are too many.
     """
     longest = longest_row(frames, ground)
-    kinks = ground.kinks[(ground.kinks > 0.0) & (ground.kinks < end_time)]
+    kinks = np.concatenate([ground.kinks, marks])
+    kinks = kinks[(kinks > 0.0) & (kinks < end_time)]
     stops = np.unique(np.concatenate([[0.0], kinks, [end_time]]))
     counts = np.maximum(np.ceil(np.diff(stops) / longest).astype(int), 1)
     if counts.sum() > MOST_ROWS:
@@ -75,10 +78,12 @@ class FrameMarch:
     rules: Rules
     ground: GroundMotion
 
-    def run(self, times: Array, listener: Listener) -> None:
-        """From the start through all rows. Raises NotReached."""
+    def run(self, times: Array, listener: Listener, gaps: Sequence[GapState] = ()) -> None:
+        """From the start through all rows; `gaps`: what they do there, apart by default. Raises NotReached."""
         frames = self.rules.flow.frames
-        at, length = FramesAt(0.0, frames.start, -frames.distances, (OPEN,) * len(frames.gaps)), math.inf
+        depths = frames.rows @ frames.start[: self.rules.flow.size] - frames.distances
+        at, length = FramesAt(0.0, frames.start, depths, tuple(gaps) or (OPEN,) * depths.size), math.inf
+        length = min([length, *(self._first_length(i, gap) for i, gap in enumerate(at.gaps) if gap.active)])
         # A trial of Newton's method may go beyond all numbers: then the step is refused.
         i, ahead = 1, 1
         with np.errstate(all="ignore"):
@@ -105,7 +110,8 @@ class FrameMarch:
             free.append(flow.series(states[-1], ground))
             states.append(share[-1] @ free[-1])
         within = shares @ np.array(free)
-        clear = self._clear(at, within, lengths, flow.noise(np.array(free))) if frames.gaps else lengths.size
+        gapped = frames.distances.size > 0
+        clear = self._clear(at, within, lengths, flow.noise(np.array(free))) if gapped else lengths.size
         if clear == 0:
             return None
         ground = np.einsum("rsk,rk->rs", shares[:clear, :, :TERMS], grounds[:clear])
@@ -176,10 +182,10 @@ class FrameMarch:
             i, law, before = event.gap, self.rules.laws[event.gap], gaps[event.gap]
             depth, rate = float(depths[i]), float(step.rate[i, -1])
             gaps[i], depths[i] = after(event, before, law, depth, rate, self.rules.flow.slowest(trial.free), time)
-            if gaps[i].mode is Mode.PRESSED and before.mode is not Mode.PRESSED:
+            if gaps[i].active and not before.active:
                 length = min(length, self._first_length(i, gaps[i]))
-        gaps = [surfaced(*one, time) for one in zip(gaps, self.rules.laws, depths.tolist(), strict=True)]
-        if not any(gap.mode is Mode.PRESSED for gap in gaps):
+        gaps = [surfaced(*one, time) for one in zip(gaps, depths.tolist(), strict=True)]
+        if not any(gap.active for gap in gaps):
             length = math.inf
         return FramesAt(time, state, depths, tuple(gaps)), length
 

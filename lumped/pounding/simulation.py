@@ -41,9 +41,9 @@ def simulate(
     """
     if len(laws) != len(frames.gaps):
         raise BadInput(Fault("simulate", "laws", f"{len(laws)}; accepted: one for each of {len(frames.gaps)} gaps"))
-    times, longest = rows(frames, ground, end_time)
-    march = FrameMarch(Rules(FrameFlow(frames, longest), laws, tolerance), ground)
-    account = Account(march)
+    times, longest = rows(frames.bodies, ground, end_time)
+    march = FrameMarch(Rules(FrameFlow(frames.bodies, longest), laws, tolerance), ground)
+    account = Account(frames, march)
     march.run(times, account)
     return account.result()
 
@@ -115,9 +115,8 @@ class OpenContact:
 class Account:
     """Listens to a march."""
 
-    def __init__(self, march: FrameMarch) -> None:
-        self.march, self.flow = march, march.rules.flow
-        self.frames = frames = self.flow.frames
+    def __init__(self, frames: PoundingFrames, march: FrameMarch) -> None:
+        self.march, self.flow, self.frames = march, march.rules.flow, frames
         self.names = tuple(frames.gaps)
         self.times, self.states = [0.0], [frames.start]
         self.forces = [np.zeros(len(frames.gaps))]
@@ -189,14 +188,8 @@ class Account:
         """Displacement, drift, total acceleration and speed of every storey, (..., 4 n)."""
         n = self.flow.size
         places, speeds = states[..., :n], states[..., n:]
-        drifts, accelerations = places @ self.frames.to_drift.T, self._accelerations(states, forces)
+        drifts, accelerations = places @ self.frames.to_drift.T, self.frames.bodies.accelerations(states, forces)
         return np.concatenate([places, drifts, accelerations, speeds], axis=-1)
-
-    def _accelerations(self, states: Array, forces: Array) -> Array:
-        """Total ones, m/s2, (..., n), of states (..., 2 n) and forces (..., m)."""
-        n, frames = self.flow.size, self.frames
-        pulls = states[..., :n] @ frames.stiffness + states[..., n:] @ frames.damping + forces @ frames.rows
-        return np.asarray(-pulls / frames.mass)
 
     def _stored(self, i: int, gap: GapState, depth: float) -> float:
         return float(self.march.rules.laws[i].stored(max(depth, 0.0), gap.stage))
@@ -211,7 +204,7 @@ class Account:
             states[:, :n],
             states[:, :n] @ frames.to_drift.T,
             states[:, n:],
-            self._accelerations(states, forces),
+            frames.bodies.accelerations(states, forces),
             self.march.ground.acceleration(time),
             forces,
         )
@@ -228,10 +221,10 @@ class Account:
     def _energy(self) -> FramesEnergy:
         first, last = self.states[0], self.states[-1]
         return FramesEnergy(
-            initial=sum(self._energies(first)),
+            initial=sum(self.frames.bodies.energies(first)),
             input=self.input,
-            kinetic=self._energies(last)[0],
-            strain=self._energies(last)[1],
+            kinetic=self.frames.bodies.energies(last)[0],
+            strain=self.frames.bodies.energies(last)[1],
             damping=self.damping,
             contact=self.lost,
             contact_stored=self._held(),
@@ -242,9 +235,3 @@ class Account:
         if self.last is None:
             return 0.0
         return sum(self._stored(i, self.last.gaps[i], float(self.last.depths[i])) for i in self.open)
-
-    def _energies(self, state: Array) -> tuple[float, float]:
-        """Kinetic and of strain, J."""
-        n = self.flow.size
-        kinetic = 0.5 * float(self.frames.mass @ state[n:] ** 2)
-        return kinetic, 0.5 * float(state[:n] @ self.frames.stiffness @ state[:n])

@@ -70,6 +70,11 @@ class FrameTrial:
         return [i for i, gap in enumerate(self.at.gaps) if gap.mode is Mode.PRESSED]
 
     @cached_property
+    def _active(self) -> list[int]:
+        """The pressed ones, and those that are followed without force."""
+        return [i for i, gap in enumerate(self.at.gaps) if gap.active]
+
+    @cached_property
     def _events(self) -> list[GapEvent]:
         """Of the gaps that are not apart."""
         return [event for i, gap in enumerate(self.at.gaps) if gap.mode is not Mode.APART for event in self._of(i)]
@@ -107,6 +112,11 @@ class FrameTrial:
     def _first_rates(self) -> Array:
         return np.asarray(self._coefficients[0, 2 * self.rules.flow.size + len(self.at.gaps) :])
 
+    @property
+    def _precise(self) -> float:
+        """To what events are located, s."""
+        return PRECISE * (self.at.time + self.rules.flow.unit)
+
     @cached_property
     def _graded(self) -> tuple[int, float]:
         """The power of the grading, and the time of the last touch, s, from which forces still grow."""
@@ -120,20 +130,20 @@ class FrameTrial:
 
     @cached_property
     def _allowed(self) -> Array:
-        """Roughness of the rates, m/s, of the gaps that are pressed."""
-        speeds = np.abs(self._first_rates[self._pressed])
-        touch = np.array([self.at.gaps[i].stage.speed for i in self._pressed])
+        """Roughness of the rates, m/s, of the gaps that are active."""
+        speeds = np.abs(self._first_rates[self._active])
+        touch = np.array([self.at.gaps[i].stage.speed for i in self._active])
         floor = NOISE * self.rules.flow.slowest(self.free)
         return np.asarray(np.maximum(self.rules.tolerance * np.maximum(speeds, touch), floor))
 
     def accepted(self, length: float, proposed: float) -> tuple[FrameStep, GapEvent | None, float]:
         """The step taken, at most `length` long, s, what ended it, and how long the next one may be, s."""
-        shortest = PRECISE * (self.at.time + self.rules.flow.unit) * SHORTEST
+        shortest = self._precise * SHORTEST
         guess = np.zeros((len(self._pressed), STAGES))
         while length > 0.0:
             nodes = self._nodes(length)
             step, event = self._until_event(self._solved(length, nodes, guess))
-            if step is not None and not self._pressed:
+            if step is not None and not self._active:
                 return step, event, math.inf
             rough = math.inf if step is None else float((self._roughness(step) / self._allowed).max())
             if step is not None and (rough <= 1.0 or step.length <= shortest):
@@ -147,9 +157,10 @@ class FrameTrial:
         raise NotReached(f"no step from {self.at.time:.6g} s on converges; cure: a law less stiff")
 
     def _roughness(self, step: FrameStep) -> Array:
-        """What the last Legendre terms of the forces are worth in rates over the step, m/s, of the pressed gaps."""
-        last = np.abs(step.gain[self._pressed] @ step.nodes.series[-2:].T).max(axis=1)
-        return np.asarray(step.length * last / self.rules.flow.frames.reduced_masses[self._pressed])
+        """What the last Legendre terms of the forces are worth in rates over the step, m/s, of the active gaps."""
+        gain = step.gain[self._active] - step.nodes.pace * step.tension[self._active]
+        last = np.abs(gain @ step.nodes.series[-2:].T).max(axis=1)
+        return np.asarray(step.length * last / self.rules.flow.frames.reduced_masses[self._active])
 
     def _nodes(self, length: float) -> Nodes:
         power, touched = self._graded
@@ -167,7 +178,9 @@ class FrameTrial:
         """The step, cut short at its first event; and again at one before that which only the shorter step shows."""
         event: GapEvent | None = None
         for _ in range(1 + 2 * len(self.at.gaps)):
-            found = None if step is None else self._first(step, event)
+            # what happens at once, but for rounding, nothing comes before
+            at_once = step is None or (event is not None and step.length <= self._precise)
+            found = None if step is None or at_once else self._first(step, event)
             if step is None or found is None:
                 break
             event = found
@@ -194,13 +207,12 @@ class FrameTrial:
         if nodes.mirrored != step.nodes.mirrored:
             guess = np.outer(step.force[:, place], nodes.pace)
         previous: tuple[float, float] | None = None
-        precise = PRECISE * (self.at.time + self.rules.flow.unit)
         trial: FrameStep | None = None
         for _ in range(LOCATIONS):
             trial = self._solved(length, nodes, guess[self._pressed])
             if trial is None:
                 return None
-            if self._pressed and bool((self._roughness(trial) > HOPELESS * self._allowed).any()):
+            if self._active and bool((self._roughness(trial) > HOPELESS * self._allowed).any()):
                 return trial
             values = event.value(trial)
             at, slope = float(values[-1]), trial.slope(values)
@@ -210,7 +222,7 @@ class FrameTrial:
                 slope = float(trial.rate[event.gap, -1])
             low, high = (low, length) if at <= 0.0 else (length, high)
             following = length - at / slope if slope < 0.0 else low
-            if at == 0.0 or abs(following - length) <= precise or high - low <= precise:
+            if at == 0.0 or abs(following - length) <= self._precise or high - low <= self._precise:
                 return trial
             previous, length = (length, at), following if low < following < high else 0.5 * (low + high)
             nodes, guess = self._ending(event, length), trial.gain
@@ -220,7 +232,8 @@ class FrameTrial:
         """The step whose forces are those of the laws at every point; None without convergence."""
         flow, at, p, count = self.rules.flow, self.at, self._pressed, len(self.at.gaps)
         moved = flow.shares(nodes, length) @ self._coefficients
-        force, gain, memories = np.zeros((count, STAGES)), np.zeros((count, STAGES)), [gap.memory for gap in at.gaps]
+        force, gain, tension = np.zeros((3, count, STAGES))
+        memories = [gap.memory for gap in at.gaps]
         parts = slice(2 * flow.size), slice(2 * flow.size, 2 * flow.size + count), slice(2 * flow.size + count, None)
         states, depth, rate = moved[:, parts[0]], moved[:, parts[1]].T, moved[:, parts[2]].T
         if p:
@@ -235,7 +248,12 @@ class FrameTrial:
             gain[p] = nodes.pace * force[p]
             for i, law in zip(p, pressing.laws, strict=True):
                 memories[i] = law.remembered(np.maximum(depth[i], TINY))
-        return FrameStep(length, nodes, states, at.depths, self._first_rates, depth, rate, force, gain, tuple(memories))
+        for i in (i for i in self._active if i not in p):
+            law, pressed = self.rules.laws[i].within(self.known(i), length), np.maximum(depth[i], TINY)
+            memories[i] = law.remembered(pressed)
+            tension[i] = -law.force(pressed, rate[i], at.gaps[i].stage)
+        first = at.depths, self._first_rates
+        return FrameStep(length, nodes, states, *first, depth, rate, force, gain, tuple(memories), tension)
 
     def _pressing(self, length: float, nodes: Nodes, over: Array, depth: Array, rate: Array) -> Pressing:
         """The pressed gaps within a step, from depths and rates without force, (p, s)."""

@@ -1,40 +1,38 @@
-"""The free vibration of a pounding tuned mass damper: the march by either route, and what its track tells."""
+"""The free vibration of a pounding tuned mass damper: two masses in a row, and a gap at either side of the damper.
+
+They are marched as pounding frames are, their ring by the law of the memory of a load. In "(33)" the force of the ring
+has the sign of x2 - x1 (printed with one sign for both sides, which drives the damper out).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lumped.errors import BadInput, Fault, NotReached, nearest
-from lumped.ptmd import exact, integrated
-from lumped.ptmd.equations import (
-    ACCELERATION,
-    DISPLACEMENT,
-    LOST_STRUCTURE,
-    Equations,
-    SideStage,
-    after,
-    first_stages,
-)
-from lumped.ptmd.phase import ROWS_PER_PERIOD, Follow, PtmdPhase, row_spacing
+from lumped.errors import BadInput, Fault
+from lumped.laws.correspondence import HereditaryDent, HereditaryForce
+from lumped.numbers import Array
+from lumped.pounding.flow import FrameFlow, LinearBodies
+from lumped.pounding.gaps import OPEN, FrameStep, GapState, Mode, pressed
+from lumped.pounding.ground import STILL
+from lumped.pounding.march import FrameMarch, FramesFlight, rows
+from lumped.pounding.simulation import Peaks
+from lumped.pounding.trial import NODES, FramesAt, Rules
 from lumped.ptmd.result import Energy, Measures, PtmdContact, PtmdMotion, PtmdResult
-from lumped.ptmd.system import SIDES, PoundingDamper, Start
+from lumped.ptmd.system import SIDES, PoundingDamper, PtmdRing, Start
 from lumped.schema.keys import Key, Number, read_table
+from lumped.solvers.point.bodies import TINY, State
+from lumped.solvers.point.memory import HereditaryLoad
 
-# How a phase is followed, and how many rows that may take.
-ROUTES = {"exact": (exact.route, exact.MOST_ROWS), "integrated": (integrated.route, integrated.MOST_ROWS)}
 TIME = Number(1e-9, 1e9, "s")
 TIME_KEYS = {"end_time": Key(TIME, "when to stop", False), "window": Key(TIME, "of the root mean squares", False)}
-MOST_SWITCHES = 20_000  # work: of contact, in one vibration
-Array = NDArray[np.float64]
-# Rows miss the top of a vibration by no more than this share of it.
-ROW_LOSS = 0.01
-NEAREST = 1e-7  # share of two rows to which a top is located; its height errs by the square
+STEP_TOLERANCE = 1e-7  # default: error of a relative speed in one step of a contact, over the speed at touch
+# Beyond this ratio of the shortest period to a relaxation time the digits that are promised are lost.
+STIFFEST = 6e6
+MOVING = 1e-12  # rounding: of the end of a window, for a row that stands there
 
 
 def simulate(
@@ -42,260 +40,368 @@ def simulate(
     start: Start,
     end_time: float = 20.0,
     window: float = 5.0,
-    route: str | None = None,
-    rows_per_period: int = ROWS_PER_PERIOD,
+    tolerance: float = STEP_TOLERANCE,
 ) -> PtmdResult:
     """Vibration from `start` to `end_time`, s; root mean squares over the first `window` seconds.
 
-    `route`: "exact" (default for exponent 1: matrix exponentials between located switches) or "integrated"
-    (any exponent: DOP853). Rows lie `rows_per_period` to the shortest period. Raises BadInput and NotReached.
+    `tolerance`: error of a relative speed in one step of a contact, over the speed at touch. Raises BadInput and
+    NotReached.
     """
     _, faults = read_table("simulate", "", {"end_time": end_time, "window": window}, TIME_KEYS)
-    equations = Equations(system)
-    route = route or ("exact" if equations.linear else "integrated")
-    if route not in ROUTES:
-        faults.append(Fault("simulate", "route", f"accepted: {', '.join(ROUTES)}{nearest(route, tuple(ROUTES))}"))
-    elif route == "exact" and not equations.linear:
-        faults.append(Fault("simulate", "route", "exact only for exponent 1; accepted here: integrated"))
     if system.damper is None and not (start.x1 or start.v1):
         faults.append(Fault("start", "x1", "nothing moves without a damper; accepted: x1 or v1 that is not zero"))
     if faults:
         raise BadInput(faults)
-    follow, most_rows = ROUTES[route]
-    spacing = row_spacing(equations, start, end_time, rows_per_period, most_rows)
-    track = PtmdTrack(equations, march(equations, start, end_time, follow(equations, start, spacing, end_time)))
-    found = contacts(track)
-    return PtmdResult(
-        system=system,
-        start=start,
-        motion=motion(track),
-        contacts=found,
-        energy=energy(track),
-        measures=measures(track, found, window),
+    bodies = bodies_of(system, start)
+    times, longest = rows(bodies, STILL, end_time, [window])
+    laws = [law_of(system.ring, bodies)] * len(SIDES) if system.ring else []
+    track = PtmdTrack(system, bodies, laws)
+    march = FrameMarch(Rules(FrameFlow(bodies, longest), laws, tolerance), STILL)
+    march.run(times, track, track.first_gaps)
+    return PtmdResult(system, start, track.motion(), track.all_contacts, track.energy(), track.measures(window))
+
+
+def bodies_of(system: PoundingDamper, start: Start) -> LinearBodies:
+    """Structure and damper as masses in a row; the ring's two gaps, depth x2 - x1 - gap and x1 - x2 - gap."""
+    one, two, ring = system.structure, system.damper, system.ring
+    if two is None:
+        own = (np.array([[one.stiffness]]), np.array([[one.damping]]))
+        return LinearBodies(np.array([one.mass]), *own, np.zeros((0, 1)), np.zeros(0), np.array([start.x1, start.v1]))
+    link = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    stiffness, damping = two.stiffness * link, two.damping * link
+    stiffness[0, 0] += one.stiffness
+    damping[0, 0] += one.damping
+    sides = np.outer(SIDES, [-1.0, 1.0]) if ring else np.zeros((0, 2))
+    distances = np.full(len(sides), ring.gap if ring else 0.0)
+    placed = np.array([start.x1, start.x2, start.v1, start.v2])
+    return LinearBodies(np.array([one.mass, two.mass]), stiffness, damping, sides, distances, placed)
+
+
+@dataclass(frozen=True)
+class PowerLoad:
+    """The load curve depth^exponent, in m^exponent; as everywhere its slope counts as twice a contact radius."""
+
+    exponent: float
+
+    def force(self, depth: Array) -> Array:
+        """The load."""
+        return np.asarray(depth) ** self.exponent
+
+    def dforce_ddepth(self, depth: Array) -> Array:
+        """Its slope."""
+        return np.asarray(self.exponent * np.asarray(depth) ** (self.exponent - 1.0))
+
+    def contact_radius(self, depth: Array) -> Array:
+        """Half the slope."""
+        return 0.5 * self.dforce_ddepth(depth)
+
+    def depth_slope(self, contact_radius: Array) -> Array:
+        """d depth over d radius; infinite where the slope stays."""
+        if self.exponent == 1.0:
+            return np.full_like(contact_radius, np.inf)
+        power = self.exponent - 1.0
+        depth = (2.0 * np.asarray(contact_radius) / self.exponent) ** (1.0 / power)
+        return np.asarray(2.0 * depth ** (1.0 - power) / (self.exponent * power))
+
+
+def law_of(ring: PtmdRing, bodies: LinearBodies) -> HereditaryForce:
+    """The force of a side over its depth. Raises BadInput where it relaxes far too fast for the vibration."""
+    stiffness, mass = ring.stiffness, float(bodies.reduced_masses[0])
+    steepest = float(bodies.stiffness.max()) + _steepest(ring, bodies)
+    shortest = 2.0 * np.pi * np.sqrt(mass / steepest) / STIFFEST
+    creep = [stiffness.viscosity / stiffness.glassy] if stiffness.viscosity and stiffness.glassy else []
+    if min([*stiffness.times, *creep], default=shortest) < shortest:
+        message = f"relaxes in less than {shortest:.2g} s, too fast beside the vibration; cure: leave that term out"
+        raise BadInput(Fault("ring", "material", message))
+    ends = "depth" if stiffness.is_elastic else "force"
+    scale = float(np.pi * np.sqrt(mass / steepest))
+    return HereditaryForce(
+        load=HereditaryLoad(PowerLoad(ring.exponent), stiffness), rule=ring.memory.value, scale=scale, exit=ends
     )
 
 
-def march(equations: Equations, start: Start, end_time: float, follow: Follow) -> tuple[PtmdPhase, ...]:
-    """The phases from t = 0 to `end_time`, s. Raises NotReached when the ring switches without end."""
-    phases: list[PtmdPhase] = []
-    state, time = equations.initial(start), 0.0
-    stages = first_stages(equations, state)
-    for _ in range(MOST_SWITCHES):
-        phase, switch = follow(stages, state, time)
-        # A switch may be followed by another at the same instant: nothing happens in between.
-        phases += [phase] if phase.end > phase.start else []
-        if switch is None or phase.end >= end_time:
-            return tuple(phases)
-        time = phase.end
-        stages, state = after(equations, stages, switch, phase.states[:, -1])
-    raise NotReached(f"more than {MOST_SWITCHES} switches of contact before t = {time:.6g} s; cure: lower end_time")
-
-
-def motion(track: PtmdTrack) -> PtmdMotion:
-    """The rows of the phases."""
-    equations, y = track.equations, track.states
-    absent = np.full(track.times.size, np.nan)
-    damped, ringed = equations.system.damper is not None, equations.surface is not None
-
-    def second(phase: PtmdPhase, states: Array) -> Array:
-        found = _accelerations(equations, phase, states)[1]
-        return np.full(phase.times.size, np.nan) if found is None else found
-
-    deepest = np.max([equations.depth(side, y) for side in range(len(SIDES))], axis=0) if ringed else absent * 0.0
-    return PtmdMotion(
-        time=track.times,
-        x1=y[0],
-        v1=y[1],
-        a1=track.rows(lambda phase, states: _accelerations(equations, phase, states)[0]),
-        x2=y[2] if damped else absent,
-        v2=y[3] if damped else absent,
-        a2=track.rows(second),
-        force=track.rows(lambda phase, states: equations.force(phase.stages, equations.moving(phase.stages, states))),
-        depth=np.maximum(deepest, 0.0) if ringed else np.zeros(track.times.size),
-    )
-
-
-def _accelerations(equations: Equations, phase: PtmdPhase, states: Array) -> tuple[Array, Array | None]:
-    """Of both bodies in states of a phase, (size, ...), m/s2."""
-    return equations.accelerations(phase.stages, equations.moving(phase.stages, states))
-
-
-def contacts(track: PtmdTrack) -> tuple[PtmdContact, ...]:
-    """Every phase in which a side is pressed, phases of one contact joined."""
-    found: list[PtmdContact] = []
-    for index, side in enumerate(SIDES):
-        run: list[PtmdPhase] = []
-        for phase in track.phases:
-            if index < len(phase.stages) and phase.stages[index] is SideStage.PRESSED:
-                run.append(phase)
-            elif run:
-                found.append(_contact(track, index, side, run))
-                run = []
-        found += [_contact(track, index, side, run)] if run else []
-    return tuple(sorted(found, key=lambda contact: contact.start))
-
-
-def _contact(track: PtmdTrack, index: int, side: int, run: list[PtmdPhase]) -> PtmdContact:
-    equations = track.equations
-
-    def force(phase: PtmdPhase, states: Array) -> Array:
-        return equations.side_force(index, SideStage.PRESSED, states)
-
-    def depth(phase: PtmdPhase, states: Array) -> Array:
-        return equations.depth(index, states)
-
-    end = run[-1].end if run[-1] is not track.phases[-1] else None
-    peak_force, peak_depth = (max(highest_of(phase, reading) for phase in run) for reading in (force, depth))
-    return PtmdContact(side, run[0].start, end, peak_force, peak_depth)
-
-
-def energy(track: PtmdTrack) -> Energy:
-    """Each term on its own: the first and the last state, and the integrated losses."""
-    equations, integrals = track.equations, track.integrals(track.end)
-    first, last = track.phases[0].states[:, 0], track.phases[-1].states[:, -1]
-    lost_structure, lost_damper, lost_ring, cut = (float(value) for value in integrals[LOST_STRUCTURE:])
-    stored = _stored(equations, last)
-    before = _stored(equations, first) if equations.linear else _relaxed_work(equations, first)
-    at_once = _forgotten(track) if equations.linear else before
-    return Energy(
-        initial=equations.kinetic(first) + equations.potential(first) + before,
-        kinetic=equations.kinetic(last),
-        potential=equations.potential(last),
-        lost_structure=lost_structure,
-        lost_damper=lost_damper,
-        lost_ring=lost_ring + at_once,
-        stored_ring=stored if equations.linear else None,
-        cut_tension=cut,
-    )
-
-
-def _stored(equations: Equations, y: Array) -> float:
-    """Energy in the springs of both sides, for exponent 1, J."""
-    surface = equations.surface
-    return sum(surface.stored(y[equations.side(index)]) for index in range(len(SIDES))) if surface else 0.0
-
-
-def _relaxed_work(equations: Equations, y: Array) -> float:
-    """Work that presses the relaxed ring slowly to where it is, any exponent, J."""
-    ring = equations.system.ring
-    if ring is None:
+def _steepest(ring: PtmdRing, bodies: LinearBodies) -> float:
+    """Largest slope of the ring's force over the depth, N/m, with all the energy of the start in it."""
+    glassy, power = ring.stiffness.glassy, ring.exponent
+    if glassy == 0.0:
         return 0.0
-    depths = [max(float(equations.depth(index, y)), 0.0) for index in range(len(SIDES))]
-    power = ring.exponent + 1.0
-    return float(sum(ring.stiffness.relaxed * depth**power / power for depth in depths))
+    deepest = ((power + 1.0) * sum(bodies.energies(bodies.start)) / glassy) ** (1.0 / (power + 1.0))
+    return float(power * glassy * deepest ** (power - 1.0))
 
 
-def _forgotten(track: PtmdTrack) -> float:
-    """Energy that the ring loses at once where its memory is reset, J."""
-    ends = ((a.states[:, -1], b.states[:, 0]) for a, b in pairwise(track.phases))
-    return sum(_stored(track.equations, end) - _stored(track.equations, start) for end, start in ends)
+@dataclass
+class OpenPtmdContact:
+    """A contact under way since `start`, s: its force there, N, and the largest force and depth so far."""
+
+    start: float
+    first: float
+    peaks: Peaks
+
+    def contact(self, side: int, end: float | None) -> PtmdContact:
+        """As it is known when it ends."""
+        force, depth = self.peaks.heights().tolist()
+        return PtmdContact(side, self.start, end, max(force, self.first), depth)
 
 
-def measures(track: PtmdTrack, found: tuple[PtmdContact, ...], window: float) -> Measures:
-    """The measures, with the contacts of the same track."""
-    equations, span = track.equations, min(window, track.end)
-    squares = track.integrals(span) / span
-    release = abs(float(track.states[0, 0]))
-    later = [contact for contact in found if contact.start > 0.0 and contact.end is not None]
-    return Measures(
-        window=span,
-        max_acceleration=track.highest(lambda phase, y: np.abs(_accelerations(equations, phase, y)[0])),
-        rms_acceleration=float(np.sqrt(squares[ACCELERATION])),
-        rms_displacement=float(np.sqrt(squares[DISPLACEMENT])),
-        t50=track.last_above(0.5 * release) if release else None,
-        t10=track.last_above(0.1 * release) if release else None,
-        contacts=len(found),
-        last_contact=(found[-1].end or track.end) if found else None,
-        first_contact_duration=later[0].end - later[0].start if later and later[0].end else None,
-        peak_force=max((contact.peak_force for contact in found), default=0.0),
-        peak_depth=max((contact.peak_depth for contact in found), default=0.0),
-    )
-
-
-@dataclass(frozen=True, eq=False)
 class PtmdTrack:
-    """Phases that follow one another from t = 0."""
+    """Listens to a march: rows at all points of its steps, with their weights in time; contacts, and what is lost.
 
-    equations: Equations
-    phases: tuple[PtmdPhase, ...]
+    Where the ring's exponent is 1 its law has an energy of its own: the springs' of the place y of the surface and of
+    the places w_k of its dashpots, and what these lose.
+    """
 
-    @property
-    def end(self) -> float:
-        """Last instant, s."""
-        return self.phases[-1].end
+    def __init__(self, system: PoundingDamper, bodies: LinearBodies, laws: Sequence[HereditaryForce]) -> None:
+        self.system, self.bodies, self.laws = system, bodies, laws
+        self.blocks: list[tuple[Array, Array, Array, Array]] = []  # times, weights, states, forces
+        self.modes: list[Mode] = []
+        self.open: dict[int, OpenPtmdContact] = {}
+        self.contacts: list[PtmdContact] = []
+        self.acceleration = Peaks.of(1)
+        self.lost_ring = self.cut_tension = 0.0
+        self.last = FramesAt(0.0, bodies.start, self.depths(bodies.start), self.first_gaps)
+        sides = zip(self.first_gaps, self.last.depths.tolist(), strict=True)
+        self.held = [self.stored(side, gap, depth, 0.0) for side, (gap, depth) in enumerate(sides)]
 
-    @cached_property
-    def times(self) -> Array:
-        """Times of all rows, s, shape (k,); twice at a switch, where a force may jump."""
-        return np.concatenate([phase.times for phase in self.phases])
-
-    @cached_property
-    def states(self) -> Array:
-        """States of all rows, shape (size, k)."""
-        return np.concatenate([phase.states for phase in self.phases], axis=1)
-
-    @cached_property
-    def _starts(self) -> Array:
-        return np.array([phase.start for phase in self.phases])
-
-    def rows(self, reading: Callable[[PtmdPhase, Array], Array]) -> Array:
-        """A reading of every row: `reading` maps a phase and its states (size, ...) to (...)."""
-        return np.concatenate([reading(phase, phase.states) for phase in self.phases])
-
-    def at(self, time: float) -> Array:
-        """The state at a time, s, shape (size,)."""
-        return self.phases[max(int(np.searchsorted(self._starts, time, side="right")) - 1, 0)].at(time)
-
-    def integrals(self, time: float) -> Array:
-        """Integrals of the equations' integrands from 0 to a time, s, shape (6,)."""
-        parts = [phase.integrals(min(time, phase.end)) for phase in self.phases if phase.start < time]
-        return np.asarray(np.sum(parts, axis=0))
-
-    def highest(self, reading: Callable[[PtmdPhase, Array], Array]) -> float:
-        """The largest value of a reading of all phases, between the rows too."""
-        tops = [float(np.max(reading(phase, phase.states))) for phase in self.phases]
-        least = max(tops) - ROW_LOSS * abs(max(tops))
-        near = [phase for phase, top in zip(self.phases, tops, strict=True) if top >= least]
-        return max(highest_of(phase, reading) for phase in near)
+    # the ring
 
     @cached_property
-    def turns(self) -> list[float]:
-        """Times at which the structure turns, s, ascending, with both ends of the motion."""
+    def linear(self) -> bool:
+        """Whether the ring's law has an energy of its own."""
+        return self.system.ring is None or self.system.ring.exponent == 1.0
+
+    def depths(self, states: Array) -> Array:
+        """Penetration of the undeformed ring at each side, m, (..., m), negative where the damper is clear of it."""
+        return np.asarray(states[..., : self.bodies.mass.size] @ self.bodies.rows.T - self.bodies.distances)
+
+    @cached_property
+    def first_gaps(self) -> tuple[GapState, ...]:
+        """What both sides do at t = 0: one that the damper stands in is relaxed."""
+        n, bodies = self.bodies.mass.size, self.bodies
+        depths, rates = self.depths(bodies.start), bodies.rows @ bodies.start[n:]
+        return tuple(self._begun(*one) for one in zip(self.laws, depths.tolist(), rates.tolist(), strict=True))
+
+    def _begun(self, law: HereditaryForce, depth: float, rate: float) -> GapState:
+        if depth <= 0.0:
+            return OPEN
+        memory = (float(law.load.load(depth)),) * len(law.load.modulus.moduli)
+        gap = replace(pressed(law, depth, rate, TINY, 0.0), memory=memory)
+        if law.at_start(depth, rate, memory) > 0.0:
+            return gap
+        if law.follows:
+            return replace(gap, mode=Mode.FOLLOWED)
+        return replace(gap, mode=Mode.LEAVING, parted=(law.dent(State(depth, rate, 0.0, memory), gap.stage), 0.0))
+
+    def stored(self, side: int, gap: GapState, depth: float, time: float) -> float:
+        """Energy of the springs of a side, J."""
+        if not self.linear or gap.mode is Mode.APART:
+            return 0.0
+        law = self.laws[side]
+        place, dashpots = float(law.load.load(depth)), np.array(gap.memory)
+        if gap.parted is not None and isinstance(gap.parted[0], HereditaryDent):
+            place, *rest = gap.parted[0].surface.at(time - gap.parted[1]).tolist()
+            dashpots = np.array(rest)
+        modulus = law.load.modulus
+        return float(0.5 * (modulus.equilibrium * place**2 + np.array(modulus.moduli) @ (place - dashpots) ** 2))
+
+    def _spent(self, at: FramesAt, step: FrameStep, side: int, weights: Array) -> float:
+        """What the dashpots of an active side lose in a step, J; for other exponents what the ring takes."""
+        rate = step.rate[side]
+        if not self.linear:
+            return float(weights @ (step.force[side] * rate))
+        law, gap, depth = self.laws[side], at.gaps[side], np.maximum(step.depth[side], TINY)
+        first = State(float(at.depths[side]), float(step.first_rate[side]), 0.0, gap.memory)
+        slips = law.load.load(depth) - law.memories_within(first, step.length, depth)
+        modulus = law.load.modulus
+        dashpots = np.divide(modulus.moduli, modulus.times) @ slips**2
+        return float(weights @ (dashpots + modulus.viscosity * rate**2))
+
+    # what the march tells
+
+    def flight(self, flight: FramesFlight) -> None:
+        """Rows without contact."""
+        lengths, apart = np.diff(flight.times)[:, None], [OPEN] * len(self.laws)
+        gaps = FramesAt(float(flight.times[0]), flight.states[0], self.depths(flight.states[0]), tuple(apart))
+        self._switch(gaps)
+        force = np.zeros((*flight.ground.shape, len(self.laws)))
+        times = flight.times[:-1, None] + lengths * NODES.points
+        self._add(times, lengths * NODES.weights, flight.within, force)
+        self.acceleration.see(self.bodies.accelerations(flight.within, force)[..., :1], NODES)
+        self.last = gaps._replace(time=float(flight.times[-1]), state=flight.states[-1])
+
+    def step(self, at: FramesAt, step: FrameStep, to: FramesAt) -> None:
+        """One step."""
+        self._switch(at)
+        weights = step.length * step.nodes.weights * step.nodes.pace
+        times = np.append(at.time + step.length * step.nodes.points[:-1], to.time)
+        self._add(times, weights, step.states, step.force.T)
+        self.acceleration.see(self.bodies.accelerations(step.states, step.force.T)[:, :1], step.nodes)
+        for side, (gap, after) in enumerate(zip(at.gaps, to.gaps, strict=True)):
+            if gap.active:
+                ended = replace(gap, memory=step.memories[side])
+                self.held[side] = self.stored(side, ended, float(step.depth[side, -1]), to.time)
+                self.lost_ring += self._spent(at, step, side, weights)
+                self.cut_tension -= float(weights @ (step.tension[side] * step.rate[side])) if self.linear else 0.0
+            if after.mode is not gap.mode:
+                self._settle(side, to)
+            if gap.mode is Mode.PRESSED:
+                self._press(side, at, step, None if after.mode is Mode.PRESSED else to.time)
+        self.last = to
+
+    def _settle(self, side: int, at: FramesAt) -> None:
+        """What a side stored, and at an instant does no more, is lost."""
+        now = self.stored(side, at.gaps[side], float(at.depths[side]), at.time)
+        self.lost_ring += self.held[side] - now
+        self.held[side] = now
+
+    def _press(self, side: int, at: FramesAt, step: FrameStep, end: float | None) -> None:
+        if side not in self.open:
+            self.open[side] = OpenPtmdContact(at.time, self._forces(at)[side], Peaks.of(2))
+        contact = self.open[side]
+        contact.peaks.see(np.column_stack([step.force[side], step.depth[side]]), step.nodes)
+        if end is not None:
+            self.contacts.append(self.open.pop(side).contact(SIDES[side], end))
+
+    def _switch(self, at: FramesAt) -> None:
+        """A row more where some side begins to do another thing: there the force may jump."""
+        modes = [gap.mode for gap in at.gaps]
+        if self.blocks and modes == self.modes:
+            return
+        self.modes = modes
+        self._add(np.array([at.time]), np.zeros(1), at.state[None], np.array([self._forces(at)]))
+
+    def _forces(self, at: FramesAt) -> list[float]:
+        """Of the sides at an instant, N."""
+        rates = self.bodies.rows @ at.state[self.bodies.mass.size :]
+        return [
+            law.at_start(float(depth), float(rate), gap.memory) if gap.mode is Mode.PRESSED else 0.0
+            for law, gap, depth, rate in zip(self.laws, at.gaps, at.depths, rates, strict=True)
+        ]
+
+    def _add(self, times: Array, weights: Array, states: Array, force: Array) -> None:
+        count = times.size
+        self.blocks.append(
+            (times.ravel(), weights.ravel(), states.reshape(count, -1), force.reshape(count, len(self.laws)))
+        )
+
+    # what it comes to
+
+    @cached_property
+    def all_contacts(self) -> tuple[PtmdContact, ...]:
+        """In the order of their starts; those under way have no end."""
+        still = [one.contact(SIDES[side], None) for side, one in self.open.items()]
+        return tuple(sorted([*self.contacts, *still], key=lambda contact: contact.start))
+
+    @cached_property
+    def rows(self) -> tuple[Array, Array, Array, Array]:
+        """Times, s, (k,), their weights, states (k, 2 n), and forces, N, (k, m)."""
+        times, weights, states, forces = (np.concatenate(one) for one in zip(*self.blocks, strict=True))
+        return times, weights, states, forces
+
+    @cached_property
+    def accelerations(self) -> Array:
+        """Of the masses, m/s2, "(34)", (k, n)."""
+        return self.bodies.accelerations(*self.rows[2:])
+
+    def motion(self) -> PtmdMotion:
+        """The rows."""
+        times, _, states, forces = self.rows
+        n, a = self.bodies.mass.size, self.accelerations
+        absent = np.full(times.size, np.nan)
+        x2, v2, a2 = (states[:, 1], states[:, 3], a[:, 1]) if n > 1 else (absent, absent, absent)
+        depth = self.depths(states).max(axis=1, initial=0.0)
+        force = np.maximum(forces, 0.0) @ np.array(SIDES[: len(self.laws)])  # rounding is left where a contact ends
+        return PtmdMotion(times, states[:, 0], states[:, n], a[:, 0], x2, v2, a2, force, depth)
+
+    def energy(self) -> Energy:
+        """Each term on its own: the first and the last state, and what was lost in between."""
+        _, weights, states, _ = self.rows
+        one, two, n = self.system.structure, self.system.damper, self.bodies.mass.size
+        closing = states[:, 3] - states[:, 2] if two else np.zeros(weights.size)
+        first, last = self._held_at_start(), self.last
+        kinetic, potential = self.bodies.energies(last.state)
+        for side in range(len(self.laws)):
+            self._settle(side, last)
+        return Energy(
+            initial=sum(self.bodies.energies(self.bodies.start)) + first,
+            kinetic=kinetic,
+            potential=potential,
+            lost_structure=one.damping * float(weights @ states[:, n] ** 2),
+            lost_damper=two.damping * float(weights @ closing**2) if two else 0.0,
+            lost_ring=self.lost_ring + (0.0 if self.linear else first),
+            stored_ring=sum(self.held) if self.linear else None,
+            cut_tension=self.cut_tension,
+        )
+
+    def _held_at_start(self) -> float:
+        """Work that presses the relaxed ring slowly to where it is, any exponent, J."""
+        ring = self.system.ring
+        if ring is None:
+            return 0.0
+        power = ring.exponent + 1.0
+        depths = np.maximum(self.depths(self.bodies.start), 0.0)
+        return float(ring.stiffness.relaxed * (depths**power).sum() / power)
+
+    def measures(self, window: float) -> Measures:
+        """The numbers that tell one motion from another."""
+        times, weights, states, _ = self.rows
+        found, a, release = self.all_contacts, self.accelerations[:, 0], abs(float(states[0, 0]))
+        span = min(window, float(times[-1]))
+        share = weights * (times <= span * (1.0 + MOVING)) / span
+        later = [contact for contact in found if contact.start > 0.0 and contact.end is not None]
+        return Measures(
+            window=span,
+            max_acceleration=max(float(self.acceleration.heights()[0]), float(np.abs(a).max())),
+            rms_acceleration=float(np.sqrt(share @ a**2)),
+            rms_displacement=float(np.sqrt(share @ states[:, 0] ** 2)),
+            t50=self._last_above(0.5 * release) if release else None,
+            t10=self._last_above(0.1 * release) if release else None,
+            contacts=len(found),
+            last_contact=(found[-1].end or float(times[-1])) if found else None,
+            first_contact_duration=later[0].end - later[0].start if later and later[0].end else None,
+            peak_force=max((contact.peak_force for contact in found), default=0.0),
+            peak_depth=max((contact.peak_depth for contact in found), default=0.0),
+        )
+
+    def _last_above(self, level: float) -> float | None:
+        """When |x1| exceeds a level, m, for the last time, s; None while it still does at the end.
+
+        Between two rows x1 is the polynomial of their places, speeds and accelerations.
+        """
         from scipy.optimize import brentq
 
-        back = np.signbit(self.states[1])
-        pairs = ((self.times[i], self.times[i + 1]) for i in np.flatnonzero(back[:-1] != back[1:]))
-        between = (float(brentq(lambda time: self.at(time)[1], low, high, xtol=1e-13)) for low, high in pairs)
-        return sorted([0.0, *between, self.end])
-
-    def last_above(self, level: float) -> float | None:
-        """When |x1| exceeds a level, m, for the last time, s; None while it still does at the end."""
-        from scipy.optimize import brentq
-
-        turns = self.turns
-        heights = [float(self.at(time)[0]) for time in turns]
+        turns = self._turns
+        heights = [place for _, place in turns]
         above = [i for i, height in enumerate(heights) if abs(height) >= level]
         if not above or above[-1] == len(turns) - 1:
             return None
-        sign = np.sign(heights[above[-1]])
-        after, before = turns[above[-1]], turns[above[-1] + 1]
-        return float(brentq(lambda time: sign * self.at(time)[0] - level, after, before, xtol=1e-13))
+        (after, height), (before, _) = turns[above[-1]], turns[above[-1] + 1]
+        return float(
+            brentq(lambda time: np.sign(height) * self._structure_at(time)[0] - level, after, before, xtol=1e-13)
+        )
 
+    @cached_property
+    def _turns(self) -> list[tuple[float, float]]:
+        """Times at which the structure turns, s, with both ends of the motion, and its places there, m."""
+        from scipy.optimize import brentq
 
-def highest_of(phase: PtmdPhase, reading: Callable[[PtmdPhase, Array], Array]) -> float:
-    """The largest value of a reading of one phase, between the rows too."""
-    from scipy.optimize import minimize_scalar
+        times, _, states, _ = self.rows
+        back = np.signbit(states[:, self.bodies.mass.size])
+        pairs = ((float(times[i]), float(times[i + 1])) for i in np.flatnonzero(back[:-1] != back[1:]))
+        between = [
+            low if low == high else float(brentq(lambda time: self._structure_at(time)[1], low, high, xtol=1e-13))
+            for low, high in pairs
+        ]
+        ordered = [float(times[0]), *between, float(times[-1])]
+        return [(time, self._structure_at(time)[0]) for time in ordered]
 
-    values = reading(phase, phase.states)
-    i = int(np.argmax(values))
-    around = phase.times[max(i - 1, 0) : i + 2]
-    width = float(around[-1] - around[0])
-    if width == 0.0:
-        return float(values[i])
-    found = minimize_scalar(
-        lambda share: -float(reading(phase, phase.at(float(around[0] + share * width)))),
-        bounds=(0.0, 1.0),
-        method="bounded",
-        options={"xatol": NEAREST},
-    )
-    return max(float(values[i]), -float(found.fun))
+    def _structure_at(self, time: float) -> tuple[float, float]:
+        """Place and speed of the structure."""
+        from scipy.interpolate import BPoly
+
+        times, _, states, _ = self.rows
+        i = min(max(int(np.searchsorted(times, time, side="right")) - 1, 0), times.size - 2)
+        if time <= times[i]:
+            return float(states[i, 0]), float(states[i, self.bodies.mass.size])
+        ends = np.column_stack([states[:, 0], states[:, self.bodies.mass.size], self.accelerations[:, 0]])[i : i + 2]
+        piece = BPoly.from_derivatives(times[i : i + 2], ends)
+        return float(piece(time)), float(piece(time, 1))

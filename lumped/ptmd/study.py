@@ -7,25 +7,24 @@ from dataclasses import dataclass, replace
 
 from lumped.errors import addressed
 from lumped.ptmd.case_file import Case
-from lumped.ptmd.free_vibration import simulate
-from lumped.ptmd.phase import ROWS_PER_PERIOD
+from lumped.ptmd.free_vibration import STEP_TOLERANCE, simulate
 from lumped.ptmd.result import PtmdResult
 from lumped.ptmd.system import PoundingDamper
 from lumped.result.result import LedgerEntry, sufficient
 
-FINER = 3 * ROWS_PER_PERIOD // 2  # rows in a period, of the second run that tells errors
-MOST_CHANGE, MOST_RESIDUAL = 1e-6, 1e-8  # safety: of a measure on finer rows, relative; of the energy balance
+FINER = 1e-2 * STEP_TOLERANCE  # of the second run that tells errors
+MOST_CHANGE, MOST_RESIDUAL = 1e-6, 1e-8  # safety: of a measure in finer steps, relative; of the energy balance
 SMALL = 0.1  # a penetration beyond this share of a length of the ring is not small
 FULL, PLAIN, BARE = "pounding damper", "damper without ring", "structure alone"
 
 
 @dataclass(frozen=True)
 class Convergence:
-    """Contacts found on two spacings of rows, the largest relative change of a measure between them, and the energy
-    residual over the initial energy.
+    """Contacts found at two tolerances of the steps, the largest relative change of a measure between them, and the
+    energy residual over the initial energy.
     """
 
-    rows_per_period: tuple[int, int]
+    step_tolerance: tuple[float, float]
     contacts: tuple[int, int]
     largest_change: float | None
     energy_residual: float
@@ -35,9 +34,9 @@ class Convergence:
         """Why the motion has not converged; empty when it has."""
         if self.largest_change is None:
             first, second = self.contacts
-            return f"{first} contacts, but {second} on finer rows; cure: a shorter motion.end_time"
+            return f"{first} contacts, but {second} in finer steps; cure: a shorter motion.end_time"
         if self.largest_change > MOST_CHANGE:
-            return f"a measure changes by {self.largest_change:.1e} on finer rows; cure: a shorter motion.end_time"
+            return f"a measure changes by {self.largest_change:.1e} in finer steps; cure: a shorter motion.end_time"
         if self.energy_residual > MOST_RESIDUAL:
             return f"the energy balance is open by {self.energy_residual:.1e}; cure: a shorter motion.end_time"
         return ""
@@ -71,8 +70,8 @@ def study(case: Case, progress: Callable[[str], None] = lambda message: None) ->
             progress(name)
             if system.damper is not None or case.start.x1 or case.start.v1:
                 results[name] = simulate(system, case.start, case.end_time, case.window)
-        progress("finer rows")
-        again = simulate(case.system, case.start, case.end_time, case.window, rows_per_period=FINER)
+        progress("finer steps")
+        again = simulate(case.system, case.start, case.end_time, case.window, FINER)
     main = next(iter(results.values()))
     return PtmdStudy(case, results, convergence(main, again), ledger(case, main))
 
@@ -85,7 +84,7 @@ def variants(system: PoundingDamper) -> dict[str, PoundingDamper]:
 
 
 def convergence(main: PtmdResult, again: PtmdResult) -> Convergence:
-    """How the finer rows `again` change the result."""
+    """How the finer steps of `again` change the result."""
     changes: list[float] = []
     same = len(main.contacts) == len(again.contacts)
     for name, value in main.measures.to_dict().items():
@@ -95,7 +94,7 @@ def convergence(main: PtmdResult, again: PtmdResult) -> Convergence:
         else:
             changes.append(abs(value - other) / abs(other) if other else abs(value))
     return Convergence(
-        rows_per_period=(ROWS_PER_PERIOD, FINER),
+        step_tolerance=(STEP_TOLERANCE, FINER),
         contacts=(len(main.contacts), len(again.contacts)),
         largest_change=max(changes) if same else None,
         energy_residual=abs(main.energy.residual) / main.energy.initial,

@@ -29,8 +29,20 @@ FIRST_ORDER = {
     "St Venant-Kirchhoff": Polynomial([-0.106722, -0.244066, 0.549732, -0.354504]),
     "neo-Hooke": Polynomial([0.247781, -0.830110, 0.390577, 0.426889]),
     "Hencky": Polynomial([0.425033, -1.477636, 1.302120, -0.093957]),
+    "neo-Hooke, split": Polynomial([0.201948, -0.856559, 1.277901, -0.875303]),
+    "Mooney-Rivlin": Polynomial([0.213044, -0.870573, 1.287585, -0.875314]),
+    "Yeoh": Polynomial([0.201948, -0.856559, 1.277901, -0.875303]),
+    "Ogden": Polynomial([0.212376, -0.869729, 1.287002, -0.875313]),
 }
-ENERGY_NAMES = {"st_venant_kirchhoff": "St Venant-Kirchhoff", "neo_hooke": "neo-Hooke", "hencky": "Hencky"}
+ENERGY_NAMES = {
+    "st_venant_kirchhoff": "St Venant-Kirchhoff",
+    "neo_hooke": "neo-Hooke",
+    "hencky": "Hencky",
+    "neo_hooke_split": "neo-Hooke, split",
+    "mooney_rivlin": "Mooney-Rivlin",
+    "yeoh": "Yeoh",
+    "ogden": "Ogden",
+}
 # By how much less a rod's end comes in than a half-space, its uniform shortening apart, over F/(E* b), b the rod's
 # radius: 0.61 at nu = -0.5 to 0.66 at 0.5; tests/fe/test_rod_end.py finds it again.
 ROD_END = 0.65

@@ -1,30 +1,27 @@
-"""The pounding tuned mass damper: the audited numbers, closed forms, two routes, three memories, every energy."""
+"""The pounding tuned mass damper: audited numbers, closed forms, an independent integration, memories, energies."""
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
+from scipy.linalg import expm
 from scipy.special import gamma
 
 from lumped import BadInput, Relaxation
 from lumped.materials.networks.sls import of_ratios
+from lumped.pounding.flow import FrameFlow
+from lumped.pounding.march import FrameMarch
+from lumped.pounding.trial import FrameTrial
 from lumped.ptmd import Memory, Oscillator, PoundingDamper, PtmdResult, PtmdRing, Start, simulate
-from lumped.ptmd import exact as exact_route
-from lumped.ptmd.equations import Equations, SideStage, Stages
-from lumped.ptmd.exact import Flow, exponential
-from lumped.ptmd.free_vibration import ROUTES
-from lumped.ptmd.integrated import Rates
-from lumped.ptmd.phase import ROWS_PER_PERIOD, first_fall
+from lumped.ptmd.free_vibration import bodies_of
 
 POLE, DAMPER = Oscillator(20.0, 7248.9, 7.615), Oscillator(1.67, 592.9, 0.6312)
 SOLID = of_ratios(E0=0.6e6, R1=0.5, R2=0.01)
@@ -113,8 +110,13 @@ def test_the_audited_table(case: str) -> None:
     assert abs(energy.residual) < 1e-12 * energy.initial
 
 
+def matrix(system: PoundingDamper) -> Any:
+    """d/dt of displacements, then velocities, without a ring."""
+    return FrameFlow(bodies_of(system, BOTH), 1.0).matrix
+
+
 def test_the_modes_without_pounding() -> None:
-    values = np.linalg.eigvals(Flow(Equations(PLAIN), (), 0.01).matrix)
+    values = np.linalg.eigvals(matrix(PLAIN))
     frequencies = sorted(value.imag / (2.0 * np.pi) for value in values if value.imag > 0.0)
     assert frequencies == pytest.approx([2.612, 3.479], abs=6e-4)
 
@@ -252,12 +254,13 @@ def test_the_force_pushes_the_damper_back_and_never_pulls(paper: PtmdResult) -> 
     assert motion.depth == pytest.approx(np.maximum(np.abs(stroke) - GAP, 0.0), abs=1e-15)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("memory", Memory)
 def test_a_mirrored_start_gives_the_mirrored_motion(memory: Memory) -> None:
     system = with_ring(lining(memory=memory))
     start = Start(0.05, 0.01, 0.2, -0.4)
     mirrored = Start(-0.05, -0.01, -0.2, 0.4)
-    one, other = (simulate(system, s, 3.0) for s in (start, mirrored))
+    one, other = (simulate(system, s, 1.5) for s in (start, mirrored))
     assert other.motion.x1 == pytest.approx(-one.motion.x1, abs=1e-13)
     assert other.motion.force == pytest.approx(-one.motion.force, abs=1e-9)
     assert [contact.side for contact in other.contacts] == [-contact.side for contact in one.contacts]
@@ -293,28 +296,124 @@ SYSTEMS = {
     "fluid": (with_ring(lining(young=Relaxation(0.0, (1e6, 3e6), (0.02, 0.3)))), STRUCTURE),
     "fluid and dashpot": (with_ring(lining(young=Relaxation(0.0, (1e6,), (0.2,), 3e3))), BOTH),
     "no gap": (with_ring(replace(lining(), gap=0.0, memory=Memory.CONTINUOUS)), Start(0.05, 0.02, 0.0, 0.3)),
+    "hardly a gap": (with_ring(replace(lining(), gap=1e-6, memory=Memory.CONTINUOUS)), Start(0.05, 0.02, 0.0, 0.3)),
     "elastic": (with_ring(lining(young=ELASTIC)), STRUCTURE),
+    "hertz": (with_ring(replace(lining(), coefficient=LENGTH * GAP**-0.5, exponent=1.5)), STRUCTURE),
 }
 # It grazes the ring, for 1.5 ms and 3.5 um deep: the force rises from rounding's wrong side of zero.
 GRAZING = (PoundingDamper(POLE, replace(DAMPER, mass=752.2062795205347), lining()), BOTH)
 
 
+def independent(system: PoundingDamper, start: Start, end: float) -> tuple[list[list[float]], Any]:
+    """Contacts (side, start, end, peak force) and x1, v1, x2, v2 at the end: DOP853 from switch to switch.
+
+    The surface of each side is followed as q = depth^exponent, with the strains z_k of its Maxwell elements.
+    """
+    ring, one, two = system.ring, system.structure, system.damper
+    assert ring is not None
+    assert two is not None
+    k, p, n = ring.stiffness, ring.exponent, 1 + len(ring.stiffness.moduli)
+    moduli, times = np.array(k.moduli), np.array(k.times)
+    sides, own = (1, -1), (slice(4, 4 + n), slice(4 + n, 4 + 2 * n))
+    stages, found = ["held", "held"], list[list[float]]()
+    opened = dict[int, list[float]]()
+
+    def place(i: int, y: Any) -> float:
+        depth = sides[i] * (y[2] - y[0]) - ring.gap
+        return float(np.sign(depth) * abs(depth) ** p)
+
+    def speed(i: int, y: Any, stage: str) -> float:
+        q, *z = y[own[i]]
+        if stage == "held":
+            return 0.0
+        if stage == "free" and k.viscosity:
+            return float(-(k.equilibrium * q + moduli @ z) / k.viscosity)
+        if stage == "free":
+            return float((moduli / times) @ z / k.glassy)
+        return p * abs(place(i, y)) ** ((p - 1.0) / p) * sides[i] * (y[3] - y[1])
+
+    def force(i: int, y: Any) -> float:
+        q, *z = y[own[i]]
+        q = place(i, y) if stages[i] in ("pressed", "followed") else q
+        return float(k.equilibrium * q + moduli @ z + k.viscosity * speed(i, y, "pressed"))
+
+    def rates(_: float, y: Any) -> Any:
+        link = two.stiffness * (y[2] - y[0]) + two.damping * (y[3] - y[1])
+        link += sum(sides[i] * force(i, y) for i in (0, 1) if stages[i] == "pressed")
+        surfaces = []
+        for i in (0, 1):
+            moved = speed(i, y, stages[i])
+            surfaces += [moved, *(moved - y[own[i]][1:] / times)]
+        return [y[1], (link - one.stiffness * y[0] - one.damping * y[1]) / one.mass, y[3], -link / two.mass, *surfaces]
+
+    def switches(i: int) -> list[tuple[str, Callable[[Any], float]]]:
+        leave = ("held", lambda y: place(i, y))
+        if stages[i] == "pressed":
+            return [("followed" if ring.memory is Memory.CONTINUOUS else "free", lambda y: force(i, y))]
+        if stages[i] == "held":
+            return [("pressed", lambda y: -place(i, y))]
+        if stages[i] == "followed":
+            return [("pressed", lambda y: -force(i, y)), leave]
+        met = ("pressed", lambda y: y[own[i]][0] - place(i, y))
+        return [met, leave] if ring.memory is Memory.RESET else [met]
+
+    time, y = 0.0, np.array([start.x1, start.v1, start.x2, start.v2, *[0.0] * (2 * n)])
+    for i in (0, 1):
+        if place(i, y) > 0.0:  # relaxed there
+            y[own[i].start], stages[i] = place(i, y), "pressed"
+            relaxed = "followed" if ring.memory is Memory.CONTINUOUS else "free"
+            stages[i] = "pressed" if force(i, y) > 0.0 else relaxed
+            if stages[i] == "pressed":
+                opened[i] = [sides[i], 0.0, 0.0, force(i, y)]
+    while time < end:
+        known = [(i, to, level) for i in (0, 1) for to, level in switches(i)]
+        events = [lambda _, y, level=level: level(y) for _, _, level in known]
+        for event in events:
+            event.terminal, event.direction = True, -1  # type: ignore[attr-defined]
+        run = solve_ivp(
+            rates, (time, end), y, "DOP853", events=events, rtol=1e-12, atol=1e-15, max_step=2e-3, dense_output=True
+        )
+        for i, contact in opened.items():
+            between = np.linspace(run.t[0], run.t[-1], 1001)
+            contact[3] = max(contact[3], *(force(i, run.sol(t)) for t in between)) if run.t.size > 1 else contact[3]
+        time, y = float(run.t[-1]), run.y[:, -1].copy()
+        for (i, to, _), happened in zip(known, run.t_events, strict=True):
+            if not happened.size:
+                continue
+            if stages[i] == "pressed":
+                side, begun, _, peak = opened.pop(i)
+                found.append([side, begun, time, peak])
+            if to == "held":
+                y[own[i]] = 0.0 if stages[i] == "free" else y[own[i]]
+                y[own[i].start] = 0.0
+            elif to == "free" or stages[i] == "free":
+                y[own[i].start] = place(i, y)
+            was, stages[i] = stages[i], to
+            if to == "pressed" and was == "held" and force(i, y) < 0.0:
+                stages[i] = "followed"
+            if stages[i] == "pressed":
+                opened[i] = [sides[i], time, time, force(i, y)]
+            break
+    return sorted([*found, *opened.values()], key=lambda contact: contact[1]), y[:4]
+
+
 def test_a_graze_that_begins_below_zero_by_rounding_is_followed() -> None:
-    exact, integrated = (simulate(*GRAZING, 3.0, 0.5, route) for route in ("exact", "integrated"))
-    assert min(contact.peak_force for contact in exact.contacts) < 0.01
-    for one, other in zip(exact.contacts, integrated.contacts, strict=True):
-        assert other.start == pytest.approx(one.start, rel=1e-7)
-        assert other.peak_force == pytest.approx(one.peak_force, rel=1e-6)
-    assert abs(exact.energy.residual) < 1e-12 * exact.energy.initial
+    result = simulate(*GRAZING, 1.5, 0.5)
+    contacts, _ = independent(*GRAZING, 1.5)
+    assert min(contact.peak_force for contact in result.contacts) < 0.01
+    for one, other in zip(result.contacts, contacts, strict=True):
+        assert other[1] == pytest.approx(one.start, rel=1e-7)
+        assert other[3] == pytest.approx(one.peak_force, rel=1e-4)
+    assert abs(result.energy.residual) < 1e-12 * result.energy.initial
 
 
 @cache
 def swing_of_the_damper(start: Start, end: float) -> tuple[float, float, float]:
     """The widest |x2 - x1| without a ring, m, its curvature there, m/s2, and when, s; by the modes of the matrix."""
-    flow, t = Flow(Equations(PLAIN), (), 0.01), np.linspace(0.0, end, 200_001)
-    values, modes = np.linalg.eig(flow.matrix)
-    weights = np.linalg.solve(modes, Equations(PLAIN).initial(start))
-    apart = np.array([-1.0, 0.0, 1.0, 0.0]) @ modes * weights
+    t = np.linspace(0.0, end, 200_001)
+    values, modes = np.linalg.eig(matrix(PLAIN))
+    weights = np.linalg.solve(modes, [start.x1, start.x2, start.v1, start.v2])
+    apart = np.array([-1.0, 1.0, 0.0, 0.0]) @ modes * weights
     swing, curvature = (np.real((apart * values**power) @ np.exp(np.outer(values, t))) for power in (0, 2))
     i = int(np.argmax(np.abs(swing)))
     return float(abs(swing[i])), float(abs(curvature[i])), float(t[i])
@@ -330,108 +429,71 @@ def test_a_graze_between_two_steps_is_not_stepped_over(start: Start, exponent: f
     widest, curvature, _ = swing_of_the_damper(start, 0.7)
     for lasting in GRAZES:
         ring = replace(lining(), gap=widest - curvature * lasting**2 / 8.0, exponent=exponent)
-        (contact,) = simulate(with_ring(ring), start, 0.7, route="integrated").contacts
+        (contact,) = simulate(with_ring(ring), start, 0.7).contacts
         # the ring hardly pushes, and relaxes meanwhile: it lets go a little earlier than the flight without it does
+        assert contact.end is not None
         assert 0.96 * lasting < contact.end - contact.start < lasting
-        if exponent == 1.0:
-            (exact,) = simulate(with_ring(ring), start, 0.7, route="exact").contacts
-            assert contact.end - contact.start == pytest.approx(exact.end - exact.start, rel=1e-7)
 
 
-def grazes(start: Start, gaps: range, route: str, exponent: float) -> list[float]:
+def grazes(start: Start, gaps: range, exponent: float) -> list[float]:
     """How long the one contact lasts, over what it should, at gaps so many units in the last place from a graze."""
     widest, curvature, time = swing_of_the_damper(start, 0.7)
     before = 0.01
-    x1, v1, x2, v2 = Flow(Equations(PLAIN), (), 0.01).propagator(time - before) @ Equations(PLAIN).initial(start)
+    x1, x2, v1, v2 = expm((time - before) * matrix(PLAIN)) @ [start.x1, start.x2, start.v1, start.v2]
     found = []
     for lasting in GRAZES:
         for ulps in gaps:
             gap = widest - curvature * lasting**2 / 8.0 + ulps * float(np.spacing(widest))
             system = with_ring(replace(lining(), gap=gap, exponent=exponent))
-            (contact,) = simulate(system, Start(x1, x2, v1, v2), 2.0 * before, before, route).contacts
+            (contact,) = simulate(system, Start(x1, x2, v1, v2), 2.0 * before, before).contacts
             assert contact.end is not None
             found.append((contact.end - contact.start) / lasting)
     return found
 
 
 @pytest.mark.family
-@pytest.mark.parametrize(("route", "exponent"), [("exact", 1.0), ("integrated", 1.0), ("integrated", 1.5)])
+@pytest.mark.parametrize("exponent", [1.0, 1.5])
 @pytest.mark.parametrize("start", [BOTH, STRUCTURE])
 def test_rounding_decides_no_graze(
-    start: Start,
-    route: str,
-    exponent: float,
-    campaign_size: Callable[[int], int],
-    monkeypatch: pytest.MonkeyPatch,
+    start: Start, exponent: float, campaign_size: Callable[[int], int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """At every gap within 20 units in the last place; and on a machine whose sums end in other digits."""
     gaps = range(-20, 21, 41 // campaign_size(41))
-    found = grazes(start, gaps, route, exponent)
+    found = grazes(start, gaps, exponent)
     assert found == pytest.approx(np.repeat(found[:: len(gaps)], len(gaps)), rel=1e-6)
     assert all(0.96 < share < 1.0 for share in found)
-    generator, rates, levels = np.random.default_rng(12), Rates.__call__, Rates.of
+    generator, series = np.random.default_rng(12), FrameFlow.series
 
-    def other_digits(values: Any) -> Any:
+    def other_digits(*given: Any) -> Any:
+        values = series(*given)
         return values * (1.0 + 1e-15 * generator.standard_normal(values.shape))
 
-    monkeypatch.setattr(exact_route, "exponential", lambda matrices: other_digits(exponential(matrices)))
-    monkeypatch.setattr(Rates, "__call__", lambda *given: other_digits(rates(*given)))
-    monkeypatch.setattr(Rates, "of", lambda *given: other_digits(levels(*given)))
-    assert grazes(start, gaps, route, exponent) == pytest.approx(found, rel=1e-6)
-
-
-@dataclass(frozen=True)
-class Parabola:
-    """A level that starts at zero and comes back to it, as rounding leaves it."""
-
-    length: float
-    steepness: float
-    back: float
-    rounding: float
-    resolution: ClassVar[float] = 0.0
-
-    def value(self, offset: float) -> float:
-        noise = self.rounding * np.sin(1e9 * offset + 4.0)  # below zero where it should start at it
-        return float(self.steepness * offset * (1.0 - offset / self.back) + noise)
-
-    def slope(self, offset: float) -> float:
-        return self.steepness * (1.0 - 2.0 * offset / self.back)
-
-
-@given(st.floats(0.01, 3.0), st.floats(1e-3, 1e3), st.floats(0.0, 1e-12))
-def test_a_level_that_rises_from_rounding_falls_where_it_should(back: float, steepness: float, rounding: float) -> None:
-    level = Parabola(1.0, steepness, back, rounding * steepness)
-    found = first_fall([level], [True])
-    assert found == (None if back > 1.0 else pytest.approx((back, 0), rel=1e-9))
-    falling = replace(level, steepness=-steepness)
-    assert first_fall([falling], [True]) == (0.0, 0)
+    monkeypatch.setattr(FrameFlow, "series", other_digits)
+    assert grazes(start, gaps, exponent) == pytest.approx(found, rel=1e-6)
 
 
 @pytest.mark.family
-@pytest.mark.parametrize("name", SYSTEMS)
-def test_matrix_exponentials_and_dop853_agree(name: str) -> None:
+@pytest.mark.parametrize("name", sorted(SYSTEMS.keys() - {"no gap"}))  # where both sides switch at once
+def test_an_independent_integration_finds_the_same_motion(name: str) -> None:
     system, start = SYSTEMS[name]
-    exact, integrated = (simulate(system, start, 0.8, 0.5, route) for route in ("exact", "integrated"))
-    assert len(exact.contacts) == len(integrated.contacts) > 2
-    for one, other in zip(exact.contacts, integrated.contacts, strict=True):
-        assert one.side == other.side
-        assert other.start == pytest.approx(one.start, rel=1e-10)
-        assert (other.end or 0.0) == pytest.approx(one.end or 0.0, rel=1e-10)
-        assert other.peak_force == pytest.approx(one.peak_force, rel=1e-8)
-        assert other.peak_depth == pytest.approx(one.peak_depth, rel=1e-8)
-    # The last row is the same instant by either route.
-    for column in ("x1", "v1", "a1", "x2", "v2", "a2"):
-        ends = [getattr(result.motion, column)[-1] for result in (exact, integrated)]
-        assert ends[1] == pytest.approx(ends[0], rel=1e-8, abs=1e-10)
-    for term, value in exact.energy.to_dict().items():
-        assert integrated.energy.to_dict()[term] == pytest.approx(value, abs=1e-8 * exact.energy.initial)
+    result = simulate(system, start, 0.8, 0.5)
+    contacts, last = independent(system, start, 0.8)
+    assert len(result.contacts) == len(contacts) > 2
+    for one, other in zip(result.contacts, contacts, strict=True):
+        assert other[0] == one.side
+        assert other[1] == pytest.approx(one.start, rel=1e-9)
+        assert one.end is None or other[2] == pytest.approx(one.end, rel=1e-9)
+        assert other[3] == pytest.approx(one.peak_force, rel=1e-5)
+    motion = result.motion
+    ends = [motion.x1[-1], motion.v1[-1], motion.x2[-1], motion.v2[-1]]
+    assert ends == pytest.approx(list(last), rel=1e-8, abs=1e-10)
 
 
 @pytest.mark.family
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_every_energy_closes(name: str) -> None:
     system, start = SYSTEMS[name]
-    for end in (0.1, 1.2, 6.0):
+    for end in (0.1, 1.2, 4.0):
         energy = simulate(system, start, end).energy
         assert abs(energy.residual) < 1e-12 * energy.initial
         assert min(energy.lost_structure, energy.lost_damper, energy.lost_ring) >= -1e-13 * energy.initial
@@ -448,54 +510,41 @@ def test_an_end_within_a_contact_leaves_energy_locked_in_the_ring(paper: PtmdRes
     assert result.energy.stored_ring > 0.01 * result.energy.initial
 
 
-def test_the_rows_do_not_decide_what_is_found(paper: PtmdResult) -> None:
-    again = simulate(paper.system, BOTH, rows_per_period=40)
-    for name, value in again.measures.to_dict().items():
-        assert value == pytest.approx(paper.measures.to_dict()[name], rel=1e-9)
+def test_the_steps_do_not_decide_what_is_found() -> None:
+    found, again = (simulate(with_ring(lining()), BOTH, 4.0, tolerance=one).measures for one in (1e-7, 1e-10))
+    known = {name: value for name, value in found.to_dict().items() if value is not None}
+    assert {name: again.to_dict()[name] for name in known} == pytest.approx(known, rel=1e-9)
 
 
 # what a motion costs
 
 EXPONENTS = (1.05, 1.35, 1.5, 2.0, 2.5)
-PER_ROW = 16  # evaluations of a step of order 8 and its interpolant
 
 
 @pytest.mark.tenth
 def test_any_exponent_costs_about_what_hertz_does(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The equations are formed once for each kind of phase, and flight takes steps of the bodies, not of the ring."""
-    formed, asked = Counter[float](), Counter[tuple[float, bool]]()
-    forms, rates, end = Equations.linear_forms, Rates.__call__, 2.0
-    kinds = defaultdict[float, set[Stages]](set)
+    """Steps solved for, each a factorization or more."""
+    asked, solved, exponent = Counter[float](), FrameTrial._solved, 0.0
 
-    def form(equations: Equations, stages: Stages) -> Any:
-        formed[equations.system.ring.exponent] += 1
-        return forms(equations, stages)
+    def count(*given: Any) -> Any:
+        asked[exponent] += 1
+        return solved(*given)
 
-    def ask(each: Rates, time: float, y: Any) -> Any:
-        exponent = each.equations.system.ring.exponent
-        kinds[exponent].add(each.stages)
-        asked[exponent, SideStage.PRESSED in each.stages] += 1
-        return rates(each, time, y)
-
-    monkeypatch.setattr(Equations, "linear_forms", form)
-    monkeypatch.setattr(Rates, "__call__", ask)
+    monkeypatch.setattr(FrameTrial, "_solved", count)
     for exponent in EXPONENTS:
         ring = replace(lining(), coefficient=LENGTH * GAP ** (1.0 - exponent), exponent=exponent)
-        simulate(with_ring(ring), BOTH, end)
-        assert formed[exponent] == len(kinds[exponent])
-        period = 1.0 / 3.479
-        assert asked[exponent, False] < 1.5 * PER_ROW * ROWS_PER_PERIOD * end / period
-    assert max(asked[each, True] for each in EXPONENTS) < 2.0 * asked[1.5, True]
+        simulate(with_ring(ring), BOTH, 2.0)
+    assert max(asked.values()) < 2.0 * asked[1.5]
 
 
 # memory between contacts
 
 
-def test_memories_agree_where_contacts_are_many_relaxation_times_apart(paper: PtmdResult) -> None:
-    for memory in (Memory.RESET, Memory.CONTINUOUS):
-        result = simulate(with_ring(lining(memory=memory)), BOTH)
-        assert result.motion.x1[-1] == pytest.approx(paper.motion.x1[-1], abs=1e-9)
-        for one, other in zip(paper.contacts, result.contacts, strict=True):
+def test_memories_agree_where_contacts_are_many_relaxation_times_apart() -> None:
+    recovering, *others = (simulate(with_ring(lining(memory=memory)), BOTH, 4.0) for memory in Memory)
+    for result in others:
+        assert result.motion.x1[-1] == pytest.approx(recovering.motion.x1[-1], abs=1e-9)
+        for one, other in zip(recovering.contacts, result.contacts, strict=True):
             assert other.start == pytest.approx(one.start, abs=1e-9)
             assert other.peak_force == pytest.approx(one.peak_force, rel=1e-7)
 
@@ -520,7 +569,7 @@ def test_a_dent_creeps_back_with_the_retardation_time() -> None:
 
 
 def test_a_reset_ring_is_met_at_its_undeformed_place_and_a_running_one_deeper() -> None:
-    assert [met for _, met, _ in dents(Memory.RESET)] == pytest.approx(np.zeros(len(dents(Memory.RESET))), abs=1e-15)
+    assert [met for _, met, _ in dents(Memory.RESET)] == pytest.approx(np.zeros(len(dents(Memory.RESET))), abs=1e-13)
     assert all(met > 2e-4 for _, met, _ in dents(Memory.CONTINUOUS))
 
 
@@ -540,21 +589,6 @@ def test_a_start_inside_the_ring_finds_it_relaxed() -> None:
     assert result.energy.initial == pytest.approx(held + bodies, rel=1e-12)
 
 
-# the exponential
-
-
-def test_exponentials_with_a_closed_form() -> None:
-    turns, rate = np.array([1e-9, 0.3, 200.0]), 1e5
-    rotation = exponential(turns[:, None, None] * np.array([[0.0, 1.0], [-1.0, 0.0]]))
-    closed = np.array([[np.cos(turns), np.sin(turns)], [-np.sin(turns), np.cos(turns)]])
-    assert np.moveaxis(rotation, 0, -1) == pytest.approx(closed, abs=1e-13)
-    assert rotation[0, 0, 1] == pytest.approx(1e-9, rel=1e-15)
-    defective = exponential(np.array([[-2.0, 1.0], [0.0, -2.0]]))
-    assert defective == pytest.approx(np.exp(-2.0) * np.array([[1.0, 1.0], [0.0, 1.0]]), rel=1e-14, abs=1e-16)
-    stiff = exponential(np.array([[0.0, 1.0], [0.0, -rate]]))
-    assert stiff == pytest.approx(np.array([[1.0, 1.0 / rate], [0.0, 0.0]]), rel=1e-14, abs=1e-16)
-
-
 # bad input
 
 
@@ -570,8 +604,6 @@ def test_exponentials_with_a_closed_form() -> None:
         (lambda: Start(float("inf")), "x1"),
         (lambda: simulate(ALONE, BOTH, -1.0), "end_time"),
         (lambda: simulate(ALONE, Start(0.0, 0.05)), "x1"),
-        (lambda: simulate(ALONE, BOTH, route="exakt"), "exact"),
-        (lambda: simulate(with_ring(replace(lining(), exponent=1.5)), BOTH, route="exact"), "integrated"),
         (lambda: simulate(ALONE, BOTH, 1e8), "end_time"),
         (
             lambda: simulate(with_ring(lining(young=of_ratios(E0=1e6, R1=1.0, R2=1e-12))), BOTH),
@@ -584,8 +616,7 @@ def test_bad_input_is_named(bad: Any, named: str) -> None:
         bad()
 
 
-@pytest.mark.parametrize("route", ["exact", "integrated"])
-def test_a_motion_of_too_many_rows_is_refused_before_it_begins(route: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lumped.ptmd.free_vibration.march", lambda *_: pytest.fail("marched"))
-    with pytest.raises(BadInput, match=rf"more than {ROUTES[route][1]} rows; accepted: at most "):
-        simulate(PLAIN, Start(0.05), 1e6, route=route)
+def test_a_motion_of_too_many_rows_is_refused_before_it_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(FrameMarch, "run", lambda *_: pytest.fail("marched"))
+    with pytest.raises(BadInput, match=r"more than 300000 rows of .* s; accepted: at most "):
+        simulate(PLAIN, Start(0.05), 1e6)

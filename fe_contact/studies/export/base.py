@@ -7,7 +7,7 @@ answer of the other program checks ours. Our own answer stands in the file as a 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
 import numpy as np
@@ -26,17 +26,23 @@ from lumped.shapes import Shape
 from lumped.targets import HalfSpace, Target
 from lumped.targets.layer import Layer
 
+# A half-space is cut off so many contact radii away, fixed there: its force at a depth is larger by about 1.3 over it.
+FAR = 20_000.0
 # A layer is free at its side, this many contact radii plus thicknesses away.
 SIDE = 10.0
+# Of a lattice: how far its lines are as dense as at the contact, along the surface and below it, in contact radii, and
+# how the distances beyond grow.
+REACH, DEEP, GROWTH = 1.5, 0.5, 1.5
 
 
 @dataclass(frozen=True, eq=False)
 class PressedCylinder:
     """A cylinder that is pressed at its top, and the profile of the striker: lengths in m.
 
-    `height`: of the profile over its tip, m, at a distance from the axis, m. `edge`: the largest contact radius.
-    `held`: whether the body is infinite; cut off, its side and base are fixed. Else its side is free, and its base
-    `bonded` or sliding.
+    `height`: of the profile over its tip, m, at a distance from the axis, m. `edge`: the largest contact radius. What
+    is beyond `reach` is never touched.
+    `held`: whether the side and the base are fixed, as those of a body cut off from an infinite one; else the side is
+    free, and the base `bonded` or sliding.
     """
 
     height: Callable[[Array], Array]
@@ -47,9 +53,20 @@ class PressedCylinder:
     bonded: bool
     nu: float
 
-    def cut_off(self, far: float) -> PressedCylinder:
-        """An infinite body ends so many contact radii away: a force at a depth is larger by 1.3 over this number."""
-        return replace(self, radius=far * self.edge, thickness=far * self.edge) if self.held else self
+    @property
+    def reach(self) -> float:
+        """Of the contact along the surface, m."""
+        return REACH * self.edge
+
+    def lattice(self, elements: int, refined: int) -> tuple[Array, Array]:
+        """Lines of a mesh of rectangles: distances from the axis and heights from the base up to 0, m.
+
+        There are so many `elements` a contact radius, each then divided into `refined` a side: of two meshes one
+        divides the other, and their answers tell how far both are from the exact one.
+        """
+        across = _graded(self.edge / elements, self.reach, self.radius)
+        down = _graded(self.edge / elements, DEEP * self.edge, self.thickness)
+        return _divided(across, refined), _divided(-down[::-1], refined)
 
 
 def pressed(source: str, shape: Shape, target: Target, nu: float) -> Callable[[float], PressedCylinder]:
@@ -58,7 +75,7 @@ def pressed(source: str, shape: Shape, target: Target, nu: float) -> Callable[[f
         reason = f"{shape.name}: accepted for another program: a round profile, as sphere, cone, power"
         raise BadInput(Fault(source, "striker.shape", reason))
     if isinstance(target, HalfSpace):
-        return lambda edge: PressedCylinder(shape.height, edge, np.inf, np.inf, held=True, bonded=True, nu=nu)
+        return lambda edge: PressedCylinder(shape.height, edge, FAR * edge, FAR * edge, held=True, bonded=True, nu=nu)
     if isinstance(target, Layer):
         thickness, bonded = target.thickness, target.base == "bonded"
         return lambda edge: PressedCylinder(
@@ -68,18 +85,38 @@ def pressed(source: str, shape: Shape, target: Target, nu: float) -> Callable[[f
     raise BadInput(Fault(source, "target.shape", reason))
 
 
+def _graded(fine: float, dense: float, end: float) -> Array:
+    """Places from 0 to ``end``, at equal distances of about ``fine`` up to ``dense``, then growing."""
+    dense = min(dense, end)
+    places = np.linspace(0.0, dense, max(round(dense / fine), 2) + 1).tolist()
+    size = fine
+    while places[-1] < end:
+        size *= GROWTH
+        places.append(places[-1] + size if places[-1] + 1.5 * size < end else end)
+    return np.asarray(places)
+
+
+def _divided(places: Array, parts: int) -> Array:
+    """Every interval in equal parts."""
+    return np.interp(np.arange(parts * (places.size - 1) + 1) / parts, np.arange(places.size), places)
+
+
 @dataclass(frozen=True, eq=False)
 class StaticCase:
-    """An elastic body, `young` in Pa, pressed to a `depth`, m; `said`: what this suite finds, a line each."""
+    """An elastic body, `young` in Pa, pressed to a `depth`, m.
+
+    `refined`: into how many its mesh's elements are divided a side. `said`: what this suite finds, a line each.
+    """
 
     name: str
     body: PressedCylinder
     young: float
     depth: float
+    refined: int
     said: tuple[str, ...]
 
     @classmethod
-    def of(cls, indenter: Indenter, depth: float, given: Given) -> StaticCase:
+    def of(cls, indenter: Indenter, depth: float, refined: int, given: Given) -> StaticCase:
         """Of the relaxed material; our answer is made. Raises BadInput, NotReached."""
         check_linear(indenter.source, indenter.model)
         body = pressed(indenter.source, indenter.profile, indenter.target, indenter.material.nu)
@@ -87,14 +124,14 @@ class StaticCase:
         edge = float(found.contact_radius[0])
         force, error = float(found.force[0]), float(found.force_error[0])
         said = f"fe-contact indent --depths {depth:.9g}: {force:.6g} +- {error:.2g} N, contact radius {edge:.4g} m"
-        return cls(indenter.name, body(edge), indenter.material.young.relaxed, depth, (said,))
+        return cls(indenter.name, body(edge), indenter.material.young.relaxed, depth, refined, (said,))
 
 
 @dataclass(frozen=True, eq=False)
 class ImpactCase:
     """A rigid `mass`, kg, that comes with a `velocity`, m/s, upon a body without inertia of the modulus E(t), `young`.
 
-    `duration`: of the contact, s.
+    `duration`: of the contact, s. `refined` and `said` as of a StaticCase, time's steps divided too.
     """
 
     name: str
@@ -103,10 +140,11 @@ class ImpactCase:
     mass: float
     velocity: float
     duration: float
+    refined: int
     said: tuple[str, ...]
 
     @classmethod
-    def of(cls, scene: Scene, given: Given) -> ImpactCase:
+    def of(cls, scene: Scene, refined: int, given: Given) -> ImpactCase:
         """Our answer is made. Raises BadInput for inertia, gravity, a free second mass; NotReached."""
         model, geometry = scene.model, scene.geometry
         check_linear(scene.source, model)
@@ -122,7 +160,8 @@ class ImpactCase:
         shown = [(name, found.quantities[name]) for name in ("peak_force", "peak_depth", "duration", "restitution")]
         said = tuple(f"fe-contact run: {name} {one}" for name, one in shown)
         duration = found.quantities["duration"].value or found.scene.end_time
-        return cls(scene.name, body(edge), geometry.material.young, scene.mass, scene.velocity, duration, said)
+        young, speed = geometry.material.young, scene.velocity
+        return cls(scene.name, body(edge), young, scene.mass, speed, duration, refined, said)
 
 
 def check_linear(source: str, model: Model) -> None:
@@ -138,12 +177,11 @@ class Program(Protocol):
 
     suffix: ClassVar[str]
     how: ClassVar[str]  # what runs the file, {file} its name, {stem} that without its ending
-    elements: ClassVar[int]  # along a contact radius, where nobody asks for others
 
-    def static(self, case: StaticCase, elements: int) -> str:
+    def static(self, case: StaticCase) -> str:
         """The input file of a slow indentation."""
 
-    def impact(self, case: ImpactCase, elements: int) -> str:
+    def impact(self, case: ImpactCase) -> str:
         """The input file of an impact. Raises BadInput where the program has none."""
 
 

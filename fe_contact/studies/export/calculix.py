@@ -1,6 +1,7 @@
 """CalculiX: an input deck of a slow indentation, with a mesh of its own of eight-node axisymmetric elements.
 
-CalculiX has no rigid analytic surface: the striker is a body a thousand times as stiff, its face nodes on the profile.
+CalculiX has no rigid analytic surface: the striker is a body ten thousand times as stiff, with face nodes on the
+profile. Lengths are in mm: an element of a thousandth of that, in m, is none to it.
 """
 
 from __future__ import annotations
@@ -15,10 +16,11 @@ from fe_contact.studies.export.base import ImpactCase, StaticCase
 from lumped.errors import BadInput, Fault
 from lumped.numbers import Array
 
-FAR = 4000.0  # contact radii, where an infinite body ends
-REACH, GROWTH = 1.4, 1.25  # how far the fine elements go, in contact radii; how those beyond grow
-ROWS = 4  # of the striker's elements
-STIFF, PENALTY = 1e4, 1e3  # striker over body; pressure over overlap, in Young's moduli over the contact radius
+ELEMENTS, ROWS = 12, 4  # of a contact radius; of the striker, one above another
+DENSER = 1.3  # the striker's face is denser than the ground: no node of one lies on one of the other
+STIFF, PENALTY = 1e4, 1e4  # striker over body; pressure over overlap, in Young's moduli over the contact radius
+NO_PULL = 1e-9  # the tension that a gap may have, in Young's moduli
+MM, MPA = 1e3, 1e-6  # of a metre, of a pascal
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,14 +55,8 @@ def block(r: Array, z: Array, first: int) -> Grid:
     )  # fmt: skip
 
 
-def graded(fine: float, uniform: float, end: float) -> Array:
-    """Places from 0 to ``end``, equal up to ``uniform``, then growing, with a middle in every interval."""
-    places = np.linspace(0.0, min(uniform, end), max(round(min(uniform, end) / fine), 2) + 1).tolist()
-    size = fine
-    while places[-1] < end:
-        size *= GROWTH
-        places.append(places[-1] + size if places[-1] + 1.5 * size < end else end)
-    corners = np.asarray(places)
+def _with_middles(corners: Array) -> Array:
+    """Places and those in the middle of every interval."""
     return np.sort(np.concatenate([corners, 0.5 * (corners[1:] + corners[:-1])]))
 
 
@@ -73,33 +69,30 @@ class CalculiX:
         "ccx -i {stem}, then the vertical force of STRIKER in {stem}.dat times 180 (a wedge of 2 degrees)"
     )
 
-    elements: ClassVar[int] = 12
-
-    def static(self, case: StaticCase, elements: int) -> str:
+    def static(self, case: StaticCase) -> str:
         """As the contract says."""
-        return "\n".join(_deck(case, elements)) + "\n"
+        return "\n".join(_deck(case)) + "\n"
 
-    def impact(self, case: ImpactCase, elements: int) -> str:
+    def impact(self, case: ImpactCase) -> str:
         """Raises BadInput: CalculiX has no relaxation in time."""
         raise BadInput(Fault("--to", "calculix", f"{case.name}: slow indentation alone; accepted: --depth, or ngsolve"))
 
 
-def _deck(case: StaticCase, elements: int) -> Iterator[str]:
+def _deck(case: StaticCase) -> Iterator[str]:
     """Line by line."""
-    body, fine = case.body.cut_off(FAR), case.body.edge / elements
-    r = graded(fine, REACH * body.edge, body.radius)
-    deep = -graded(fine, 0.5 * body.edge, body.thickness)[::-1]
-    pressed = block(r, np.repeat(deep[:, None], r.size, axis=1), 1)
-    across = np.linspace(0.0, REACH * body.edge, 2 * round(REACH * elements * 1.3) + 1)
+    body = case.body
+    r, z = map(_with_middles, body.lattice(ELEMENTS, case.refined))
+    pressed = block(r, np.repeat(z[:, None], r.size, axis=1), 1)
+    across = np.linspace(0.0, body.reach, 2 * round(body.reach / body.edge * ELEMENTS * DENSER) * case.refined + 1)
     face = body.height(across)
     up = np.linspace(0.0, 1.0, 2 * ROWS + 1)[:, None]
     striker = block(across, face + up * (face[-1] + body.edge - face), max(pressed.nodes) + 1)
 
-    yield f"** {case.name}: a profile pressed {case.depth:.9g} m deep. Lengths in m, forces in N."
+    yield f"** {case.name}: a profile pressed {case.depth:.9g} m deep. Lengths in mm, forces in N, moduli in MPa."
     yield from (f"** {line}" for line in case.said)
     yield "*NODE, NSET=ALL"
     for part in (pressed, striker):
-        yield from (f"{one}, {x:.12g}, {y:.12g}, 0" for one, (x, y) in part.nodes.items())
+        yield from (f"{one}, {MM * x:.12g}, {MM * y:.12g}, 0" for one, (x, y) in part.nodes.items())
     for name, part in (("BODY", pressed), ("STRIKER", striker)):
         yield f"*ELEMENT, TYPE=CAX8, ELSET={name}"
         yield from (f"{one}, {', '.join(map(str, nodes))}" for one, nodes in part.elements.items())
@@ -111,16 +104,16 @@ def _deck(case: StaticCase, elements: int) -> Iterator[str]:
     yield from ("*SURFACE, NAME=GROUND", *(f"{one}, S3" for one in pressed.highest))
     yield from ("*SURFACE, NAME=FACE", *(f"{one}, S1" for one in striker.lowest))
     for name, young in (("BODY", case.young), ("STRIKER", STIFF * case.young)):
-        yield from (f"*MATERIAL, NAME={name}", "*ELASTIC", f"{young:.9g}, {body.nu:.9g}")
+        yield from (f"*MATERIAL, NAME={name}", "*ELASTIC", f"{MPA * young:.9g}, {body.nu:.9g}")
         yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
     yield from ("*SURFACE INTERACTION, NAME=HARD", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR")
-    yield f"{PENALTY * case.young / body.edge:.9g}, {1e-6 * case.young:.9g}"
+    yield f"{PENALTY * MPA * case.young / (MM * body.edge):.9g}, {NO_PULL * MPA * case.young:.9g}"
     yield from ("*CONTACT PAIR, INTERACTION=HARD, TYPE=SURFACE TO SURFACE", "GROUND, FACE")
     yield from ("*BOUNDARY", "AXIS, 1, 1", "BASE, 2, 2")
     yield from ("BASE, 1, 1",) if body.bonded else ()
     yield from ("SIDE, 1, 2",) if body.held else ()
     yield from ("*STEP, INC=200", "*STATIC", "0.1, 1., 1e-4, 0.25")
-    yield from ("*BOUNDARY", f"STRIKER, 2, 2, {-case.depth:.12g}", "STRIKER, 1, 1, 0.")
+    yield from ("*BOUNDARY", f"STRIKER, 2, 2, {-MM * case.depth:.12g}", "STRIKER, 1, 1, 0.")
     yield from ("*NODE PRINT, NSET=STRIKER, TOTALS=ONLY", "RF", "*END STEP")
 
 

@@ -9,16 +9,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from fe_contact.studies.export.base import ImpactCase, PressedCylinder, StaticCase
-from lumped.schema import Table
+from fe_contact.studies.export.base import ImpactCase, StaticCase
 
-FAR = 400.0  # contact radii, where an infinite body ends: meshes of netgen that reach further fail, or err
-INFINITE = (
-    "",
-    "The infinite body is cut off, which errs as one over the distance: run this as it is, and with 0.5 behind its",
-    "name; twice the first force less the second one is that of the infinite body.",
-)
-PROFILE_POINTS, PROFILE_REACH = 2001, 1.6  # of the profile's table, and how far it goes, in contact radii
+PROFILE_POINTS = 2001  # of the profile's table
+ELEMENTS = 6  # of order three, a contact radius
+STEPS = 40  # of a contact
 
 
 @dataclass(frozen=True)
@@ -27,39 +22,40 @@ class NGSolve:
 
     suffix: ClassVar[str] = ".py"
     how: ClassVar[str] = "pip install ngsolve, then python {file}"
-    elements: ClassVar[int] = 12
 
-    def static(self, case: StaticCase, elements: int) -> str:
+    def static(self, case: StaticCase) -> str:
         """As the contract says."""
-        given = {"YOUNG": case.young, "DEPTH": case.depth, "ELEMENTS": elements}
-        return _filled("static", case.body, case.name, case.said, given)
+        return _filled("static", case, YOUNG=case.young, DEPTH=case.depth)
 
-    def impact(self, case: ImpactCase, elements: int) -> str:
+    def impact(self, case: ImpactCase) -> str:
         """As the contract says."""
         young = case.young
-        given = {
-            "EQUILIBRIUM": young.equilibrium, "MODULI": list(young.moduli), "TIMES": list(young.times),
-            "VISCOSITY": young.viscosity, "MASS": case.mass, "VELOCITY": case.velocity, "DURATION": case.duration,
-            "ELEMENTS": elements,
-        }  # fmt: skip
-        return _filled("impact", case.body, case.name, case.said, given)
+        return _filled(
+            "impact", case, EQUILIBRIUM=young.equilibrium, MODULI=list(young.moduli), TIMES=list(young.times),
+            VISCOSITY=young.viscosity, MASS=case.mass, VELOCITY=case.velocity, DURATION=case.duration,
+            STEPS=STEPS * case.refined,
+        )  # fmt: skip
 
 
-def _filled(kind: str, body: PressedCylinder, name: str, said: tuple[str, ...], numbers: Table) -> str:
+def _filled(kind: str, case: StaticCase | ImpactCase, **numbers: object) -> str:
     """The common part and the one of this kind, with the case's numbers."""
-    body = body.cut_off(FAR)
-    distance = np.linspace(0.0, PROFILE_REACH * body.edge, PROFILE_POINTS)
-    heights = ", ".join(f"{float(height):.12g}" for height in body.height(distance))
-    given: Table = numbers | {
-        "NU": body.nu, "EDGE": body.edge, "RADIUS": body.radius, "THICKNESS": body.thickness, "HELD": body.held,
-        "BONDED": body.bonded, "REACH": PROFILE_REACH,
+    body = case.body
+    heights = body.height(np.linspace(0.0, body.reach, PROFILE_POINTS))
+    across, up = body.lattice(ELEMENTS, case.refined)
+    given = numbers | {
+        "NU": body.nu, "EDGE": body.edge, "REACH": body.reach, "HELD": body.held, "BONDED": body.bonded,
     }  # fmt: skip
-    table = "\n".join(f"{key} = {value!r}" for key, value in given.items())
-    text = "".join(
-        (Path(__file__).parent / f"ngsolve_{part}.txt").read_text(encoding="utf-8") for part in ("body", kind)
+    lists = {"ACROSS": across, "UP": up, "HEIGHTS": heights}
+    return Template("".join(_part(name) for name in ("body", kind))).substitute(
+        {name: ", ".join(f"{float(value):.12g}" for value in values) for name, values in lists.items()},
+        NAME=case.name,
+        SAID="\n".join(case.said),
+        NUMBERS="\n".join(f"{key} = {value!r}" for key, value in given.items()),
     )
-    lines = (*said, *(INFINITE if body.held else ()))
-    return Template(text).substitute(NAME=name, SAID="\n".join(lines), NUMBERS=table, HEIGHTS=heights)
+
+
+def _part(name: str) -> str:
+    return (Path(__file__).parent / f"ngsolve_{name}.txt").read_text(encoding="utf-8")
 
 
 MEMBER = NGSolve()

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from fe_contact.errors import import_of
+from fe_contact.studies.files import write_parquet
 from fe_contact.studies.sweep.cases import Sweep
 from lumped.numbers import Array
 from lumped.result.result import UNITS, provenance
@@ -168,14 +168,7 @@ class SweepTable:
         write_csv(where / "table.csv", self.header, self.lines())
         write_json(where / "sweep.json", self.record(wall))
         if parquet:
-            self._write_parquet(where / "table.parquet")
-
-    def _write_parquet(self, path: Path) -> None:
-        with import_of("parquet"):
-            import pyarrow
-            from pyarrow import parquet
-        columns = [pyarrow.array(column, from_pandas=True) for column in self._columns()]  # NaN is what is undefined
-        parquet.write_table(pyarrow.table(columns, names=self.header), path)
+            write_parquet(where / "table.parquet", dict(zip(self.header, self._columns(), strict=True)))
 
     def _columns(self) -> Iterator[Sequence[object] | npt.NDArray[np.generic]]:
         """Of the table, each of all its rows."""
@@ -193,12 +186,6 @@ class SweepTable:
         for quantity in range(len(UNITS)):
             yield self.values[..., quantity].ravel()
             yield self.errors[..., quantity].ravel()
-
-
-def require_parquet() -> None:
-    """Raises ExtraMissing, before any work, where no table could be written as Parquet."""
-    with import_of("parquet"):
-        import pyarrow.parquet  # noqa: F401 - whether it can be
 
 
 def _cell(value: object) -> object:

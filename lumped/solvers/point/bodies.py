@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -159,20 +160,9 @@ class PointLaw(ABC):
         _, time = bisected(apart, 0.0, -last.rate / gravity)
         return time, flown(last, gravity, time)
 
-    def resistance(self, depth: Array, rate: Array, stage: Stage, last: State, since: Array) -> Array:
-        """Above zero where a dent presses again; the contact ended as `last`, in a `stage`, `since` s ago; each (n,).
-
-        Without memory: where the force would push.
-        """
-        return np.where(depth > 0.0, self.force(np.maximum(depth, TINY), rate, stage), -1.0)
-
-    def recalled(self, last: State, since: float) -> tuple[float, ...]:
-        """The memory when a dent is pressed again, `since` s after the contact ended as `last`."""
-        return ()
-
-    def forgotten(self, last: State, since: float) -> bool:
-        """Whether a dent counts as gone where nothing lies in it any more."""
-        return True
+    def dent(self, last: State, stage: Stage) -> Dent:
+        """What a contact leaves that ended as `last`, in a `stage`."""
+        return Dent(self, stage)
 
     def carried(self, depth: float, stage: Stage) -> float:
         """The weight, N, under which a striker stays at rest at a depth; NaN of what creeps under every one."""
@@ -189,6 +179,26 @@ class PointLaw(ABC):
     @abstractmethod
     def time_scale(self, bodies: Bodies) -> float:
         """A time in which an impact changes by its own size, s: the elastic contact time."""
+
+
+@dataclass(frozen=True)
+class Dent:
+    """What a contact leaves behind. Without memory the law presses as ever where the bodies overlap."""
+
+    law: PointLaw
+    stage: Stage
+
+    def resistance(self, depth: Array, rate: Array, since: Array) -> Array:
+        """Above zero where it is pressed again, `since` s after the contact; each (n,)."""
+        return np.where(depth > 0.0, self.law.force(np.maximum(depth, TINY), rate, self.stage), -1.0)
+
+    def recalled(self, since: float) -> tuple[float, ...]:
+        """The law's memory when it is pressed again."""
+        return ()
+
+    def forgotten(self, since: float) -> bool:
+        """Whether it counts as gone where nothing lies in it any more."""
+        return True
 
 
 def flown(state: State, gravity: float, time: float) -> State:

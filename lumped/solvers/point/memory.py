@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
+from scipy.special import exprel
 
 from lumped.errors import BadInput, Fault
-from lumped.load_curves.base import LoadCurve
 from lumped.materials import Recovery, Relaxation
 from lumped.numbers import Array, Real, bisected
 from lumped.schema.members import unavailable
@@ -24,11 +25,31 @@ from lumped.solvers.radau import Nodes
 STEPS = 16  # in a stretch of the flight, for the memory of what is followed above the surface
 
 
+class Loading(Protocol):
+    """What is asked of a load curve."""
+
+    def force(self, depth: Array) -> Real:
+        """The load y, m2, at a depth, m."""
+        ...
+
+    def dforce_ddepth(self, depth: Array) -> Real:
+        """Its slope 2 a, m."""
+        ...
+
+    def contact_radius(self, depth: Array) -> Real:
+        """a, m."""
+        ...
+
+    def depth_slope(self, contact_radius: Array) -> Real:
+        """d depth over d a."""
+        ...
+
+
 @dataclass(frozen=True)
 class HereditaryLoad:
     """An elastic load curve y(depth), m2, under the modulus E*(t), Pa; memories w_k in m2."""
 
-    curve: LoadCurve
+    curve: Loading
     modulus: Relaxation
 
     @property
@@ -163,17 +184,38 @@ class FreeSurface:
         recovery = Recovery.of(load.modulus, float(load.load(last.depth)), last.memory)
         return cls(recovery, np.array(last.memory), np.array(load.modulus.times))
 
-    def at(self, time: float) -> Array:
-        """y and the memories w_k, shape (1 + K,), m2."""
-        rates = 1.0 / self.times
-        left = np.exp(-time * rates)
-        memories = self.remembered * left + self.load.permanent * (1.0 - left)
+    def at(self, time: Real) -> Array:
+        """y and the memories w_k at times of any shape, shape (1 + K, ...), m2."""
+        times = np.asarray(time, dtype=float)
+        column = (-1, *[1] * times.ndim)
+        rates = (1.0 / self.times).reshape(column)
+        left = np.exp(-times * rates)
+        memories = self.remembered.reshape(column) * left + self.load.permanent * (1.0 - left)
         for amplitude, tau in zip(self.load.amplitudes, self.load.times, strict=True):
             # of two exponentials the slower one, and what the other fills of it
-            apart, slower = np.abs(rates - 1.0 / tau), np.exp(-time * np.minimum(rates, 1.0 / tau))
-            filled = np.divide(-np.expm1(-time * apart), apart, out=np.full_like(left, time), where=apart != 0.0)
-            memories += amplitude * rates * slower * filled
-        return np.append(self.load(time), memories)
+            apart, slower = np.abs(rates - 1.0 / tau), np.exp(-times * np.minimum(rates, 1.0 / tau))
+            memories = memories + amplitude * rates * slower * times * exprel(-times * apart)
+        return np.concatenate([self.load(times)[None], memories])
+
+
+@dataclass(frozen=True)
+class HeldSurface:
+    """A surface at its undeformed place, y = 0, whose memories fade: w_k' = -w_k/tau_k."""
+
+    remembered: Array
+    times: Array
+
+    @classmethod
+    def of(cls, load: HereditaryLoad, last: State) -> HeldSurface:
+        """From the end of a contact on."""
+        return cls(np.array(last.memory), np.array(load.modulus.times))
+
+    def at(self, time: Real) -> Array:
+        """y and the memories at times of any shape, shape (1 + K, ...), m2."""
+        times = np.asarray(time, dtype=float)
+        column = (-1, *[1] * times.ndim)
+        fading = self.remembered.reshape(column) * np.exp(-times / self.times.reshape(column))
+        return np.concatenate([np.zeros_like(times)[None], fading])
 
 
 def reset(load: HereditaryLoad, bodies: Bodies, last: State) -> tuple[float, State] | None:
