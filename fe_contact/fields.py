@@ -13,6 +13,7 @@ that the points are the nodes of the element, at (x, y, z) = (r, z, 0) m with th
     pressure       Pa, on the contact surface; zero elsewhere
     contact        1 where the bodies touch, 0 elsewhere
     velocity       (v_r, v_z, 0), m/s, of a body with inertia, whose fields are those of the march itself
+    plastic_strain its amount, sqrt(2/3) times the length of its path, of a body that yields
 
 The contact pressure is as the body feels it, without what its shape functions cannot see. The march keeps it at
 quadrature points, where the surface's memory leaves a roughness of some per cent that has no moment against any shape
@@ -22,8 +23,10 @@ otherwise, see :mod:`fe_contact.steppers.scaled_surface`, and has no such roughn
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -84,14 +87,14 @@ def write_fields(scene: Scene, certified: Certified, where: Path) -> Path:
     return written(fields_at_peak(scene, certified), where)
 
 
-def written(fields: Fields, where: Path, velocity: Array | None = None) -> Path:
-    """The file ``fields.vtu`` in a folder, with the velocity (n, 2), m/s, of a body with inertia; its path."""
+def written(fields: Fields, where: Path, more: Mapping[str, Array] = MappingProxyType({})) -> Path:
+    """The file ``fields.vtu`` in a folder, with what ``more`` is known of its points, (n,) or (n, 2); its path."""
     import meshio
 
     data: dict[str, np.ndarray[Any, Any]] = {"displacement": _lifted(fields.displacement)}
     data |= dict(zip(STRESSES, fields.stress.T, strict=True))
     data |= {"pressure": fields.pressure, "contact": fields.contact}
-    data |= {} if velocity is None else {"velocity": _lifted(velocity)}
+    data |= {name: values if values.ndim == 1 else _lifted(values) for name, values in more.items()}
     where.mkdir(parents=True, exist_ok=True)
     path = where / "fields.vtu"
     meshio.Mesh(_lifted(fields.points), [("triangle", fields.triangles)], point_data=data).write(path)

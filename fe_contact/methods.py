@@ -41,8 +41,10 @@ def names() -> tuple[str, ...]:
 def refusal(name: object) -> str:
     """Why this is no name of a method; empty where it is one."""
     known = names()
+    if name in known:
+        return ""
     hint = nearest(name, known) if isinstance(name, str) else ""
-    return "" if name in known else f"{shown(name)}: accepted {', '.join(known)}{hint}"
+    return f"{shown(name)}: accepted {', '.join(known)}{hint}"
 
 
 def default(scene: Scene) -> str:

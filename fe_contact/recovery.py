@@ -78,10 +78,10 @@ def _error(change: Variation | Softening | None, time: Array) -> Array:
     if isinstance(change, Softening):
         return _left_at_most(change.curve, _everywhere(change.errors["peak_depth"]), time)
     first, second = change.first, change.second
-    apart = _from_each_on(recovery_of(first)(time) - recovery_of(second)(time))
-    path = np.abs(first.read(_times(first)).depth - second.read(_times(second)).depth)
+    one, other = (curve.read(_times(curve)).depth for curve in (first, second))
+    apart = _from_each_on(_after(first, one)(time) - _after(second, other)(time))
     trust = change.factor * max(change.weights.values(), default=1.0)
-    return np.asarray(trust * np.maximum(apart, _left_at_most(first, path, time)))
+    return np.asarray(trust * np.maximum(apart, _left_at_most(first, np.abs(one - other), time)))
 
 
 def _left_at_most(curve: Curve, path: Array, time: Array) -> Array:

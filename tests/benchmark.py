@@ -144,7 +144,7 @@ def against_imports(group: str, what: str, bound: float, repeats: int, words: Ca
 
 def run_words(scene: str, tolerance: str) -> list[str]:
     """An impact at a speed that nobody used before: up to a tenth off the scene's."""
-    velocity = Scene.load(scene).striker.velocity * random.SystemRandom().uniform(0.9, 1.1)
+    velocity = Scene.load(scene).velocity * random.SystemRandom().uniform(0.9, 1.1)
     return ["run", scene, "--tolerance", tolerance, "--set", f"striker.velocity={velocity!r}"]
 
 
@@ -188,7 +188,7 @@ def sweeps(repeats: int) -> Iterator[Ratio]:
             with tempfile.TemporaryDirectory() as folder:
                 file = Path(folder) / "sweep.toml"
                 draws = f"[draws]\ncount = {count}\nseed = {random.SystemRandom().randrange(10**6)}\n"
-                velocity = Scene.load(scene).striker.velocity
+                velocity = Scene.load(scene).velocity
                 draws += f'"striker.velocity" = {{ log_uniform = [{0.5 * velocity}, {2.0 * velocity}] }}\n'
                 file.write_text(f'name = "s"\nscene = "{scene}"\nmethods = ["{method}"]\n{draws}', encoding="utf-8")
                 imports = child(["-c", IMPORTS])[1]

@@ -99,6 +99,7 @@ def test_a_cylinder_has_no_half_space_to_start_from() -> None:
     assert gained == pytest.approx(2.0 * np.log(1e3), rel=1e-3)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("profile", PROFILES, ids=lambda one: one.label)
 def test_thin_layers_come_near_their_limit(profile: Profile) -> None:
     thin = curve(profile, "sliding", None, ENDS)

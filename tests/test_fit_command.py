@@ -174,16 +174,17 @@ def test_all_laws_have_their_own_parameters(curve: Path, body: Path, capsys: pyt
     assert "--peak: with --law all each law has its own; accepted: --free touch, --fix" in capsys.readouterr().err
 
 
+@pytest.mark.family
+@pytest.mark.parametrize("law", ["jankowski", "kelvin", "hunt_crossley", "impact_bilinear"])
 def test_the_gap_of_the_scene_stays_in_every_line(
-    curve: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    law: str, curve: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """It belongs to the bodies, and not to the law that the scene happens to name."""
     body = tmp_path / "gap.toml"
     body.write_text(BODY + LAW + "gap = 0.004\n", encoding="utf-8")
-    for law in ("jankowski", "kelvin", "hunt_crossley", "impact_bilinear"):
-        out = ["--out", str(tmp_path / law), "--opensees"]
-        assert main(["fit", str(curve), "--law", law, "--scene", str(body), *out]) == 0
-        said = capsys.readouterr().out.splitlines()
-        names = [line for line in said if line.startswith(f"# {law}: ")][-1].split()[4:]
-        values = dict(zip(names, said[-1].split()[3:], strict=True))
-        assert float(values["gap"]) == -0.004
+    out = ["--out", str(tmp_path / law), "--opensees"]
+    assert main(["fit", str(curve), "--law", law, "--scene", str(body), *out]) == 0
+    said = capsys.readouterr().out.splitlines()
+    names = [line for line in said if line.startswith(f"# {law}: ")][-1].split()[4:]
+    values = dict(zip(names, said[-1].split()[3:], strict=True))
+    assert float(values["gap"]) == -0.004

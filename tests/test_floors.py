@@ -47,13 +47,24 @@ def tree(path: Path) -> ast.Module:
     return ast.parse(path.read_text(encoding="utf-8"), str(path))
 
 
+@cache
+def nodes(path: Path) -> tuple[ast.AST, ...]:
+    """All of a file, for every test that asks."""
+    return tuple(ast.walk(tree(path)))
+
+
 def sources(*folders: str) -> list[Path]:
     return sorted(path for folder in folders for path in (ROOT / folder).rglob("*.py"))
 
 
-def modules_imported(path: Path) -> Iterator[str]:
+@cache
+def modules_imported(path: Path) -> tuple[str, ...]:
     """Full names of all modules that a file imports, at any depth, written as a statement or as a call."""
-    for node in ast.walk(tree(path)):
+    return tuple(_imported(path))
+
+
+def _imported(path: Path) -> Iterator[str]:
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
@@ -117,7 +128,7 @@ def test_no_relative_import_leaves_its_package() -> None:
     leaving = {
         name(path)
         for path in sources(*PACKAGES)
-        for node in ast.walk(tree(path))
+        for node in nodes(path)
         if isinstance(node, ast.ImportFrom) and node.level >= len(path.relative_to(ROOT).parts)
     }
     assert not leaving
@@ -136,7 +147,7 @@ ROOMS = {  # lowest first
     ),
     "fe_contact": (
         "errors settings progress threads assembly contact schemes dynamics bodies steppers march targets solids "
-        "budget plastic indentation fields recovery waves large_strains reference methods studies manual commands cli "
+        "budget fields plastic indentation recovery waves large_strains reference methods studies manual commands cli "
         "__main__ __init__"
     ),
 }
@@ -164,7 +175,7 @@ def test_a_root_is_no_corridor(package: str) -> None:
 def imported_files(path: Path) -> set[str]:
     """Files of the suite, by name, that a file takes something from; a package's `__init__` hands on, no more."""
     found = set()
-    for node in ast.walk(tree(path)):
+    for node in nodes(path):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
@@ -175,7 +186,7 @@ def imported_files(path: Path) -> set[str]:
 
 def test_one_place_catches_everything() -> None:
     """A failure has a name; only the command line turns the rest into one line and exit code 1."""
-    places = [name(path) for path in sources(*PACKAGES) for node in ast.walk(tree(path)) if catches_all(node)]
+    places = [name(path) for path in sources(*PACKAGES) for node in nodes(path) if catches_all(node)]
     assert places == ["fe_contact/cli.py"]
 
 
@@ -199,7 +210,7 @@ def test_nothing_is_pickled() -> None:
     loading = {
         name(path)
         for path in everywhere
-        for node in ast.walk(tree(path))
+        for node in nodes(path)
         if isinstance(node, ast.keyword) and node.arg == "allow_pickle"
     }
     assert not importing | loading
@@ -278,7 +289,7 @@ def test_joints_are_typed() -> None:
     used = Counter(
         node.id
         for path in sources(*PACKAGES)
-        for node in ast.walk(tree(path))
+        for node in nodes(path)
         if isinstance(node, ast.Name) and node.id in ("ModuleType", "hasattr", "Any")
     )
     assert not used["hasattr"]

@@ -33,6 +33,7 @@ CHEAPEST_FIRST = (
     "identify",
     "sweeps",
     "transfer",
+    "yielding",
 )
 
 

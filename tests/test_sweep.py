@@ -36,7 +36,7 @@ name = "many"
 scene = "polymer-sphere"
 methods = ["hertz", "ting"]
 [axes]
-"striker.velocity" = { log = [0.005, 0.5], count = 20 }
+"striker.velocity" = { log = [0.005, 0.5], count = 10 }
 "target.material.C1" = { log = [1e3, 1e5], count = 5 }
 """
 
@@ -289,6 +289,7 @@ def test_what_did_not_converge_is_said_with_exit_3(empty: Path, capfd: pytest.Ca
 # charts
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(
     ("changed", "drawn"),
     [
@@ -391,15 +392,15 @@ def test_a_process_that_is_killed_is_replaced(tmp_path: Path) -> None:
     assert np.array_equal(table.values, fe_contact.sweep(source).values)
 
 
-def test_two_processes_and_dask_give_the_same_table(tmp_path: Path, whole: bytes) -> None:
+@pytest.mark.family
+@pytest.mark.parametrize("options", [(), ("--dask", "local")], ids=["processes", "dask"])
+def test_two_processes_and_dask_give_the_same_table(options: tuple[str, ...], tmp_path: Path, whole: bytes) -> None:
     (tmp_path / "many.toml").write_text(MANY)
-    for options in (("--jobs", 2), ("--jobs", 2, "--dask", "local")):
-        out = tmp_path / str(len(options))
-        process = begun(tmp_path / "many.toml", "--out", out, *options)
-        said, complained = process.communicate()
-        assert (process.returncode, complained) == (0, "")
-        assert f"written to {out}" in said
-        assert (out / "table.csv").read_bytes() == whole
+    process = begun(tmp_path / "many.toml", "--out", tmp_path / "out", "--jobs", 2, *options)
+    said, complained = process.communicate()
+    assert (process.returncode, complained) == (0, "")
+    assert f"written to {tmp_path / 'out'}" in said
+    assert (tmp_path / "out" / "table.csv").read_bytes() == whole
 
 
 def test_no_scheduler_at_an_address_is_said(empty: Path, capfd: pytest.CaptureFixture[str]) -> None:

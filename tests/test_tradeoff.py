@@ -195,7 +195,7 @@ def test_every_point_builds_its_operators_again(scene: Scene, tmp_path: Path, mo
     monkeypatch.setattr(study, "variations", lambda *_: iter([{"steps": 24}]))
     monkeypatch.setattr(study, "asked_laws", lambda *_: ())
     monkeypatch.setattr(study, "BRIEF", np.inf)
-    points = finite_elements(tradeoff(scene, {}, True, tmp_path, silent).points)
+    points = finite_elements(tradeoff(scene, {"tolerance": 1e-2}, True, tmp_path, silent).points)
     assert len(points) == 2
     assert len(built) == study.REPEATS * sum(p.work["factorizations"] for p in points)
 
@@ -218,6 +218,7 @@ def test_exact_laws_keep_their_bars_and_models_do_not_converge(found: Tradeoff) 
     assert found.verdict[0].startswith("use ting (")
 
 
+@pytest.mark.tenth
 def test_several_impacts_are_judged_by_their_first_contact(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Finer elements are the truth, as no law is exact; what later contacts lag is no error of the force."""
     monkeypatch.setattr(study, "variations", lambda *_: iter(()))
@@ -260,6 +261,7 @@ def test_the_chart_is_reproducible(tmp_path: Path, found: Tradeoff) -> None:
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in again]
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("decades", [0.05, 0.3, 0.9, 1.4, 1.6, 4.0, 9.0])
 @pytest.mark.parametrize("low", [1.3e-9, 0.07, 0.95])
 def test_tick_labels_do_not_collide(low: float, decades: float) -> None:

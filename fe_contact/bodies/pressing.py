@@ -29,7 +29,7 @@ BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 # but for the nearest share of it.
 GAP_REACH, GAP_REACH_OF_THICKNESS, GAP_NEAREST = 0.4, 0.6, 0.2
 GAP_POINTS = 16  # beyond the edge of a contact that has just begun to recede, or is steep: two elements
-GAP_DEGREE = 2  # of the polynomial fitted to the gap's power 2/3 beyond the edge
+FEWEST = 4  # places beyond the edge that tell no parabola of the gap's power 2/3
 STIFFER = 6.0  # penalty where the contact ends at a rim, over that where it may move: no edge asks for softness
 # Elements along a contact radius where the contact may end anywhere, over those where it may not; a line's pressure
 # ends as steeply, but less of its force lies there.
@@ -256,12 +256,28 @@ def contact_end(
     steep = float(points[min(int(rise.searchsorted((1.0 + GAP_REACH) * start)), points.size - 1)])
     reach = min(GAP_REACH * edge, GAP_REACH_OF_THICKNESS * thickness, max(min(touched, steep), fewest) - edge)
     outside = (points > edge + GAP_NEAREST * reach) & (points < edge + reach) & np.isfinite(rise)
-    if np.count_nonzero(outside) <= 2 * GAP_DEGREE or rise[outside][0] == rise[outside][-1]:  # the last: past a rim
+    if np.count_nonzero(outside) <= FEWEST or rise[outside][0] == rise[outside][-1]:  # the last: past a rim
         return edge
-    roots = np.polynomial.Polynomial.fit(rise[outside], np.maximum(gap[outside], 0.0) ** (2 / 3), GAP_DEGREE).roots()
-    real = np.real(roots[np.abs(np.imag(roots)) < 1e-9 * start])
-    near = real[np.abs(real - start) < rise[outside][-1] - start]
-    return _place(points, rise, float(near[np.argmin(np.abs(near - start))])) if near.size else edge
+    real = _zeros(rise[outside], np.maximum(gap[outside], 0.0) ** (2 / 3), 1e-9 * start)
+    near = [root for root in real if abs(root - start) < rise[outside][-1] - start]
+    return _place(points, rise, min(near, key=lambda root: abs(root - start))) if near else edge
+
+
+def _zeros(places: Array, values: Array, rounding: float) -> list[float]:
+    """Where the parabola nearest to values (n,) at places (n,), ascending, is zero: up to two places.
+
+    A pair that is complex by less than the rounding is one real place.
+    """
+    middle, half = 0.5 * float(places[0] + places[-1]), 0.5 * float(places[-1] - places[0])
+    share = (places - middle) / half
+    powers = np.stack([np.ones_like(share), share, share * share], axis=1)
+    constant, slope, bend = np.linalg.lstsq(powers, values, share.size * np.finfo(float).eps)[0].tolist()
+    square = slope * slope - 4.0 * bend * constant
+    if square < 0.0:
+        apart = half * math.sqrt(-square) / (2.0 * abs(bend))
+        return [middle - half * slope / (2.0 * bend)] if apart < rounding else []
+    larger = -0.5 * (slope + math.copysign(math.sqrt(square), slope))  # the sum of what has one sign
+    return [middle + half * over / under for over, under in ((larger, bend), (constant, larger)) if under]
 
 
 def _place(points: Array, rise: Array, value: float) -> float:

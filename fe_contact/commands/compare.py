@@ -24,7 +24,7 @@ def execute(args: argparse.Namespace) -> int:
     measured = None if args.measured is None else read_curve(args.measured)
     remarks = () if measured is None else check_curve(measured, scene, str(args.measured))
     run = base.StudyRun.of(args, "compare", scene.name)
-    if scene.model.inertia:
+    if scene.model.inertia or scene.model.plasticity:
         solved, reference = None, simulate(scene, "fe", given, progress=run.progress)
     else:
         scene.check_single("compare")

@@ -14,6 +14,7 @@ from lumped.scene.scene import Scene
 from lumped.schema import Table
 
 if TYPE_CHECKING:  # finite elements are loaded when they are needed
+    from fe_contact.plastic.fields import PressedAgain
     from fe_contact.reference import Solved
 
 
@@ -69,12 +70,22 @@ def _weighed(result: Result) -> list[str]:
 def _write(args: argparse.Namespace, solved: Solved | None, result: Result, folder: Path) -> None:
     """The files of a result, and what else was asked for."""
     result.write_files(folder)
+    again = _pressed_again(result) if args.fields or args.plot else None
     if args.fields:
-        _write_fields(result.scene, solved, result, folder)
+        _write_fields(result, solved, again, folder)
     if args.plot:
         from fe_contact.studies.history_chart import plot_history
 
-        plot_history(result, folder, solved)
+        plot_history(result, folder, solved, None if again is None else again.dent)
+
+
+def _pressed_again(result: Result) -> PressedAgain | None:
+    """The body at the largest force and at the end, where it yields by finite elements."""
+    if result.method != "fe" or not result.model.plasticity:
+        return None
+    from fe_contact.plastic.fields import PressedAgain
+
+    return PressedAgain.of(result.scene, result)
 
 
 def _check(args: argparse.Namespace, scene: Scene) -> None:
@@ -86,8 +97,6 @@ def _check(args: argparse.Namespace, scene: Scene) -> None:
     from fe_contact.fields import check_fields
     from fe_contact.reference import with_waves
 
-    if scene.model.plasticity:
-        raise BadInput(Fault("--fields", "", "not with model.plasticity in this version; cure: leave it out"))
     if scene.model.finite:
         reason = "finite: no fields of large strains in this version; accepted with --fields: small"
         raise BadInput(Fault(scene.source, "model.kinematics", reason))
@@ -95,20 +104,22 @@ def _check(args: argparse.Namespace, scene: Scene) -> None:
     if scene.model.inertia and (with_waves(scene).write_fields is None or scene.striker_material is not None):
         reason = f"{scene.target.name}: accepted with --fields and model.inertia: half_space, its striker rigid"
         raise BadInput(Fault(scene.source, "target.shape", reason))
-    if not scene.model.inertia:
+    if not (scene.model.inertia or scene.model.plasticity):
         check_fields(scene)
 
 
-def _write_fields(scene: Scene, solved: Solved | None, result: Result, where: Path) -> None:
+def _write_fields(result: Result, solved: Solved | None, again: PressedAgain | None, where: Path) -> None:
     from fe_contact.fields import write_fields
     from fe_contact.reference import with_waves
 
-    if solved is None:
-        written = with_waves(scene).write_fields
+    if again is not None:
+        again.write_fields(result.quantities["peak_time"].value or 0.0, where)
+    elif solved is None:
+        written = with_waves(result.scene).write_fields
         assert written is not None  # see _check
-        written(scene, result, where)
+        written(result.scene, result, where)
     else:
-        write_fields(scene, solved.certified, where)
+        write_fields(result.scene, solved.certified, where)
 
 
 MEMBER = base.Command(

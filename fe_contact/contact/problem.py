@@ -17,13 +17,14 @@ rounding, is reported too.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sparse
-from scipy.linalg.lapack import dgetrf, dgetrs, dposv
+from scipy.linalg.lapack import dgetrf, dgetrs, dpotrf, dpotrs
 
 from fe_contact.assembly.cache import Store
 from fe_contact.assembly.forms import Array, Matrix
@@ -62,12 +63,12 @@ class PressedSurface:
         """Stiffness with springs (q,) at the points, (n, n), in the order of columns that LAPACK needs."""
         return np.asarray(self.stiffness + (self._squares @ springs).reshape(self.stiffness.shape)).T
 
-    def gaps(self, springs: Array, overlaps: Array) -> Array:
-        """What is left of overlaps (q, m) where springs (q,) stand between the surfaces."""
+    def gaps(self, springs: Array) -> Callable[[Array], Array]:
+        """What is left of any overlap (q,) where springs (q,) stand between the surfaces."""
         if self.compliance is not None:
-            return _between_points(self.compliance, springs, overlaps)
-        pushed = self.trace.T @ (springs[:, None] * overlaps)
-        return overlaps - self.trace @ solved(self.held(springs), pushed)
+            return _between_points(self.compliance, springs)
+        solve = factorised(self.held(springs))
+        return lambda overlap: np.asarray(overlap - self.trace @ solve(self.trace.T @ (springs * overlap)))
 
     def work(self, forces: Array) -> float:
         """Of forces (q,) at the points on the displacement that they cause."""
@@ -127,18 +128,23 @@ class PressedSurface:
         return sparse.csr_matrix(entries, shape=(nodes * nodes, points))
 
 
-def _between_points(compliance: Array, springs: Array, overlaps: Array) -> Array:
+def _between_points(compliance: Array, springs: Array) -> Callable[[Array], Array]:
     """By the forces of the springs: (1/k + C) forces = overlap where they stand, multiplied by the root of k."""
     acting = _those(springs)
-    root = np.sqrt(springs[acting])[:, None]
+    root = np.sqrt(springs[acting])
     if not root.size:
-        return overlaps
-    system = root * compliance[acting][:, acting] * root.T
+        return lambda overlap: overlap
+    system = root[:, None] * compliance[acting][:, acting] * root
     system[np.diag_indices(root.size)] += 1.0
-    scaled = solved(system.T, root * overlaps[acting])
-    gaps = overlaps - compliance[:, acting] @ (root * scaled)
-    gaps[acting] = scaled / root
-    return gaps
+    solve = factorised(system.T)
+
+    def left(overlap: Array) -> Array:
+        scaled = solve(root * overlap[acting])
+        gap = np.asarray(overlap - compliance[:, acting] @ (root * scaled))
+        gap[acting] = scaled / root
+        return gap
+
+    return left
 
 
 def _those(springs: Array) -> slice | npt.NDArray[np.intp]:
@@ -148,12 +154,12 @@ def _those(springs: Array) -> slice | npt.NDArray[np.intp]:
     return slice(acting[0], acting[-1] + 1) if whole else acting
 
 
-def solved(matrix: Array, right: Array) -> Array:
-    """Of a symmetric positive definite matrix, which it overwrites with its factors. Raises FloatingPointError."""
-    _, solution, failure = dposv(matrix, right, overwrite_a=True, overwrite_b=True)
+def factorised(matrix: Array) -> Callable[[Array], Array]:
+    """Solves with a symmetric positive definite matrix, which its factors overwrite. Raises FloatingPointError."""
+    factor, failure = dpotrf(matrix, overwrite_a=True, clean=False)
     if failure:
         raise FloatingPointError("the condensed stiffness lost its positive definiteness")
-    return np.asarray(solution)
+    return lambda right: np.asarray(dpotrs(factor, right)[0])
 
 
 @dataclass(frozen=True)
@@ -290,12 +296,19 @@ class _Once:
 
 
 def _once(problem: ContactProblem, touching: bytes) -> _Once:
-    springs = problem.penalty * problem.surface.weights * np.frombuffer(touching, bool)
-    overlaps = np.column_stack([problem.overlap, np.ones_like(problem.overlap)])
-    gap, lifted = problem.surface.gaps(springs, overlaps).T
+    springs, left, lifted = _pressed(problem.surface, problem.penalty, touching)
+    gap = left(problem.overlap)
     given = problem.yielding * springs
     retreat = float(given @ gap) / (1.0 + float(given @ lifted))
     return _Once(gap - retreat * lifted, retreat, springs)
+
+
+@lru_cache(maxsize=1)  # where a step's second solve begins its first one ended
+def _pressed(surface: PressedSurface, penalty: float, touching: bytes) -> tuple[Array, Callable[[Array], Array], Array]:
+    """Springs (q,), what they leave of any overlap, and of a striker moved by one."""
+    springs = penalty * surface.weights * np.frombuffer(touching, bool)
+    left = surface.gaps(springs)
+    return springs, left, left(np.ones_like(springs))
 
 
 def _answer(surface: PressedSurface, penalty: float, touching: bytes) -> _Answer:
@@ -307,7 +320,7 @@ def _answer(surface: PressedSurface, penalty: float, touching: bytes) -> _Answer
 
 def _answered(surface: PressedSurface, penalty: float, touching: bytes) -> _Answer:
     springs = penalty * surface.weights * np.frombuffer(touching, bool)
-    left = np.eye(len(springs)) - surface.trace @ solved(surface.held(springs), surface.trace.T * springs)
+    left = np.eye(len(springs)) - surface.trace @ factorised(surface.held(springs))(surface.trace.T * springs)
     lifted = left.sum(axis=1)
     off = np.abs(1.0 - surface.displaced(springs * lifted) - lifted).max()
     return _Answer(left, lifted, springs, float(springs @ lifted), bool(off <= TRUSTED * RESIDUAL))

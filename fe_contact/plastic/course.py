@@ -7,7 +7,8 @@ deeper than asked; two meshes then differ by their trends, and a third of their 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping, Set
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Generic, NamedTuple, TypeVar
@@ -15,6 +16,7 @@ from typing import Generic, NamedTuple, TypeVar
 import numpy as np
 
 from fe_contact.assembly.forms import Array, check_compressible
+from fe_contact.budget.refine import Growth, missing
 from fe_contact.budget.variation import SAFETY
 from fe_contact.plastic.ground import Ground, Sizes, yielding_of
 from fe_contact.plastic.path import ELASTIC_RATIO, Presser, Station
@@ -36,12 +38,21 @@ SMALLEST = 1.5e-3  # contact over the widest one: no mesh is finer
 SHALLOWEST = 1e-6  # depth of the first step over the largest: no mesh is finer
 FORGOTTEN = 0.3  # of the shallowest depth, the first step of what flows from the touch on: the next ones forget it
 BISECTIONS = 60  # work
-ELEMENTS = 9.0  # along the contact radius, at tolerance 1e-3
-RIM_ELEMENTS = 2.0  # the same under a rim, which the mesh is refined to
+ELEMENTS = 7.0  # along the contact radius at the surface, at tolerance 1e-3, where a body begins to yield
+RIM_ELEMENTS = 1.4  # the same under a rim, which the mesh is refined to
+FEWEST_ELEMENTS, MOST_ELEMENTS, MOST_STEPS = 5.0, 32.0, 64  # to begin with; under a rim fewer
 ORDER = 3  # of the elements: they do not lock where flow keeps the volume
-STEPS = 32  # of a loading, over six e-folds of the depth or so, at tolerance 1e-3
-COARSEST, FINEST = 0.6, 2.0  # times as many elements and steps as at 1e-3, which follow the root of the tolerance
-FEWEST_STEPS = 4  # of a run that tells anything
+STEPS = 12  # of a loading there, over six e-folds of the depth or so
+FOLLOWING = 0.4  # power of the tolerance that elements and steps follow
+FURTHER, FURTHEST = 0.35, 40.0  # power of the depth over that of first yield that they follow too, up to there
+FEWEST_STEPS = 6  # of a run that tells anything
+# Where an edge crosses elements, and flow turns under it, bars fall with the settings to 1.5 to 2.
+GROWTH = {
+    "mesh": Growth(order=1.5, step=1.1, most=1.6, work=2.0),
+    "penalty": Growth(order=1.0, step=2.0, most=4.0, work=0.1),
+    "time_step": Growth(order=1.5, step=1.2, most=2.0, work=0.7),
+    "far_field": Growth(order=2.0, step=1.5, most=2.0, work=0.3),
+}
 DEFAULTS: Given = {
     "order": ORDER,
     "penalty": 4000.0,
@@ -51,14 +62,14 @@ DEFAULTS: Given = {
 }
 
 
-def settings(given: Given, rim: bool) -> Numerics:
-    """Settings of a body that yields: what the user left open."""
-    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
-    finer = min(max((DEFAULT_TOLERANCE / tolerance) ** 0.5, COARSEST), FINEST)
-    elements = (RIM_ELEMENTS if rim else ELEMENTS) * finer
-    steps = 4 * round(STEPS * finer / 4)
-    chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "steps": steps}
-    return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
+def finer(shares: Mapping[str, Array], numerics: Numerics, pinned: Set[str]) -> Numerics | None:
+    """Settings with which errors are predicted to meet the tolerance, None where nothing helps.
+
+    ``shares`` (n,) of the tolerance, by cause.
+    """
+    found = missing(shares, GROWTH, numerics, pinned)
+    found = found.varied(steps=4 * math.ceil(found.steps / 4))
+    return None if found == numerics else found
 
 
 def check_given(given: Given, source: str) -> None:
@@ -229,6 +240,17 @@ def _largest(holds: Callable[[float], bool], start: float, most: float = np.inf)
     return high
 
 
+def settings(given: Given, course: Course) -> Numerics:
+    """Settings of a body that yields: what the user left open. The further it yields, the finer."""
+    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    finer = (DEFAULT_TOLERANCE / tolerance) ** FOLLOWING * min(course.deepest / course.firm, FURTHEST) ** FURTHER
+    elements, fewest = (RIM_ELEMENTS, RIM_ELEMENTS) if course.rim else (ELEMENTS, FEWEST_ELEMENTS)
+    elements = min(max(elements * finer, fewest), MOST_ELEMENTS)
+    steps = max(4 * round(min(STEPS * finer, MOST_STEPS) / 4), 2 * FEWEST_STEPS)
+    chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "steps": steps}
+    return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
+
+
 @dataclass(eq=False)
 class PlasticLoading:
     """A loading step by step: places at their ends."""
@@ -242,7 +264,7 @@ class PlasticLoading:
     def of(cls, course: Course, numerics: Numerics, cut: bool = False) -> PlasticLoading:
         """Nothing is pressed yet."""
         ground = course.ground(numerics, cut)
-        return cls(course, numerics, Presser(ground, numerics.penalty, course.unit), [])
+        return cls(course, numerics, Presser(ground, numerics.penalty, course.unit, course.power - 1.0), [])
 
     def to(self, end: float) -> None:
         """On to a depth, m, whatever was reached. Raises PlasticFlowLost, MemoryTooSmall."""
@@ -282,8 +304,8 @@ def columns(places: list[Station]) -> Array:
 class Varied(NamedTuple, Generic[Told]):
     """What runs with different settings tell.
 
-    ``base`` has the finest mesh; of all others, ``same`` its steps, ``finer`` twice as many, ``fewer`` half as many;
-    as many as that ``softer`` with half the penalty, ``nearer`` with a mesh that ends half as far away.
+    On a coarser mesh ``same`` has the settings' steps, ``finer`` twice as many, ``fewer`` half as many; as many as that
+    ``base`` on the finest mesh, ``softer`` with half the penalty, ``nearer`` with a mesh that ends half as far away.
     """
 
     base: Told
@@ -299,7 +321,7 @@ class Varied(NamedTuple, Generic[Told]):
         coarse = coarser(numerics)
         few = coarse.varied(steps=max(coarse.steps // 2, FEWEST_STEPS))
         return cls(
-            base=run(numerics, False),
+            base=run(numerics.varied(steps=few.steps), False),
             same=run(coarse, False),
             finer=run(coarse.varied(steps=2 * coarse.steps), False),
             fewer=run(few, False),
@@ -312,16 +334,18 @@ class Varied(NamedTuple, Generic[Told]):
 
         ``onwards(one, fine, coarse, weight)``: one + weight (fine - coarse).
         """
-        return onwards(self.base, self.finer, self.same, 4.0 / 3.0)
+        return onwards(self.base, self._fine(onwards), self.fewer, 1.0)
+
+    def _fine(self, onwards: Callable[[Told, Told, Told, float], Told]) -> Told:
+        return onwards(self.finer, self.finer, self.same, 1.0 / 3.0)
 
     def pairs(self, onwards: Callable[[Told, Told, Told, float], Told]) -> dict[str, tuple[Told, Told, float]]:
         """By cause two answers, and the factor that makes an error of what they differ by."""
-        fine = onwards(self.finer, self.finer, self.same, 1.0 / 3.0)
         coarse = onwards(self.same, self.same, self.fewer, 1.0 / 3.0)
         return {
-            "mesh": (self.base, self.same, SAFETY),
+            "mesh": (self.base, self.fewer, SAFETY),
             "penalty": (self.fewer, self.softer, SAFETY),
-            "time_step": (fine, coarse, SAFETY / 3.0),
+            "time_step": (self._fine(onwards), coarse, SAFETY / 3.0),
             "far_field": (self.fewer, self.nearer, SAFETY / 3.0),
         }
 

@@ -53,12 +53,16 @@ class Sizes:
 
 @dataclass(frozen=True, eq=False)
 class Ground:
-    """What a rigid ``profile`` is pressed into; ``unit``: the widest contact, m; ``yielding`` in units of E*."""
+    """What a rigid ``profile`` is pressed into; ``unit``: the widest contact, m; ``yielding`` in units of E*;
+    ``elements`` (e,) of the ``basis``: those that may yield.
+    """
 
     encounter: Encounter
     yielding: Yielding
     outer: npt.NDArray[np.bool_]
     rim: bool
+    basis: Basis
+    elements: Indices
 
     @classmethod
     def of(cls, profile: Shape, unit: float, yielding: Yielding, poisson: float, sizes: Sizes) -> Ground:
@@ -68,7 +72,7 @@ class Ground:
         response = Plastic(yielding)
         body = CoredBody.of(meshed.core, response, meshed.stiffness, meshed.fixed, at_rest(shape))
         encounter = Encounter.of(body, meshed.skin, OnUndeformed(profile, unit))
-        return cls(encounter, yielding, meshed.outer, sizes.rim)
+        return cls(encounter, yielding, meshed.outer, sizes.rim, meshed.basis, meshed.elements)
 
     @property
     def rest(self) -> State:
@@ -109,7 +113,7 @@ def at_rest(shape: tuple[int, ...]) -> State:
 @dataclass(frozen=True, eq=False)
 class MeshedGround:
     """All of a body that is known before its strength: its core, whole stiffness for E* = 1, held degrees of freedom,
-    skin; which elements of the core are its outermost.
+    skin; which elements of the core are its outermost, and which of the basis are the core's.
     """
 
     core: Bulk
@@ -117,6 +121,8 @@ class MeshedGround:
     fixed: Indices
     skin: Skin
     outer: npt.NDArray[np.bool_]
+    basis: Basis
+    elements: Indices
 
 
 @cached
@@ -134,6 +140,8 @@ def _meshed(sizes: Sizes, poisson: float) -> MeshedGround:
         fixed=held(basis, along=("axis",), across=()),
         skin=skin,
         outer=distance[elements] > GUARD * CORE,
+        basis=basis,
+        elements=elements,
     )
 
 
@@ -143,7 +151,7 @@ def _mesh(sizes: Sizes) -> MeshTri:
     if sizes.rim:
         mesh = made(meshes.layer_under_rim, sizes.elements, far, far)
     else:
-        mesh = made(meshes.half_space_for_waves, sizes.elements, sizes.smallest, far)
+        mesh = made(meshes.half_space_under_contacts, sizes.elements, sizes.smallest, far)
     if sizes.cut:
         middles = mesh.p[:, mesh.t].mean(axis=1)
         mesh = mesh.restrict(np.flatnonzero(np.hypot(middles[0], middles[1]) < NEAR * far))

@@ -7,15 +7,16 @@ their integrals; every setting is varied once, and each of these runs has a grea
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
+from fe_contact.assembly.cache import cached
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.budget import CAUSES, Budget, TotalWork, shares_of
 from fe_contact.budget.curve import Curve
 from fe_contact.budget.plan import Plan
-from fe_contact.budget.refine import Finer, dominant
+from fe_contact.budget.refine import Finer
 from fe_contact.budget.variation import Variation
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.march.impact import balanced
@@ -26,6 +27,7 @@ from fe_contact.plastic.course import (
     Varied,
     check_given,
     columns,
+    finer,
     overlapping,
     settings,
 )
@@ -44,8 +46,8 @@ ROWS = 400  # of each half of an impact: the line between two errs by 1e-5 of th
 GRID = 500  # depths at which a loading is told
 SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting on
 DEGREE = 5  # of the polynomial through the forces of a release, to the power that makes them a line
-SPRINGING = 0.3  # of a release over those of the settings
-PILOT: Given = {"elements_per_contact": 3.0, "steps": 16}  # of the run that tells how deep an impact will go
+RELEASES, RELEASING = 6, 0.25  # steps of a release at least, and over those of a loading
+PILOT: Given = {"elements_per_contact": 5.0, "steps": 16}  # of the run that tells how deep an impact will go
 SOFTEST = 0.75  # of the yield strength, on what overlaps: hardly a lower force while a body yields
 
 
@@ -203,13 +205,18 @@ def _simpson(values: Array, step: float) -> Array:
     return step * np.concatenate([[first], inner, [last]])
 
 
-def answered(loading: PlasticLoading, known: Answered, deepest: float, power: float) -> Answered:
-    """What is ``known`` of a loading, and a release from the greatest depth of an impact, m."""
-    course, presser = loading.course, loading.presser
-    last = [place.depth < deepest / course.unit * (1.0 - 1e-6) for place in loading.ends].index(False) - 1
+def let_go(loading: PlasticLoading, deepest: float, power: float) -> list[Station]:
+    """Places of a release from the greatest depth of an impact, m, that one first."""
+    presser, depth = loading.presser, deepest / loading.course.unit
+    last = [place.depth < depth * (1.0 - 1e-6) for place in loading.ends].index(False) - 1
     before = loading.ends[last - 1] if last else presser.at_rest()
-    taken = list(presser.loaded(before, loading.ends[last], deepest / course.unit))
-    places = presser.released(taken[-1], max(8, round(SPRINGING * loading.numerics.steps)), power)
+    taken = list(presser.loaded(before, loading.ends[last], depth))
+    return presser.released(taken[-1], max(RELEASES, round(RELEASING * loading.numerics.steps)), power)
+
+
+def answered(loading: PlasticLoading, known: Answered, places: list[Station], power: float) -> Answered:
+    """What is ``known`` of a loading, and a release by its places."""
+    course, presser = loading.course, loading.presser
     springs, roots, shrunk = _release(places, power)
     scale, final = course.modulus * course.unit**3, places[-1]
     return replace(
@@ -241,26 +248,25 @@ def released_power(course: Course) -> float:
     return 1.0 if course.rim else 1.5
 
 
-@dataclass(frozen=True, eq=False)
-class Pilot:
-    """How an impact will go, about: greatest depth, m, and its march. It enters no value."""
+class Pilot(NamedTuple):
+    """How an impact will go, about: its course to the greatest depth, and its march. It enters no value."""
 
     course: Course
     march: March
 
-    @classmethod
-    def of(cls, scene: Scene) -> Pilot:
-        """By a coarse mesh and few steps. Raises NotReached."""
-        energy = 0.5 * scene.reduced_mass * scene.velocity**2
-        deepest = _at_most(scene, energy)
-        course = Course.of(scene, deepest, deepest)
-        numerics = settings(PILOT, course.rim)
-        loading = PlasticLoading.of(course, numerics)
-        loading.to(BEYOND * deepest)
-        power = released_power(course)
-        found = Rebound(Answered.of(loading), scene.reduced_mass, energy, power, course.power)
-        deepest = found.deepest
-        return cls(Course.of(scene, deepest, deepest), found.march(Work()))
+
+@cached
+def pilot(scene: Scene) -> Pilot:
+    """By a coarse mesh and few steps. Raises NotReached."""
+    energy = 0.5 * scene.reduced_mass * scene.velocity**2
+    deepest = _at_most(scene, energy)
+    course = Course.of(scene, deepest, deepest)
+    loading = PlasticLoading.of(course, settings(PILOT, course))
+    loading.to(BEYOND * deepest)
+    power = released_power(course)
+    found = Rebound(Answered.of(loading), scene.reduced_mass, energy, power, course.power)
+    deepest = found.deepest
+    return Pilot(Course.of(scene, deepest, deepest), found.march(Work()))
 
 
 def _at_most(scene: Scene, energy: float) -> float:
@@ -293,7 +299,7 @@ class Striking:
     @classmethod
     def of(cls, scene: Scene, chosen: Plan, progress: Progress) -> Striking:
         """Raises NotReached where not even a coarse mesh tells how deep it goes."""
-        return cls(scene, chosen, progress, Pilot.of(scene).course)
+        return cls(scene, chosen, progress, pilot(scene).course)
 
     def certified(self, numerics: Numerics) -> Budget:
         """The contact and its bars. Raises NotReached."""
@@ -321,8 +327,8 @@ class Striking:
         """Less of the causes that stand in the way."""
         if meets(found.quantities, found.numerics.tolerance):
             return Finer(None)
-        excess = {cause: float(shares_of(found, cause).max()) for cause in CAUSES}
-        return Finer(dominant(excess, found.numerics, self.chosen.pinned, least=1.0))
+        shares = {cause: shares_of(found, cause) for cause in CAUSES}
+        return Finer(finer(shares, found.numerics, self.chosen.pinned))
 
     def ledger(self, found: Budget) -> tuple[LedgerEntry, ...]:
         """What the model leaves out of the impact that was found."""
@@ -345,16 +351,16 @@ def plan(scene: Scene, given: Given) -> Plan:
     """Settings and ledger, by a coarse run. Raises NotReached."""
     check_kind(given, False, scene.source)
     check_given(given, scene.source)
-    pilot = Pilot.of(scene)
-    radius, known = float(pilot.march.radius.max()), Curve.of(pilot.march, Strike.of(scene)).quantities
-    duration, peak_time = known["duration"] or 0.0, known["peak_time"] or 0.0
+    known = pilot(scene)
+    radius, about = float(known.march.radius.max()), Curve.of(known.march, Strike.of(scene)).quantities
+    duration, peak_time = about["duration"] or 0.0, about["peak_time"] or 0.0
     numerics = replace(
-        settings(given, pilot.course.rim),
+        settings(given, known.course),
         contact_radius=radius,
         contact_time=duration,
         peak_share=peak_time / duration,
     )
-    peak = Peak(known["peak_force"] or 0.0, known["peak_depth"] or 0.0, radius, duration)
+    peak = Peak(about["peak_force"] or 0.0, about["peak_depth"] or 0.0, radius, duration)
     return Plan(numerics, frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
 
 
@@ -377,6 +383,14 @@ class Runner:
 
     def run(self, numerics: Numerics, cut: bool) -> YieldRun:
         """A loading beyond where the energy is spent, and a release from there. Raises NotReached."""
+        loading, known, places = self.pressed(numerics, cut)
+        found = answered(loading, known, places, released_power(self.course))
+        counts = loading.presser.counts
+        work = Work(len(loading.ends), counts.problems, counts.iterations)
+        return YieldRun(found, work, loading.presser.ground.unknowns)
+
+    def pressed(self, numerics: Numerics, cut: bool) -> tuple[PlasticLoading, Answered, list[Station]]:
+        """The same: loading, what is known by it, and places of the release."""
         self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")
         loading = PlasticLoading.of(self.course, numerics, cut)
         loading.to(BEYOND * self.course.deepest)
@@ -384,10 +398,7 @@ class Runner:
         deepest = self.motion(known).deepest
         if deepest > known.depth[-1]:
             raise MemoryTooSmall(self.course.unit)
-        found = answered(loading, known, deepest, released_power(self.course))
-        counts = loading.presser.counts
-        work = Work(len(loading.ends), counts.problems, counts.iterations)
-        return YieldRun(found, work, loading.presser.ground.unknowns)
+        return loading, known, let_go(loading, deepest, released_power(self.course))
 
     def motion(self, answer: Answered) -> Rebound:
         """The striker's, on what answers so."""

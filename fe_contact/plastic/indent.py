@@ -10,8 +10,8 @@ from typing import ClassVar
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.budget.refine import Finer, dominant, refine
-from fe_contact.plastic.course import BEYOND, Course, Forces, PlasticLoading, Varied, check_given, settings
+from fe_contact.budget.refine import Finer, refine
+from fe_contact.plastic.course import BEYOND, Course, Forces, PlasticLoading, Varied, check_given, finer, settings
 from fe_contact.progress import Progress
 from fe_contact.settings import Given, Numerics
 from lumped.indentation import Indentation
@@ -20,7 +20,7 @@ from lumped.scene.indenter import Indenter
 
 AROUND = 0.7  # in ln depth: a change counts as the error of its neighbours, for it may vanish where it changes sign
 DENSE = 80  # depths at which changes are read
-ROUNDS = 0  # of refinement: settings follow the tolerance, and a finer mesh is four times as dear
+ROUNDS = 1  # of refinement: a finer mesh is four times as dear
 KEPT = ("tolerance", "elements_per_contact", "order", "penalty", "steps", "far_radius")
 
 
@@ -46,7 +46,7 @@ def indent(indenter: Indenter, depths: tuple[float, ...], given: Given, progress
     asked = np.array(indenter.checked(depths))
     course = Course.of(indenter, float(asked.min()), float(asked.max()))
     way = YieldingWay(course, asked, frozenset(given) - {"tolerance"}, progress)
-    found, _ = refine(way, settings(given, course.rim))
+    found, _ = refine(way, settings(given, course))
     radius = found.pressed.contact_radius(asked)
     indenter.check_contacts(asked, radius)
     force = np.exp(np.interp(asked, found.depth, found.logarithm))
@@ -100,10 +100,10 @@ class YieldingWay:
 
     def finer(self, found: ForcesFound) -> Finer:
         """Less of what dominates, until the tolerance is met."""
-        errors = {cause: float(error.max()) for cause, error in found.budget.items()}
-        if sum(errors.values()) <= found.numerics.tolerance:
+        shares = {cause: error / found.numerics.tolerance for cause, error in found.budget.items()}
+        if np.sum(list(shares.values()), axis=0).max() <= 1.0:
             return Finer(None)
-        return Finer(dominant(errors, found.numerics, self.pinned))
+        return Finer(finer(shares, found.numerics, self.pinned))
 
     def _run(self, course: Course, numerics: Numerics, cut: bool) -> PlasticLoading:
         self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")

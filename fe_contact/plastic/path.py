@@ -84,11 +84,14 @@ class Counts(NamedTuple):
 
 @dataclass(eq=False)
 class Presser:
-    """Takes a ground from place to place; ``penalty`` in units of E* over contact radius; ``unit`` m, for words."""
+    """Takes a ground from place to place; ``penalty`` in units of E* over contact radius; ``unit`` m, for words;
+    ``spread``: the power of the depth that a contact radius is expected to grow with.
+    """
 
     ground: Ground
     penalty: float
     unit: float
+    spread: float = 0.5
     counts: Counts = field(default_factory=Counts)
 
     def at_rest(self) -> Station:
@@ -172,10 +175,10 @@ class Presser:
         return self.settled(state, depth, start, self.scaled(here, radius), radius)
 
     def grown(self, here: Station, depth: float) -> float:
-        """Contact radius to expect at a depth, as of a round profile."""
+        """Contact radius to expect at a depth."""
         if self.ground.rim:
             return 1.0
-        return min(here.radius * float(np.sqrt(depth / here.depth)), 1.0)
+        return min(here.radius * float((depth / here.depth) ** self.spread), 1.0)
 
     def scaled(self, here: Station, radius: float, share: float = 1.0) -> Array:
         """The pressure of a place on another radius, ``share`` of it."""

@@ -136,6 +136,11 @@ class Skin:
         bent = place if rolled is None else rolled.place(place)
         return cls(bent, weights, lagrange(share, order), vector_dofs(surface.dofs[nodes].T), size)
 
+    @cached_property
+    def products(self) -> Array:
+        """Of every two shape functions of a facet, (points, k k)."""
+        return np.asarray((self.trace[:, :, None] * self.trace[:, None]).reshape(len(self.trace), -1))
+
     def displacement(self, whole: Array) -> Array:
         """At the points, (2, facets, points), from that of the mesh (2 N,)."""
         local = whole[self.dofs]
@@ -213,12 +218,12 @@ class Touch:
 
     def matrices(self, convex: bool = False) -> Array:
         """Tangent of every facet, (facets, 2 k, 2 k); ``convex``: without what the striker's bend takes from it."""
-        springs, trace = self.stiffness * self.skin.weights * self.touching, self.skin.trace
+        springs, functions = self.stiffness * self.skin.weights * self.touching, self.skin.trace.shape[1]
         local = np.empty((*self.skin.dofs.shape, self.skin.dofs.shape[1]))
         for i in (0, 1):
             for j in (0, 1):
                 value = springs * self.normal[i] * self.normal[j]
                 if not convex:
                     value = value + self._pushed * self._bend[i, j]
-                local[:, i::2, j::2] = np.einsum("qa,fq,qb->fab", trace, value, trace, optimize=True)
+                local[:, i::2, j::2] = (value @ self.skin.products).reshape(-1, functions, functions)
         return local

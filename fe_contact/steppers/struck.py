@@ -205,7 +205,7 @@ class FixedStepper:
         """
         gap = self.body.displacement(state.memory.body) - self.contact.overlap(state.depth)
         touching = solution.signed_pressure > 0.0
-        return np.where(touching, 0.0, gap - np.median(gap[touching]))
+        return np.where(touching, 0.0, gap - _median(gap[touching]))
 
     def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
         """Places and pressure at the quadrature points."""
@@ -239,6 +239,12 @@ class FixedStepper:
         sunk = self.body.displacement(after.memory.body) - self.body.displacement(before.memory.body)
         reached = self.scale ** (operator.dimension - 2) * float(operator.weights @ (step.solution.pressure * sunk))
         return step.force * (after.depth - before.depth) - reached
+
+
+def _median(values: Array) -> float:
+    """Of some values (n,), as numpy's, which asks first what it was given."""
+    ordered = np.sort(values)
+    return 0.5 * float(ordered[(ordered.size - 1) // 2] + ordered[ordered.size // 2])
 
 
 def just_open(gap: Array, branches: int) -> SurfaceMemory:

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fe_contact.fields import Pressure, felt, peak_step
+from fe_contact.plastic.fields import Dented
 from fe_contact.reference import Solved
 from fe_contact.studies import style
 from fe_contact.studies.style import prefixed, readable, with_error
@@ -23,24 +24,29 @@ BAND_VISIBLE = 0.01  # share of the peak below which the band is a hair line and
 FLIGHT = -0.1  # share of the largest depth below which a body flies
 HIGHEST = 1.08  # of the axis of shares of the largest
 BELOW = 0.36  # share of that axis left to the names below a flight
+DENT_SHOWN = 2.5  # contact radii
 CAPTION_WIDTH = 78  # characters
 
 
-def plot_history(result: Result, where: Path, solved: Solved | None = None) -> tuple[Path, Path]:
+def plot_history(
+    result: Result, where: Path, solved: Solved | None = None, dented: Dented | None = None
+) -> tuple[Path, Path]:
     """Write ``history.svg`` and ``history.png`` into the folder ``where``; their paths.
 
-    The pressure at the peak is drawn where ``solved`` knows one, the march behind a quasi-static result.
+    The pressure at the peak is drawn where ``solved`` knows one, the march behind a quasi-static result; the surface
+    that is left where one is ``dented``.
     """
     with style.look():
         figure = Figure(figsize=(style.COLUMN, HEIGHT))
         grid = figure.add_gridspec(2, 2, height_ratios=(1.6, 1.0), hspace=0.5, wspace=0.42)
         grid.update(left=0.15, right=0.965, top=0.845, bottom=0.175)
         _force(figure.add_subplot(grid[0, :]), result)
-        if solved is None:
-            _motion(figure.add_subplot(grid[1, :]), result.history)
-        else:
-            _motion(figure.add_subplot(grid[1, 0]), result.history)
+        beside = solved is not None or dented is not None
+        _motion(figure.add_subplot(grid[1, 0] if beside else grid[1, :]), result.history)
+        if solved is not None:
             _pressure(figure.add_subplot(grid[1, 1]), _at_peak(solved))
+        if dented is not None:
+            _dent(figure.add_subplot(grid[1, 1]), dented, result.history)
         style.heading(figure, result.scene.name, [_subtitle(result)], 100)
         figure.text(0.023, 0.016, caption(result.scene), fontsize=6.0, color="#4d4d4d", linespacing=1.4)
         return style.save(figure, where, "history")
@@ -146,6 +152,21 @@ def _at_peak(solved: Solved) -> Pressure | None:
     """Pressure at peak force, None where the march tells none."""
     certified = solved.certified
     return felt(certified, peak_step(certified)) if certified.march.snapshots else None
+
+
+def _dent(axes: Axes, dented: Dented, history: History) -> None:
+    """The surface at the largest force and at the end, over the largest depth and contact radius."""
+    widest, deepest = np.nanmax(history.contact_radius), history.depth.max()
+    radius = dented.radius / widest
+    shown = radius <= DENT_SHOWN
+    for heights, colour, line, name in (
+        (dented.pressed, style.GREY, "--", "at the peak"),
+        (dented.left, style.BLUE, "-", "left"),
+    ):
+        axes.plot(radius[shown], heights[shown] / deepest, color=colour, linestyle=line, label=name)
+    axes.set(xlabel=f"radius / {readable(widest, 'm', 3)}", ylabel="height / depth", xlim=(0, DENT_SHOWN))
+    axes.legend(loc="lower right")
+    style.label(axes, "c", "indentation left")
 
 
 def _pressure(axes: Axes, pressure: Pressure | None) -> None:

@@ -13,10 +13,10 @@ from dataclasses import asdict, dataclass, field, replace
 
 from fe_contact.errors import faults_of
 from fe_contact.progress import Progress, silent
-from fe_contact.reference import check_target, expected, fe, plan
+from fe_contact.reference import check, expected, fe, plan
 from fe_contact.settings import DEFAULT_TOLERANCE, Given
 from lumped.errors import FeContactError
-from lumped.result.result import LedgerEntry, Quantity, Result
+from lumped.result.result import NO_KEY, LedgerEntry, Quantity, Result
 from lumped.scene.scene import Scene
 from lumped.schema import Table
 
@@ -124,7 +124,7 @@ def sufficient(scene: Scene, given: Given) -> SufficientModel:
             return SufficientModel(scene, tuple(taken), left)
         entry = max(needed, key=lambda one: one.size)
         if not entry.key:
-            left[entry.effect] = f"about {entry.size:.2g}, no larger model here"
+            left[entry.effect] = f"about {entry.size:.2g}, {NO_KEY}: {entry.note}"
             continue
         try:
             scene = _answered(scene.changed({entry.key: entry.value}), given)
@@ -137,6 +137,5 @@ def _answered(scene: Scene, given: Given) -> Scene:
     """The scene, where finite elements have an answer to it. Raises BadInput, NotReached."""
     with faults_of(scene):
         expected(scene, given)
-        if not scene.model.inertia:
-            check_target(scene)
+        check(scene, given)
     return scene

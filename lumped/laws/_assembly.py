@@ -117,34 +117,34 @@ def bars(fine: Answer, coarse: Answer, safety: float) -> tuple[dict[str, Quantit
             scale = 1.0 if name == "restitution" else abs(value)
             least = LEAST_SHARE * l2 + fine.rounding + ROUNDING_OF.get(name, 0.0)
             apart = max(abs(value - (other or 0.0)), least * scale)
-            error = safety * max(apart, _shift(fine, coarse, value) if name == "peak_time" else 0.0)
+            error = safety * (_shift(fine, coarse, value, apart) if name == "peak_time" else apart)
         quantities[name] = Quantity(value, error, UNITS[name])
     peak = fine.values["peak_force"] or 0.0
     return {name: quantities[name] for name in UNITS}, safety * (worst + fine.rounding * peak)
 
 
-def _shift(fine: Answer, coarse: Answer, peak_time: float) -> float:
+def _shift(fine: Answer, coarse: Answer, peak_time: float, least: float) -> float:
     """By how much the peak may lie elsewhere, s: where the force falls short of it by less than what the two differ by
     changes between here and there.
 
-    At most the whole contact; nothing at touch, and at an end.
+    Not sought any closer than the `least`; at most the whole contact; the least at touch, and at an end.
     """
     times = np.unique(fine.times)
     i, whole = int(np.searchsorted(times, peak_time)), float(times[-1])
     low, high = times[max(i - ROWS_AROUND, 0)], times[min(i + ROWS_AROUND, times.size - 1)]
     if not low < peak_time < high:
-        return 0.0
+        return least
     places = np.linspace(low, high, PLACES)
     fit = np.polynomial.polynomial.polyfit((places - peak_time) / whole, fine.columns.force(places), 2)
     bent = -2.0 * float(fit[2]) / whole**2
     if bent <= 0.0:
-        return whole
+        return max(whole, least)
     reach, shift = whole, float(high - low)
-    while shift < SHRUNK * reach:
+    while least < shift < SHRUNK * reach:
         reach = shift
         places = np.clip(np.linspace(peak_time - reach, peak_time + reach, PLACES), 0.0, whole)
         shift = math.sqrt(2.0 * float(np.ptp(fine.columns.force(places) - coarse.columns.force(places))) / bent)
-    return min(shift, whole)
+    return max(min(shift, whole), least)
 
 
 def assemble(

@@ -72,10 +72,11 @@ class Course:
         return found
 
     def _shared(self, times: Array) -> Iterator[tuple[HereditaryPhase, NDArray[np.bool_]]]:
-        """The phases, and which of the times each knows; where two meet the later one speaks."""
+        """The phases that know some of the times, and which; where two meet the later one speaks."""
         which = np.searchsorted(self._ends[:-1], times, side="right")
         for i, phase in enumerate(self.phases):
-            yield phase, which == i
+            if (inside := which == i).any():
+                yield phase, inside
 
     def _rested(self, times: Array) -> NDArray[np.bool_]:
         """Which of the times are those of a striker at rest."""

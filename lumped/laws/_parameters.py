@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import TypeVar
 
 from lumped.errors import BadInput, Fault
@@ -171,16 +172,21 @@ class Parameters:
 
     def _own_restitution(self) -> float:
         """The restitution of the scene's first impact by the exact law. Raises NotReached."""
-        from lumped import laws
-
         if self.scene.contact_modulus.is_elastic:
             return 1.0
         exact = OF_MATERIAL if self.scene.profile.fixed_radius is None else OF_FIXED_AREA
-        once = replace(self.scene, motion=replace(self.scene.motion, impacts=1))
-        e = laws.get(exact).of(once).simulate(once, OF_TOLERANCE).quantities["restitution"].value
+        e = restitution_by(exact, replace(self.scene, law=None, motion=replace(self.scene.motion, impacts=1)))
         if e is None:
             reason = f"missing, and the scene, which does not separate, has none; accepted: law.e for {self.name}"
             self.faults.append(Fault(self.scene.source, "law.e", reason))
             return 1.0
         self.taken.append(f"e = {e:.6g} of the scene by {exact}")
         return float(min(max(e, 1e-4), 1.0))
+
+
+@lru_cache(maxsize=16)  # all laws that are compared on a scene ask for it
+def restitution_by(name: str, scene: Scene) -> float | None:
+    """Of a scene by a law, None where it does not separate. Raises NotReached."""
+    from lumped import laws
+
+    return laws.get(name).of(scene).simulate(scene, OF_TOLERANCE).quantities["restitution"].value

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -236,6 +237,7 @@ def decaying(constant: float, amplitudes: Sequence[float], times: Sequence[float
     return value
 
 
+@lru_cache(maxsize=64)  # the same few materials are asked again and again in one impact
 def reciprocal(
     equilibrium: float, moduli: tuple[float, ...], times: tuple[float, ...], viscosity: float
 ) -> tuple[float, tuple[float, ...], tuple[float, ...], float]:

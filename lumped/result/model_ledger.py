@@ -281,9 +281,11 @@ def plasticity(scene: Scene | Indenter, model: Model, peak: Peak, share: float =
     pressure = 1.5 * peak.force / (math.pi * peak.contact_radius**2)
     over = pressure / (FIRST_YIELD * material.yield_strength)
     softer = FLOW * math.log(max(over, 1.0) ** 2) ** 2
-    built = not plasticity_faults("", replace(model, plasticity=True), scene.geometry)
-    change, note, key = share * softer / (1.0 + softer), f"p0/(1.6 Y) = {over:.3g}", "model.plasticity" if built else ""
-    return LedgerEntry(effect, "neglected", change, note, key, value=built or None)
+    change, note = share * softer / (1.0 + softer), f"p0/(1.6 Y) = {over:.3g}"
+    refused = plasticity_faults("", replace(model, plasticity=True), scene.geometry)
+    if refused:
+        return LedgerEntry(effect, "neglected", change, f"{note}; {refused[0]}")
+    return LedgerEntry(effect, "neglected", change, note, "model.plasticity", value=True)
 
 
 def adhesion(scene: Scene, peak: Peak) -> LedgerEntry:

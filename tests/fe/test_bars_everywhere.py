@@ -131,7 +131,8 @@ def early_end(random: np.random.Generator) -> Scene:
 
 
 KINDS: dict[str, Draw] = {draw.__name__: draw for draw in (ball, profile, flat, layer, ring, drop, early_end)}
-HALF_SPACES = ("ball", "profile")
+HALF_SPACES, MESHED = ("ball", "profile"), ("layer", "ring")
+SLOW = [pytest.param(kind, marks=pytest.mark.tenth) if kind in MESHED else kind for kind in KINDS]
 
 
 def tolerances(kind: str) -> tuple[float, ...]:
@@ -171,7 +172,7 @@ def compared(found: Result, exact: Result) -> tuple[dict[str, float], dict[str, 
     return errors | {"band": float(missed[worst])}, bars | {"band": float(band[worst])}
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", SLOW)
 def test_no_bar_is_too_small_and_nearly_all_converge(
     kind: str, campaign_size: Callable[[int], int], capsys: pytest.CaptureFixture[str]
 ) -> None:

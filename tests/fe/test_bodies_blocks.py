@@ -146,6 +146,7 @@ def test_the_bar_of_a_washer_with_a_narrow_hole_covers() -> None:
     assert abs(found.force[0] - found.modulus * finest.force[0]) <= found.force_error[0]
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("base", "outer_radius"), [("bonded", 0.1), ("sliding", 1.0)])
 def test_a_wide_washer_with_a_needle_hole_is_the_layer(base: str, outer_radius: float) -> None:
     """What a free rim far away takes falls with its distance squared if the base slides, else like e^-x."""

@@ -119,6 +119,7 @@ def test_free_cylinders_are_the_disc_that_its_inertia_balances(striker: Material
     np.testing.assert_allclose(found.contact_radius, half_width, rtol=2e-3)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("support", ["free", "held"])
 def test_the_bar_of_cylinders_covers(support: str) -> None:
     scene, depths = rollers(STIFF, support), (1e-5, 3.7e-5, 2.3e-4)

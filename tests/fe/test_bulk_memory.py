@@ -52,6 +52,7 @@ BODIES: dict[str, Recipe[ElasticBody]] = {
 K, G = Relaxation(2.0), Relaxation(0.2, (0.5, 0.9), (0.07, 0.6), 0.02)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", BODIES)
 def test_the_modes_have_the_compliance_at_every_ratio(name: str) -> None:
     body, rng = BODIES[name], np.random.default_rng(20261122)

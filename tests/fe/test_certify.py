@@ -171,6 +171,7 @@ def exact_laws_raise(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
     return arm
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("material", MATERIALS)
 def test_values_and_bars_come_from_finite_elements_alone(
     material: str, scene_of: Scenes, monkeypatch: pytest.MonkeyPatch, exact_laws_raise: Callable[[], None]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
+from fe_contact.bodies.pressing import contact_end
 from fe_contact.contact import problem as contact
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem, ContactSolution, PressedSurface, solve
@@ -369,3 +371,30 @@ def test_a_larger_overlap_of_the_same_form_presses_as_much_harder(name: str, see
         pressed = enforce(replace(problem, overlap=size * problem.overlap), start)
         assert pressed.converged
         np.testing.assert_allclose(pressed.pressure / size, one, atol=1e-9 * np.abs(one).max())
+
+
+@given(SEEDS)
+def test_the_set_where_one_solve_ends_and_the_next_begins_is_factorised_once(seed: int) -> None:
+    """As many factorisations as sets were tried, but the one that both solves share."""
+    problem = random_problem(seed)
+    problem, factorised = replace(problem, surface=replace(problem.surface, recurring=False)), list[int]()
+
+    def counted(matrix: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+        factorised.append(len(matrix))
+        return original(matrix)
+
+    original = contact.factorised
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(contact, "factorised", counted)
+        solution = corrected.enforce(problem, problem.overlap > 0.0)
+    assert solution.converged
+    assert len(factorised) == solution.iterations - 1
+
+
+@given(st.floats(0.2, 0.7), st.floats(-0.5, 0.5), st.floats(0.0, 1.0))
+def test_a_gap_tells_where_the_surfaces_part(edge: float, bend: float, guess: float) -> None:
+    """A gap like the 3/2 power of the distance from the edge, and a term more, from a pressure that ends nearby."""
+    points = (np.arange(200) + 0.5) / 200
+    distance = np.maximum(points - edge, 0.0)
+    gap = (distance + bend * distance**2) ** 1.5
+    assert contact_end(points, edge * (1.0 + 0.02 * guess), gap, points**2) == pytest.approx(edge, rel=1e-9)

@@ -80,6 +80,7 @@ def test_numbers_with_and_without_are_the_same_to_the_bit(name: str, disk: Path)
     assert bits(cold) == bits(warm) == bits(without)
 
 
+@pytest.mark.tenth
 def test_a_body_of_constant_bulk_modulus_is_known_too(disk: Path) -> None:
     scene = Scene.load("polymer-layer", {"target.material.constant": "bulk"})
     found = []

@@ -251,6 +251,7 @@ def test_the_trapezoidal_rule_loses_nothing_and_a_damped_scheme_only_what_oscill
 # contact
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", WAVE_SCHEMES.names)
 def test_a_mass_on_its_penalty_spring_bounces_by_half_a_sine(name: str) -> None:
     """Duration pi sqrt(m/k), restitution one: touch and separation lie within the steps, not at their ends."""

@@ -83,6 +83,7 @@ def first_order(nu: float) -> dict[str, float]:
     return {name: float(2.0 * math.pi * work / (4.0 / 9.0 * modulus * depth**3)) for name, work in works.items()}
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("nu", [-0.6, 0.0, 0.3, 0.49, *RNG.uniform(-0.5, 0.48, 2)])
 def test_the_ledgers_polynomials_are_what_finite_elements_find(nu: float) -> None:
     """Gap alone: (1-2nu)/((1-nu) pi) by Johnson's (3.41b), ISBN 978-0-521-34796-9."""

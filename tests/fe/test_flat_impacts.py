@@ -87,7 +87,7 @@ def test_a_covered_washer_on_a_sliding_base_is_a_prism(agree: Callable[..., None
     agree(fe_contact.run(washer, TOLERANCE), exact(replace(washer, shape=block, target=Plane())))
 
 
-@pytest.mark.family
+@pytest.mark.tenth
 @pytest.mark.parametrize("base", ["bonded", "sliding"])
 def test_the_bars_of_a_washer_cover_what_finer_settings_find(base: str, agree: Callable[..., None]) -> None:
     soft = Material(Relaxation(YOUNG, (0.5 * YOUNG,), (2e-3,)), 0.45)

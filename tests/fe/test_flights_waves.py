@@ -99,6 +99,7 @@ def test_no_touch_is_missed_and_finer_steps_find_it_when_it_comes(cases: list[Ca
     assert np.sum(coarse) / np.sum(fine) > 3.0
 
 
+@pytest.mark.tenth
 def test_a_flight_takes_as_many_steps_as_the_logarithm_of_its_length(cases: list[Case]) -> None:
     for case in cases:
         _, flights = landed(case, STEP, PATIENCE)

@@ -170,6 +170,7 @@ def test_on_a_half_space_without_waves_two_compliances_add() -> None:
     assert found == pytest.approx(known, rel=2e-4)
 
 
+@pytest.mark.tenth
 def test_what_is_left_in_the_ball_is_what_its_force_rings_in_its_modes() -> None:
     """Every mode for itself, by Duhamel's integral of the force at the pole: no march, no contact.
 

@@ -87,6 +87,7 @@ def test_the_share_grows_as_the_speed_to_three_fifths() -> None:
     assert math.log10(losses[1] / losses[0]) == pytest.approx(0.6, abs=0.006)
 
 
+@pytest.mark.tenth
 def test_without_density_it_is_the_impact_without_inertia() -> None:
     scene = Scene.load("polymer-sphere-waves", {"target.material.density": 1e-3})
     quantities = marched(scene, elements_per_contact=8.0, penalty=1000.0)[1].quantities
@@ -223,6 +224,7 @@ def test_a_target_without_waves_names_those_that_have_them(name: str) -> None:
         Scene.load(name, {"model.inertia": True})
 
 
+@pytest.mark.tenth
 def test_compared_with_laws_that_know_no_waves_the_ball_comes_back_slower(tmp_path: Path) -> None:
     """By the energy that is radiated, 1.5 per cent, half of which is the restitution's share."""
     coarse = ["--tolerance", "0.05", "--set", "numerics.steps=100", "--set", "numerics.elements_per_contact=4"]

@@ -154,6 +154,7 @@ SPREAD = Case(Sphere(0.01), HalfSpace(), 0.3, (1e-5, 5e-5, 2e-4))
 COARSER = {"mesh": "elements_per_contact", "penalty": "penalty", "far_field": "far_radius"}
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("case", [LAYERED, SPREAD], ids=["layer", "half-space"])
 @pytest.mark.parametrize("cause", COARSER)
 def test_a_setting_fourfold_coarser_shows_in_its_entry_and_is_covered(case: Case, cause: str) -> None:

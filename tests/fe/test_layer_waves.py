@@ -49,6 +49,7 @@ def test_without_density_it_is_the_impact_without_inertia(base: str, thickness: 
     assert 0.0 <= march.energy["radiated"] < 1e-6 * march.energy["in"]
 
 
+@pytest.mark.tenth
 def test_without_density_a_line_contact_is_the_one_without_inertia() -> None:
     scene = Scene.load("polymer-layer-line", {"target.material.density": 1e-3, "model.inertia": True})
     curve = marched(scene, elements_per_contact=8.0)[1]

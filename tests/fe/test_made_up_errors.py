@@ -139,6 +139,7 @@ def test_two_finest_runs_that_agree_by_chance_are_not_believed(settings: Numeric
         assert max(found.values()) <= 1.0, (size, cancelled, found)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("order", [0.6, 1.0, 1.5, 2.0])
 @pytest.mark.parametrize("step", [1.0 / STEPS, 1.0 / STEPS**2])
 def test_a_relaxation_as_long_as_the_steps_under_a_flat_end_is_covered_whatever_order_it_leaves(

@@ -119,6 +119,7 @@ def test_the_datum_lies_in_the_mesh_however_near_that_ends(uncovered: Callable[.
     assert not uncovered(found, simulate(laws.ting.of(scene), scene, 1e-6))
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("order", [3, 4])
 @pytest.mark.parametrize("shape", [Roller(0.01, 0.02), Sphere(0.01)])
 def test_half_as_many_elements_tell_what_the_rim_of_a_support_adds(shape: Roller | Sphere, order: int) -> None:
@@ -174,6 +175,7 @@ def test_the_pressure_between_meshes_that_do_not_match_is_smooth() -> None:
     assert np.abs(pressure.values[inside] / peak - ellipse).max() < 0.02
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", ["two-finite-spheres", "two-cylinders"])
 def test_two_bodies_kept_apart_exactly_press_alike(name: str) -> None:
     """Where moduli differ fivefold, what is solved at the nodes of both is what springs at the points find."""
@@ -184,7 +186,7 @@ def test_two_bodies_kept_apart_exactly_press_alike(name: str) -> None:
         assert first.value == pytest.approx(second.value, abs=(first.error or 0.0) + (second.error or 0.0))
 
 
-@pytest.mark.family
+@pytest.mark.tenth
 @pytest.mark.parametrize("pace", [1e-6, 1e6], ids=["relaxed", "instantaneous"])
 def test_two_bodies_of_constant_bulk_modulus_tend_to_elastic_ones(pace: float, agree: Callable[..., None]) -> None:
     """Relaxation far faster or far slower than the contact: elastic bodies of the moduli at that end."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,10 @@ import restitution_laws as published
 
 import fe_contact
 from fe_contact.indentation import indent
+from fe_contact.plastic.course import Course, settings
+from fe_contact.plastic.fields import PressedAgain
+from fe_contact.plastic.path import Presser
+from fe_contact.studies.compare.study import compare
 from lumped import Result, Scene
 from lumped.errors import BadInput
 from lumped.indentation import Indentation
@@ -21,9 +26,14 @@ from lumped.scene.tables import SceneReader
 from lumped.schema import Table
 
 YOUNG, STRENGTH, RADIUS, MASS = 2e11, 4e8, 0.005, 4e-3
-COARSE = {"elements_per_contact": 3.0, "steps": 12, "tolerance": 0.05}
+COARSE = {"elements_per_contact": 7.0, "steps": 12, "tolerance": 0.05}
+COARSEST = {"elements_per_contact": 5.0, "steps": 12, "tolerance": 0.1}
+CAMPAIGN = {3e-2: 20, 1e-2: 10, 1e-3: 4}  # impacts by tolerance
+WHOLE = sum(CAMPAIGN.values())
+QUARTER = 1.75  # times as many elements and steps, for a quarter of the tolerance
+SCATTER = 0.05  # of Johnson's restitution, an asymptote of what hardly springs back
 ROUNDED = {"shape": "rounded_punch", "flat_radius": 0.01, "edge_radius": 0.01}
-ABOUT = {"elements_per_contact": 5.0, "steps": 20, "tolerance": 0.01}
+ABOUT = {"elements_per_contact": 8.0, "steps": 16, "tolerance": 0.01}
 
 
 def modulus(nu: float) -> float:
@@ -68,27 +78,130 @@ def test_before_it_yields_it_is_elastic() -> None:
     assert np.all(found.force_error < 0.02 * hertz)
 
 
+def test_it_yields_first_under_the_axis() -> None:
+    """At p0 = 1.60 Y and 0.48 a deep, nu = 0.3: Johnson, Contact Mechanics (1985), 6.2; by a loading still elastic."""
+    indenter, _ = SceneReader("scene", tables()).indenter(Indenter)
+    depth = 0.95 * yield_depth(0.3)
+    course = Course.of(indenter, depth, depth)
+    ground = course.ground(settings({"elements_per_contact": 16.0}, course))
+    presser = Presser(ground, 4000.0, course.unit)
+    here = presser.first(depth / course.unit, math.sqrt(RADIUS * depth) / course.unit)
+    assert not np.any(here.state[1])
+    core = ground.encounter.body.core
+    stress = ground.yielding.flowed(core.gradient(here.displacement), *here.state).stress
+    mean = stress[[0, 3, 4]].mean(axis=0)
+    mises = np.sqrt(1.5 * ((stress[[0, 3, 4]] - mean) ** 2).sum(axis=0) + 3.0 * stress[1] ** 2)
+    places = np.asarray(ground.basis.global_coordinates())[:, ground.elements] / here.radius
+    near = (places[0] < 0.15) & (np.abs(places[1] + 0.5) < 0.25)
+    radius, below, high = places[0][near], -places[1][near], mises[near]
+    terms = np.column_stack([radius**2, *(below**k for k in range(5))])
+    axis = np.polynomial.Polynomial(np.linalg.lstsq(terms, high, rcond=None)[0][1:])
+    deepest = min(axis.deriv().roots().real, key=lambda root: abs(root - 0.5))
+    pressure = 1.5 * here.force / (np.pi * here.radius**2)
+    assert pressure / axis(deepest) == pytest.approx(first_yield(0.3)[0], rel=0.01)
+    assert first_yield(0.3)[0] == pytest.approx(1.60, rel=0.01)
+    assert deepest == pytest.approx(0.48, abs=0.01)
+
+
+@pytest.fixture(scope="module")
+def impact() -> Result:
+    return struck(6.0, ABOUT)
+
+
 @pytest.mark.tenth
-def test_an_impact_balances_its_energy_and_leaves_a_dent() -> None:
-    found = struck(6.0, ABOUT)
-    energy, brought = found.energy, 0.5 * MASS * found.scene.velocity**2
+def test_an_impact_balances_its_energy_and_leaves_a_dent(impact: Result) -> None:
+    energy, brought = impact.energy, 0.5 * MASS * impact.scene.velocity**2
     assert energy["in"] == pytest.approx(brought)
     assert abs(energy["residual"] or 0.0) < 2e-3 * brought
     assert 0.1 * brought < (energy["plastic"] or 0.0) < 0.3 * brought
-    assert energy["out"] == pytest.approx((found.quantities["restitution"].value or 0.0) ** 2 * brought, rel=1e-6)
-    assert found.recovery is not None
-    assert found.recovery.permanent == pytest.approx(found.history.depth[-1])
-    assert 0.1 < found.recovery.permanent / (found.quantities["peak_depth"].value or 1.0) < 0.4
-    restitution = found.quantities["restitution"].value or 0.0
-    assert restitution == pytest.approx(published.jackson_green_marghitu(6.0), abs=0.03)
-    assert published.thornton(6.0) < restitution < published.johnson(6.0)
+    assert energy["out"] == pytest.approx((impact.quantities["restitution"].value or 0.0) ** 2 * brought, rel=1e-6)
+    assert impact.recovery is not None
+    assert impact.recovery.permanent == pytest.approx(impact.history.depth[-1])
+    assert 0.1 < impact.recovery.permanent / (impact.quantities["peak_depth"].value or 1.0) < 0.4
+
+
+@pytest.mark.tenth
+def test_fields_fit_the_striker_and_show_the_dent(impact: Result) -> None:
+    """Pressure and force, surface and profile, plastic strain where theory begins it, and what is left on the axis."""
+    again = PressedAgain.of(impact.scene, impact)
+    fields, amount = again.fields(0.0)
+    r, z = fields.points.T
+    order = np.argsort(r[z == 0.0])
+    radius, pressure = r[z == 0.0][order], fields.pressure[z == 0.0][order]
+    force = np.trapezoid(2.0 * np.pi * radius * pressure, radius)
+    assert force == pytest.approx(impact.quantities["peak_force"].value, rel=0.02)
+    inside = (z == 0.0) & (r < 0.9 * fields.contact_radius)
+    overlap = fields.depth - impact.scene.profile.height(r[inside])
+    assert -fields.displacement[inside, 1] == pytest.approx(overlap, abs=2e-3 * fields.depth)
+    deepest = int(amount.argmax())
+    assert r[deepest] < 0.7 * fields.contact_radius
+    assert 0.2 < -z[deepest] / fields.contact_radius < 0.6
+    assert not amount[np.hypot(r, z) > 3.0 * fields.contact_radius].any()
+    dent = again.dent
+    assert impact.recovery is not None
+    assert -dent.left[0] == pytest.approx(impact.recovery.permanent, rel=0.05)
+    assert dent.left[-1] == pytest.approx(0.0, abs=0.02 * fields.depth)
+    assert dent.left.max() > 0.0, "what flowed piles up"
+
+
+@pytest.mark.tenth
+def test_elastic_laws_are_judged_by_what_they_leave_out(impact: Result) -> None:
+    found = compare(None, impact, ("hertz", "kelvin"))
+    for judgement in found.judgements:
+        assert judgement.exceeds("restitution")
+        assert judgement.errors["restitution"] == pytest.approx(1.0 - (impact.quantities["restitution"].value or 0.0))
+        assert (judgement.errors["peak_force"] or 0.0) > 0.0
+
+
+@pytest.mark.tenth
+def test_restitution_falls_among_the_published_ones(impact: Result, campaign_size: Callable[..., int]) -> None:
+    """Over V*: Thornton's cut-off pressure is too soft, Johnson's of full plasticity too firm until V* = 100; beyond,
+    all fall as V*^(-1/4) (Wu, Li and Thornton 2003, before large strains).
+    """
+    speeds = [6.0, 3.0, 20.0, 60.0, 240.0][: campaign_size(5)]
+    found = {speed: impact if speed == 6.0 else struck(speed, {"tolerance": 0.01}) for speed in speeds}
+    restitution = {speed: result.quantities["restitution"].value or 0.0 for speed, result in found.items()}
+    for speed, value in restitution.items():
+        assert published.thornton(speed) < value < published.johnson(speed) * (1.0 + SCATTER)
+        if speed <= 60.0:
+            assert value == pytest.approx(published.jackson_green_marghitu(speed), abs=0.03)
+    if 240.0 in restitution:
+        slope = math.log(restitution[240.0] / restitution[60.0]) / math.log(4.0)
+        assert slope == pytest.approx(-0.25, abs=0.06)
+
+
+@pytest.mark.tenth
+def test_bars_hold_against_finer_runs(
+    impact: Result, uncovered: Callable[..., dict[str, float]], campaign_size: Callable[..., int]
+) -> None:
+    """Random nu, hardening in two of three, depths to 30 times that of first yield: all runs that are as much finer as
+    a quarter of the tolerance asks for lie within the sum of both bars, and nineteen of twenty converge. A part of the
+    campaign is one impact, coarsely.
+    """
+    if campaign_size(WHOLE) < WHOLE:
+        assert uncovered(struck(6.0, COARSEST), impact) == {}
+        return
+    converged = []
+    for tolerance, count in CAMPAIGN.items():
+        random = np.random.default_rng(7)
+        for _ in range(count):
+            nu, hardening = float(random.uniform(0.2, 0.49)), float(random.uniform(0.0, 0.1)) * YOUNG
+            hardening *= float(random.random() < 0.7)
+            speed = float(np.exp(random.uniform(0.0, math.log(30.0)))) ** 1.25
+            one = struck(speed, {"tolerance": tolerance}, nu, hardening)
+            own = {key: QUARTER * one.numerics[key] for key in ("elements_per_contact", "steps")}
+            own |= {"tolerance": tolerance / 4.0, "steps": round(own["steps"])}
+            finer = struck(speed, own, nu, hardening)
+            assert uncovered(one, finer) == {}, (tolerance, nu, hardening, speed)
+            converged.append(one.converged)
+    assert np.mean(converged) >= 0.95
 
 
 @pytest.mark.tenth
 def test_forces_lie_among_the_published_ones_and_where_the_ledger_says() -> None:
     """Sphere on half-space: the published ones flatten spheres; mean pressure rises from 1.08 Y to 2.8 to 3.0 Y."""
     depth = np.array([1.5, 3.0, 6.0, 12.0, 24.0, 60.0])
-    found = pressed((depth * yield_depth(0.3)).tolist(), COARSE | {"steps": 20})
+    found = pressed((depth * yield_depth(0.3)).tolist(), COARSE | {"steps": 16})
     share = found.force / (4.0 / 3.0 * modulus(0.3) * math.sqrt(RADIUS) * found.depth**1.5)
     for law in (published.jackson_green, published.kogut_etsion):
         assert share == pytest.approx([law(one) for one in depth], rel=0.1)
@@ -96,15 +209,15 @@ def test_forces_lie_among_the_published_ones_and_where_the_ledger_says() -> None
     assert lost == pytest.approx(estimate / (1.0 + estimate), rel=0.3, abs=5e-3)
     mean = found.force / (np.pi * found.contact_radius**2 * STRENGTH)
     assert np.all(np.diff(mean) > 0.0)
-    assert 2.4 < mean[-1] < 3.1
+    assert 2.7 < mean[-1] < 3.0
 
 
 @pytest.mark.tenth
 def test_a_cone_is_self_similar() -> None:
     """No length: F ~ depth^2, whatever it flows."""
-    found = pressed([1e-6, 3e-6, 1e-5], ABOUT, shape="cone", angle=2.0)
-    share = found.force / found.depth**2
-    assert np.all(np.abs(share / share[-1] - 1.0) < (found.force_error / found.force) + 5e-3)
+    found = pressed([1e-6, 4e-6], COARSE, shape="cone", angle=2.0)
+    share, bar = found.force / found.depth**2, found.force_error / found.force
+    assert abs(share[0] / share[1] - 1.0) < bar.sum() < 0.05
 
 
 def test_what_cannot_yield_here_is_refused_by_name() -> None:

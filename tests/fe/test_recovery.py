@@ -75,6 +75,7 @@ def test_random_impacts_leave_what_tings_path_leaves(campaign_size: Callable[...
     assert np.max(ratios) <= 1.0
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(
     "profile",
     [

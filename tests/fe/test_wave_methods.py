@@ -71,6 +71,7 @@ def test_another_method_knows_what_it_errs_by(campaign_size: Callable[[int], int
                 check(scene, given, truth)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("end", "ratio"), [("fixed", 23.0), ("free", 31.0)])
 def test_a_light_striker_stays_until_the_echo_comes(end: str, ratio: float) -> None:
     """Its force falls below rounding long before; what throws it back is the echo alone."""

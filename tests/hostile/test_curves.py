@@ -12,6 +12,7 @@ import numpy as np
 from lumped import laws
 
 CURVES = 4_000
+FITTED = [name for name in laws.available() if name != "mdr"]  # which fits what ting does at a hundred times the cost
 SEED = 20260513
 LINES_OF_FITS = r"--law: |steel-ball\.toml: |.*curve\.csv: "
 CELLS = ("", "nan", "inf", "-inf", "x", "1e400", "-1", "0", "1_0", "0x1", "\x1b[31m", "1;2", '"', "\u0661", "9" * 5000)
@@ -75,7 +76,7 @@ def test_a_spoiled_curve_is_fitted_or_refused_by_name(
     for _ in range(hundredth(CURVES)):
         content = spoiled(rng)
         curve.write_bytes(content)
-        command = ["fit", str(curve), "--law", rng.choice(laws.available()), "--scene", "steel-ball"]
+        command = ["fit", str(curve), "--law", rng.choice(FITTED), "--scene", "steel-ball"]
         ended = run(command)
         wrong += [f"{fault}\n{content[:300]!r}" for fault in faults_of(ended, LINES_OF_FITS, solves=True)]
         codes.add(ended.code)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,9 @@ from scipy.special import beta
 
 from lumped import Model, Motion, Quantity, Scene, laws, simulate
 from lumped.laws import _hereditary
+from lumped.laws._assembly import Answer, bars
+from lumped.numbers import Array
+from lumped.result.history import End
 from lumped.result.result import UNITS, meets
 from lumped.scene.tables import LawChoice
 
@@ -228,3 +231,33 @@ def test_what_creeps_counts_no_energy_as_stored() -> None:
     energy = simulate(laws.correspondence.of(scene), scene, 1e-3).energy
     assert energy["stored"] == 0.0
     assert energy["in"] == pytest.approx(energy["out"] + energy["viscous"], rel=1e-9)
+
+
+@dataclass(frozen=True)
+class Pushed:
+    """The force 1 - (t - 1)^2 + by t, N; ``asked`` keeps how often it was told."""
+
+    by: float
+    asked: list[int]
+
+    def __call__(self, times: Array) -> Array:
+        return np.array([times, times, self.force(times), times])
+
+    def force(self, times: Array) -> Array:
+        self.asked.append(times.size)
+        return np.asarray(1.0 - (times - 1.0) ** 2 + self.by * times)
+
+
+def test_a_peak_is_sought_no_closer_than_two_integrations_place_it() -> None:
+    """What they differ by may shift the peak by twice its slope: where they lie farther apart nothing more is asked."""
+    asked, slope = dict[float, int](), 1e-4
+    for apart in (0.0, 1e-3):
+        counts, values = list[int](), dict.fromkeys(UNITS, 1.0)
+        fine, coarse = (
+            Answer(np.linspace(0.0, 2.0, 41), Pushed(by, counts), {**values, "peak_time": time}, End.SEPARATED)
+            for by, time in ((0.0, 1.0), (slope, 1.0 + apart))
+        )
+        bar = bars(fine, coarse, 1.0)[0]["peak_time"].error
+        assert bar == pytest.approx(apart or 2.0 * slope, rel=0.1)
+        asked[apart] = len(counts)
+    assert asked[1e-3] <= 9 < asked[0.0]

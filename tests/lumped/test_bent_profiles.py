@@ -133,6 +133,7 @@ def test_a_table_of_a_sphere_answers_as_the_sphere_to_second_order() -> None:
     assert off(81) < 0.35 * off(41)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("shape", [SphereCone(RADIUS, 19.7), TABLE], ids=lambda shape: shape.name)
 def test_ting_and_the_springs_agree(shape: Shape, impact: Callable[..., Scene]) -> None:
     scene = impact(0.5, (0.5,), (1.0,), shape=shape)

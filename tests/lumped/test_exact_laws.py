@@ -68,6 +68,7 @@ def agree(exact: Result, row: Result, tolerance: float = 1e-6) -> None:
     assert apart <= 1.5 * tolerance * np.sqrt(np.trapezoid(force**2, times))
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("case", CASES)
 def test_ting_and_the_spring_row_agree(case: str, impact: Callable[..., Scene]) -> None:
     agree(*both(impact(**CASES[case])))
@@ -261,6 +262,7 @@ def test_the_first_row_is_the_touch(law: str, case: str, impact: Callable[..., S
     assert (history.time[0], history.depth[0], history.velocity[0]) == (0.0, 0.0, scene.velocity)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("law", [laws.ting, laws.correspondence], ids=["ting", "correspondence"])
 @pytest.mark.parametrize("case", ["sls", "slow sls", "three terms", "kelvin-voigt", "all at once", "deep"])
 def test_the_bars_cover_the_poorer_of_the_two_integrations_too(

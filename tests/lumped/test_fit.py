@@ -60,6 +60,7 @@ def test_every_law_of_two_masses_is_among_these() -> None:
     assert with_numbers == set(TRUTHS)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("law", ["correspondence", "ting"])
 @pytest.mark.parametrize(
     ("truth", "fixed"),
@@ -102,6 +103,7 @@ def test_parameters_come_back_at_any_scale(campaign_size: Callable[[int], int]) 
         assert [ours[name] for name in numbers] == pytest.approx([theirs[name] for name in numbers], rel=1e-6)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(
     ("material", "begin"),
     [

@@ -342,6 +342,7 @@ def test_a_flight_that_outlasts_the_end_time_is_not_followed_to_its_touch(share:
     assert len(laws.get("hertz").of(case).simulate(case, 1e-6).contacts) == (2 if share > 1.0 else 1)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("name", ["linear_spring", "hertz"])
 def test_an_elastic_bounce_never_tires(name: str) -> None:
     case = Scene(None, MASS, VELOCITY, law=LawChoice(name, {"k": K}), model=Model(gravity=9.81), motion=Motion(50, 1e3))

@@ -164,7 +164,7 @@ def sound(rng: np.random.Generator) -> Iterator[tuple[Scene, Curve]]:
 
 def test_sound_curves_pass(campaign_size: Callable[..., int]) -> None:
     curves, refused = sound(np.random.default_rng(SEED)), []
-    for _ in range(campaign_size(200, 20)):
+    for _ in range(campaign_size(200, 8)):
         scene, curve = next(curves)
         try:
             check_curve(curve, scene, scene.name)

@@ -225,6 +225,7 @@ def test_the_grid_is_whole() -> None:
     assert len(GRID) == 41
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("row", GRID, ids=lambda row: f"R1={row['R1']}-R2={row['R2_s']}")
 def test_the_steel_grid_is_reproduced(row: dict[str, str]) -> None:
     scene = steel(row)
@@ -244,6 +245,7 @@ def test_the_steel_grid_is_reproduced(row: dict[str, str]) -> None:
         assert value == pytest.approx(float(row[name]), rel=2e-7), name
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("row", GRID[3::8], ids=lambda row: f"R1={row['R1']}-R2={row['R2_s']}")
 def test_the_grid_s_time_of_ting_s_peak_is_a_row_of_its_own_table(row: dict[str, str]) -> None:
     # Force peaks before depth does, where the two laws are one: Ting's peak is Lee and Radok's, which the grid has to

@@ -111,7 +111,7 @@ def guessed(rng: np.random.Generator, table: dict[str, Any], free: tuple[str, ..
     return found
 
 
-@pytest.mark.family
+@pytest.mark.tenth
 def test_intervals_cover_as_often_as_they_say(campaign_size: Callable[..., int]) -> None:
     """Of 200 cases 85 to 95 % of the 90 % intervals hold the truth; of fewer as chance has it.
 

@@ -10,7 +10,8 @@ from typing import Any
 
 import pytest
 
-from lumped import BadInput, Motion, Scene, laws, simulate
+from lumped import BadInput, Motion, Result, Scene, laws, simulate
+from lumped.laws import mdr
 from lumped.scene.tables import LawChoice, read
 
 BARE: dict[str, Any] = {
@@ -190,3 +191,20 @@ def test_impacts_asked_for_are_waited_for(velocity: float) -> None:
     leaving = laws.jankowski.of(scene).simulate(scene, 1e-6)
     assert len(leaving.contacts) == 1
     assert leaving.message.startswith("1 of 4 impacts")
+
+
+def test_laws_that_take_their_restitution_from_the_material_ask_the_exact_law_once(
+    impact: Callable[..., Scene], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However many of them are compared on a scene, whichever of them the scene names."""
+    scene, asked = impact(0.31, (0.69,), (0.73,)), list[Scene]()
+
+    def counted(law: mdr.SpringRow, scene: Scene, tolerance: float) -> Result:
+        asked.append(scene)
+        return original(law, scene, tolerance)
+
+    original = mdr.SpringRow.simulate
+    monkeypatch.setattr(mdr.SpringRow, "simulate", counted)
+    made = [laws.get(name).of(one) for name in DAMPED for one in (scene, replace(scene, law=LawChoice(name, {})))]
+    assert len(made) == 2 * len(DAMPED) > 10
+    assert len(asked) == 1

@@ -177,6 +177,7 @@ def test_punch_is_linear_and_its_pressure_carries_the_force(punch: FixedArea) ->
         punch.pressure(0.0, punch.radius)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("profile", PROFILES, ids=name)
 def test_bonded_layer_stiffens_with_nu_and_is_stiffer_than_a_sliding_one(profile: HalfSpaceCurve) -> None:
     bonded = [float(LayerCurve(profile, PointLayer(H, nu)).force(0.2 * H)) for nu in (0.0, 0.2, 0.4, 0.49, 0.4999, 0.5)]

@@ -183,6 +183,7 @@ def test_strain_is_that_of_the_body_where_it_is_flattened_as_a_whole() -> None:
         assert "gravity" not in found, "nothing that asks for a mass"
 
 
+@pytest.mark.family
 @pytest.mark.parametrize(("thickness", "confined"), [(1e-4, True), (1.0, False)])
 @pytest.mark.parametrize("nu", [0.3, 0.45])
 def test_a_layer_is_charged_with_how_it_confines(thickness: float, confined: bool, nu: float) -> None:

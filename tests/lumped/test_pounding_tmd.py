@@ -254,6 +254,7 @@ def test_the_force_pushes_the_damper_back_and_never_pulls(paper: PtmdResult) -> 
     assert motion.depth == pytest.approx(np.maximum(np.abs(stroke) - GAP, 0.0), abs=1e-15)
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("memory", Memory)
 def test_a_mirrored_start_gives_the_mirrored_motion(memory: Memory) -> None:
     system = with_ring(lining(memory=memory))

@@ -32,6 +32,7 @@ def integrated(relaxation: Relaxation, strain: float, dashpots: np.ndarray, time
     return np.array([held(state) for state in found.y.T])
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("terms", [1, 3])
 def test_the_recovery_solves_the_equations_of_the_network(kind: tuple[float, float], terms: int) -> None:

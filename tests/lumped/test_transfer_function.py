@@ -53,6 +53,7 @@ def random_scene(impact: Build, seed: int) -> Scene:
     return impact(1.0, moduli, times, 0.05 * (seed % 2), nu=0.3, constant=("poisson", "bulk")[seed // 2 % 2])
 
 
+@pytest.mark.family
 @pytest.mark.parametrize("seed", range(8))
 def test_all_routes_lead_to_the_force_of_the_correspondence_law(impact: Build, seed: int) -> None:
     scene = random_scene(impact, seed)

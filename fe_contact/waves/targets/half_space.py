@@ -136,7 +136,7 @@ def write_fields(scene: Scene, result: Result, where: Path) -> Path:
     """
     peak_time = result.contacts[0]["peak_time"] if result.contacts else result.quantities["peak_time"].value
     fields, velocity = fields_at(scene, WaveNumerics(**result.numerics), peak_time or 0.0)
-    return written(fields, where, velocity)
+    return written(fields, where, {"velocity": velocity})
 
 
 def fields_at(scene: Scene, numerics: WaveNumerics, time: float) -> tuple[Fields, Array]:

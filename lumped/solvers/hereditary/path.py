@@ -74,8 +74,7 @@ class Path:
     def field(self, index: int, places: Array) -> tuple[Array, Array]:
         """One field and its derivative at places (n,)."""
         basis, piece = self._basis(places)
-        own = self.coefficients[:, index].T
-        rise = slopes(len(own)) @ own * (2.0 / np.diff(self.breaks))
+        own, rise = self.coefficients[:, index].T, self._rises[index]
         return (own[:, piece] * basis).sum(axis=0), (rise[:, piece] * basis).sum(axis=0)
 
     def curve(self, index: int, near: float) -> tuple[Curve, Curve]:
@@ -89,6 +88,12 @@ class Path:
             return lambda place: chebyshev_sum(series, (2.0 * place - low - high) / (high - low))
 
         return function(own.tolist()), function(rise.tolist())
+
+    @cached_property
+    def _rises(self) -> Array:
+        """The coefficients of all derivatives, (fields, N+1, m)."""
+        count = self.coefficients.shape[2]
+        return np.asarray(slopes(count) @ self.coefficients.transpose(1, 2, 0) * (2.0 / np.diff(self.breaks)))
 
     @cached_property
     def places(self) -> Array:

@@ -1,0 +1,109 @@
+"""Fields of a half-space that yields at the largest force, and the indentation left: its finest mesh once more.
+
+Stress and plastic strain live at the points of the elements: in each they are read by the plane nearest to them, and a
+node takes the mean of its elements. The fields end where nothing may yield, four contact radii away.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact.assembly.forms import Array, Basis, Indices
+from fe_contact.fields import Fields, subdivided, written
+from fe_contact.plastic.course import Course
+from fe_contact.plastic.ground import Ground
+from fe_contact.plastic.impact import Runner, pilot, released_power
+from fe_contact.plastic.path import Station, parting
+from fe_contact.progress import silent
+from fe_contact.settings import Numerics
+from lumped.result.result import Result
+from lumped.scene.scene import Scene
+
+STRESS = [0, 3, 4, 1]  # rr, zz, hoop, rz among those of a gradient
+
+
+@dataclass(frozen=True, eq=False)
+class Dented:
+    """Heights (n,), m, of the surface over its radius (n,), m: at the largest force, and ``left`` when it is over."""
+
+    radius: Array
+    pressed: Array
+    left: Array
+
+
+@dataclass(frozen=True, eq=False)
+class PressedAgain:
+    """A ``ground`` at the largest force, ``peak``, and at the end, ``left`` (2 N,) its displacement."""
+
+    course: Course
+    ground: Ground
+    peak: Station
+    left: Array
+
+    @classmethod
+    def of(cls, scene: Scene, result: Result) -> PressedAgain:
+        """With the settings that the result ended with. Raises NotReached."""
+        known, numerics = pilot(scene), Numerics(**result.numerics)
+        course = known.course.outgrown(numerics.contact_radius / float(known.march.radius.max()))
+        power = released_power(course)
+        loading, _, places = Runner(scene, course, silent).pressed(numerics, False)
+        before, last = places[-2:]
+        on = (last.depth - parting(before, last, power)) / (before.depth - last.depth)
+        left = last.displacement + on * (last.displacement - before.displacement)
+        return cls(course, loading.presser.ground, places[0], left)
+
+    @property
+    def dent(self) -> Dented:
+        """The surface, as far as the body may yield."""
+        basis, unit = self.ground.basis, self.course.unit
+        nodes = self._nodes
+        nodes = nodes[basis.doflocs[1, nodes] == 0.0]
+        nodes = nodes[np.argsort(basis.doflocs[0, nodes])]
+        heights = (unit * displacement[2 * nodes + 1] for displacement in (self.peak.displacement, self.left))
+        return Dented(unit * basis.doflocs[0, nodes], *heights)
+
+    @property
+    def _nodes(self) -> Indices:
+        return np.unique(self.ground.basis.element_dofs[:, self.ground.elements])
+
+    def fields(self, time: float) -> tuple[Fields, Array]:
+        """At the largest force, which is at a ``time``, s; and the amount of plastic strain at the points (n,)."""
+        ground, peak, unit = self.ground, self.peak, self.course.unit
+        basis, nodes = ground.basis, self._nodes
+        gradient = ground.encounter.body.core.gradient(peak.displacement)
+        stress = ground.yielding.flowed(gradient, *peak.state).stress[STRESS]
+        *stresses, amount = _at_nodes(basis, ground.elements, np.concatenate([stress, peak.state[1][None]]))
+        triangles = subdivided(basis).reshape(basis.nelems, -1, 3)[ground.elements].reshape(-1, 3)
+        place = basis.doflocs[:, nodes].T
+        touching = (place[:, 1] == 0.0) & (place[:, 0] <= peak.radius)
+        found = Fields(
+            time=time,
+            depth=unit * peak.depth,
+            contact_radius=unit * peak.radius,
+            points=unit * place,
+            triangles=np.searchsorted(nodes, triangles),
+            displacement=unit * peak.displacement.reshape(-1, 2)[nodes],
+            stress=self.course.modulus * np.stack(stresses, axis=1)[nodes],
+            pressure=self.course.modulus
+            * np.where(touching, np.interp(place[:, 0], ground.points, peak.pressure.ravel()), 0.0),
+            contact=touching.astype(np.int64),
+        )
+        return found, np.maximum(amount[nodes], 0.0)
+
+    def write_fields(self, time: float, where: Path) -> Path:
+        """Write ``fields.vtu``, see :mod:`fe_contact.fields`; its path."""
+        fields, amount = self.fields(time)
+        return written(fields, where, {"plastic_strain": amount})
+
+
+def _at_nodes(basis: Basis, elements: Indices, values: Array) -> Array:
+    """Values (k, e, points) of some elements at all nodes (k, N); zero where there is none."""
+    inside = np.column_stack([np.ones(basis.X.shape[1]), basis.X.T])
+    corners = np.column_stack([np.ones(len(basis.elem.doflocs)), basis.elem.doflocs])
+    local = values @ (corners @ np.linalg.pinv(inside)).T
+    dofs = basis.element_dofs[:, elements].T.ravel()
+    shared = np.maximum(np.bincount(dofs, minlength=basis.N), 1)
+    return np.stack([np.bincount(dofs, part.ravel(), basis.N) for part in local]) / shared
