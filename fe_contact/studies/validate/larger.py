@@ -75,7 +75,7 @@ def headline(found: Effects) -> Headline:
     beyond = [f"{scene}, {one.effect}" for scene, every in found.items() for one in every if exceeds(one)]
     said = (
         f"Larger models were run for {len(ratios)} effects: they change the peak force by {min(ratios):.2g} to "
-        f"{max(ratios):.2g} times what the ledger says, certainly by more in {named(beyond, MOST) or 'none'}."
+        f"{max(ratios):.2g} times what the ledger says; by more: {named(beyond, MOST) or 'none'}."
     )
     return Headline(DIFFERS if beyond else HOLDS, said)
 
@@ -120,13 +120,13 @@ LISTING = Listing(
         Column("key", "selected by"),
         Column("estimate", "estimated"),
         Column("change", "measured", "change_error"),
-        Column("change_over_estimate", "measured over estimated"),
+        Column("change_over_estimate", "over estimate"),
     ),
 )
 MEMBER = ReportPart(
     rank=15,
     title="Larger models",
-    question="Where a scene needs a larger model, does that model change what the ledger says it would?",
+    question="Where a scene needs a larger model, does that model change the force as much as the ledger says?",
     command="fe-contact validate --sections larger",
     make=make,
     quick="most scenes",
