@@ -29,6 +29,7 @@ from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import UNITS, Result, provenance, unmet
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Answered, Scene
+from lumped.shapes._block import Block
 
 DEPTHS = 10  # that tell the curve
 SHALLOWEST = 0.0144  # the least of them over the largest; below it lies a share of 2e-5 of a sphere's work
@@ -39,6 +40,9 @@ ROUNDS = 4  # work: of such enlargements
 SAMPLES = 160  # work: depths at which the polynomials are handed on
 SHARE = 1.0  # of the tolerance that the curve may err by: the bars of an impact are about as wide
 SECONDS = 3.0  # processor time of an impact to 1e-3, about: it ranks methods, no more
+DASHPOT = "a dashpot in parallel has no large strains in this version"
+ISOCHORIC = '"bulk": with large strains the whole stress relaxes in this version'
+BLOCK = "a block of large strains does not relax in this version"
 FINE_INTEGRATION = 1e-2  # of the tolerance
 
 
@@ -46,9 +50,17 @@ def check_impact(scene: Scene, given: Given) -> None:
     """Raise BadInput for an impact with large strains that is not built."""
     check_large(scene.source, scene.geometry, scene.model, given.get("enforcement", CORRECTED))
     faults, source = list[Fault](), scene.source
-    if not scene.geometry.material.young.is_elastic:
-        reason = "relaxes: an impact with model.kinematics = 'finite' is of an elastic body in this version"
-        faults.append(Fault(source, "target.material.law", f"{reason}; accepted: elastic, or kinematics = 'small'"))
+    geometry, material = scene.geometry, scene.geometry.material
+    if not material.young.is_elastic:
+        faults += [
+            Fault(source, key, f"{reason}; accepted: {cure}, or kinematics = 'small'")
+            for unlike, key, reason, cure in (
+                (material.young.viscosity > 0.0, "target.material.law", DASHPOT, "elastic, maxwell, sls or prony"),
+                (material.constant == "bulk", "target.material.constant", ISOCHORIC, '"poisson"'),
+                (isinstance(geometry.shape, Block), "striker.shape", BLOCK, "a striker with a profile"),
+            )
+            if unlike
+        ]
     if scene.motion.impacts > 1:
         reason = f"{scene.motion.impacts}: with model.kinematics = 'finite' one is followed; accepted: 1"
         faults.append(Fault(source, "motion.impacts", reason))

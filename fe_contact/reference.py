@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from fe_contact import large_strains
+from fe_contact import large_strains, relaxing_impact
 from fe_contact.assembly.forms import check_compressible
 from fe_contact.budget import plan as statics
 from fe_contact.budget.budget import CAUSES, Budget, Solution, shares_of
@@ -78,8 +78,13 @@ def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
         with faults_of(scene):
             flowed = _solved(scene, given, progress, yielding.Striking.of)
         return result_of(scene, flowed)
-    if scene.model.finite:
+    if scene.model.finite and scene.geometry.material.young.is_elastic:
         return large_strains.fe(scene, given, progress)
+    if scene.model.finite:
+        large_strains.check_impact(scene, given)
+        with faults_of(scene):
+            marched = _solved(scene, given, progress, relaxing_impact.RelaxingStrikes)
+        return result_of(scene, marched)
     if not scene.model.inertia:
         check_target(scene)
         solved = _solved(scene, given, progress, Statics.of)
@@ -106,6 +111,8 @@ def plan(scene: Scene, given: Given) -> Plan:
             return yielding.plan(scene, given)
         if scene.model.finite:
             large_strains.check_impact(scene, given)
+            if not scene.geometry.material.young.is_elastic:
+                return relaxing_impact.plan(scene, given)
         if not scene.model.inertia:
             return statics.plan(scene, given)
         check_kind(given, True, scene.source)
@@ -204,7 +211,8 @@ def expected(scene: Scene, given: Given) -> tuple[float, float]:
     with faults_of(scene):
         if scene.model.finite:
             large_strains.check_impact(scene, given)
-            return float(given.get("tolerance", DEFAULT_TOLERANCE)), large_strains.SECONDS
+            seconds = large_strains if scene.geometry.material.young.is_elastic else relaxing_impact
+            return float(given.get("tolerance", DEFAULT_TOLERANCE)), seconds.SECONDS
         if scene.model.inertia:
             target, chosen = with_waves(scene), plan(scene, given).numerics
             assert isinstance(chosen, WaveNumerics)

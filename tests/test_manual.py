@@ -35,6 +35,7 @@ CHEAPEST_FIRST = (
     "sweeps",
     "transfer",
     "yielding",
+    "large_strains",
 )
 
 
@@ -93,6 +94,13 @@ def test_every_page_is_in_the_menu_once_and_built(site: Path) -> None:
     assert {page for page, _, _ in examples()} <= {*CHEAPEST_FIRST} | {
         example.page for example in examples() if example.kind == "text"
     }
+
+
+def test_the_manual_is_small() -> None:
+    """Each picture loads at once on a slow line, and all pages are a small part of the package."""
+    sizes = {path: path.stat().st_size for path in HERE.iterdir() if path.is_file()}
+    assert max(size for path, size in sizes.items() if path.suffix == ".svg") <= 100_000
+    assert sum(sizes.values()) <= 1_500_000
 
 
 def test_no_link_leads_into_nothing_and_nothing_is_loaded_from_elsewhere(

@@ -43,7 +43,7 @@ FIRST = "start"
 # The menu: names of pages, those in Markdown beside this file or written of the code.
 MENU: Mapping[str, Sequence[str]] = {
     "Start here": ("start", "experiment", "exponents", "choosing"),
-    "Work": ("yielding", "sweeps", "identify", "transfer", "pounding", "others"),
+    "Work": ("yielding", "large_strains", "sweeps", "identify", "transfer", "pounding", "others"),
     "Look up": ("scenes", "keys", "commands", "running", "theory", "error_bars", "dictionary"),
     "Know": ("limits", "errata", "adding"),
 }

@@ -142,12 +142,14 @@ def _keys(numbers: Indices, free: int) -> Indices:
 @dataclass(frozen=True, eq=False)
 class CoredBody:
     """A ``core`` that answers by a ``response``; ``rest`` (n, n) stiffness of all else between ``rim`` nodes' (n,)
-    degrees of freedom; ``free`` those of the core that are not held.
+    degrees of freedom, and ``pull`` (n,) the forces that it bears undeformed, where it remembers; ``free`` degrees of
+    freedom of the core that are not held.
     """
 
     core: Bulk
     response: Response
     rest: Array
+    pull: Array
     rim: Indices
     free: Indices
 
@@ -155,7 +157,7 @@ class CoredBody:
     def whole(cls, core: Bulk, response: Response, fixed: Indices) -> CoredBody:
         """All of which answers by the response."""
         none = np.zeros(0, dtype=int)
-        return cls(core, response, np.zeros((0, 0)), none, np.setdiff1d(np.unique(core.dofs), fixed))
+        return cls(core, response, np.zeros((0, 0)), np.zeros(0), none, np.setdiff1d(np.unique(core.dofs), fixed))
 
     @classmethod
     def of(cls, core: Bulk, response: Response, stiffness: Matrix, fixed: Indices, state: State = ()) -> CoredBody:
@@ -173,7 +175,7 @@ class CoredBody:
         if outer.size:
             coupling = beside[outer][:, rim]
             rest -= coupling.T @ factorized(beside[outer][:, outer].tocsc())(coupling.toarray())
-        return cls(core, response, 0.5 * (rest + rest.T), rim, np.setdiff1d(within, fixed))
+        return cls(core, response, 0.5 * (rest + rest.T), np.zeros(rim.size), rim, np.setdiff1d(within, fixed))
 
 
 def _denoised(difference: Matrix, diagonal: Array) -> Matrix:

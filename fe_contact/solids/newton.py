@@ -50,7 +50,7 @@ class Encounter:
         """Body and striker with the mesh displaced so, (2 N,), after ``state``; ``touching`` as of a skin."""
         loaded = self.body.core.answered(displacement, self.body.response, state)
         touch = self.skin.pressed(displacement, self.obstacle, depth, stiffness, touching)
-        return Balance(self, displacement, depth, loaded, touch)
+        return Balance(self, displacement, depth, state, loaded, touch)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +60,7 @@ class Balance:
     encounter: Encounter
     displacement: Array
     depth: float
+    state: State
     loaded: Loaded
     touch: Touch
 
@@ -68,7 +69,7 @@ class Balance:
         """Of core and rest, J."""
         body = self.encounter.body
         rim = self.displacement[body.rim]
-        return self.loaded.energy + 0.5 * float(rim @ body.rest @ rim)
+        return self.loaded.energy + float(rim @ (0.5 * body.rest @ rim + body.pull))
 
     @property
     def energy(self) -> float:
@@ -85,13 +86,19 @@ class Balance:
         """Forces that are not balanced, (free,)."""
         body = self.encounter.body
         forces = self.loaded.forces + self.touch.forces
-        forces[body.rim] += body.rest @ self.displacement[body.rim]
+        forces[body.rim] += body.rest @ self.displacement[body.rim] + body.pull
         return forces[body.free]
 
-    def tangent(self, convex: bool) -> Matrix:
-        """Sparse (free, free)."""
-        blocks = [self.loaded.matrices(), self.touch.matrices(convex), self.encounter.body.rest[None]]
+    def tangent(self, convex: bool, unstrained: bool = False) -> Matrix:
+        """Sparse (free, free); ``convex``: without what the striker's bend takes; ``unstrained``: of a body at rest."""
+        loaded = self._at_rest if unstrained else self.loaded
+        blocks = [loaded.matrices(), self.touch.matrices(convex), self.encounter.body.rest[None]]
         return self.encounter.pattern.matrix(blocks)
+
+    @property
+    def _at_rest(self) -> Loaded:
+        body = self.encounter.body
+        return body.core.answered(np.zeros_like(self.displacement), body.response, self.state)
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +157,7 @@ def balanced(
     for iteration in range(1, MOST_ITERATIONS + 1):
         solve, step = _step(here)
         slope = float(here.residual @ step)
-        done = -slope <= settled * here.energy
+        done = -slope <= settled * abs(here.energy)
         there = at(here.displacement + _whole(here, step)) if done else _descended(here, step, slope, at)
         if done:
             rate = _whole(there, solve(-there.touch.stiffening[there.encounter.body.free]))
@@ -160,9 +167,9 @@ def balanced(
 
 
 def _step(here: Balance) -> tuple[Callable[[Array], Array], Array]:
-    """Factors and Newton's step (free,); along a convex model where the energy would climb."""
-    for convex in (False, True):
-        solve = factorized(here.tangent(convex))
+    """Factors and Newton's step (free,); where the energy would climb by a convex model, then of a body at rest."""
+    for convex, unstrained in ((False, False), (True, False), (True, True)):
+        solve = factorized(here.tangent(convex, unstrained))
         step = solve(-here.residual)
         if here.residual @ step <= 0.0:
             return solve, step

@@ -18,6 +18,7 @@ from fe_contact.bodies.pressing import PressedDepths, contact_end
 from fe_contact.contact.problem import ContactSolution
 from fe_contact.errors import ContactTooWide
 from fe_contact.settings import Numerics
+from fe_contact.solids.base import State
 from fe_contact.solids.block import press as pressed_alike
 from fe_contact.solids.bulk import Bulk, CoredBody
 from fe_contact.solids.contact import OnDeformed, OnRound, Skin
@@ -38,7 +39,8 @@ CORRECTED = "corrected"
 CORE = 0.5  # of the way from the contact to the end of the mesh strains may be large
 RAMP = (0.02, 0.2, 1.0)  # shares of the penalty with which a body is pressed for the first time
 FARTHEST = 2.0  # a depth over the one before it, beyond which another is put between
-SPLITS = 6  # work: of the way to a depth that cannot be reached at once
+LEAST_BEGUN = 0.05  # of a depth, that a body has to be pressed by from rest at once
+SPLITS = 12  # work: of the way to a depth that cannot be reached at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +125,7 @@ def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) ->
         stiffness = numerics.penalty * solid.unit / float(radii[i])
         reached = advanced(solid.encounter, reached, float(depth[i]) / solid.unit, stiffness)
         force[i] = solid.unit**solid.dimension * reached.rigid_force
-        radius[i] = solid.unit * _contact_radius(reached.balance)
+        radius[i] = solid.unit * contact_radius(reached.balance)
         newton[i], iterations = reached.error, iterations + reached.iterations
         if not np.isfinite(radius[i]):
             raise ContactTooWide(float(depth[i]))
@@ -134,7 +136,9 @@ def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) ->
 def advanced(encounter: Encounter, before: Equilibrium | None, depth: float, stiffness: float) -> Equilibrium:
     """From an equilibrium to that of a larger depth, by as many steps as it takes. Raises EquilibriumLost."""
     if before is None:
-        return _first(encounter, depth, stiffness)
+        before = _begun(encounter, depth, stiffness)
+    if before.balance.depth == depth:
+        return before
     count = math.ceil(math.log(depth / before.balance.depth) / math.log(FARTHEST)) or 1
     left = list(np.geomspace(depth, before.balance.depth, count, endpoint=False))
     iterations, splits = 0, 0
@@ -152,17 +156,28 @@ def advanced(encounter: Encounter, before: Equilibrium | None, depth: float, sti
     return replace(before, iterations=iterations)
 
 
-def _first(encounter: Encounter, depth: float, stiffness: float) -> Equilibrium:
-    """From rest: a stiff penalty pressed in at once would turn elements inside out."""
-    found = balanced(encounter, np.zeros(encounter.skin.size), depth, RAMP[0] * stiffness)
-    iterations = found.iterations
-    for share in RAMP[1:]:
-        found = balanced(encounter, found.balance.displacement, depth, share * stiffness)
-        iterations += found.iterations
+def _begun(encounter: Encounter, depth: float, stiffness: float) -> Equilibrium:
+    """From rest to a depth, or to the part of it that can be reached at once. Raises EquilibriumLost."""
+    start, share = np.zeros(encounter.skin.size), 1.0
+    while True:
+        try:
+            return pressed_first(encounter, share * depth, stiffness, start)
+        except EquilibriumLost:
+            share *= 0.5
+            if share < LEAST_BEGUN:
+                raise
+
+
+def pressed_first(encounter: Encounter, depth: float, stiffness: float, start: Array, state: State = ()) -> Equilibrium:
+    """From a displacement ``start`` (2 N,) far away: a stiff penalty at once would turn elements inside out."""
+    iterations = 0
+    for share in RAMP:
+        found = balanced(encounter, start, depth, share * stiffness, state)
+        start, iterations = found.balance.displacement, iterations + found.iterations
     return replace(found, iterations=iterations)
 
 
-def _contact_radius(balance: Balance) -> float:
+def contact_radius(balance: Balance) -> float:
     """Where the surfaces part, on the deformed surface; infinite where the contact leaves the skin."""
     touch = balance.touch
     place = (touch.skin.place + touch.displacement).reshape(2, -1)

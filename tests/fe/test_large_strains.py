@@ -96,8 +96,7 @@ def test_the_force_is_the_slope_of_the_energy() -> None:
 
 
 @pytest.mark.family
-@pytest.mark.parametrize("name", ENERGY_NAMES)
-@pytest.mark.parametrize("nu", [0.3, 0.45])
+@pytest.mark.parametrize(("name", "nu"), [(name, (0.3, 0.45)[i % 2]) for i, name in enumerate(ENERGY_NAMES)])
 def test_small_depths_leave_small_strains_as_the_ledger_has_it(name: str, nu: float) -> None:
     """F/F_small = 1 + c1 depth/a + ..., both on one mesh, so that what it errs by cancels."""
     change = []
@@ -160,7 +159,7 @@ def test_what_is_not_built_is_refused_by_its_key(key: str) -> None:
         indent(pressed, (1e-5,), {"enforcement": "exact"} if "enforcement" in key else {})
 
 
-@pytest.mark.parametrize("name", ["polymer-sphere", "polymer-sphere-waves", "polymer-punch", "two-spheres", "rod"])
+@pytest.mark.parametrize("name", ["polymer-sphere-waves", "polymer-punch", "two-spheres", "rod"])
 def test_impacts_that_are_not_built_are_refused(name: str) -> None:
     scene = Scene.load(name, {"model.kinematics": "finite"})
     with pytest.raises(BadInput, match="kinematics"):

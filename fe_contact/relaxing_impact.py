@@ -1,0 +1,313 @@
+"""An impact with large strains on a body that relaxes: marched in time, the whole body solved in every step.
+
+The striker goes by the velocity form of Stoermer's rule, so that its depth is known before the force is: each step is
+one equilibrium at a given depth. Rule and memory are of second order in the step, which half and a quarter of the steps
+show, and extrapolation takes away. The mesh stays, fine from the first contact to the widest, since points remember.
+
+At finite strain this law of relaxation defines no free energy: what a branch stores is told by its compliance at rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from fe_contact.assembly.forms import Array
+from fe_contact.budget import plan as statics
+from fe_contact.budget.budget import CAUSES, Budget, TotalWork, shares_of
+from fe_contact.budget.certify import LEAST_ORDER, other_mesh, other_setting
+from fe_contact.budget.curve import Curve, extrapolated
+from fe_contact.budget.plan import Plan
+from fe_contact.budget.refine import Finer, dominant
+from fe_contact.budget.variation import SAFETY, Variation, factor
+from fe_contact.errors import MemoryTooSmall, TooManySteps
+from fe_contact.march.impact import STEPS_ALLOWED, balanced, share_of_rest, step_length, time_left
+from fe_contact.progress import Progress
+from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
+from fe_contact.solids.base import State
+from fe_contact.solids.finite import Hyperelastic
+from fe_contact.solids.newton import Encounter, Equilibrium, EquilibriumLost
+from fe_contact.solids.newton import balanced as in_balance
+from fe_contact.solids.pressing import MESH_ORDER, Solid, contact_radius, pressed_first
+from fe_contact.solids.relaxing import Fading, Relaxing, doubled
+from fe_contact.steppers.steps import March, Strike, Work
+from lumped.materials import Relaxation
+from lumped.result.model_ledger import Peak, model_ledger
+from lumped.result.result import LedgerEntry, meets
+from lumped.scene.indenter import Indenter
+from lumped.scene.scene import Scene
+
+ROUNDS = 3  # refinements before giving up
+SECONDS = 15.0  # processor time of an impact to 1e-3, about
+ELEMENTS = 3.0  # along the contact radius, at tolerance 1e-3
+COARSEST = 2.0  # of them: half of fewer tells nothing
+PENALTY = 1000.0  # stiffness of the contact
+SMALLEST = 0.2  # contact over the widest one for which the mesh is made
+LAST = 1e-3  # of the expected contact time: with less left the end is read off the trend
+ORDER = 2  # of a step
+
+
+@dataclass(frozen=True, eq=False)
+class Instant:
+    """Striker and body at the end of a step: s, and in units of the solid depth, velocity and impulse.
+
+    ``memory`` of the core's points and, as displacement, of the ``rim``; ``work`` done on the body by then.
+    """
+
+    time: float
+    depth: float
+    velocity: float
+    impulse: float
+    force: float
+    radius: float
+    found: Equilibrium | None
+    memory: State
+    rim: State
+    work: float = 0.0
+    iterations: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Marcher:
+    """Takes the steps of one impact on a ``solid``; ``scale``: N per unit of force; ``power``: of a depth that a force
+    is in proportion to as a contact ends.
+    """
+
+    strike: Strike
+    solid: Solid
+    network: Relaxation
+    numerics: Numerics
+    scale: float
+    power: float
+
+    @classmethod
+    def of(cls, scene: Scene, numerics: Numerics) -> Marcher:
+        """On a mesh for these settings."""
+        geometry = scene.geometry
+        indenter = Indenter(geometry.shape, geometry.material, geometry.target, None, scene.model)
+        radii = np.array([SMALLEST, 1.0]) * numerics.contact_radius
+        solid, network = Solid.of(indenter, radii, numerics), scene.contact_modulus
+        scale = network.glassy * geometry.shape.total * solid.unit**solid.dimension
+        power = 1.0 if geometry.shape.plane else scene.profile.exponent_of_force
+        return cls(Strike.of(scene), solid, network, numerics, scale, power)
+
+    @property
+    def body(self) -> Encounter:
+        """At the moduli of a sudden strain."""
+        return self.solid.encounter
+
+    @property
+    def _sudden(self) -> Hyperelastic:
+        response = self.body.body.response
+        assert isinstance(response, Hyperelastic)
+        return response
+
+    def march(self) -> March:
+        """From the first touch to separation, or to the end of the motion. Raises NotReached."""
+        instants, separated = [self._touch()], False
+        while instants[-1].time < self.strike.end_time * (1.0 - 1e-12):
+            here = instants[-1]
+            if len(instants) > STEPS_ALLOWED * self.numerics.steps:
+                raise TooManySteps(len(instants), here.time)
+            left = self._time_left(instants)
+            if left is not None and left < LAST * self.numerics.contact_time:
+                separated = True
+                break
+            there = self._next(instants, left)
+            if there.force <= 0.0:
+                separated = True
+                break
+            instants.append(there)
+        return self._record(instants, separated)
+
+    def _touch(self) -> Instant:
+        core, none = self.body.body.core, Fading.over(self.network, 1.0)
+        memory, rim = none.at_rest(4, *core.weight.shape), none.at_rest(self.body.body.rim.size)
+        return Instant(0.0, 0.0, self.strike.velocity / self.solid.unit, 0.0, 0.0, 0.0, None, memory, rim)
+
+    def _time_left(self, instants: list[Instant]) -> float | None:
+        """Until the contact ends, s, while the force falls; None before."""
+        if len(instants) < 5 or instants[-1].velocity >= 0.0:
+            return None
+        last = instants[-3:]
+        roots = [one.force ** (1.0 / self.power) for one in last]
+        return time_left([one.time for one in last], roots, last[-1].time)
+
+    def _next(self, instants: list[Instant], left: float | None) -> Instant:
+        """The end of the next step: depth first, then force, then speed."""
+        here, strike, numerics = instants[-1], self.strike, self.numerics
+        length = numerics.contact_time * step_length(len(instants) - 1, numerics.steps, numerics.peak_share)
+        if left is not None:
+            length = min(length, left * share_of_rest(left / numerics.contact_time, numerics.steps))
+        length = min(length, strike.end_time - here.time)
+        slowed = self.scale / (strike.mass * self.solid.unit)
+        pull = strike.gravity / self.solid.unit
+        depth = here.depth + length * (here.velocity + 0.5 * length * (pull - slowed * here.force))
+        fading = Fading.over(self.network, length)
+        found = self._equilibrium(here, depth, fading)
+        balance, force = found.balance, found.rigid_force
+        given = 0.5 * length * (here.force + force)
+        rim = balance.displacement[self.body.body.rim]
+        return Instant(
+            time=here.time + length,
+            depth=depth,
+            velocity=here.velocity + length * pull - slowed * given,
+            impulse=here.impulse + given,
+            force=force,
+            radius=contact_radius(balance) if force > 0.0 else 0.0,
+            found=found,
+            memory=balance.loaded.answer.state,
+            rim=fading.onwards(here.rim, rim),
+            work=here.work + self._worked(here, found),
+            iterations=here.iterations + found.iterations,
+        )
+
+    def _equilibrium(self, here: Instant, depth: float, fading: Fading) -> Equilibrium:
+        """At a depth after what is remembered. Raises EquilibriumLost."""
+        body, penalty = self.body.body, self.numerics.penalty * self.solid.unit / self.numerics.contact_radius
+        relaxing = replace(
+            body,
+            response=Relaxing(self._sudden, fading),
+            rest=fading.at_once * body.rest,
+            pull=body.rest @ fading.held(here.rim),
+        )
+        encounter = replace(self.body, body=relaxing)
+        if here.found is not None:
+            try:
+                return in_balance(encounter, here.found.predicted(depth), depth, penalty, here.memory)
+            except EquilibriumLost:
+                pass  # pressed in softly instead
+        start = np.zeros(body.core.size) if here.found is None else here.found.balance.displacement
+        return pressed_first(encounter, depth, penalty, start, here.memory)
+
+    def _worked(self, here: Instant, found: Equilibrium) -> float:
+        """On the body in a step, by the mean of the stresses at its ends."""
+        ends = [found] if here.found is None else [here.found, found]
+        forces = np.sum([_body_forces(one) for one in ends], axis=0)
+        change = found.balance.displacement - (0.0 if here.found is None else here.found.balance.displacement)
+        return 0.5 * float(forces @ change)
+
+    def _record(self, instants: list[Instant], separated: bool) -> March:
+        """What the march leaves behind; after its last step the contact ends as the trend says."""
+        unit, strike, last = self.solid.unit, self.strike, instants[-1]
+        rows = [(one.time, unit * one.depth, self.scale * one.impulse) for one in instants]
+        speed = unit * last.velocity
+        if separated:
+            left = self._time_left(instants) or 0.0
+            impulse = self.scale * last.force * left / (self.power + 1.0)
+            slowed = impulse / strike.mass * (self.power + 1.0) / (self.power + 2.0)
+            fallen = 0.5 * strike.gravity * left - slowed
+            rows.append((last.time + left, rows[-1][1] + left * (speed + fallen), rows[-1][2] + impulse))
+            speed += strike.gravity * left - impulse / strike.mass
+        time, depth, given = np.array(rows).T
+        return March(
+            time=time,
+            depth=depth,
+            impulse=given,
+            first_force=0.0,
+            radius_time=time[1 : len(instants)],
+            radius=unit * np.array([one.radius for one in instants[1:]]),
+            separated=separated,
+            photograph=tuple,
+            energy=self._account(last, float(depth[-1]), speed),
+            end_spread=0.0,
+            work=Work(len(instants) - 1, len(instants) - 1, last.iterations),
+        )
+
+    def _account(self, last: Instant, depth: float, speed: float) -> dict[str, float]:
+        """Terms in J; the penalty holds nothing in the end."""
+        strike, joule = self.strike, self.scale * self.solid.unit
+        brought = 0.5 * strike.mass * strike.velocity**2 + strike.mass * strike.gravity * depth
+        stored = joule * self._stored(last)
+        contact = joule * last.found.balance.touch.energy if last.found is not None else 0.0
+        none = dict.fromkeys(("radiated", "numerical"), 0.0)
+        out = 0.5 * strike.mass * speed**2
+        known = {"in": brought, "out": out, "stored": stored, "viscous": joule * last.work - stored}
+        return balanced({**known, "contact": contact, **none})
+
+    def _stored(self, last: Instant) -> float:
+        """By what lasts and by every branch."""
+        if last.found is None:
+            return 0.0
+        body, sudden = self.body.body, self._sudden
+        displacement = last.found.balance.displacement
+        rim, shares = displacement[body.rim], np.array(self.network.moduli) / self.network.glassy
+        lasting = self.network.relaxed / self.network.glassy
+        elastic = body.core.answered(displacement, sudden)
+        found = float(lasting * (elastic.energy + 0.5 * rim @ body.rest @ rim))
+        nu = 0.5 * sudden.lame / (sudden.lame + sudden.shear)
+        for share, stress, moved in zip(shares, last.memory[1], last.rim[1], strict=True):
+            trace = stress[0] + stress[1] + stress[2]
+            square = doubled(stress, stress) - nu / (1.0 + nu) * trace**2
+            points = float(np.vdot(body.core.weight, square)) / (4.0 * sudden.shear)
+            found += float(points + 0.5 * moved @ body.rest @ moved) / share
+        return found
+
+
+def _body_forces(found: Equilibrium) -> Array:
+    """Of the body, not of the contact, (2 N,)."""
+    balance, body = found.balance, found.balance.encounter.body
+    forces = balance.loaded.forces.copy()
+    forces[body.rim] += body.rest @ balance.displacement[body.rim] + body.pull
+    return forces
+
+
+def plan(scene: Scene, given: Given) -> Plan:
+    """Settings and ledger; scales are those of small strains. Raises NotReached."""
+    known = statics.plan(scene, {})
+    tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
+    elements = max(COARSEST, ELEMENTS * (DEFAULT_TOLERANCE / tolerance) ** 0.5)
+    chosen = {"tolerance": tolerance, "elements_per_contact": elements, "penalty": PENALTY, **given}
+    return Plan(known.numerics.varied(**chosen), frozenset(given) - {"tolerance"}, known.ledger)
+
+
+@dataclass(frozen=True)
+class RelaxingStrikes:
+    """The way of an impact with large strains on what relaxes."""
+
+    scene: Scene
+    chosen: Plan
+    progress: Progress
+    rounds: ClassVar[int] = ROUNDS
+
+    def certified(self, numerics: Numerics) -> Budget:
+        """The contact and its bars: steps on the finest mesh, all else with half of them. Raises NotReached."""
+        half = numerics.varied(steps=numerics.steps // 2)
+        mesh, by_mesh = other_mesh(half, MESH_ORDER)
+        softer, stiff = other_setting(half, "penalty")
+        nearer, far = other_setting(mesh, "far_radius")
+        settings = (numerics, half, numerics.varied(steps=numerics.steps // 4), mesh, softer, nearer)
+        runs = [self._run(one) for one in settings]
+        fine, middle, coarse, meshed, soft, near = (Curve.of(run, Strike.of(self.scene)) for run in runs)
+        value, before = extrapolated(fine, middle, ORDER), extrapolated(middle, coarse, ORDER)
+        value = value.with_peak_spread()
+        changes = {
+            "mesh": (Variation(middle, meshed, by_mesh),),
+            "penalty": (Variation(middle, soft, factor(LEAST_ORDER["penalty"], stiff)),),
+            "time_step": (Variation(value, before, SAFETY / (2**ORDER - 1)),),
+            "far_field": (Variation(meshed, near, factor(LEAST_ORDER["far_field"], far)),),
+        }
+        works = [run.work for run in runs]
+        iterations = sum(one.iterations for one in works)
+        unknowns = Marcher.of(self.scene, numerics).solid.unknowns
+        return Budget(value, runs[0], changes, TotalWork.of(works, unknowns, iterations, iterations), numerics)
+
+    def _run(self, numerics: Numerics) -> March:
+        self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")
+        march = Marcher.of(self.scene, numerics).march()
+        if not np.all(np.isfinite(march.radius)):
+            raise MemoryTooSmall(numerics.contact_radius)
+        return march
+
+    def finer(self, found: Budget) -> Finer:
+        """Less of the causes that stand in the way."""
+        if meets(found.quantities, found.numerics.tolerance):
+            return Finer(None)
+        excess = {cause: float(shares_of(found, cause).max()) for cause in CAUSES}
+        return Finer(dominant(excess, found.numerics, self.chosen.pinned, least=1.0))
+
+    def ledger(self, found: Budget) -> tuple[LedgerEntry, ...]:
+        """What the model leaves out of the impact that was found."""
+        return model_ledger(self.scene, Peak.of(found.quantities, found.history()))

@@ -1,0 +1,61 @@
+"""Bars of large strains: random scenes against runs to a quarter of the tolerance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from fe_contact.indentation import indent
+from lumped import NotReached
+from lumped.indentation import Indentation
+from lumped.materials import Material, Relaxation
+from lumped.materials.energies.base import ENERGIES
+from lumped.scene.indenter import Indenter
+from lumped.scene.tables import Model
+from lumped.shapes import Sphere
+from lumped.targets import HalfSpace
+from lumped.targets.layer import Layer
+
+SCENES, TOLERANCE = 60, 1e-2
+LEAST = 0.95  # share of them that converge
+
+
+def scene(random: np.random.Generator) -> tuple[Indenter, tuple[float, ...]]:
+    """A sphere of radius one, depths to 0.3 of it, on a half-space, or on a layer, to 0.4 of its thickness too."""
+    nu = float(random.choice([random.uniform(0.2, 0.49), 0.4999 - 10.0 ** random.uniform(-4, -2)]))
+    energy, deepest = str(random.choice(ENERGIES.names)), float(random.uniform(0.02, 0.3))
+    target: HalfSpace | Layer = HalfSpace()
+    if random.uniform() < 0.4:
+        target = Layer(deepest / float(random.uniform(0.1, 0.4)), str(random.choice(["bonded", "sliding"])))
+    material = Material(Relaxation(1e6), nu, hyperelastic=energy)
+    pressed = Indenter(Sphere(1.0), material, target, model=Model(kinematics="finite"))
+    return pressed, (0.4 * deepest, deepest)
+
+
+def answer(pressed: Indenter, depths: tuple[float, ...], tolerance: float) -> Indentation | None:
+    """None where a named failure says why there is none."""
+    try:
+        return indent(pressed, depths, {"tolerance": tolerance})
+    except NotReached:
+        return None
+
+
+@pytest.mark.tenth
+def test_finer_runs_lie_within_both_bars(campaign_size: Callable[..., int]) -> None:
+    """All scenes with --full, else the first: each takes seconds."""
+    count, random = campaign_size(SCENES), np.random.default_rng(18)
+    converged, wrong = list[bool](), list[str]()
+    for _ in range(count if count == SCENES else 1):
+        pressed, depths = scene(random)
+        loose = answer(pressed, depths, TOLERANCE)
+        tight = None if loose is None else answer(pressed, depths, 0.25 * TOLERANCE)
+        converged.append(loose is not None and loose.converged)
+        if loose is None or tight is None:
+            continue
+        apart = np.abs(loose.force - tight.force) / (loose.force_error + tight.force_error)
+        if apart.max() > 1.0:
+            wrong.append(f"{pressed.material} {pressed.target} {depths}: {apart}")
+    assert not wrong
+    assert np.mean(converged) >= LEAST

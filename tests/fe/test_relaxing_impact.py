@@ -1,0 +1,124 @@
+"""Large strains of what relaxes: points against their ordinary differential equation, impacts against small strains."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from fe_contact import run
+from fe_contact.assembly.forms import Array
+from fe_contact.budget.curve import Curve, extrapolated
+from fe_contact.relaxing_impact import Marcher, plan
+from fe_contact.solids.finite import Hyperelastic
+from fe_contact.solids.relaxing import Fading, Relaxing, doubled, green, second
+from fe_contact.steppers.steps import Strike
+from lumped import BadInput, Scene
+from lumped.materials import Relaxation
+from lumped.materials.energies.base import ENERGIES, energy_of, strained
+
+NETWORK = Relaxation(1.0, (0.7, 1.3), (0.2, 3.0))
+YEOH = energy_of("yeoh")
+SHEAR = np.array([0.0, 0.6, 0.0, 0.0, 0.0])
+STRETCH = np.array([0.1, 0.0, 0.0, -0.3, 0.1])
+SWELLING = np.array([0.2, 0.1, 0.0, 0.3, -0.1])
+
+
+def answered(way: Array, steps: int) -> Array:
+    """First Piola-Kirchhoff stress (5,) at time 1 of a gradient that grew as sin t, by so many steps."""
+    material = Relaxing(Hyperelastic(YEOH, 1.0, 2.0), Fading.over(NETWORK, 1.0 / steps))
+    state, found = material.fading.at_rest(4, 1), None
+    for number in range(1, steps + 1):
+        found = material.respond(way[:, None] * np.sin(number / steps), state)
+        state = found.state
+    assert found is not None
+    return np.asarray(found.stress[:, 0])
+
+
+def by_differential_equation(way: Array) -> Array:
+    """The same of h' + h/tau = g S0'."""
+    shares, rates = np.array(NETWORK.moduli) / NETWORK.glassy, 1.0 / np.array(NETWORK.times)
+
+    def at_once(time: float) -> Array:
+        gradient = way[:, None] * np.sin(time)
+        return second(strained(YEOH, gradient, 1.0, 2.0).stress, gradient)[:, 0]
+
+    def fades(time: float, dashpots: Array) -> Array:  # of g S0 - h, whose rate is h/tau
+        flowed = dashpots.reshape(2, 4)
+        return np.asarray((rates[:, None] * (shares[:, None] * at_once(time) - flowed)).ravel())
+
+    flowed = solve_ivp(fades, (0.0, 1.0), np.zeros(8), rtol=1e-9, atol=1e-10).y[:, -1].reshape(2, 4)
+    stress = at_once(1.0) - flowed.sum(axis=0)
+    gradient = way * np.sin(1.0)
+    motion = np.array([[1.0 + gradient[0], gradient[1]], [gradient[2], 1.0 + gradient[3]]])
+    turned = motion @ np.array([[stress[0], stress[3]], [stress[3], stress[1]]])
+    return np.array([*turned.ravel(), (1.0 + gradient[4]) * stress[2]])
+
+
+@pytest.mark.family
+@pytest.mark.parametrize("way", [SHEAR, STRETCH, SWELLING], ids=["shear", "stretch", "both"])
+def test_a_point_follows_its_differential_equation(way: Array) -> None:
+    """By 80 steps and their extrapolation, to 1e-6; the steps alone err by their square."""
+    exact = by_differential_equation(way)
+    coarse, fine = (answered(way, steps) for steps in (40, 80))
+    scale = np.abs(exact).max()
+    assert (4.0 * fine - coarse) / 3.0 == pytest.approx(exact, abs=1e-6 * scale)
+    assert np.abs(coarse - exact).max() > 3.0 * np.abs(fine - exact).max()
+
+
+@pytest.mark.family
+@pytest.mark.parametrize("name", ENERGIES.names)
+def test_a_point_s_stress_and_tangent_are_slopes(name: str) -> None:
+    """Of its energy in the step, after any history."""
+    random = np.random.default_rng(3)
+    material = Relaxing(Hyperelastic(energy_of(name), 1.0, 2.0), Fading.over(NETWORK, 0.3))
+    start, way = (0.1 * random.normal(size=(5, 6)) for _ in range(2))
+    state = material.respond(0.1 * random.normal(size=(5, 6)), material.fading.at_rest(4, 6)).state
+    here, above, below = (material.respond(start + share * way, state) for share in (0.0, 1e-6, -1e-6))
+    slope = np.sum(here.stress * way, axis=0)
+    assert (above.energy - below.energy) / 2e-6 == pytest.approx(slope, abs=1e-7)
+    bent = np.einsum("ij...,j...->i...", here.tangent, way)
+    assert (above.stress - below.stress) / 2e-6 == pytest.approx(bent, abs=1e-6)
+
+
+def test_a_turn_does_not_relax() -> None:
+    """S is that of the strain alone: a body that turns after it was strained bears F S, turned."""
+    angle = 0.7
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    motion = np.eye(2) + np.array([[0.1, 0.2], [0.0, -0.2]])
+    turned = turn @ motion - np.eye(2)
+    material = Relaxing(Hyperelastic(YEOH, 1.0, 2.0), Fading.over(NETWORK, 0.3))
+    ends = [np.array([*block.ravel(), 0.1])[:, None] for block in (motion - np.eye(2), turned)]
+    assert green(ends[0]) == pytest.approx(green(ends[1]))
+    state = material.respond(ends[0], material.fading.at_rest(4, 1)).state
+    still, moved = (material.respond(end, state) for end in ends)
+    assert moved.stress[:4, 0].reshape(2, 2) == pytest.approx(turn @ still.stress[:4, 0].reshape(2, 2))
+    assert doubled(moved.state[0], green(ends[1])) == pytest.approx(doubled(still.state[0], green(ends[0])))
+
+
+@pytest.mark.tenth
+def test_a_light_impact_is_that_of_small_strains() -> None:
+    """At a thousandth of the speed, the material as much faster as the contact is shorter; the energy balances."""
+    scene = Scene.load("polymer-sphere", {"striker.velocity": 2e-5, "target.material.C1": 7.2e4})
+    coarse = plan(scene, {"elements_per_contact": 1.5, "order": 3, "penalty": 300.0, "far_radius": 10.0}).numerics
+    few, many = (Marcher.of(scene, coarse.varied(steps=steps)).march() for steps in (12, 24))
+    found = extrapolated(Curve.of(many, Strike.of(scene)), Curve.of(few, Strike.of(scene)), 2)
+    small = run(scene, tolerance=1e-3)
+    for name in ("restitution", "peak_depth", "peak_force", "duration"):
+        assert found.quantities[name] == pytest.approx(small.quantities[name].value, rel=4e-3)
+    assert abs(found.energy["residual"]) < 1e-3 * found.energy["in"]
+    assert found.energy["viscous"] == pytest.approx(small.energy["viscous"], rel=0.02)
+
+
+REFUSED = {
+    "target.material.law": {"target.material": {"law": "kelvin_voigt", "E": 1e6, "eta": 1e3, "nu": 0.4}},
+    "target.material.constant": {"target.material.constant": "bulk"},
+    "motion.impacts": {"motion.impacts": 2},
+}
+
+
+@pytest.mark.parametrize("key", REFUSED)
+def test_what_does_not_relax_so_is_refused_by_its_key(key: str) -> None:
+    scene = Scene.load("polymer-sphere", {**REFUSED[key], "model.kinematics": "finite"})
+    with pytest.raises(BadInput, match=key):
+        run(scene)
