@@ -81,6 +81,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/certify.py", "_time_steps", "4 * numerics.steps -> numerics.steps"): BEGINS,
     ("fe_contact/budget/certify.py", "_time_steps", "4 -> 5"): BEGINS,
     ("fe_contact/budget/plan.py", "STEPS_ORDER", ""): BEGINS,
+    ("fe_contact/budget/plan.py", "_steps", ""): BEGINS,
     ("fe_contact/budget/plan.py", "FLAT_STEPS", ""): BEGINS,
     ("fe_contact/budget/plan.py", "COARSE", ""): BEGINS,
     ("fe_contact/budget/plan.py", "_alike", ""): BEGINS,
