@@ -107,6 +107,8 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/plan.py", "plan", "1.0 ->"): BEGINS,
     ("fe_contact/budget/runs.py", "PLACINGS", ""): BEGINS,
     ("fe_contact/indentation.py", "settings", "ELEMENTS *"): BEGINS,
+    ("fe_contact/indentation.py", "settings", "0.0001 ->"): BEGINS,
+    ("fe_contact/budget/certify.py", "certify", "4 -> "): BEGINS,
     # a guess that Newton's method, a secant or a check of every step corrects
     ("fe_contact/contact/problem.py", "_answered", "springs * lifted -> springs"): GUESS,
     ("fe_contact/contact/problem.py", "_Point.towards", ""): GUESS,
