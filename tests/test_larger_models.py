@@ -75,11 +75,11 @@ def test_run_says_which_effects_it_takes_in(tmp_path: Path, capsys: pytest.Captu
     assert [result["model_sufficient"] for result in results] == [False, True]
 
 
+@pytest.mark.tenth
 def test_plan_measures_where_asked(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plan", "polymer-sphere", "--tolerance", "1e-2", "--measure", "--json"]) == 0
     finite, found = json.loads(capsys.readouterr().out)["measured"]
     assert finite["setting"] == "model.kinematics=finite"
-    assert finite["change"] is None
-    assert "elastic" in finite["reason"], "until bodies with memory are built"
+    assert abs(finite["change"]) - finite["error"] < 0.035, "the ledger's range"
     assert found["setting"] == "target.material.constant=bulk"
     assert -found["estimate"] < found["change"] < 0.0
