@@ -96,6 +96,13 @@ def test_every_page_is_in_the_menu_once_and_built(site: Path) -> None:
     }
 
 
+def test_the_manual_is_small() -> None:
+    """Each picture loads at once on a slow line, and all pages are a small part of the package."""
+    sizes = {path: path.stat().st_size for path in HERE.iterdir() if path.is_file()}
+    assert max(size for path, size in sizes.items() if path.suffix == ".svg") <= 100_000
+    assert sum(sizes.values()) <= 1_500_000
+
+
 def test_no_link_leads_into_nothing_and_nothing_is_loaded_from_elsewhere(
     site: Path, collected: dict[str, Collected]
 ) -> None:

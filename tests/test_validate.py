@@ -18,15 +18,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fe_contact.cli import main
+from fe_contact.studies.larger_models import MeasuredEffect
 from fe_contact.studies.references import Move
-from fe_contact.studies.validate import _scenes_chart, _study, scenes
+from fe_contact.studies.validate import _scenes_chart, _study, larger, scenes
 from fe_contact.studies.validate._page import inlined, written
 from fe_contact.studies.validate._scenes import SceneAnswer, SceneCurve, answered, thinned
 from fe_contact.studies.validate.base import (
     DIFFERS,
     FAILED,
+    HOLDS,
     LARGER,
     NOTHING_MEASURED,
+    OPEN,
     VERIFIED,
     Made,
     ReportPart,
@@ -200,6 +203,23 @@ def test_an_exact_answer_and_a_published_one_are_found_for_a_packaged_scene() ->
     assert {"fe", "rod_waves"} <= found.curves.keys()
     assert found.published
     assert all(move.agrees for move in found.published)
+
+
+@given(st.lists(st.tuples(st.floats(1e-3, 1.0), st.floats(-1.0, 1.0), st.floats(0.0, 0.1)), min_size=1, max_size=5))
+def test_an_estimate_holds_where_no_larger_model_certainly_changes_more(rows: list[tuple[float, float, float]]) -> None:
+    effects = tuple(MeasuredEffect(f"effect {i}", "key", *row) for i, row in enumerate(rows))
+    line = larger.headline({"ball": effects, "rod": (MeasuredEffect("unknown", "key", None, 0.5, 0.1),)})
+    beyond = [i for i, (estimate, change, error) in enumerate(rows) if abs(change) - error > estimate]
+    assert line.word == (DIFFERS if beyond else HOLDS)
+    assert not beyond or f"ball, effect {beyond[0]}" in line.text
+
+
+def test_an_effect_that_no_model_answers_is_told_with_its_reason() -> None:
+    assert larger.headline({}).word == OPEN
+    (effect,) = larger.effects_of("polymer-plate")
+    (said,) = larger.sentences({"polymer-plate": (effect,)})
+    assert effect.effect in said
+    assert "plate on a plane is not built" in said
 
 
 PAIRS = st.lists(st.tuples(st.floats(-10.0, 10.0), st.floats(0.0, 2.0)), min_size=2, max_size=60)

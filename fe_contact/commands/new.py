@@ -136,8 +136,8 @@ def _section(path: str, table: Table, keys: Mapping[str, Key]) -> Iterator[str]:
 def _line(name: str, value: object, key: Key | None, column: int = COLUMN) -> str:
     """A key, its value, and what it means; a default that is none is left open."""
     shown = "..." if value in (None, ()) or value == float("inf") else toml_text({name: value}).partition(" = ")[2]
-    said = "" if key is None else f"# {key.meaning}: {key.kind.accepted}"
-    return f"{f'{name} = {shown.strip()}':{column}s}{said}".rstrip()
+    said = "" if key is None else f" # {key.meaning}: {key.kind.accepted}"
+    return f"{f'{name} = {shown.strip()}':{column - 1}s}{said}".rstrip()
 
 
 def _kind(part: str, given: str | None, asking: bool) -> str:

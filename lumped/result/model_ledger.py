@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 from numpy.polynomial import Polynomial
 
 from lumped.errors import FeContactError
-from lumped.materials import Material
+from lumped.load_curves.base import LoadCurve
+from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import energy_of
 from lumped.materials.radiation import Pulse
 from lumped.result.history import History
@@ -47,6 +48,7 @@ ENERGY_NAMES = {
 # radius: 0.61 at nu = -0.5 to 0.66 at 0.5; tests/fe/test_rod_end.py finds it again.
 ROD_END = 0.65
 IN_AN_IMPACT = 0.5  # of the change at one depth: W = (2/5) k d^(5/2) + (1/3) k c1 d^3/sqrt(R) is what was brought
+ROWS, NEWTON = 200, 8  # steps in an impact that tells of a modulus, and of Newton's method in each
 # Hertz: the first yield, below the surface, is where the peak pressure is 1.6 Y (Johnson, ISBN 978-0-521-34796-9).
 FIRST_YIELD = 1.6
 FLOW = 0.047  # 1/(1 + FLOW ln^2 w): how force falls behind Hertz'; tests/fe/test_plastic.py finds it again
@@ -232,10 +234,8 @@ def striker(scene: Scene) -> LedgerEntry:
 
 
 def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
-    """At most what the instantaneous stiffness changes by, to the power 2/5 of a peak force; a scene of constant bulk
-    modulus has chosen.
-
-    That of the half-space by 4G(3K+G)/(3K+4G) over 2G/(1-nu); a body with lengths confines, in thin layers most.
+    """By how much the peak force changes, both ways, of a mass that meets a power of the depth; a scene of constant
+    bulk modulus has chosen.
     """
     effect, material = "constant nu against constant bulk modulus", scene.geometry.material
     treated, solid = "constant nu", "target" if scene.target.deformable else "striker"
@@ -243,27 +243,69 @@ def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
         return LedgerEntry(effect, "constant bulk modulus", 0.0, "as the scene says")
     if material.young.is_elastic or math.isinf(material.bulk):
         return LedgerEntry(effect, treated, 0.0, "elastic or incompressible: the same")
-    if material.young.viscosity > 0.0 or material.young.relaxed == 0.0:
-        return LedgerEntry(effect, treated, None, "no bound for a fluid or a dashpot in parallel")
-    shear, bulk = material.young.glassy / (2.0 * (1.0 + material.nu)), material.bulk
-    softer = 2.0 * (1.0 - material.nu) * (3.0 * bulk + shear) / (3.0 * bulk + 4.0 * shear)
-    if scene.target.has_length:
-        confined = _confined(scene, (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear)), peak.depth)
-        if confined is None:
-            return LedgerEntry(effect, treated, None, "no load curve tells it; run both of target.material.constant")
-        softer *= confined
-    return LedgerEntry(effect, treated, 1.0 - softer**0.4, "bound", f"{solid}.material.constant", value="bulk")
+    if material.young.relaxed == 0.0:
+        return LedgerEntry(effect, treated, None, "no bulk modulus of a fluid is known")
+    if material.young.viscosity > 0.0 and scene.target.has_length:
+        return LedgerEntry(effect, treated, None, "not known of a dashpot in a body with lengths")
+    if peak.depth == 0.0 or peak.duration == 0.0:
+        return LedgerEntry(effect, treated, None, "not known without a contact")
+    try:
+        curve = scene.target.load_curve(scene.profile, material.nu)
+        forces = [_struck(one, curve, scene, peak) for one in (_bulk_modulus(scene, peak), material.contact_modulus())]
+    except FeContactError:  # no load curve, or one that ends before this depth
+        return LedgerEntry(effect, treated, None, "no load curve tells it; run both of target.material.constant")
+    note, key = "both, by a power of the depth", f"{solid}.material.constant"
+    return LedgerEntry(effect, treated, abs(forces[0] / forces[1] - 1.0), note, key, value="bulk")
 
 
-def _confined(scene: Scene, nu: float, depth: float) -> float | None:
-    """Force of unit modulus with another Poisson's ratio, over that with the scene's own; None where none is known."""
-    forces = []
-    for poisson in (nu, scene.geometry.material.nu):
-        try:
-            forces.append(float(scene.target.load_curve(scene.profile, poisson).force(depth)))
-        except FeContactError:  # no load curve, or one that ends before this depth
-            return None
-    return forces[0] / forces[1] if forces[1] > 0.0 else None
+def _bulk_modulus(scene: Scene, peak: Peak) -> Relaxation:
+    """E* of constant bulk modulus; its branches by as much more as a body with lengths confines it at once."""
+    alike, target = scene.geometry.material, scene.target
+    modulus = replace(alike, constant="bulk").contact_modulus()
+    if not target.has_length:
+        return modulus
+    nu = replace(alike, constant="bulk").elastic(instant=True).nu
+    confined, own = (float(target.load_curve(scene.profile, one).force(peak.depth)) for one in (nu, alike.nu))
+    more = max(confined / own * modulus.glassy - modulus.relaxed, 0.0) / (modulus.glassy - modulus.relaxed)
+    return replace(modulus, moduli=tuple(more * one for one in modulus.moduli))
+
+
+def _struck(modulus: Relaxation, curve: LoadCurve, scene: Scene, peak: Peak) -> float:
+    """Largest force of the impact by F = int E*(t-s) d(c y), y = depth^n, over that of the relaxed modulus.
+
+    n and c are the load curve's at the peak; lengths over the elastic depth, which is reached in a time of one.
+    """
+    force, slope = map(float, curve.force_and_slope(peak.depth))
+    n = peak.depth * slope / force
+    work, brought = force * peak.depth / (n + 1.0), 0.5 * scene.reduced_mass * scene.velocity**2
+    unit = peak.depth * (brought / (modulus.relaxed * work)) ** (1.0 / (n + 1.0)) / scene.velocity
+    return _largest_force(modulus.stretched(1.0 / unit).scaled(1.0 / modulus.relaxed), n, peak.duration / unit / ROWS)
+
+
+def _largest_force(modulus: Relaxation, n: float, step: float) -> float:
+    """Of x'' = -(n + 1)/2 F, F = int E(t-s) d(x^n), x' = 1 at first, on the way in, within a contact's steps.
+
+    The trapezoidal rule with exact branches; each step's end by Newton's method on a function that is convex.
+    """
+    slowed, times = 0.25 * (n + 1.0) * step, modulus.times
+    kept = [math.exp(-step / tau) for tau in times]
+    gains = [e * tau * (1.0 - k) / step for e, tau, k in zip(modulus.moduli, times, kept, strict=True)]
+    added = sum(gains) + modulus.viscosity / step
+    depth, speed, load, force, most, branches = 0.0, 1.0, 0.0, 0.0, 0.0, [0.0] * len(kept)
+    for _ in range(ROWS):
+        branches = [k * one - gain * load for k, one, gain in zip(kept, branches, gains, strict=True)]
+        carried, free = sum(branches) - modulus.viscosity / step * load, depth + step * speed
+        depth = free
+        for _ in range(NEWTON):
+            over = depth - free + 0.5 * step * slowed * (force + (1.0 + added) * depth**n + carried)
+            depth -= over / (1.0 + 0.5 * step * slowed * (1.0 + added) * n * depth ** (n - 1.0))
+        load, before = depth**n, force
+        branches = [one + gain * load for one, gain in zip(branches, gains, strict=True)]
+        force = (1.0 + added) * load + carried
+        speed, most = speed - slowed * (before + force), max(most, force)
+        if speed < 0.0:
+            break
+    return most
 
 
 def series(scene: Scene, peak: Peak) -> LedgerEntry:

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from lumped import BadInput, Model, Motion, Scene, laws, simulate
 from lumped.laws.correspondence import Correspondence
 from lumped.result.result import Result
-from lumped.solvers.point.memory import RULES
+from lumped.solvers.point.memory import RULES, rule_of
 
 Build = Callable[..., Scene]
 Array = NDArray[np.float64]
@@ -138,6 +138,8 @@ def test_choices_come_from_the_scene_and_only_they(impact: Build) -> None:
     assert laws.correspondence.of(Scene.from_dict(table)) == Correspondence("depth", "reset")
     with pytest.raises(BadInput, match="accepted: one of continuous, recovering, reset"):
         Scene.from_dict(table | {"law": {"name": "correspondence", "memory": "gone"}})
+    with pytest.raises(BadInput, match="continuous"):
+        rule_of("gone")
     with pytest.raises(BadInput, match=r"motion\.impacts"):
         laws.ting.of(replace(impact(**SOLID), motion=Motion(impacts=2)))
     with pytest.raises(BadInput, match=r"striker\.shape"):

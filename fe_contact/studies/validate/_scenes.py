@@ -25,7 +25,7 @@ from lumped.schema.files import SCENES
 BESIDE = ("correspondence", "hertz", "kelvin", "jankowski", "hunt_crossley")  # laws that a reader may switch on
 TIGHT = 1e-5  # asked of exact laws, a hundredth of what elements are asked for
 DRAWN = 5e-4  # look: of the peak, by which a curve that is drawn may miss the rows of its history
-LONG = "-waves"  # how names end that a quick answer leaves out: they take minutes
+LONG = ("-waves", "-finite", "-plastic")  # how names end that a quick answer leaves out: they take minutes
 PLATEAU = 1e-6  # rounding: of an exact force, within which it is as high as its peak
 
 
