@@ -87,6 +87,7 @@ def _measured_lines(measured: tuple[MeasuredEffect, ...] | None) -> list[str]:
 
 def _takes(scene: Scene, chosen: Plan, given: Table) -> tuple[Cost | None, FeContactError | None]:
     """What waves take, None without them, and why finite elements refuse the scene, None where they do not."""
+    from fe_contact.errors import faults_of
     from fe_contact.reference import check, with_waves
     from fe_contact.settings import WaveNumerics
 
@@ -95,8 +96,9 @@ def _takes(scene: Scene, chosen: Plan, given: Table) -> tuple[Cost | None, FeCon
             check(scene, given)
             return None, None
         assert isinstance(chosen.numerics, WaveNumerics)
-        takes = with_waves(scene).cost(scene, chosen.numerics)
-        takes.check()
+        with faults_of(scene):
+            takes = with_waves(scene).cost(scene, chosen.numerics)
+            takes.check()
     except FeContactError as failure:
         return None, failure
     return takes, None

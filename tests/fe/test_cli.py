@@ -354,6 +354,15 @@ def test_plan_says_settings_and_ledger_and_solves_nothing(
     assert is_empty(empty)
 
 
+def test_plan_names_the_key_of_a_mesh_that_waves_cannot_have(capsys: pytest.CaptureFixture[str]) -> None:
+    """Laws can follow it all the same, so that there is a plan."""
+    sets = ("--set", "model.profile=parabola", "--set", "motion.end_time=1e-15")
+    assert exit_code("plan", "ball-bouncing-waves", *sets, "--tolerance", "1e-6") == 0
+    out, err = capsys.readouterr()
+    assert "left out" in out
+    assert "numerics.tolerance, numerics.elements_per_contact: " in err
+
+
 def test_plan_speaks_first_of_the_cheapest_method(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Of an exact law where one meets the tolerance, by its own bar; of finite elements where none knows the model."""
     for name, method in ((str(scene), "ting"), ("polymer-layer", "ting"), ("paper-steel-hertz", "hertz")):
