@@ -81,6 +81,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/certify.py", "_time_steps", "4 * numerics.steps -> numerics.steps"): BEGINS,
     ("fe_contact/budget/certify.py", "_time_steps", "4 -> 5"): BEGINS,
     ("fe_contact/budget/plan.py", "STEPS_ORDER", ""): BEGINS,
+    ("fe_contact/budget/plan.py", "_steps", ""): BEGINS,
     ("fe_contact/budget/plan.py", "FLAT_STEPS", ""): BEGINS,
     ("fe_contact/budget/plan.py", "COARSE", ""): BEGINS,
     ("fe_contact/budget/plan.py", "_alike", ""): BEGINS,
@@ -107,6 +108,8 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/plan.py", "plan", "1.0 ->"): BEGINS,
     ("fe_contact/budget/runs.py", "PLACINGS", ""): BEGINS,
     ("fe_contact/indentation.py", "settings", "ELEMENTS *"): BEGINS,
+    ("fe_contact/indentation.py", "settings", "0.0001 ->"): BEGINS,
+    ("fe_contact/budget/certify.py", "certify", "4 -> "): BEGINS,
     # a guess that Newton's method, a secant or a check of every step corrects
     ("fe_contact/contact/problem.py", "_answered", "springs * lifted -> springs"): GUESS,
     ("fe_contact/contact/problem.py", "_Point.towards", ""): GUESS,

@@ -41,7 +41,8 @@ def blocks(deck: str) -> dict[str, list[list[str]]]:
     return found
 
 
-@pytest.mark.parametrize("scene", ["polymer-layer", "polymer-cone"])
+@pytest.mark.family
+@pytest.mark.parametrize("scene", ["polymer-cone", "polymer-layer"])
 def test_a_deck_is_whole_and_its_striker_has_the_profile(scene: str, tmp_path: Path) -> None:
     deck = exported(tmp_path, scene, "--to", "calculix", "--depth", "1e-5")
     assert "Lengths in mm, forces in N, moduli in MPa" in deck
@@ -67,7 +68,7 @@ def test_a_deck_is_whole_and_its_striker_has_the_profile(scene: str, tmp_path: P
 
 
 def test_a_script_has_the_numbers_of_its_scene(tmp_path: Path) -> None:
-    text = exported(tmp_path, "polymer-layer", "--to", "ngsolve")
+    text = exported(tmp_path, "polymer-sphere", "--to", "ngsolve")
     found = {}
     for node in ast.parse(text).body:
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
@@ -75,7 +76,7 @@ def test_a_script_has_the_numbers_of_its_scene(tmp_path: Path) -> None:
                 found[node.targets[0].id] = ast.literal_eval(node.value)
             except ValueError:
                 continue
-    scene = Scene.load("polymer-layer")
+    scene = Scene.load("polymer-sphere")
     young = scene.geometry.material.young
     assert (found["MASS"], found["VELOCITY"], found["NU"]) == (scene.mass, scene.velocity, scene.geometry.material.nu)
     assert (found["EQUILIBRIUM"], found["MODULI"], found["TIMES"]) == (
@@ -83,12 +84,12 @@ def test_a_script_has_the_numbers_of_its_scene(tmp_path: Path) -> None:
         [*young.moduli],
         [*young.times],
     )
-    assert (found["UP"][0], found["UP"][-1], found["ACROSS"][0]) == (-0.002, 0.0, 0.0)
+    assert (found["UP"][0], found["UP"][-1], found["ACROSS"][0]) == (-found["ACROSS"][-1], 0.0, 0.0)
     assert min(np.diff(found["UP"]).min(), np.diff(found["ACROSS"]).min()) > 0.0
     assert np.min(np.abs(np.subtract(found["ACROSS"], found["REACH"]))) < 1e-9 * found["REACH"], "a line of the mesh"
     places = np.linspace(0.0, found["REACH"], len(found["HEIGHTS"]))
     assert found["HEIGHTS"] == pytest.approx(scene.profile.height(places), rel=1e-9)
-    assert re.search(r"peak_force 0\.2\d+ \+- ", text), "our own answer stands in it"
+    assert re.search(r"peak_force 0\.16\d* \+- ", text), "our own answer stands in it"
 
 
 @pytest.mark.parametrize(

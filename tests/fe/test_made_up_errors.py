@@ -242,6 +242,15 @@ def test_peaks_between_rows_lie_within_what_every_other_row_changes_however_litt
     assert little > CASES // 3
 
 
+@pytest.mark.parametrize("steps", [16, 100, 300])
+def test_forces_are_compared_within_every_step(steps: int) -> None:
+    curve = made_up(steps, np.zeros_like, crowded=True)
+    times, _ = Variation(curve, curve.thinned(), 1.0)._pointwise
+    middles = 0.5 * (curve.x[1:] + curve.x[:-1])
+    assert np.all(np.isin(curve.duration * middles**2, times))
+    assert np.all(np.diff(times) >= 0.0)
+
+
 def test_rows_that_jitter_count_whole() -> None:
     """Of any size that the rows between do not hide: then it is no matter of how far rows lie apart."""
     rng = np.random.default_rng(10)
