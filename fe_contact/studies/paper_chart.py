@@ -29,6 +29,11 @@ HEIGHT_6, HEIGHT_GRID, HEIGHT_10, HEIGHT_15 = 3.7, 5.4, 2.9, 3.3  # in
 THIN: Look = {"linewidth": 0.6, "alpha": 0.75}  # look
 BROAD: Look = {"linewidth": 3.2, "alpha": 0.6}  # look
 DASHED: Look = {"linestyle": (0, (3, 1.6)), "linewidth": 0.8}  # look
+DAMPED = {"kelvin": (style.ORANGE, 0.2), "jankowski": (style.GREEN, 0.42)}  # look: colour, labels over the peak force
+ON_CURVE: Look = {
+    "fontsize": 4.6, "rotation": -74.0, "ha": "center", "va": "center",
+    "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.2},
+}  # fmt: skip
 TIMES, PAUSES = 241, 16  # of the curves of Fig. 15
 # Times in units of R2: how long the surface is shown, and the shortest and longest pause.
 SHOWN, SHORTEST, LONGEST = 4.0, 1e-2, 1e1
@@ -56,10 +61,13 @@ def _fig6(study: PaperStudy, where: Path) -> tuple[Path, Path]:
     axes = figure.add_axes((0.075, 0.13, 0.6, 0.68))
     for name, result, look in _curves_6(steel):
         _plot(axes, result, label=name, **look)
+    _label_restitutions(axes, steel)
     axes.axhline(steel.measured_peak, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 1.5)))
     axes.set(xlabel="time, µs", ylabel="force, N", xlim=(0.0, None), ylim=(0.0, 1.08 * steel.measured_peak))
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), labelspacing=0.7)
-    lines = [f"Dotted: the measured peak, {steel.measured_peak:g} N. The e of Kelvin and Jankowski is not printed."]
+    lines = [
+        f"Dotted: the measured peak, {steel.measured_peak:g} N. Along the curves: e, which the paper does not print."
+    ]
     style.heading(figure, "Fig. 6 drawn again: the steel ball", lines, TITLE_WIDTH)
     return style.save(figure, where, "fig6")
 
@@ -74,12 +82,23 @@ def _curves_6(steel: Steel) -> list[tuple[str, Result, Look]]:
         (f"proposed, R1 = {R1:.3f}, equal peak", solid(steel, R1, steel.R2), {"color": style.VERMILION, **DASHED}),
         ("linear spring, equal peak", elastic_of_peak(steel, "linear_spring", peak), {"color": style.GREY}),
     ]
-    for law, colour in (("kelvin", style.ORANGE), ("jankowski", style.GREEN)):
+    for law, (colour, _) in DAMPED.items():
         ends = f"e = {steel.restitutions[0]:g} to {steel.restitutions[-1]:g}"
         for i, e in enumerate(steel.restitutions):
             name = "_" if i else f"{law.capitalize()}, equal peak, {ends}"
             curves.append((name, damped_of_peak(steel, law, e), {"color": colour, **THIN}))
     return curves
+
+
+def _label_restitutions(axes: Axes, steel: Steel) -> None:
+    """The e of every damped curve on its falling side, those of a law at one force."""
+    for law, (colour, share) in DAMPED.items():
+        for e in steel.restitutions:
+            history = damped_of_peak(steel, law, e).history
+            falling = history.force.argmax() + np.flatnonzero(np.diff(history.force[history.force.argmax() :]) < 0.0)
+            level = share * steel.measured_peak
+            place = np.interp(-level, -history.force[falling], history.time[falling])
+            axes.text(MICRO * place, level, f"{e:g}", color=colour, **ON_CURVE)
 
 
 def _grid(study: PaperStudy, number: int, where: Path) -> tuple[Path, Path]:

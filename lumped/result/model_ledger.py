@@ -128,7 +128,7 @@ def inertia(scene: Scene, model: Model, peak: Peak) -> LedgerEntry:
 
 def gravity(scene: Scene, model: Model, force: float, mass: float) -> LedgerEntry:
     """The weight of a mass, kg, which presses only where the motion leads down, over the peak force, N."""
-    effect, weight = "gravity", GRAVITY * mass / force
+    effect, weight = "gravity", GRAVITY * mass / force if force > 0.0 else math.inf
     if scene.target_mass is not None:
         return LedgerEntry(effect, "none between two free bodies", 0.0)
     if model.gravity != 0.0:

@@ -31,6 +31,15 @@ def entry(scene: Scene, effect: str, tolerance: float = 1e-4) -> LedgerEntry:
     return found
 
 
+@pytest.mark.parametrize("pull", [0.0, -1e5])
+def test_a_contact_without_a_force_has_a_ledger(pull: float) -> None:
+    """As of a body that gravity pulls away at touch: it has no peak to compare with."""
+    scene = Scene.load("paper-concrete", {"model.gravity": pull, "model.direction": "unsaid" if pull else "down"})
+    ledger = model_ledger(scene, Peak(0.0, 1.5e-15, 2.7e-8, 1e-15))
+    (weight,) = (one for one in ledger if one.effect == "gravity")
+    assert weight.estimate == (0.0 if pull else math.inf)
+
+
 def test_radiation_of_a_point_force_has_the_published_coefficients() -> None:
     assert radiation_coefficient(0.23) == pytest.approx(0.15273, abs=5e-6)  # audit 4b
     # Miller and Pursey: 4.836/(4 pi) in units of the pressure wave's speed, at nu = 1/4

@@ -20,6 +20,7 @@ SIGNS = {
 }
 NAMES = {"history_l2": "history"}
 LEGEND = 1.15  # look: room for the names of the signs, in
+LABELS = 0.29  # look: room for the names of the scenes, of the width
 
 
 def plot_scenes(found: Sequence[SceneAnswer], where: Path) -> tuple[Path, Path]:
@@ -29,7 +30,7 @@ def plot_scenes(found: Sequence[SceneAnswer], where: Path) -> tuple[Path, Path]:
     with style.sheet(
         where, "scenes", "Error over its bar", lines, ROW * max(len(held), 3), width=120, above=0.08
     ) as sheet:
-        axes = sheet.panels(1, 1, 0.24, 1.0 - LEGEND / style.PAGE)[0]
+        axes = sheet.panels(1, 1, LABELS, 1.0 - LEGEND / style.PAGE)[0]
         axes.axvspan(LEAST, 1.0, color=style.GREEN, alpha=0.07, linewidth=0.0)
         axes.axvline(1.0, color=style.BLACK, linewidth=0.9)
         for name, (marker, colour) in SIGNS.items():
