@@ -23,7 +23,7 @@ Array = npt.NDArray[np.float64]
 MOST_NODES = 40_000  # some five seconds of gmsh, in which it answers to nothing
 PER_AREA = 2 / 3**0.5  # nodes of equal triangles of size h a square h
 DIGITS = 10  # of sizes: a mesh is to be the same whatever unit or machine made the sixteenth one
-COARSE = 2.0  # sides of a cell over the size of the elements in it, at most: a finer look hardly changes the sum
+COARSE = 1.5  # sides of a cell over the size of the elements in it, at most: a finer look hardly changes the sum
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,8 @@ from typing import Any
 from fe_contact.cli import main
 from fe_contact.commands import base
 from fe_contact.studies import rings
-from fe_contact.studies.exponents import layers, spheres
+from fe_contact.studies.exponents import layers
+from fe_contact.studies.exponents import study as exponents
 from fe_contact.studies.stability.bars import DEFAULT
 from fe_contact.studies.stability.base import studies
 from fe_contact.studies.table1 import limits
@@ -54,7 +55,7 @@ SMALLER: dict[ModuleType, dict[str, Any]] = {
     | {"power_law_impacts": lambda *_: None},
     limits: {"WIDTHS": limits.WIDTHS[::4]},
     layers: {"PROFILES": PROFILES, "FEW_POINTS": 6},
-    spheres: {"SUPPORTS": ("free",), "SHARES": spheres.SHARES[::3]},
+    exponents: {"SUPPORTS": ("free",), "SHARES": exponents.SHARES[::3]},
     rings: {"PACKAGED": ("rod-in-ring", "polymer-washer"), "STRAINS": rings.STRAINS[::4], "STRUCK_STRAINS": ()},
     tradeoff: {"TIGHTEST": 1e-5, "variations": lambda scene, *_: iter(FEW_STEPS if scene.model.inertia else ())}
     | {"asked_laws": lambda scene, _: FEW_LAWS if scene.model.inertia else ROWS_OF_SPRINGS},

@@ -58,6 +58,11 @@ class BentCurve(KnownByRadius):
         seen = self._seen(np.asarray(contact_radius, dtype=float))
         return 0.5 * np.pi * self.slope + (seen.reach + seen.rest) @ np.array(self.bends)
 
+    def depth_and_slope(self, contact_radius: Array) -> tuple[Array, Array]:
+        """Both of what is seen once."""
+        seen, slope, bends = self._seen(contact_radius), 0.5 * np.pi * self.slope, np.array(self.bends)
+        return contact_radius * (slope + seen.rest @ bends), slope + (seen.reach + seen.rest) @ bends
+
     def force_at(self, contact_radius: ArrayLike) -> Real:
         """F/E* = pi/2 s a^2 + sum c_k [4/3 w_k^3 + t_k^2 w_k - t_k a^2 angle_k], m^2."""
         a = np.asarray(contact_radius, dtype=float)

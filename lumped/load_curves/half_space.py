@@ -78,6 +78,15 @@ class KnownByRadius(HalfSpaceCurve):
         """F/E*, m^2."""
         return self.force_at(self.contact_radius(depth))
 
+    def force_and_slope(self, depth: ArrayLike) -> tuple[Real, Real]:
+        """Of one contact radius: F/E*, m^2, and 2 a, m."""
+        radius = self.contact_radius(depth)
+        return self.force_at(radius), 2.0 * radius
+
+    def depth_and_slope(self, contact_radius: Array) -> tuple[Array, Array]:
+        """depth(a), m, and its slope at contact radii, m, (n,)."""
+        return self.depth(contact_radius), self.depth_slope(contact_radius)
+
     def contact_radius(self, depth: ArrayLike) -> Real:
         """a with depth(a) = depth, m: Newton's steps, and the middle of the places around it where one leaves them."""
         asked = np.asarray(depth, dtype=float)
@@ -86,9 +95,10 @@ class KnownByRadius(HalfSpaceCurve):
         low, high = np.full_like(radius, self.least_radius), radius
         with np.errstate(invalid="ignore"):  # of an infinite depth, which a solver asks that has lost its way
             for _ in range(STEPS):
-                over, before = self.depth(radius) - wanted, radius
+                (reached, slope), before = self.depth_and_slope(radius), radius
+                over = reached - wanted
                 low, high = np.where(over < 0.0, radius, low), np.where(over > 0.0, radius, high)
-                radius = radius - over / self.depth_slope(radius)
+                radius = radius - over / slope
                 radius = np.where((radius < low) | (radius > high), 0.5 * (low + high), radius)
                 if np.all(np.abs(radius - before) <= LAST_STEP * radius):
                     break
