@@ -80,18 +80,15 @@ def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
         return result_of(scene, flowed)
     if scene.model.finite and scene.geometry.material.young.is_elastic:
         return large_strains.fe(scene, given, progress)
+    check(scene, given)
     if scene.model.finite:
-        large_strains.check_impact(scene, given)
         with faults_of(scene):
             marched = _solved(scene, given, progress, relaxing_impact.RelaxingStrikes)
         return result_of(scene, marched)
     if not scene.model.inertia:
-        check_target(scene)
         solved = _solved(scene, given, progress, Statics.of)
         return result_of(scene, solved)
-    target = with_waves(scene)
-    target.check(scene)
-    return result_of(scene, _solved(scene, given, progress, target.way))
+    return result_of(scene, _solved(scene, given, progress, with_waves(scene).way))
 
 
 def with_waves(scene: Scene) -> WaveTarget:
