@@ -30,7 +30,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from fe_contact.assembly.cache import Recipe, cached
+from fe_contact.assembly.cache import Recipe, cached_surface
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, operator_of
 from fe_contact.assembly.surface import monomials
@@ -281,7 +281,7 @@ class ScaledSurface(Deformable):
         return corners, np.stack([corners[:-1], 1 / np.diff(corners)]), members
 
 
-@cached
+@cached_surface
 def on_mesh(body: Recipe[ElasticBody], poisson: float) -> ScaledSurface:
     """A body with lengths of its own, condensed for this Poisson's ratio: its mesh stays while the contact grows."""
     return ScaledSurface(operator_of(body, poisson), follows_contact=False)
