@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import overload
 
 from numpy.polynomial import Polynomial
 
@@ -101,6 +103,34 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
     if dented:
         entries.append(rod_end(scene, peak))
     return tuple(entries)
+
+
+@dataclass(frozen=True)
+class Ledger(Sequence[LedgerEntry]):
+    """That of :func:`model_ledger`, reckoned when it is first read: of many impacts the numbers alone are asked."""
+
+    scene: Scene
+    peak: Peak
+    model: Model
+
+    @cached_property
+    def entries(self) -> tuple[LedgerEntry, ...]:
+        """All of them."""
+        return model_ledger(self.scene, self.peak, self.model)
+
+    @overload
+    def __getitem__(self, place: int) -> LedgerEntry: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> tuple[LedgerEntry, ...]: ...
+
+    def __getitem__(self, place: int | slice) -> LedgerEntry | tuple[LedgerEntry, ...]:
+        """One entry, or some."""
+        return self.entries[place]
+
+    def __len__(self) -> int:
+        """How many effects it names."""
+        return len(self.entries)
 
 
 def ledger_at_rest(indenter: Indenter, peak: Peak) -> tuple[LedgerEntry, ...]:

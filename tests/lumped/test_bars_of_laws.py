@@ -249,8 +249,8 @@ class Pushed:
 
 
 def test_a_peak_is_sought_no_closer_than_two_integrations_place_it() -> None:
-    """What they differ by may shift the peak by twice its slope: where they lie farther apart nothing more is asked."""
-    asked, slope = dict[float, int](), 1e-4
+    """What they differ by may shift the peak by twice its slope; all of it is asked of both at once."""
+    slope = 1e-4
     for apart in (0.0, 1e-3):
         counts, values = list[int](), dict.fromkeys(UNITS, 1.0)
         fine, coarse = (
@@ -258,6 +258,5 @@ def test_a_peak_is_sought_no_closer_than_two_integrations_place_it() -> None:
             for by, time in ((0.0, 1.0), (slope, 1.0 + apart))
         )
         bar = bars(fine, coarse, 1.0)[0]["peak_time"].error
-        assert bar == pytest.approx(apart or 2.0 * slope, rel=0.1)
-        asked[apart] = len(counts)
-    assert asked[1e-3] <= 9 < asked[0.0]
+        assert 0.999 < bar / (apart or 2.0 * slope) < 1.2
+        assert len(counts) <= 5
