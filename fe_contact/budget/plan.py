@@ -11,7 +11,7 @@ end (:func:`with_constant_nu`).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -28,7 +28,7 @@ from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.sampled import SampledCurve
 from lumped.materials import Material, Relaxation
-from lumped.result.model_ledger import Peak, model_ledger
+from lumped.result.model_ledger import Ledger, Peak
 from lumped.result.result import LedgerEntry
 from lumped.scene.geometry import Geometry, stiffest_impact
 from lumped.scene.indenter import Indenter
@@ -69,7 +69,7 @@ class Plan:
 
     numerics: Numerics
     pinned: frozenset[str]
-    ledger: tuple[LedgerEntry, ...]
+    ledger: Sequence[LedgerEntry]
 
 
 def plan(scene: Scene, given: Given) -> Plan:
@@ -92,7 +92,7 @@ def plan(scene: Scene, given: Given) -> Plan:
         peak_share=peak_share,
     )
     peak = Peak(size.peak_force, size.peak_depth, size.contact_radius, 2 * size.peak_time)
-    return Plan(placed.varied(**given), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
+    return Plan(placed.varied(**given), frozenset(given) - {"tolerance"}, Ledger(scene, peak, scene.model))
 
 
 def share_of_peak(peak_time: float, contact_time: float) -> float:

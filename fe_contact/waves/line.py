@@ -6,7 +6,7 @@ takes by itself is a witness of any other: two methods have one limit.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -348,7 +348,7 @@ class Doubling:
         done = meets(found.quantities, found.numerics.tolerance)
         return Finer(None if done else found.numerics.varied(steps=twice))
 
-    def ledger(self, found: Line) -> tuple[LedgerEntry, ...]:
+    def ledger(self, found: Line) -> Sequence[LedgerEntry]:
         """What the model leaves out."""
         if not self.dented:
             return self.chosen.ledger
