@@ -26,7 +26,7 @@ from lumped.schema.files import SCENES as PACKAGED
 
 Table = dict[str, Any]
 SCENES = 20_000
-CHANGED_STUDIES = 600
+CHANGED_STUDIES = 1_000
 SEED = 20260512
 TOP = ("name", "striker", "target", "model", "motion", "law", "numerics")
 BODIES = ("striker", "target")
