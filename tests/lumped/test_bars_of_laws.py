@@ -14,12 +14,13 @@ from scipy.optimize import brentq
 from scipy.special import beta
 
 from lumped import Model, Motion, Quantity, Scene, laws, simulate
-from lumped.laws import _hereditary
+from lumped.laws import _force_law, _hereditary
 from lumped.laws._assembly import Answer, bars
 from lumped.numbers import Array
 from lumped.result.history import End
 from lumped.result.result import UNITS, meets
 from lumped.scene.tables import LawChoice
+from lumped.solvers.point import half_widths
 
 CASES = 600
 # Where an error is rounding its size is an accident; the time of a flat peak is known to the root of rounding.
@@ -146,6 +147,21 @@ def test_bars_cover_closed_forms_and_are_not_far_above(campaign_size: Callable[[
             wide[name].append(quantity.error / max(off, ROUNDING_OF.get(name, ROUNDING) * abs(value)))
     for name, ratios in wide.items():
         assert float(np.median(ratios)) < WIDE, name
+
+
+def test_what_a_coarse_march_lacks_is_known_to_first_order() -> None:
+    """Far from rounding the bars of a spring are SAFETY times its errors, no less and no more."""
+    rng, known = np.random.default_rng(25), defaultdict(list)
+    for _ in range(12):
+        scene, exact = spring(rng)
+        found = _force_law._estimated(laws.hertz.of(scene), scene, 1e-3).quantities
+        for name in ("peak_depth", "peak_force", "duration", "restitution"):
+            off = abs(found[name].value - exact[name])
+            if off > 1e-11 * exact[name]:
+                known[name].append(found[name].error / off)
+    assert len(known) == 4
+    for name, ratios in known.items():
+        assert ratios == pytest.approx([half_widths.SAFETY] * len(ratios), rel=0.1), name
 
 
 def test_an_end_is_known_to_1e_10_whatever_is_asked(campaign_size: Callable[[int], int]) -> None:
