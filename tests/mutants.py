@@ -19,6 +19,7 @@ from __future__ import annotations
 import argparse
 import ast
 import copy
+import gc
 import hashlib
 import json
 import multiprocessing
@@ -38,12 +39,12 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from fnmatch import fnmatch
-from functools import cache, cached_property
+from functools import _lru_cache_wrapper, cache, cached_property
 from itertools import accumulate
 from pathlib import Path
 from queue import SimpleQueue
 from types import CodeType, FrameType
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -278,10 +279,15 @@ class Mutant:
     @property
     def rows(self) -> range | None:
         """Lines of the statement that it changes, counted from where its function begins; None: all of the function."""
-        first, _ = functions(self.file).get(self.scope, (0, ""))
+        first = self.function.line
         around = [lines for lines in statements(self.file) if self.line in lines]
         smallest = min(around, key=len, default=range(0))
         return range(smallest.start - first, smallest.stop - first) if first and smallest.start > first else None
+
+    @property
+    def function(self) -> Function:
+        """That which it changes, none of a constant."""
+        return functions(self.file).get(self.scope, Function())
 
     @cached_property
     def text(self) -> str:
@@ -459,6 +465,9 @@ def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> 
     def stop(*_: object) -> None:
         pytest.fail("too slow")
 
+    if item.path not in BEGUN:
+        _forget()
+    BEGUN.add(item.path)
     signal.signal(signal.SIGVTALRM, stop)
     signal.setitimer(signal.ITIMER_VIRTUAL, LONGEST)
     began, failed = time.process_time(), item.session.testsfailed
@@ -473,6 +482,16 @@ def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> 
                 file.write(json.dumps({"test": item.nodeid, "time": taken, "reached": _by_function(seen)}) + "\n")
         if nextitem is None or nextitem.path != item.path:
             kept.with_suffix(".part").rename(kept)
+
+
+BEGUN = set[Path]()
+
+
+def _forget() -> None:
+    """Empties what the packages keep of earlier answers: a file of tests is to reach all that it needs by itself."""
+    for one in gc.get_objects():
+        if isinstance(one, _lru_cache_wrapper) and one.__module__.partition(".")[0] in PACKAGES:
+            one.cache_clear()
 
 
 @cache
@@ -527,19 +546,28 @@ def _by_function(seen: set[tuple[CodeType, int]]) -> dict[str, list[int]]:
     found = defaultdict[str, list[int]](list)
     for code, line in seen:
         file, scope = str(Path(code.co_filename).relative_to(ROOT)), code.co_qualname.partition(".<locals>")[0]
-        if scope in functions(file):
-            first, digest = functions(file)[scope]
-            found[f"{file}:{scope}:{digest}"].append(line - first)
+        if function := functions(file).get(scope):
+            found[f"{file}:{scope}:{function.digest}"].append(line - function.line)
     return found
 
 
+class Function(NamedTuple):
+    """Where it begins, what tells its source from another, and whether it keeps answers, so that few tests call it."""
+
+    line: int = 0
+    digest: str = ""
+    keeps: bool = False
+
+
 @cache
-def functions(file: str) -> dict[str, tuple[int, str]]:
-    """First line and digest of all functions of a source by their names, those within another one apart."""
-    tree, found = ast.parse((ROOT / file).read_text(encoding="utf-8")), dict[str, tuple[int, str]]()
+def functions(file: str) -> dict[str, Function]:
+    """Those of a source by their names, but for those within another one."""
+    tree, found = ast.parse((ROOT / file).read_text(encoding="utf-8")), dict[str, Function]()
     for _, _, child, _, scope in places(tree):
         if isinstance(child, ast.FunctionDef) and scope.rpartition(".")[2] == child.name:
-            found[scope] = child.lineno, hashlib.sha256(ast.unparse(child).encode()).hexdigest()[:6]
+            digest = hashlib.sha256(ast.unparse(child).encode()).hexdigest()[:6]
+            keeps = any(re.match(r"cache$|lru_cache", ast.unparse(one)) for one in child.decorator_list)
+            found[scope] = Function(child.lineno, digest, keeps)
     return found
 
 
@@ -569,8 +597,8 @@ class Asked:
 
     def reaches(self, mutant: Mutant) -> bool:
         """Whether it runs the mutated lines, or calls their function where that was another one when it was asked."""
-        scope, (_, digest) = f"{mutant.file}:{mutant.scope}", functions(mutant.file).get(mutant.scope, (0, ""))
-        lines = self.reached.get(f"{scope}:{digest}")
+        scope = f"{mutant.file}:{mutant.scope}"
+        lines = self.reached.get(f"{scope}:{mutant.function.digest}")
         if lines is None:
             return scope in self.functions
         return mutant.rows is None or any(line in mutant.rows for line in lines)
@@ -678,12 +706,12 @@ def met(mutant: Mutant, tests: list[Asked], killers: set[str], budget: float, co
 def asked_of(mutant: Mutant, tests: list[Asked], killers: set[str], budget: float) -> list[Asked]:
     """Tests that reach what it changes, up to so many seconds: first those that killed others of its file, then fast.
 
-    What no test calls is a constant: then those that call what names it, or that name it themselves.
+    What no test calls is a constant: then those that call what names it, or that name it themselves. So with a function
+    whose answers are kept, which only the first test that needs it calls.
     """
-    name, scope, near = mutant.scope.rpartition(".")[2], f"{mutant.file}:{mutant.scope}", list[Asked]()
-    if any(scope in test.functions for test in tests):
-        near = [test for test in tests if test.reaches(mutant)]
-    else:
+    name, scope = mutant.scope.rpartition(".")[2], f"{mutant.file}:{mutant.scope}"
+    near = [test for test in tests if test.reaches(mutant)]
+    if mutant.function.keeps or not any(scope in test.functions for test in tests):
         changed = users(mutant.scope, mutant.file)
         near = [test for test in tests if changed & test.functions or name in words(test.test.partition("::")[0])]
     ordered = sorted(near, key=lambda test: (test.test not in killers, test.time))

@@ -164,6 +164,13 @@ def test_what_a_coarse_march_lacks_is_known_to_first_order() -> None:
         assert ratios == pytest.approx([half_widths.SAFETY] * len(ratios), rel=0.1), name
 
 
+def test_slopes_at_the_nodes_of_a_step_are_those_of_polynomials() -> None:
+    """The time of a peak errs by the slope of what the force lacks, over the curvature of the force."""
+    x = half_widths.NODES.places
+    for power in range(1, x.size):
+        assert half_widths._slopes() @ x**power == pytest.approx(power * x ** (power - 1), abs=1e-10)
+
+
 def test_an_end_is_known_to_1e_10_whatever_is_asked(campaign_size: Callable[[int], int]) -> None:
     rng = np.random.default_rng(21)
     for i in range(campaign_size(300)):
@@ -204,6 +211,9 @@ def test_what_creeps_to_rest_under_its_weight_is_said_to_rest() -> None:
         depth = (scene.mass * scene.gravity / law.k) ** (1.0 / law.alpha)
         assert abs(result.history.depth[-1] / depth - 1.0) < 1e-6
         assert abs(result.energy["residual"]) < 1e-6 * result.energy["in"]
+        impulse, elapsed = result.quantities["impulse"], result.history.time[-1]
+        given = scene.mass * (scene.velocity + scene.gravity * elapsed)
+        assert abs(impulse.value - given) <= impulse.error < 1e-6 * given
 
 
 @pytest.mark.parametrize("name", ["peak_force", "restitution"])
