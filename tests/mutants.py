@@ -1,13 +1,13 @@
 """How many small falsifications of the numerical core the tests notice. A script, not a test.
 
-    python tests/mutants.py [--seed N] [--count 150] [--jobs 2] [--budget 60] [--only PATTERN ...] [--work FOLDER]
+    python tests/mutants.py [--seed N] [--count 150] [--jobs 2] [--budget 20] [--only PATTERN ...] [--work FOLDER]
 
 Draws mutants of the syntax trees of the ``CORE``, every file alike: a number ten times larger or smaller, an order one
 more or less, a comparison turned round, a condition held, largest for smallest, a sum for a difference, a factor left
-out, an answer a tenth. Each is written to a copy of the checkout, never to the checkout, and meets the tests that reach
-the mutated line, those first that killed others of its file, then the fastest, until one fails, up to ``--budget``
-seconds of processor time. Prints what every mutant met, the share killed, and the survivors; one that does no harm
-stands with its reason in ``HARMLESS`` and is not drawn.
+out, an answer a tenth, a bar a fifteenth. Each is written to a copy of the checkout, never to the checkout, and meets
+the tests that reach the mutated line, those first that killed others of its file, then the fastest, until one fails, up
+to ``--budget`` seconds of processor time. Prints what every mutant met, the share killed, and the survivors; one that
+does no harm stands with its reason in ``HARMLESS`` and is not drawn.
 
 Which test reaches what is found by running every test file once in such a copy, where what fails is not asked. It is
 kept in the folder ``--work``; so are the answers, so that a run that was broken off goes on where it stood. A test file
@@ -63,7 +63,8 @@ CORE = (
     "fe_contact/dynamics/*.py",
     "lumped/solvers/hereditary/*.py", "lumped/solvers/point/*.py", "lumped/solvers/mdr/*.py",
     "lumped/solvers/rod.py", "lumped/solvers/radau.py", "lumped/paper/table1.py", "lumped/laws/_hereditary*.py",
-    "lumped/laws/mdr.py", "lumped/laws/correspondence.py", "lumped/result/history.py",
+    "lumped/laws/mdr.py", "lumped/laws/correspondence.py", "lumped/laws/_assembly.py", "lumped/laws/_force_law.py",
+    "lumped/laws/*_waves.py", "lumped/indentation.py", "lumped/result/history.py",
 )  # fmt: skip
 TESTS = ("tests/fe/test_*.py", "tests/lumped/test_*.py", "tests/test_table1.py", "tests/test_stability*.py")
 LONGEST = 5.0  # s of processor time, watched: a slower test is not asked
@@ -382,8 +383,27 @@ def answers(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
             yield other, f"a tenth of {node.name}"
 
 
+def told_bars(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
+    """The bar of a quantity, or that of a force, a fifteenth where there is one."""
+    if not isinstance(node, ast.Call):
+        return
+    other = copy.deepcopy(node)
+    if getattr(node.func, "id", "") == "Quantity" and len(node.args) > 1:
+        other.args[1] = _fifteenth(other.args[1])
+        yield other, f"a fifteenth of {ast.unparse(node.args[1])}"
+    for keyword in other.keywords:
+        if keyword.arg == "force_error":
+            text, keyword.value = ast.unparse(keyword.value), _fifteenth(keyword.value)
+            yield other, f"a fifteenth of {text}"
+
+
+def _fifteenth(bar: ast.expr) -> ast.expr:
+    there = ast.Compare(bar, [ast.IsNot()], [ast.Constant(None)])
+    return ast.IfExp(there, ast.BinOp(bar, ast.Div(), ast.Constant(15.0)), bar)
+
+
 KINDS: tuple[Callable[[ast.AST], Iterator[tuple[ast.AST, str]]], ...] = (
-    numbers, comparisons, conditions, joints, sums, answers,
+    numbers, comparisons, conditions, joints, sums, answers, told_bars,
 )  # fmt: skip
 
 
@@ -443,10 +463,10 @@ def _put(parent: ast.AST, field: str, index: int | None, child: ast.AST) -> None
         getattr(parent, field)[index] = child
 
 
-def drawn(files: list[str], seed: int, count: int) -> list[Mutant]:
+def drawn(files: list[str], seed: int, count: int, changes: str = "*") -> list[Mutant]:
     """So many mutants, every file alike, but those that errors and their bars come from four times as often."""
     rng = random.Random(seed)
-    left = {file: [mutant for mutant in all_of(file) if not mutant.harmless] for file in files}
+    left = {file: [one for one in all_of(file) if fnmatch(one.change, changes) and not one.harmless] for file in files}
     often, chosen = files + 3 * [file for file in files if any(fnmatch(file, one) for one in ERRORS)], list[Mutant]()
     while len(chosen) < count and any(left.values()):
         for file in rng.sample(often, len(often)):
@@ -819,6 +839,7 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--budget", type=float, default=20.0, help="s of processor time for one mutant")
     parser.add_argument("--only", nargs="+", default=["*"], help="patterns of files to mutate")
+    parser.add_argument("--changes", default="*", help='pattern of what is changed: "a fifteenth*"')
     parser.add_argument("--tests", nargs="+", default=TESTS, help="patterns of files that are asked")
     parser.add_argument("--work", type=Path, default=Path(tempfile.gettempdir()) / "fe-contact-mutants")
     given = parser.parse_args()
@@ -827,7 +848,7 @@ def main() -> None:
     FORKED.set_forkserver_preload(list(LIBRARIES))
     files = [file for file in sources() if any(fnmatch(file, pattern) for pattern in CORE)]
     files = [file for file in files if any(fnmatch(file, pattern) for pattern in given.only)]
-    chosen = drawn(files, given.seed, given.count)
+    chosen = drawn(files, given.seed, given.count, given.changes)
     with copies(given.jobs) as roots:
         tests = calls(given.work, given.tests, roots)
         answers = answered(chosen, tests, given.budget, given.work, roots)
