@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from skfem import MeshTri
 
-from fe_contact import run
+from fe_contact import large_strains, run
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import basis_on
 from fe_contact.indentation import indent, settings
@@ -18,12 +18,13 @@ from fe_contact.solids.contact import OnUndeformed
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Equilibrium
 from fe_contact.solids.pressing import Solid, advanced, press
-from lumped import BadInput, Scene
+from lumped import BadInput, Scene, laws
+from lumped.indentation import Indentation
 from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import ENERGIES, energy_of, strained
 from lumped.result.model_ledger import ENERGY_NAMES, FIRST_ORDER
 from lumped.scene.indenter import Indenter
-from lumped.scene.tables import Model
+from lumped.scene.tables import LawChoice, Model
 from lumped.shapes import Sphere
 
 COARSE = {"elements_per_contact": 2.0, "order": 3}
@@ -133,6 +134,36 @@ def test_an_elastic_impact_gives_back_all_of_it() -> None:
     peak, depth = (quantities[name].value or 0.0 for name in ("peak_force", "peak_depth"))
     pressed = press_once(scene, depth)
     assert abs(pressed - peak) < 2.0 * (quantities["peak_force"].error or 0.0)
+
+
+@pytest.mark.parametrize("error", [4e-3, -4e-3])
+@pytest.mark.parametrize("tilted", [False, True])
+def test_a_curve_that_errs_by_its_bars_leaves_the_impact_within_its_own(
+    error: float, tilted: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a spring k depth^1.5 in place of finite elements, too stiff everywhere or where it is deep."""
+    scene = Scene.load("polymer-sphere-finite")
+    k = 4.0 / 3.0 * scene.contact_modulus.relaxed * np.sqrt(scene.profile.tip_radius)
+
+    def indented(indenter: Indenter, depths: tuple[float, ...], given: object, progress: object) -> Indentation:
+        place = 1.0 - np.log(np.array(depths) / depths[-1]) / np.log(depths[0] / depths[-1])
+        off = error * (np.cos(np.pi * place) if tilted else np.ones(len(depths)))
+        depth, bar = np.array(depths), np.full(len(depths), abs(error))
+        force, radius = k * depth**1.5 * (1.0 + off), np.sqrt(depth * scene.profile.tip_radius)
+        budget = {"mesh": 0.75 * bar, "penalty": 0.25 * bar}
+        return Indentation(indenter, "fe", k, 1e-2, depth, force, radius, bar * force, budget)
+
+    monkeypatch.setattr(large_strains, "indent", indented)
+    found = run(scene, tolerance=1e-2)
+    spring = Scene(None, scene.mass, scene.velocity, law=LawChoice("hertz", {"k": k, "alpha": 1.5}))
+    exact = laws.hertz.of(spring).simulate(spring, 1e-6)
+    assert found.converged
+    for name in ("peak_force", "peak_time", "peak_depth", "duration"):
+        one, other = found.quantities[name], exact.quantities[name].value
+        assert one.error / 4.0 < abs(one.value - other) < one.error, name
+    off = np.abs(found.history.force - exact.history.force_at(found.history.time))
+    assert np.all(off <= found.history.force_error + 1e-6 * found.history.force.max())
+    assert np.median(found.history.force_error) < 5.0 * np.median(off)
 
 
 def press_once(scene: Scene, depth: float) -> float:
