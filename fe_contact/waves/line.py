@@ -149,7 +149,7 @@ class Line:
         for cause, other in self.others.items():
             least = _nearby(fine, other.reading) if self._alone else _ended_later(self.fine, other)
             if self.scene.profile.fixed_radius is not None:  # it jumps, and may stay at its peak
-                least["peak_time"] = _as_high(fine, other.reading, float(fine.quantities["duration"] or np.inf))
+                least["peak_time"] = _as_high(fine, other.reading, self.safety)
             if cause == "time_step":
                 halved = _halved(other.reading, self.quarter.reading)
                 least = {name: max(halved.get(name, 0.0), least.get(name, 0.0)) for name in halved | least}
@@ -221,13 +221,17 @@ def _nearby(fine: RodReading, coarse: RodReading) -> dict[str, float]:
     }
 
 
-def _as_high(fine: RodReading, coarse: RodReading, end: float) -> float:
-    """How far from its peak, s, and before an ``end``, s, the force may be as high, for all that the steps change."""
-    force, change = _compared(fine, coarse)
-    time, when = _places(fine), fine.quantities["peak_time"] or 0.0
-    least = (fine.quantities["peak_force"] or 0.0) * (1.0 - ROUNDING) - np.interp(when, time, change)
-    tied = time[(force + change >= least) & (time < end)]
-    return float(np.abs(tied - when).max(initial=0.0))
+def _as_high(fine: RodReading, coarse: RodReading, safety: float) -> float:
+    """How far from its peak, s, the force of the first contact may be as high, for all that the steps change there and
+    at the peak; without more ``safety`` than of those changes.
+    """
+    end, when = fine.quantities["duration"] or np.inf, fine.quantities["peak_time"] or 0.0
+    sides = when + ROUNDING * fine.rows[TIME, -1] * np.array([-1.0, 1.0])  # one of them is that of the peak
+    time = np.append(_places(fine), sides[fine.force_at(sides).argmax()])
+    force = fine.force_at(time)
+    change = coarse.force_at(time) - force
+    tied = time[(force + safety * np.abs(change - change[-1]) >= (1.0 - ROUNDING) * force[-1]) & (time <= end)]
+    return float(np.abs(tied - when).max()) / safety
 
 
 def _apart(fine: Run, coarse: Run) -> float:
