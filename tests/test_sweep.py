@@ -105,6 +105,7 @@ correlation = [["striker.mass", "striker.mass", 2.0]]
     ("changed", "said"),
     [
         ({"axes": {"striker.velocty": [1.0]}}, "did you mean velocity?"),
+        ({"axes": {"strikr.velocity": [1.0]}}, "^sweep: strikr.velocity: unknown key; .* did you mean striker?"),
         ({"axes": {SPEED: [-1.0], DASHPOT: [1e3, 1e4]}}, "-1.0"),
         ({"axes": {SPEED: [0.1]}, "zipped": {SPEED: [0.1]}}, "varies twice"),
         ({}, "missing; accepted: [axes]"),
