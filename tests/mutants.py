@@ -727,12 +727,12 @@ def met(mutant: Mutant, tests: list[Asked], killers: set[str], budget: float, co
 def asked_of(mutant: Mutant, tests: list[Asked], killers: set[str], budget: float) -> list[Asked]:
     """Tests that reach what it changes, up to so many seconds: first those that killed others of its file, then fast.
 
-    What no test calls is a constant: then those that call what names it, or that name it themselves. So with a function
-    whose answers are kept, which only the first test that needs it calls.
+    Of a constant those that call what names it, or that name it themselves. So of a function whose answers are kept,
+    which only the first test that needs it calls.
     """
-    name, scope = mutant.scope.rpartition(".")[2], f"{mutant.file}:{mutant.scope}"
+    name = mutant.scope.rpartition(".")[2]
     near = [test for test in tests if test.reaches(mutant)]
-    if mutant.function.keeps or not any(scope in test.functions for test in tests):
+    if mutant.function.keeps or not mutant.function.line:
         changed = users(mutant.scope, mutant.file)
         near = [test for test in tests if changed & test.functions or name in words(test.test.partition("::")[0])]
     ordered = sorted(near, key=lambda test: (test.test not in killers, test.time))
