@@ -150,18 +150,24 @@ def balanced(
 
     if touching is not None:
         guess = encounter.at(start, depth, stiffness, state, touching)
-        start = start + _whole(guess, _step(guess)[1])
+        guided = at(start + _whole(guess, _step(guess)[1]))
+        start = guided.displacement if np.isfinite(guided.energy) else start
     here = at(start)
     if not np.isfinite(here.energy):
         raise EquilibriumLost(f"an element is inverted at depth {depth:.3g}")
+    known: Callable[[Array], Array] | None = None
     for iteration in range(1, MOST_ITERATIONS + 1):
-        solve, step = _step(here)
+        solve, step = _step(here) if known is None else (known, known(-here.residual))
         slope = float(here.residual @ step)
-        done = -slope <= settled * abs(here.energy)
-        there = at(here.displacement + _whole(here, step)) if done else _descended(here, step, slope, at)
-        if done:
+        if known is not None and not 0.0 <= -slope <= settled * abs(here.energy):
+            solve, step = _step(here)
+            slope = float(here.residual @ step)
+        if -slope <= settled * abs(here.energy):
+            there = at(here.displacement + _whole(here, step))
             rate = _whole(there, solve(-there.touch.stiffening[there.encounter.body.free]))
             return Equilibrium(there, rate, iteration)
+        there = _descended(here, step, slope, at)
+        known = solve if np.array_equal(here.touch.touching, there.touch.touching) else None
         here = there
     raise EquilibriumLost(f"no equilibrium in {MOST_ITERATIONS} iterations at depth {depth:.3g}")
 
