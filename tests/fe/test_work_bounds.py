@@ -208,3 +208,10 @@ def test_plan_says_what_waves_take_and_what_is_refused(capsys: pytest.CaptureFix
     told = capsys.readouterr()
     assert "elements_per_contact" in told.out
     assert "cure: " in told.err
+
+
+@pytest.mark.parametrize(("name", "most"), [("polymer-o-ring", 3.5), ("two-finite-spheres", 2.0)])
+def test_the_coming_contact_is_guessed_so_well_that_few_sets_are_tried(name: str, most: float) -> None:
+    """Growing and receding, on one side of the axis and on both of a crown."""
+    work = simulate(Scene.load(name), "fe", {"tolerance": 1e-2}).work
+    assert work["iterations"] <= most * work["contact_problems"]
