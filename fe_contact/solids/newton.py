@@ -148,13 +148,13 @@ def balanced(
     def at(displacement: Array) -> Balance:
         return encounter.at(displacement, depth, stiffness, state)
 
-    if touching is not None:
-        guess = encounter.at(start, depth, stiffness, state, touching)
-        guided = at(start + _whole(guess, _step(guess)[1]))
-        start = guided.displacement if np.isfinite(guided.energy) else start
     here = at(start)
     if not np.isfinite(here.energy):
         raise EquilibriumLost(f"an element is inverted at depth {depth:.3g}")
+    if touching is not None:
+        guess = encounter.at(start, depth, stiffness, state, touching)
+        guided = at(start + _whole(guess, _step(guess)[1]))
+        here = guided if np.isfinite(guided.energy) else here
     known: Callable[[Array], Array] | None = None
     for iteration in range(1, MOST_ITERATIONS + 1):
         solve, step = _step(here) if known is None else (known, known(-here.residual))

@@ -204,11 +204,10 @@ def advanced(
 
 def _touching(before: Equilibrium, depth: float, widening: float) -> Points:
     """Points that will touch at another depth, where the contact is as wide as a power ``widening`` of it."""
-    balance = before.balance
-    touch = balance.touch
-    along = np.abs(balance.encounter.obstacle.along(touch.skin.place + touch.displacement))
-    edge = float(along[touch.touching].max(initial=0.0))
-    return np.asarray(along <= edge * (depth / balance.depth) ** widening)
+    balance, wider = before.balance, (depth / before.balance.depth) ** widening
+    along, touching = balance.encounter.obstacle.along(balance.touch.skin.place), balance.touch.touching
+    first, last = along[touching].min(initial=0.0), along[touching].max(initial=0.0)
+    return np.asarray((along >= wider * first) & (along <= wider * last))
 
 
 def _begun(encounter: Encounter, depth: float, stiffness: float) -> Equilibrium:
@@ -237,5 +236,8 @@ def contact_radius(balance: Balance) -> float:
     touch = balance.touch
     place = (touch.skin.place + touch.displacement).reshape(2, -1)
     overlap, along = touch.overlap.depth.ravel(), balance.encounter.obstacle.along(place)
+    at_rest = balance.encounter.obstacle.along(touch.skin.place.reshape(2, -1))
+    if at_rest[0] < 0.0:  # from where the first touch has come to
+        along = along - np.interp(0.0, at_rest, along)
     apart = balance.depth + touch.displacement[1].ravel() - overlap  # the undeformed surfaces
     return half_width(along, overlap, -overlap, height=np.maximum(apart, 0.0))
