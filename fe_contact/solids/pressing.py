@@ -42,7 +42,7 @@ RAMP = (0.02, 0.2, 1.0)  # shares of the penalty with which a body is pressed fo
 FARTHEST = 2.0  # a depth over the one before it, beyond which another is put between
 LEAST_BEGUN = 0.05  # of a depth, that a body has to be pressed by from rest at once
 WIDENING = 0.5  # power of the depth that a contact is wide by, under a sphere
-SPLITS = 12  # work: of the way to a depth that cannot be reached at once
+NEAREST = 1.02  # a depth over the one before it, up to which a way is not made in halves
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,20 +186,32 @@ def advanced(
         return before
     count = math.ceil(math.log(depth / before.balance.depth) / math.log(FARTHEST)) or 1
     left = list(np.geomspace(depth, before.balance.depth, count, endpoint=False))
-    iterations, splits = 0, 0
+    iterations = 0
     while left:
         try:
-            touching = _touching(before, left[-1], widening)
-            found = balanced(encounter, before.predicted(left[-1]), left[-1], stiffness, touching=touching)
+            hasty = left[-1] > NEAREST * before.balance.depth
+            found = _onwards(before, left[-1], stiffness, widening, hasty)
         except EquilibriumLost:
-            splits += 1
-            if splits > SPLITS:
+            if not hasty:
                 raise
-            left.append(0.5 * (left[-1] + before.balance.depth))
+            left.append(math.sqrt(left[-1] * before.balance.depth))
             continue
         before, iterations = found, iterations + found.iterations
         left.pop()
     return replace(before, iterations=iterations)
+
+
+def _onwards(before: Equilibrium, depth: float, stiffness: float, widening: float, hasty: bool) -> Equilibrium:
+    """At another depth. Raises EquilibriumLost."""
+    return balanced(
+        before.balance.encounter,
+        before.predicted(depth),
+        depth,
+        stiffness,
+        touching=_touching(before, depth, widening),
+        foreseen=before.foreseen(depth),
+        hasty=hasty,
+    )
 
 
 def _touching(before: Equilibrium, depth: float, widening: float) -> Points:
