@@ -132,8 +132,7 @@ def _meshed(sizes: Sizes, poisson: float) -> MeshedGround:
     distance = np.hypot(middles[0], middles[1])
     elements = np.flatnonzero(distance < CORE)
     surface = flat(basis)
-    places = np.stack([surface.coordinate, np.zeros_like(surface.coordinate)])
-    skin = Skin.of(surface, places, sizes.order, 2 * basis.N, None)
+    skin = Skin.of(surface, sizes.order, 2 * basis.N)
     return MeshedGround(
         core=Bulk.of(basis, False, elements),
         stiffness=_stiffness(basis, poisson),
