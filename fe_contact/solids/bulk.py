@@ -125,6 +125,13 @@ class Pattern:
         pointers = np.searchsorted(entries, free.size * np.arange(free.size + 1))
         return cls(places, (entries % free.size).astype(np.int32), pointers.astype(np.int32))
 
+    @property
+    def definite(self) -> Matrix:
+        """A positive definite matrix of this pattern, (free, free)."""
+        free = self.pointers.size - 1
+        ones = sparse.csc_matrix((np.ones(self.indices.size), self.indices, self.pointers), shape=(free, free))
+        return sparse.diags(1.0 + np.diff(self.pointers)) + ones
+
     def matrix(self, blocks: Sequence[Array]) -> Matrix:
         """The sum of blocks (m, k, k) as a sparse matrix, (free, free)."""
         values = np.concatenate([block.ravel() for block in blocks])
