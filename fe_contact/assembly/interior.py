@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 import scipy.sparse.linalg as linalg
@@ -88,7 +88,7 @@ def elimination_order(matrix: Matrix) -> Indices:
     return np.argsort(_factors(matrix, "MMD_AT_PLUS_A").perm_c)
 
 
-def _factors(matrix: Matrix, order: str) -> Any:
+def _factors(matrix: Matrix, order: Literal["NATURAL", "MMD_AT_PLUS_A"]) -> Any:
     if FACTORS * matrix.nnz + WORK_SPACE > _room():
         raise MemoryError
     return linalg.splu(

@@ -18,7 +18,7 @@ import numpy as np
 from fe_contact.assembly.forms import Array, check_compressible
 from fe_contact.budget.refine import Growth, missing
 from fe_contact.budget.variation import SAFETY
-from fe_contact.plastic.ground import Ground, Sizes, yielding_of
+from fe_contact.plastic.ground import Ground, Sizes, ground_of, yielding_of
 from fe_contact.plastic.path import ELASTIC_RATIO, Presser, Station
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
 from lumped.errors import BadInput, Fault
@@ -130,7 +130,7 @@ def smooth(x: Array, y: Array, spacing: float) -> Callable[[Array], Array]:
 @dataclass(frozen=True)
 class Course:
     """What is pressed into what, and how deep; m, Pa. ``first``, ``firm``: depths before which nothing yields, and
-    hardly anything; ``smallest`` and ``widest`` contact to expect.
+    hardly anything; ``shallow``: from where on contacts are to be resolved.
     """
 
     profile: Shape
@@ -140,6 +140,7 @@ class Course:
     hardening: float
     first: float
     firm: float
+    shallow: float
     deepest: float
 
     @classmethod
@@ -162,6 +163,7 @@ class Course:
             hardening=material.hardening_modulus or 0.0,
             first=first,
             firm=max(firm, first),
+            shallow=shallow,
             deepest=deepest,
         )
 
@@ -186,7 +188,7 @@ class Course:
 
     def ground(self, numerics: Numerics, cut: bool = False) -> Ground:
         """The half-space meshed. Raises BodyTooFine."""
-        smallest = 1.0 if self.rim else 0.5 * overlapping(self.profile, self.first) / self.unit
+        smallest = 1.0 if self.rim else 0.5 * overlapping(self.profile, self.shallow) / self.unit
         sizes = Sizes(
             elements=numerics.elements_per_contact,
             order=numerics.order,
@@ -196,7 +198,7 @@ class Course:
             cut=cut,
         )
         yielding = yielding_of(self.poisson, self.strength / self.modulus, self.hardening / self.modulus)
-        return Ground.of(self.profile, self.unit, yielding, self.poisson, sizes)
+        return ground_of(self.profile, self.unit, yielding, self.poisson, sizes)
 
     def depths(self, steps: int, end: float) -> Array:
         """Ends of the steps, m: coarse where nothing yields."""
