@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array, Matrix
-from fe_contact.assembly.interior import factorized
+from fe_contact.assembly.interior import elimination_order, factorized
 from fe_contact.solids.base import State
 from fe_contact.solids.bulk import CoredBody, Loaded, Pattern
 from fe_contact.solids.contact import Obstacle, Points, Skin, Touch
@@ -41,9 +41,11 @@ class Encounter:
 
     @classmethod
     def of(cls, body: CoredBody, skin: Skin, obstacle: Obstacle) -> Encounter:
-        """Raises nothing: makes the pattern."""
+        """Raises nothing: makes the pattern, its rows in the order of their elimination."""
         blocks = [body.core.dofs, skin.dofs, body.rim[None]]
-        return cls(body, skin, Pattern.of(blocks, body.free, body.core.size), obstacle)
+        first = Pattern.of(blocks, body.free, body.core.size)
+        ordered = replace(body, free=body.free[elimination_order(first.definite)])
+        return cls(ordered, skin, Pattern.of(blocks, ordered.free, body.core.size), obstacle)
 
     def at(
         self, displacement: Array, depth: float, stiffness: float, state: State = (), touching: Points | None = None
@@ -222,7 +224,7 @@ def _equilibrium(there: Balance, solve: Callable[[Array], Array], iterations: in
 def _step(here: Balance) -> tuple[Callable[[Array], Array], Array]:
     """Factors and Newton's step (free,); where the energy would climb by a convex model, then of a body at rest."""
     for convex, unstrained in ((False, False), (True, False), (True, True)):
-        solve = factorized(here.tangent(convex, unstrained))
+        solve = factorized(here.tangent(convex, unstrained), ordered=True)
         step = solve(-here.residual)
         if here.residual @ step <= 0.0:
             return solve, step

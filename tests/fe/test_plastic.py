@@ -13,7 +13,7 @@ from scipy.special import beta
 
 import fe_contact
 from fe_contact.indentation import indent
-from fe_contact.plastic.course import Course, settings
+from fe_contact.plastic.course import Course, Varied, settings
 from fe_contact.plastic.fields import PressedAgain
 from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, _at_most
 from fe_contact.plastic.path import Presser
@@ -90,7 +90,7 @@ def test_it_yields_first_under_the_axis() -> None:
     presser = Presser(ground, 4000.0, course.unit)
     here = presser.first(depth / course.unit, math.sqrt(RADIUS * depth) / course.unit)
     assert not np.any(here.state[1])
-    core = ground.encounter.body.core
+    core = ground.core
     stress = ground.yielding.flowed(core.gradient(here.displacement), *here.state).stress
     mean = stress[[0, 3, 4]].mean(axis=0)
     mises = np.sqrt(1.5 * ((stress[[0, 3, 4]] - mean) ** 2).sum(axis=0) + 3.0 * stress[1] ** 2)
@@ -231,6 +231,32 @@ def test_bars_hold_against_finer_runs(
             assert uncovered(one, finer) == {}, (tolerance, nu, hardening, speed)
             converged.append(one.converged)
     assert np.mean(converged) >= 0.95
+
+
+def test_two_meshes_that_agree_by_chance_do_not_close_the_bar() -> None:
+    """A third one tells; where errors fall with order one, all three tell the finest mesh's own error."""
+
+    def onwards(one: float, better: float, worse: float, weight: float) -> float:
+        return one + weight * (better - worse)
+
+    def bar(fine: float, middle: float, coarse: float) -> float:
+        pairs = Varied(fine, middle, middle, middle, coarse, coarse, coarse).pairs(onwards)["mesh"]
+        return sum(pair.factor * abs(pair.first - pair.second) for pair in pairs)
+
+    assert bar(1.0, 1.0, 1.1) > 0.1
+    assert bar(1.01, 1.01 + 0.01 * (math.sqrt(2.0) - 1.0), 1.02) == pytest.approx(1.25 * 0.01)
+
+
+def test_a_punch_yields_with_the_coarsest_settings_and_fewer_elements_are_refused() -> None:
+    """The work of a rim's elastic contact, F = 2 E* a depth, where nothing but its very rim yields."""
+    depth, punch = [4e-6], {"shape": "punch", "radius": RADIUS}
+    found = pressed(depth, {"tolerance": 0.05}, **punch)
+    elastic = 2.0 * modulus(0.3) * RADIUS * found.depth
+    assert np.all(np.abs(found.force / elastic - 1.0) < 1e-2)
+    assert np.all(found.force < elastic * 1.001)
+    for few, accepted, striker in ((1.9, "from 2 to 32", punch), (3.9, "from 4 to 32", {})):
+        with pytest.raises(BadInput, match=rf"elements_per_contact: {few}.*{accepted}"):
+            pressed(depth, {"elements_per_contact": few}, **striker)
 
 
 @pytest.mark.tenth
