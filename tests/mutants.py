@@ -248,7 +248,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/variation.py", "Softening.errors", "0.0 -> 0.1"): "of quantities that there are not",
     ("fe_contact/budget/variation.py", "Softening.errors", "1.0 -> 0.1"): "of elastic contacts, which give back all",
     ("fe_contact/steppers/flat_end.py", "FlatStepper.step", "length * self.scheme"): "when a radius was",
-    ("fe_contact/waves/line_reading.py", "_contact", "1.0 -> 0.1"): "below all forces, of which the largest is sought",
     ("fe_contact/waves/certify.py", "DEGREE, REACH", ""): "another smoothing, about as wide",
     ("lumped/solvers/hereditary/march.py", "_landed", ""): "a break of the plan, or the same place but for rounding",
     ("fe_contact/waves/targets/layer.py", "ROUGH", ""): BEGINS,
