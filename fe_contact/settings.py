@@ -95,7 +95,7 @@ class Numerics:
     penalty: Annotated[float, Key(Range(1.0, 1e7), "penalty stiffness over contact modulus over contact radius")]
     enforcement: Annotated[str, Key(MemberOf(("fe_contact.contact.enforcement",)), "how the surfaces are kept apart")]
     scheme: Annotated[str, Key(MemberOf((STATIC_SCHEMES, WAVE_SCHEMES)), "time integrator")]
-    steps: Annotated[int, Key(Range(8, 8192, whole=True), "time steps along the contact, a multiple of four")]
+    steps: Annotated[int, Key(Range(8, 8192, whole=True), "time steps along the contact, raised to a multiple of four")]
     far_radius: Annotated[float, Key(Range(2.0, 1e4), "where the mesh ends, in contact radii")]
     contact_radius: float
     contact_time: float

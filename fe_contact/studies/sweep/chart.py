@@ -20,6 +20,7 @@ from lumped.result.result import UNITS
 QUANTITIES = ("peak_force", "peak_depth", "duration", "restitution")
 MAPPED = ("restitution", "peak_force")
 NAME, WIDTH = "sweep", 130  # of the files; characters in a line of the heading
+INSIDE = 0.48  # look: of a map's width and height from its middle, where a number is not cut by the frame
 EVEN = 1e-6  # rounding: of steps between values that were spaced evenly
 LEVELS, BINS = 9, 24  # look: lines of a map at most; bars of a histogram at most
 WIDE, THIN = 2.6, 1.0  # look: of the first method's curve and the last one's, so that none hides another, pt
@@ -141,17 +142,18 @@ def _map(axes: Axes, table: SweepTable, numbers: list[str], quantity: str) -> No
     values[tuple(np.searchsorted(np.unique(table.numbers[key]), table.numbers[key]) for key in numbers)] = column
     values *= _scale(quantity, column)[0]
     known = values[np.isfinite(values)]
+    _scaled(numbers[1], x, axes.set_xscale, axes.set_xlabel)
+    _scaled(numbers[0], y, axes.set_yscale, axes.set_ylabel)
+    _plain_numbers(axes.xaxis, axes.yaxis)
+    axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     if known.size and np.ptp(known) > EVEN * np.abs(known).max():
         shown = np.ma.masked_invalid(values)
         look: Look = {"levels": _levels(known), "norm": "log" if _decades(known) else "linear"}
         axes.contourf(x, y, shown, cmap="cividis", alpha=0.75, **look)
         lines = axes.contour(x, y, shown, levels=look["levels"], colors=style.BLACK, linewidths=0.6)
         for label in axes.clabel(lines, fontsize=6.0, fmt="%g"):
-            label.set_clip_on(False)
-    _scaled(numbers[1], x, axes.set_xscale, axes.set_xlabel)
-    _scaled(numbers[0], y, axes.set_yscale, axes.set_ylabel)
-    _plain_numbers(axes.xaxis, axes.yaxis)
-    axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+            place = (axes.transData - axes.transAxes).transform(label.get_position())
+            label.set_visible(bool(np.abs(place - 0.5).max() < INSIDE))
 
 
 def _levels(known: Array) -> Array:
