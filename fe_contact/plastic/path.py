@@ -25,7 +25,7 @@ from fe_contact.solids.contact import Obstacle, Overlap, Points
 from fe_contact.solids.newton import Equilibrium, EquilibriumLost, balanced
 from lumped.errors import NotReached
 
-SETTLED = 2e-6  # of the energy, what the last iteration may change: it leaves the square of its share
+SETTLED = 1e-8  # of the energy, what the last iteration may change: it leaves the square of its share
 GUESSED = 0.3  # of the pressure: where the one given is further off it is given again
 GIVEN = 4  # times at most
 GAMMA = 1.0 - math.sqrt(0.5)  # share of a step that each stage takes
