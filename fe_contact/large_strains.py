@@ -7,20 +7,20 @@ motion one quadrature of it. ln F is smooth in ln d: a polynomial, and a straigh
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import Chebyshev
 
-from fe_contact.assembly.forms import check_compressible
+from fe_contact.assembly.forms import Array, check_compressible
 from fe_contact.budget import plan as statics
 from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, check_kind
 from fe_contact.solids.pressing import CORRECTED, check_large
 from fe_contact.threads import one_thread
-from lumped.errors import BadInput, Fault, NotReached
+from lumped.errors import NotReached
 from lumped.indentation import Indentation
 from lumped.laws import ting
 from lumped.load_curves.sampled import SampledCurve
@@ -29,7 +29,6 @@ from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import UNITS, Result, provenance, unmet
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Answered, Scene
-from lumped.shapes._block import Block
 
 DEPTHS = 10  # that tell the curve
 SHALLOWEST = 0.0144  # the least of them over the largest; below it lies a share of 2e-5 of a sphere's work
@@ -40,32 +39,13 @@ ROUNDS = 4  # work: of such enlargements
 SAMPLES = 160  # work: depths at which the polynomials are handed on
 SHARE = 1.0  # of the tolerance that the curve may err by: the bars of an impact are about as wide
 SECONDS = 3.0  # processor time of an impact to 1e-3, about: it ranks methods, no more
-DASHPOT = "a dashpot in parallel has no large strains in this version"
-ISOCHORIC = '"bulk": with large strains the whole stress relaxes in this version'
-BLOCK = "a block of large strains does not relax in this version"
 FINE_INTEGRATION = 1e-2  # of the tolerance
 
 
 def check_impact(scene: Scene, given: Given) -> None:
     """Raise BadInput for an impact with large strains that is not built."""
-    check_large(scene.source, scene.geometry, scene.model, given.get("enforcement", CORRECTED))
-    faults, source = list[Fault](), scene.source
-    geometry, material = scene.geometry, scene.geometry.material
-    if not material.young.is_elastic:
-        faults += [
-            Fault(source, key, f"{reason}; accepted: {cure}, or kinematics = 'small'")
-            for unlike, key, reason, cure in (
-                (material.young.viscosity > 0.0, "target.material.law", DASHPOT, "elastic, maxwell, sls or prony"),
-                (material.constant == "bulk", "target.material.constant", ISOCHORIC, '"poisson"'),
-                (isinstance(geometry.shape, Block), "striker.shape", BLOCK, "a striker with a profile"),
-            )
-            if unlike
-        ]
-    if scene.motion.impacts > 1:
-        reason = f"{scene.motion.impacts}: with model.kinematics = 'finite' one is followed; accepted: 1"
-        faults.append(Fault(source, "motion.impacts", reason))
-    if faults:
-        raise BadInput(faults)
+    enforcement = given.get("enforcement", CORRECTED)
+    check_large(scene.source, scene.geometry, scene.model, enforcement, scene.motion.impacts)
 
 
 @one_thread
@@ -143,16 +123,18 @@ def _fitted(pressed: Indentation, deepest: float, degree: int) -> tuple[Chebyshe
 def _result(scene: Scene, known: KnownCurve, found: Result, tolerance: float, clock: Clock) -> Result:
     """The record: every cause's bar is what as large an error of the curve changes, of all depths or of some."""
     budget = {"integration": {name: quantity.error or 0.0 for name, quantity in found.quantities.items()}}
+    others = list[Result]()
     for cause, error in known.errors.items():
-        others = [known.impact(scene, tolerance, error, 0.0), known.impact(scene, tolerance, 0.0, error)]
-        budget[cause] = {name: sum(_distance(found, other, name) for other in others) for name in UNITS}
+        both = [known.impact(scene, tolerance, error, 0.0), known.impact(scene, tolerance, 0.0, error)]
+        budget[cause] = {name: sum(_distance(found, other, name) for other in both) for name in UNITS}
+        others += both
     quantities = {
         name: replace(quantity, error=None if quantity.value is None else sum(row[name] for row in budget.values()))
         for name, quantity in found.quantities.items()
     }
     peak = quantities["peak_force"].value or math.inf
-    relative = sum(known.errors.values())
-    history = replace(found.history, force_error=2.0 * relative * found.history.force)
+    band = _band(found, others, sum(known.errors.values()), quantities["duration"].error or 0.0)
+    history = replace(found.history, force_error=band)
     missed = unmet(quantities, tolerance)
     return replace(
         found,
@@ -179,6 +161,20 @@ def _distance(first: Result, second: Result, name: str) -> float:
     if name != "history_l2":
         values = [one.quantities[name].value for one in (first, second)]
         return 0.0 if None in values else abs((values[0] or 0.0) - (values[1] or 0.0))
-    time = first.history.time
-    apart = first.history.force - np.interp(time, second.history.time, second.history.force, right=0.0)
+    time, apart = first.history.time, _apart(first, second)
     return float(math.sqrt(np.trapezoid(apart**2, time) / np.trapezoid(first.history.force**2, time)))
+
+
+def _band(found: Result, others: Sequence[Result], relative: float, later: float) -> Array:
+    """Half-width of the force's bar at the rows, N: as far as the others are apart, and what the curve errs at a depth.
+
+    A softer curve ends so much ``later``, s, as a stiffer one, whose force is zero by then, ends sooner.
+    """
+    time, force = found.history.time, found.history.force
+    band = sum((_apart(found, other) for other in others), found.history.force_error + relative * force)
+    return np.maximum(band, np.interp(time - later, time, band))
+
+
+def _apart(first: Result, second: Result) -> Array:
+    """How far the forces of two impacts are apart at the rows of the first, N: late in a rebound by their durations."""
+    return np.abs(first.history.force - second.history.force_at(first.history.time))

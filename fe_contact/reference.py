@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
 
@@ -181,7 +181,7 @@ class Statics:
         settings = dominant(excess, found.numerics, self.chosen.pinned, least=1.0)
         return Finer(settings, "" if settings is None else _too_dear(found, settings))
 
-    def ledger(self, found: Certified) -> tuple[LedgerEntry, ...]:
+    def ledger(self, found: Certified) -> Sequence[LedgerEntry]:
         """What the model leaves out, as was planned."""
         return self.chosen.ledger
 

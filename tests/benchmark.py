@@ -46,7 +46,8 @@ RUNS = [
     ("polymer-sphere", "1e-2", 3.0), ("polymer-sphere", "1e-3", 3.0), ("polymer-sphere", "1e-4", 4.0),
     ("polymer-layer", "1e-3", 15.0), ("rod-in-ring", "1e-3", 15.0), ("polymer-o-ring", "1e-3", 6.1),
     ("rubber-layer-bulk", "1e-3", 7.3), ("polymer-sphere-waves", "3e-3", 6.8), ("polymer-layer-waves", "3e-3", 6.6),
-    ("steel-on-steel-waves", "3e-3", 7.3),
+    ("steel-on-steel-waves", "3e-3", 7.3), ("polymer-sphere-finite", "1e-3", 30.0),
+    ("rod-in-ring-finite", "1e-3", 30.0), ("steel-ball-plastic", "2e-2", 60.0),
 ]  # fmt: skip
 # The deepest of twenty slow indentations of every row of Table 1 and what lies between them, m.
 ROW_DEPTHS = {
@@ -60,7 +61,8 @@ STUDIES = [
     (("table1",), 75.0), (("stability", "--quick"), 150.0), (("tradeoff", "polymer-sphere", "--quick"), 40.0),
     *(((("transfer", name), 60.0)) for name in
       ("steel-ball-sls", "polymer-sphere", "polymer-layer", "rod-in-ring", "concrete-pole")),
-    (("pound", "two-frames.toml"), 10.0),
+    (("pound", "two-frames"), 10.0), (("export", "polymer-layer", "--to", "calculix", "--depth", "1e-4"), 10.0),
+    (("validate", "--quick"), 600.0),
 ]  # fmt: skip
 COMPARED, COMPARE_RUNS = "polymer-layer", 3.0
 MARGINAL_BOUND, MARGINAL_REPEATS = 50e-3 * SECOND, 15

@@ -248,11 +248,11 @@ def test_every_folder_of_source_is_a_package() -> None:
 
 def test_what_mutants_are_drawn_from_and_what_does_no_harm_is_there() -> None:
     script = runpy.run_path(str(ROOT / "tests" / "mutants.py"))
-    texts = {name(path): path.read_text(encoding="utf-8") for path in sources(*PACKAGES)}
-    assert not [pattern for pattern in script["CORE"] if not matching(texts, pattern)]
-    for pattern, scope, _ in script["HARMLESS"]:
-        last = scope.partition(",")[0].rpartition(".")[2]
-        assert any(last in texts[file] for file in matching(texts, pattern)), (pattern, scope)
+    files, mutants = [name(path) for path in sources(*PACKAGES)], cache(script["all_of"])
+    assert not [pattern for pattern in script["CORE"] if not matching(files, pattern)]
+    for pattern, scope, begins in script["HARMLESS"]:
+        there = [one for file in matching(files, pattern) for one in mutants(file) if one.scope == scope]
+        assert any(one.change.startswith(begins) for one in there), (pattern, scope, begins)
 
 
 ERROR_PATH = ("certify", "variation")

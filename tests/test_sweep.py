@@ -23,7 +23,7 @@ from fe_contact.cli import main
 from fe_contact.studies.sweep import study
 from fe_contact.studies.sweep.cases import load
 from fe_contact.studies.sweep.chart import plot_sweep
-from fe_contact.studies.sweep.table import SweepTable
+from fe_contact.studies.sweep.table import SweepTable, _rank_correlation
 from lumped import Scene
 from lumped.errors import BadInput
 from lumped.result.result import UNITS
@@ -105,6 +105,7 @@ correlation = [["striker.mass", "striker.mass", 2.0]]
     ("changed", "said"),
     [
         ({"axes": {"striker.velocty": [1.0]}}, "did you mean velocity?"),
+        ({"axes": {"strikr.velocity": [1.0]}}, "^sweep: strikr.velocity: unknown key; .* did you mean striker?"),
         ({"axes": {SPEED: [-1.0], DASHPOT: [1e3, 1e4]}}, "-1.0"),
         ({"axes": {SPEED: [0.1]}, "zipped": {SPEED: [0.1]}}, "varies twice"),
         ({}, "missing; accepted: [axes]"),
@@ -316,6 +317,14 @@ def test_ranks_say_which_key_moves_what() -> None:
     assert ranks[SPEED] > 0.99
     assert abs(ranks["striker.mass"]) < 0.5
     assert table.ranks(0, restitution) == {}  # Hertz gives back all
+    assert ranks[SPEED] == pytest.approx(
+        spearmanr(table.numbers[SPEED], table.values[:, 0, force]).statistic, rel=1e-12
+    )
+
+
+def test_equal_values_share_their_ranks() -> None:
+    first, second = np.random.default_rng(4).integers(0, 6, (2, 50)).astype(float)
+    assert _rank_correlation(first, second) == pytest.approx(spearmanr(first, second).statistic, rel=1e-12)
 
 
 # processes

@@ -10,9 +10,10 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from functools import update_wrapper
 from threading import Lock
-from typing import Any, Generic, ParamSpec, TypeVar
+from typing import Any, ClassVar, Generic, ParamSpec, TypeVar
 
 BODIES = 12  # some 7 MB each; an impact on two bodies varies nine
+SURFACE = 0.25  # of that takes what a surface knows of a body: a sweep asks for those of some dozen meshes by turns
 
 _Arguments = ParamSpec("_Arguments")
 _Answer = TypeVar("_Answer")
@@ -71,6 +72,8 @@ class Recipe(Generic[_Answer]):
 class cached(Generic[_Arguments, _Answer]):  # noqa: N801 - a decorator, written like functools.cache
     """A function of hashable arguments that answers anew only what it was not asked lately."""
 
+    size: ClassVar[float] = 1.0
+
     def __init__(self, make: Callable[_Arguments, _Answer]) -> None:
         update_wrapper(self, make)  # takes over what a decorator below has, so it comes first
         self._make = make
@@ -78,7 +81,7 @@ class cached(Generic[_Arguments, _Answer]):  # noqa: N801 - a decorator, written
     def __call__(self, *arguments: _Arguments.args, **named: _Arguments.kwargs) -> _Answer:
         """The answer at hand, or a new one."""
         key = (self._make, *arguments, *named.items())
-        return _BODIES.find(key, lambda: self._make(*arguments, **named))
+        return _BODIES.find(key, lambda: self._make(*arguments, **named), self.size)
 
     def recipe(self, *arguments: _Arguments.args, **named: _Arguments.kwargs) -> Recipe[_Answer]:
         """The question, to be asked where the answer is needed; by places alone."""
@@ -88,3 +91,9 @@ class cached(Generic[_Arguments, _Answer]):  # noqa: N801 - a decorator, written
     def cache_clear(self) -> None:
         """Forget the answers of this function."""
         _BODIES.forget(self._make)
+
+
+class cached_surface(cached[_Arguments, _Answer]):  # noqa: N801 - a decorator too
+    """The same of an answer without its inside, which takes little room."""
+
+    size = SURFACE

@@ -41,6 +41,7 @@ SPHERE_REFINEMENT = 3.0  # the same on spheres, of which two may touch whose mes
 WIDEST = 1.2  # rad from the first touch: a contact on a circle ends before
 MARGIN = 1.35  # largest radius of the fine mesh over that of the contacts expected
 FINITE_MARGIN = 1.15  # the same where strains are large: contacts are some per cent wider, or less wide, for them
+DIGITS = 12  # rounding: of a ratio of lengths, so that bodies that are alike have one mesh, whatever their sizes
 WIDEST_THIN = 130.0  # thicknesses of the body that a fine mesh may be wide: its elements shrink with the thickness
 
 
@@ -59,7 +60,8 @@ class PressedDepths:
     """Force over modulus, m^2, and contact radius, m, at every depth, (n,); counted work.
 
     ``mesh_order``: the most that the mesh's order can be, where the contact ends; ``ends``: whether the body does;
-    ``newton``: what another iteration would change of a force, relative, at most.
+    ``newton``: what another iteration would change of a force, relative, at most; ``softer`` the same at some of the
+    depths under another penalty, where that was asked.
     """
 
     force: Array
@@ -68,6 +70,7 @@ class PressedDepths:
     mesh_order: float
     ends: bool
     newton: float = 0.0
+    softer: PressedDepths | None = None
 
     def at(self, chosen: Indices) -> PressedDepths:
         """At some of the depths."""
@@ -341,7 +344,7 @@ def thickness_over(width: float, thickness: float) -> float:
     """Thickness of a body over the width of its fine mesh, both m. Raises BodyTooThin."""
     if width > WIDEST_THIN * thickness:
         raise BodyTooThin(width, thickness, WIDEST_THIN)
-    return thickness / width
+    return float(f"{thickness / width:.{DIGITS}g}")
 
 
 def smallest_struck(shape: Shape) -> float:

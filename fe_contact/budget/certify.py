@@ -184,18 +184,15 @@ def _far_field(
     """
     order = LEAST_ORDER["far_field"]
     far, farther = other_setting(cheap, "far_radius")
-    surface = runs.surface(cheap)
-    pressed = alone and surface.follows_contact and value.strike.relaxation.is_elastic and not farther
-    if pressed or not surface.follows_contact:
+    surface, varied = runs.surface(cheap), mesh.varied(far_radius=far.far_radius)
+    if alone and surface.follows_contact and value.strike.relaxation.is_elastic and not farther:
         other = runs.surface(far)
-        if other is surface:
-            return Softening(value, 0.0)
-        if pressed:
-            assert isinstance(surface, Deformable)
-            assert isinstance(other, Deformable)
-            return Softening(value, factor(order, farther) * compliance_change(surface, other))
-    before, after = runs.curve(number, mesh), runs.curve(number, mesh.varied(far_radius=far.far_radius))
-    return _variation(before, after, factor(order, farther))
+        assert isinstance(surface, Deformable)
+        assert isinstance(other, Deformable)
+        return Softening(value, factor(order, farther) * compliance_change(surface, other))
+    if runs.surface(varied) is runs.surface(mesh):
+        return Softening(value, 0.0)
+    return _variation(runs.curve(number, mesh), runs.curve(number, varied), factor(order, farther))
 
 
 @dataclass(frozen=True)

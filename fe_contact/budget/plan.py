@@ -11,7 +11,7 @@ end (:func:`with_constant_nu`).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -28,7 +28,7 @@ from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.sampled import SampledCurve
 from lumped.materials import Material, Relaxation
-from lumped.result.model_ledger import Peak, model_ledger
+from lumped.result.model_ledger import Ledger, Peak
 from lumped.result.result import LedgerEntry
 from lumped.scene.geometry import Geometry, stiffest_impact
 from lumped.scene.indenter import Indenter
@@ -43,7 +43,9 @@ WIDTHS = tuple(float(share) for share in np.geomspace(5e-3, 0.6, 9))
 ELEMENTS = 4.0  # along the contact radius, at tolerance 1e-4: see `fe-contact tradeoff`
 LOOSER = math.log10(4.0 / 3.2)  # three and a fifth of them at 1e-3 where the mesh follows the contact
 FIXED_ELEMENTS = 2.0  # the same on a mesh that stays, four times refined where the contact may end
+FINER = 1.2  # elements and steps on such a mesh where a round contact meets a body that relaxes, over those elsewhere
 SPARE = 1.2  # such a mesh is fine beyond the largest contact, where the gap tells how wide that is
+BAND = 1.125  # ratio of the radii that such meshes are made for: impacts whose contacts are about as wide share them
 RIM_PENALTY = 16.0  # penalty under a rim over the usual: the pressure is infinite there
 VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
 STEPS_AT_DEFAULT = 40  # and no fewer at any tolerance: halved twice, they still tell something
@@ -67,7 +69,7 @@ class Plan:
 
     numerics: Numerics
     pinned: frozenset[str]
-    ledger: tuple[LedgerEntry, ...]
+    ledger: Sequence[LedgerEntry]
 
 
 def plan(scene: Scene, given: Given) -> Plan:
@@ -84,13 +86,13 @@ def plan(scene: Scene, given: Given) -> Plan:
     contact_time = size.duration or (min(held, scene.end_time) if scene.gravity > 0.0 else scene.end_time)
     peak_share = share_of_peak(size.peak_time, contact_time)
     placed = chosen.varied(
-        steps=_steps(tolerance, peak_share, FLAT_STEPS if _flat(scene) else 1),
-        contact_radius=size.contact_radius * (SPARE if _stays(scene) else 1.0),
+        steps=_steps(tolerance, peak_share, FLAT_STEPS if _flat(scene) else _finer(scene)),
+        contact_radius=_meshed_radius(scene, SPARE * size.contact_radius) if _stays(scene) else size.contact_radius,
         contact_time=contact_time,
         peak_share=peak_share,
     )
     peak = Peak(size.peak_force, size.peak_depth, size.contact_radius, 2 * size.peak_time)
-    return Plan(placed.varied(**given), frozenset(given) - {"tolerance"}, model_ledger(scene, peak))
+    return Plan(placed.varied(**given), frozenset(given) - {"tolerance"}, Ledger(scene, peak, scene.model))
 
 
 def share_of_peak(peak_time: float, contact_time: float) -> float:
@@ -114,7 +116,7 @@ def _settings(scene: Scene, tolerance: float) -> Numerics:
 def _elements(scene: Scene, tolerance: float) -> float:
     """Elements along the contact radius; a dashpot asks for more, since it differentiates the mesh's error."""
     order = VISCOUS_ORDER if scene.contact_modulus.viscosity > 0 else 0.0
-    fewest = FIXED_ELEMENTS if _stays(scene) else ELEMENTS
+    fewest = FIXED_ELEMENTS * _finer(scene) if _stays(scene) else ELEMENTS
     if not _stays(scene) and not _flat(scene):
         fewest *= math.pow(min(max(1e-4 / tolerance, 0.1), 1.0), LOOSER)
     finer = max(1.0, math.pow(1e-4 / tolerance, 0.25), math.pow(DEFAULT_TOLERANCE / tolerance, order))
@@ -126,16 +128,28 @@ def _stays(scene: Scene) -> bool:
     return scene.geometry.target.has_length and not _flat(scene)
 
 
+def _finer(scene: Scene) -> float:
+    """Elements and steps over those of most scenes."""
+    return FINER if _stays(scene) and not scene.profile.plane and not scene.contact_modulus.is_elastic else 1.0
+
+
+def _meshed_radius(scene: Scene, radius: float) -> float:
+    """The one next to a radius, m, of those that meshes of the scene's bodies are made for."""
+    target, shape = scene.geometry.target, scene.geometry.shape
+    length = target.body_depth or target.round_radius(shape)
+    return length * BAND ** round(math.log(radius / length, BAND))
+
+
 def _flat(scene: Scene) -> bool:
     """Whether a flat end presses the same area from the first touch to the last."""
     return scene.geometry.target.fixed_radius(scene.geometry.shape) is not None
 
 
-def _steps(tolerance: float, peak_share: float, finer: int) -> int:
+def _steps(tolerance: float, peak_share: float, finer: float) -> int:
     """Time steps per contact, so many times `finer`, a multiple of four so that the budget can halve them twice."""
     early = max(1.0, EARLY_PEAK / peak_share)
     wanted = early * STEPS_AT_DEFAULT * max(DEFAULT_TOLERANCE / tolerance, 1.0) ** STEPS_ORDER
-    return int(min(4 * finer * math.ceil(wanted / 4), RANGES["steps"][1]))
+    return int(min(4 * math.ceil(finer * math.ceil(wanted / 4)), RANGES["steps"][1]))
 
 
 def scales(scene: Scene, numerics: Numerics) -> mdr.ImpactScales:

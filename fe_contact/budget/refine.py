@@ -8,7 +8,7 @@ missing, each cause's error predicted to fall with the order that its bar trusts
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -53,7 +53,7 @@ class Way(Protocol[Found]):
 class ImpactWay(Way[Found], Protocol):
     """The same of an impact."""
 
-    def ledger(self, found: Found) -> tuple[LedgerEntry, ...]:
+    def ledger(self, found: Found) -> Sequence[LedgerEntry]:
         """What the model leaves out."""
 
 

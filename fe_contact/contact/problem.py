@@ -75,7 +75,7 @@ class PressedSurface:
         if self.compliance is not None:
             return float(forces @ self.compliance @ forces)
         load = self.trace.T @ forces
-        return float(load @ np.linalg.solve(self.stiffness, load))
+        return float(load @ dgetrs(*self._factors, load)[0])
 
     def displaced(self, forces: Array) -> Array:
         """The points (q,) under forces (q,) at them."""
@@ -83,8 +83,7 @@ class PressedSurface:
             return np.asarray(self.compliance @ forces)
         if self.recurring:
             return np.asarray(self._yields @ forces)
-        factors, pivots = self._factors
-        return np.asarray(self.trace @ dgetrs(factors, pivots, self.trace.T @ forces)[0])
+        return np.asarray(self.trace @ dgetrs(*self._factors, self.trace.T @ forces)[0])
 
     def in_shapes(self, pressure: Array) -> Array:
         """The nearest to a pressure (q,) that is a combination of the surface's shape functions."""
@@ -236,8 +235,12 @@ def count(touching: Touching) -> int:
 
 
 def moved(touching: Touching, by: int) -> Touching:
-    """As many points and ``by`` more, then all from the first touch outwards: contact seldom has holes."""
-    return np.arange(touching.size) < count(touching) + by if by else touching
+    """As many points and ``by`` more without a hole: outwards from the axis, on both sides of what spares it."""
+    if not by:
+        return touching
+    start = 0 if touching[0] else max(int(touching.argmax()) - by // 2, 0)
+    distance = np.arange(touching.size) - start
+    return (distance >= 0) & (distance < count(touching) + by)
 
 
 def _solution(problem: ContactProblem, gap: Array, iterations: int, settled: bool) -> ContactSolution:

@@ -131,14 +131,11 @@ def _meshed(sizes: Sizes, poisson: float) -> MeshedGround:
     middles = basis.mesh.p[:, basis.mesh.t].mean(axis=1)
     distance = np.hypot(middles[0], middles[1])
     elements = np.flatnonzero(distance < CORE)
-    surface = flat(basis)
-    places = np.stack([surface.coordinate, np.zeros_like(surface.coordinate)])
-    skin = Skin.of(surface, places, sizes.order, 2 * basis.N, None)
     return MeshedGround(
         core=Bulk.of(basis, False, elements),
         stiffness=_stiffness(basis, poisson),
         fixed=held(basis, along=("axis",), across=()),
-        skin=skin,
+        skin=Skin.of(flat(basis), sizes.order, 2 * basis.N),
         outer=distance[elements] > GUARD * CORE,
         basis=basis,
         elements=elements,

@@ -7,7 +7,7 @@ which the response has at rest: eliminated once, it is a dense matrix between th
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -18,6 +18,7 @@ from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, vector_dofs
 from fe_contact.assembly.interior import factorized
 from fe_contact.solids.base import AXIAL, RADIAL, PointAnswer, Response, State
 from fe_contact.solids.rolled import Rolled
+from lumped.materials.energies.base import bent
 
 NOISE = 1e-11  # rounding: of an entry of a stiffness of which all has been taken away
 
@@ -67,6 +68,19 @@ class Loaded:
 
     bulk: Bulk
     answer: PointAnswer
+
+    def foreseen(self, change: Array) -> Array | None:
+        """The points' pulls, (2, elements, points), to first order after a ``change`` of the displacement, (2 N,)."""
+        answer = self.answer
+        if answer.pulls is None or answer.drifts is None:
+            return None
+        return np.asarray(answer.pulls + np.einsum("ai...,i...->a...", answer.drifts, self.bulk.gradient(change)))
+
+    def under(self, pulls: Array) -> Loaded:
+        """The same with a tangent by these pulls (2, elements, points) in place of its own."""
+        answer = self.answer
+        assert answer.pulls is not None
+        return Loaded(self.bulk, replace(answer, tangent=answer.tangent + bent(pulls - answer.pulls)))
 
     @cached_property
     def energy(self) -> float:

@@ -30,7 +30,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from fe_contact.assembly.cache import Recipe, cached
+from fe_contact.assembly.cache import Recipe, cached_surface
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, SurfaceOperator, operator_of
 from fe_contact.assembly.surface import monomials
@@ -41,7 +41,18 @@ from fe_contact.contact.problem import ContactProblem, ContactSolution, PressedS
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
 from fe_contact.schemes.base import SCHEMES, MemoryScheme
 from fe_contact.settings import Numerics
-from fe_contact.steppers.steps import Inertia, OfSurface, Snapshot, State, Step, Stepping, Strike, Work, coming_square
+from fe_contact.steppers.steps import (
+    Inertia,
+    OfSurface,
+    Snapshot,
+    State,
+    Step,
+    Stepping,
+    Strike,
+    Work,
+    coming_square,
+    radius_time,
+)
 from fe_contact.steppers.struck import Deformable
 from lumped.materials import Relaxation
 from lumped.numbers import gauss
@@ -110,7 +121,7 @@ class Stepper(OfSurface):
         strain = self._strain(law, carried, inertia.depth(force), radius, scale, pressure)
         moved = inertia.moved(force, state.memory.advanced(law, strain))
         axis = float(law.now * strain[0, 0] + carried[0, 0])
-        found_at = self._radius_time(moved.velocity, state.time, length)
+        found_at = radius_time(self.scheme, moved.velocity, state.time, length)
         return Step(length, moved, force, radius, found_at, axis, solution, scale, work)
 
     def snapshots(self, steps: Sequence[Step]) -> tuple[Snapshot, ...]:
@@ -173,7 +184,7 @@ class Stepper(OfSurface):
             return float(self.expected[len(steps)])
         if not steps:
             return 0.0
-        square = coming_square(steps, self._radius_time(state.velocity, state.time, length))
+        square = coming_square(steps, radius_time(self.scheme, state.velocity, state.time, length))
         return float(np.sqrt(max(square, LEAST_KEPT * steps[-1].radius ** 2)))
 
     def _overlap_radius(self, law: StepLaw, carried: Array, free_depth: float) -> float:
@@ -182,10 +193,6 @@ class Stepper(OfSurface):
         past = interpolate(carried, self.radii[-1], radii)
         open_ = law.now * (free_depth - self.strike.height(radii)) + past <= 0.0
         return float(radii[int(open_.argmax()) if open_.any() else -1])
-
-    def _radius_time(self, velocity: float, time: float, length: float) -> float:
-        """When the contact has the radius of a step: growing, at its end; receding, where the force is sampled."""
-        return time + length * (1.0 if velocity > 0 else self.scheme.sample)
 
     def _strain(
         self, law: StepLaw, carried: Array, depth: float, radius: float, scale: float, pressure: Array
@@ -281,7 +288,7 @@ class ScaledSurface(Deformable):
         return corners, np.stack([corners[:-1], 1 / np.diff(corners)]), members
 
 
-@cached
+@cached_surface
 def on_mesh(body: Recipe[ElasticBody], poisson: float) -> ScaledSurface:
     """A body with lengths of its own, condensed for this Poisson's ratio: its mesh stays while the contact grows."""
     return ScaledSurface(operator_of(body, poisson), follows_contact=False)

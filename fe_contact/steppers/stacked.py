@@ -231,9 +231,12 @@ class StackedBody:
         return sum(half.lost(first, then, length) for half, first, then in steps)
 
     def _pressed(self, found: Sequence[Recalled], now: float) -> PressedSurface:
-        """All sides, each with its modulus over the common one."""
+        """All sides, each with its modulus over the common one; a steady body alone is the same in every step."""
+        steady = all(side.steady for side in self.sides)
+        if steady and len(self.sides) == 1:
+            return self._points
         weights = tuple(one.now / now for one in found)
-        if len(self.sides) > 1 and all(side.steady for side in self.sides):
+        if steady:
             return stacked(self.operator, self.sides, weights)
         blocks = (weight * one.surface.stiffness for one, weight in zip(found, weights, strict=True))
         return self._points.stiffened(block_diag(*blocks))

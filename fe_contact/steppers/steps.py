@@ -228,6 +228,11 @@ class OfSurface:
         return before.lost(after, self.strike.relaxation, self.scheme, length)
 
 
+def radius_time(scheme: MemoryScheme, velocity: float, time: float, length: float) -> float:
+    """When the contact has the radius of a step, s: growing, at its end; receding, where the force is sampled."""
+    return time + length * (1.0 if velocity > 0.0 else scheme.sample)
+
+
 def coming_square(steps: Sequence[Step], at: float) -> float:
     """Square of the contact radius at a time, s, after one step or more; m2.
 

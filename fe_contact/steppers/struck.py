@@ -30,7 +30,17 @@ from fe_contact.contact.problem import ContactProblem, ContactSolution, Touching
 from fe_contact.errors import ContactLost, ContactNotSettled, MemoryTooSmall
 from fe_contact.schemes.base import SCHEMES, MemoryScheme
 from fe_contact.settings import Numerics
-from fe_contact.steppers.steps import Inertia, Snapshot, State, Step, Stepping, Strike, Work, coming_square
+from fe_contact.steppers.steps import (
+    Inertia,
+    Snapshot,
+    State,
+    Step,
+    Stepping,
+    Strike,
+    Work,
+    coming_square,
+    radius_time,
+)
 from lumped.materials import Relaxation
 
 
@@ -135,7 +145,7 @@ class FixedStepper:
     def __init__(self, strike: Strike, surface: Deformable, numerics: Numerics) -> None:
         self.strike, self.surface, self.numerics = strike, surface, numerics
         self.scheme = SCHEMES.get(numerics.scheme)
-        self.contact = FixedContact(strike, surface, numerics)
+        self.contact = FixedContact(strike, surface, numerics, self.scheme)
         self.scale, self.places, self.heights = self.contact.scale, self.contact.places, self.contact.heights
         self.body = surface.body(strike.relaxation, self.scheme, self.scale)
 
@@ -262,8 +272,8 @@ def opened(memory: SurfaceMemory, law: StepLaw, gap: Array) -> tuple[SurfaceMemo
 class FixedContact:
     """A striker over a surface: ``scale`` of the mesh, m; ``places`` and ``heights`` there of the striker, m, (q,)."""
 
-    def __init__(self, strike: Strike, surface: Deformable, numerics: Numerics) -> None:
-        self.strike, self.surface, self.numerics = strike, surface, numerics
+    def __init__(self, strike: Strike, surface: Deformable, numerics: Numerics, scheme: MemoryScheme) -> None:
+        self.strike, self.surface, self.numerics, self.scheme = strike, surface, numerics, scheme
         self.enforcement = ENFORCEMENTS.get(numerics.enforcement)
         self.scale = surface.unit(numerics.contact_radius)
         self.places = surface.places(self.scale)
@@ -318,7 +328,8 @@ class FixedContact:
         if not steps:
             free = offer.now * self.overlap(inertia.free_depth) + offer.past
             return (free > FIRST * free.max(),)
-        last, square = steps[-1], coming_square(steps, inertia.state.time + inertia.length)
+        last, state = steps[-1], inertia.state
+        square = coming_square(steps, radius_time(self.scheme, state.velocity, state.time, inertia.length))
         distance = np.abs(self.places)
         if square > last.radius**2:
             gained = (distance > last.radius) & (distance**2 < square)

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 import meshes
-from fe_contact.assembly.cache import Recipe, cached
+from fe_contact.assembly.cache import Recipe, cached, cached_surface
 from fe_contact.assembly.forms import Array, Basis
 from fe_contact.assembly.interior import Floating
 from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made, operator_of, plane
@@ -128,7 +128,7 @@ def _bodies(geometry: Geometry) -> list[_Body]:
     return sorted(bodies, key=lambda body: body.radius)
 
 
-_operator = cached(operator_of)
+_operator = cached_surface(operator_of)
 
 
 @cached

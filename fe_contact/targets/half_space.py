@@ -13,7 +13,7 @@ import numpy as np
 import scipy.sparse as sparse
 
 import meshes
-from fe_contact.assembly.cache import cached
+from fe_contact.assembly.cache import cached, cached_surface
 from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.forms import Array, Basis, Matrix
 from fe_contact.assembly.operators import (
@@ -77,7 +77,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     return ScaledStill(surface(indenter.material.nu, numerics), indenter, numerics)
 
 
-@cached
+@cached_surface
 def _surface(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
     return ScaledSurface(_operator(poisson, elements, order, far_radius))
 
@@ -98,7 +98,7 @@ def under_rim(indenter: Indenter, radius: float, numerics: Numerics) -> Still:
     return FixedStill(surface, indenter, numerics, radius, radius, np.inf)
 
 
-@cached
+@cached_surface
 def _rimmed(poisson: float, elements: float, order: int, far_radius: float) -> ScaledSurface:
     return ScaledSurface(_rimmed_operator(poisson, elements, order, far_radius), follows_contact=False)
 
@@ -130,7 +130,7 @@ def _plane_struck(geometry: Geometry, numerics: Numerics) -> ScaledSurface:
     return _plane_surface(geometry.material.nu, elements, numerics.order, smallest_struck(geometry.shape), depth, size)
 
 
-@cached
+@cached_surface
 def _plane_surface(
     poisson: float, elements: float, order: int, smallest: float, datum: float, size: float
 ) -> ScaledSurface:

@@ -17,7 +17,7 @@ A march is dear, so that no more is refined than the measured budget says is mis
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import ClassVar, NamedTuple
@@ -262,7 +262,7 @@ class Waves:
         finer = missing(shares, GROWTH, found.numerics, self.chosen.pinned)
         return Finer(None if finer == found.numerics else finer)
 
-    def ledger(self, found: Several) -> tuple[LedgerEntry, ...]:
+    def ledger(self, found: Several) -> Sequence[LedgerEntry]:
         """What the model leaves out, as was planned."""
         return self.chosen.ledger
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from lumped.numbers import Array, Clock
 from lumped.result.history import AT_REST, End, History, densified
-from lumped.result.model_ledger import Peak, model_ledger
+from lumped.result.model_ledger import Ledger, Peak
 from lumped.result.result import RULED_RELATIVE, UNITS, Quantity, Result, provenance, unmet
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
@@ -21,9 +21,9 @@ from lumped.schema import Table
 ROUNDING = 1e-12
 # A peak is flat: its time is known to the root of what its height is known to.
 ROUNDING_OF = {"peak_time": 1e-8}
-# Where two integrations are compared for the time of a peak: first up to so many rows on either side, at so many
-# places; and again as far as that leaves it, while this is a smaller share.
-ROWS_AROUND, PLACES, SHRUNK = 2, 17, 0.9
+# Where two integrations are compared for the time of a peak: how the force bends there is told by so many places up to
+# so many rows on either side; what they differ by, within reaches of which each is this share of the one before.
+ROWS_AROUND, PLACES, SHRUNK = 2, 17, 0.8
 FINEST_ROWS = 1e-9  # work: a history is made no denser than this share of the peak force asks for
 # Two integrations may agree in one quantity by chance: its bar is at least this share of the history's (L2).
 LEAST_SHARE = 0.1
@@ -139,12 +139,13 @@ def _shift(fine: Answer, coarse: Answer, peak_time: float, least: float) -> floa
     bent = -2.0 * float(fit[2]) / whole**2
     if bent <= 0.0:
         return max(whole, least)
-    reach, shift = whole, float(high - low)
-    while least < shift < SHRUNK * reach:
-        reach = shift
-        places = np.clip(np.linspace(peak_time - reach, peak_time + reach, PLACES), 0.0, whole)
-        shift = math.sqrt(2.0 * float(np.ptp(fine.columns.force(places) - coarse.columns.force(places))) / bent)
-    return max(min(shift, whole), least)
+    reaches = whole * SHRUNK ** np.arange(2.0 + max(math.log(least / whole, SHRUNK), 0.0))
+    sides = np.clip(peak_time + np.outer([-1.0, 1.0], np.append(reaches, 0.0)), 0.0, whole)
+    apart = (fine.columns.force(sides.ravel()) - coarse.columns.force(sides.ravel())).reshape(sides.shape)[:, ::-1]
+    spread = np.maximum.accumulate(apart.max(axis=0)) - np.minimum.accumulate(apart.min(axis=0))
+    shifts = np.sqrt(2.0 * spread[:0:-1] / bent)  # the farthest that what they differ by within each reach allows
+    last = np.append(shifts[:-1] > reaches[1:], True).argmax()  # the next reach would be too short for it
+    return max(min(float(shifts[last]), whole), least)
 
 
 def assemble(
@@ -185,7 +186,7 @@ def assemble(
         numerics=numerics,
         error_budget={"integration": force_error / peak},
         error_budget_by_quantity={"integration": _relative(quantities)},
-        model_ledger=model_ledger(scene, Peak.of(quantities, history), resolved),
+        model_ledger=Ledger(scene, Peak.of(quantities, history), resolved),
         energy=answer.energy,
         provenance=provenance(),
         timing=clock.read(),

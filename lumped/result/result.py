@@ -187,7 +187,7 @@ class Result:
     numerics: Table = field(default_factory=dict)
     error_budget: Mapping[str, float] = field(default_factory=dict)
     error_budget_by_quantity: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    model_ledger: tuple[LedgerEntry, ...] = ()
+    model_ledger: Sequence[LedgerEntry] = ()
     energy: Mapping[str, float | None] = field(default_factory=dict)
     energy_error: Mapping[str, float] = field(default_factory=dict)
     provenance: Mapping[str, object] = field(default_factory=dict)

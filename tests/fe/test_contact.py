@@ -14,7 +14,7 @@ from scipy.optimize import minimize
 from fe_contact.bodies.pressing import contact_end
 from fe_contact.contact import problem as contact
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
-from fe_contact.contact.problem import ContactProblem, ContactSolution, PressedSurface, solve
+from fe_contact.contact.problem import ContactProblem, ContactSolution, PressedSurface, moved, solve
 
 augmented, corrected, exact, penalty = (
     ENFORCEMENTS.get(name) for name in ("augmented", "corrected", "exact", "penalty")
@@ -398,3 +398,18 @@ def test_a_gap_tells_where_the_surfaces_part(edge: float, bend: float, guess: fl
     distance = np.maximum(points - edge, 0.0)
     gap = (distance + bend * distance**2) ** 1.5
     assert contact_end(points, edge * (1.0 + 0.02 * guess), gap, points**2) == pytest.approx(edge, rel=1e-9)
+
+
+@given(SEEDS)
+def test_a_guess_that_gains_or_loses_points_stays_where_the_contact_is(seed: int) -> None:
+    """From the axis outwards, or on both sides of a middle that a crown has: by as many points here as there."""
+    rng = np.random.default_rng(seed)
+    points = int(rng.integers(20, 60))
+    start, end = (int(one) for one in np.sort(rng.choice(np.arange(6, points - 6), 2, replace=False)))
+    by = int(rng.integers(start - end + 1, 6))
+    places = np.arange(points)
+    around = np.flatnonzero(moved((places >= start) & (places < end), by))
+    np.testing.assert_array_equal(np.diff(around), 1)
+    assert around.size == end - start + by
+    assert abs((around[0] + around[-1]) - (start + end - 1)) <= 1
+    np.testing.assert_array_equal(np.flatnonzero(moved(places < end, by)), np.arange(end + by))

@@ -8,23 +8,28 @@ import numpy as np
 import pytest
 from skfem import MeshTri
 
-from fe_contact import run
+from fe_contact import large_strains, run
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import basis_on
 from fe_contact.indentation import indent, settings
 from fe_contact.solids.base import PointAnswer, State
+from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
-from fe_contact.solids.contact import OnUndeformed
+from fe_contact.solids.contact import OnRound, OnUndeformed
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Equilibrium
 from fe_contact.solids.pressing import Solid, advanced, press
-from lumped import BadInput, Scene
+from fe_contact.solids.rolled import Rolled
+from lumped import BadInput, Scene, laws
+from lumped.indentation import Indentation
 from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import ENERGIES, energy_of, strained
 from lumped.result.model_ledger import ENERGY_NAMES, FIRST_ORDER
 from lumped.scene.indenter import Indenter
-from lumped.scene.tables import Model
+from lumped.scene.tables import LawChoice, Model
 from lumped.shapes import Sphere
+from lumped.shapes.prism import Prism
+from lumped.targets.plane import Plane
 
 COARSE = {"elements_per_contact": 2.0, "order": 3}
 
@@ -86,6 +91,42 @@ def test_a_patch_strained_alike_balances_and_its_tangent_is_a_slope(name: str, p
     assert (above.energy - below.energy) / 2e-6 == pytest.approx(float(loaded.forces @ way), abs=1e-7 * scale)
 
 
+def test_overlap_with_a_circle_has_the_slopes_that_differences_tell() -> None:
+    random, circle, step = np.random.default_rng(8), OnRound(1.7), 1e-5
+    place, moved = random.uniform(-0.8, 0.8, (2, 6, 5)), random.uniform(-0.1, 0.1, (2, 6, 5))
+    place[1] = -np.abs(place[1])
+    found = circle.overlap(place, moved, 0.2)
+    x, z = place + moved
+    assert found.depth == pytest.approx(1.7 - np.hypot(x, z + 0.2 - 1.7))
+    for along in range(2):
+        shift = np.zeros((2, 1, 1))
+        shift[along] = step
+        after, before = (circle.overlap(place, moved + sign * shift, 0.2) for sign in (1.0, -1.0))
+        assert found.normal[along] == pytest.approx((after.depth - before.depth) / (2.0 * step), abs=1e-8)
+        assert found.bend[along] == pytest.approx((after.normal - before.normal) / (2.0 * step), abs=1e-8)
+
+
+def test_slopes_on_a_ring_laid_flat_turn_with_it() -> None:
+    """Of x and z of the plane, told on the mesh: one along itself, zero along the other."""
+    random, rolled, step = np.random.default_rng(9), Rolled(2.0), 1e-5
+    flat = random.uniform(-1.0, 1.0, (2, 20))
+    shifts = step * np.eye(2)[:, :, None]
+    gradient = np.array([rolled.place(flat + one) - rolled.place(flat - one) for one in shifts]) / (2.0 * step)
+    found = rolled.slopes(np.moveaxis(gradient, 1, 2), flat)
+    assert found == pytest.approx(np.broadcast_to(np.eye(2)[:, None], found.shape), abs=1e-8)
+
+
+@pytest.mark.parametrize("sides", ["free", "confined"])
+def test_a_block_pressed_by_little_is_a_spring(sides: str) -> None:
+    """Its modulus over its thickness, and beyond that its strain."""
+    block = Prism(4.0, 0.5, sides)
+    depth = np.array([1e-4, 2e-4]) * 0.5
+    for nu in (0.1, 0.45):
+        indenter = Indenter(block, Material(Relaxation(1.0), nu, hyperelastic="neo_hooke"), Plane())
+        change = press_block(indenter, block, depth).force / (4.0 * depth / 0.5) - 1.0
+        assert abs(2.0 * change[0] - change[1]) < 1e-6
+
+
 def test_the_force_is_the_slope_of_the_energy() -> None:
     """With the penalty as it is, of any mesh; and the energy is what the striker has brought."""
     body = solid(sphere(0.4), 0.1)
@@ -133,6 +174,36 @@ def test_an_elastic_impact_gives_back_all_of_it() -> None:
     peak, depth = (quantities[name].value or 0.0 for name in ("peak_force", "peak_depth"))
     pressed = press_once(scene, depth)
     assert abs(pressed - peak) < 2.0 * (quantities["peak_force"].error or 0.0)
+
+
+@pytest.mark.parametrize("error", [4e-3, -4e-3])
+@pytest.mark.parametrize("tilted", [False, True])
+def test_a_curve_that_errs_by_its_bars_leaves_the_impact_within_its_own(
+    error: float, tilted: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a spring k depth^1.5 in place of finite elements, too stiff everywhere or where it is deep."""
+    scene = Scene.load("polymer-sphere-finite")
+    k = 4.0 / 3.0 * scene.contact_modulus.relaxed * np.sqrt(scene.profile.tip_radius)
+
+    def indented(indenter: Indenter, depths: tuple[float, ...], given: object, progress: object) -> Indentation:
+        place = 1.0 - np.log(np.array(depths) / depths[-1]) / np.log(depths[0] / depths[-1])
+        off = error * (np.cos(np.pi * place) if tilted else np.ones(len(depths)))
+        depth, bar = np.array(depths), np.full(len(depths), abs(error))
+        force, radius = k * depth**1.5 * (1.0 + off), np.sqrt(depth * scene.profile.tip_radius)
+        budget = {"mesh": 0.75 * bar, "penalty": 0.25 * bar}
+        return Indentation(indenter, "fe", k, 1e-2, depth, force, radius, bar * force, budget)
+
+    monkeypatch.setattr(large_strains, "indent", indented)
+    found = run(scene, tolerance=1e-2)
+    spring = Scene(None, scene.mass, scene.velocity, law=LawChoice("hertz", {"k": k, "alpha": 1.5}))
+    exact = laws.hertz.of(spring).simulate(spring, 1e-6)
+    assert found.converged
+    for name in ("peak_force", "peak_time", "peak_depth", "duration"):
+        one, other = found.quantities[name], exact.quantities[name].value
+        assert one.error / 4.0 < abs(one.value - other) < one.error, name
+    off = np.abs(found.history.force - exact.history.force_at(found.history.time))
+    assert np.all(off <= found.history.force_error + 1e-6 * found.history.force.max())
+    assert np.median(found.history.force_error) < 5.0 * np.median(off)
 
 
 def press_once(scene: Scene, depth: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -10,13 +11,14 @@ import pytest
 
 import fe_contact
 from fe_contact.budget import runs
-from fe_contact.budget.plan import plan
+from fe_contact.budget.plan import BAND, SPARE, plan, scales
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.march.impact import march
 from fe_contact.steppers.steps import Strike
 from fe_contact.steppers.struck import WIDTH, FixedStepper
 from fe_contact.targets.base import struck
+from fe_contact.targets.layer import meshed
 from lumped import BadInput, Material, Model, Relaxation, Result, Scene, Sphere, laws, simulate
 from lumped.result.score import normalized_error
 from lumped.shapes.cone import Cone
@@ -47,6 +49,20 @@ def random_scene(seed: int) -> Scene:
 
 def exact(scene: Scene) -> Result:
     return simulate(laws.ting.of(scene), scene, 1e-6)
+
+
+def test_impacts_whose_contacts_are_about_as_wide_share_their_meshes() -> None:
+    """Speeds over a factor of four, on layers of any size, need no more meshes than there are widths between."""
+    scene, bodies = Scene.load("polymer-layer"), []
+    for number, speed in enumerate(np.geomspace(0.01, 0.04, 12).tolist()):
+        size = 3.0 ** (number % 2)
+        alike = {"shape": Sphere(0.006 * size), "target": Layer(0.002 * size, "bonded"), "mass": 0.05 * size**3}
+        one = replace(scene, velocity=speed, **alike)
+        numerics = plan(one, {}).numerics
+        assert 1.0 / BAND < (numerics.contact_radius / (SPARE * scales(one, numerics).contact_radius)) ** 2 < BAND
+        bodies.append(meshed(one.geometry, numerics))
+    widths = [body.arguments[0][2] for body in bodies]
+    assert len({*bodies}) == len({*widths}) <= 1 + round(math.log(max(widths) / min(widths), BAND)) < 8
 
 
 @pytest.mark.tenth

@@ -76,7 +76,7 @@ def run() -> Iterator[Callable[[Sequence[str]], Ended]]:
 @pytest.fixture(scope="session")
 def hundredth(campaign_size: Callable[..., int]) -> Callable[[int], int]:
     """How many of a campaign's n cases to run: all with --full, a hundredth with --tenth, else a few."""
-    return lambda n: campaign_size(campaign_size(n), least=100)
+    return lambda n: campaign_size(campaign_size(n), least=40)
 
 
 @pytest.fixture(scope="session")

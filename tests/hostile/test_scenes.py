@@ -1,4 +1,4 @@
-"""Packaged scenes with keys dropped, doubled, misspelt and exchanged, and with every kind of value.
+"""Scenes and files of studies with keys dropped, doubled, misspelt and exchanged, and with every kind of value.
 
 None of them is a defect, a hang or a file written by halves: it runs, or every line names the file and a key of it.
 """
@@ -10,6 +10,7 @@ import datetime
 import json
 import math
 import random
+import shutil
 import tomllib
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -19,10 +20,13 @@ import numpy as np
 import pytest
 
 from lumped import laws
+from lumped.pounding.case_file import CASES as POUND
+from lumped.ptmd.case_file import CASES as PTMD
 from lumped.schema.files import SCENES as PACKAGED
 
 Table = dict[str, Any]
 SCENES = 20_000
+CHANGED_STUDIES = 500
 SEED = 20260512
 TOP = ("name", "striker", "target", "model", "motion", "law", "numerics")
 BODIES = ("striker", "target")
@@ -66,6 +70,10 @@ def written(value: object) -> str:
     return str(value)
 
 
+def table_of(path: Path) -> Table:
+    return tomllib.loads(path.read_text(encoding="utf-8"))
+
+
 def tables_of(table: Table) -> Iterator[Table]:
     yield table
     for value in table.values():
@@ -74,18 +82,16 @@ def tables_of(table: Table) -> Iterator[Table]:
 
 
 class Mutations:
-    """Draws scenes from one generator: a packaged one, changed in one to four places."""
+    """Draws files from one generator: one of those known, changed in one to four places."""
 
-    def __init__(self, seed: int) -> None:
-        self.rng = random.Random(seed)
-        self.known = {name: tomllib.loads(PACKAGED.path(name).read_text(encoding="utf-8")) for name in PACKAGED.names}
-        self.ways = (
+    def __init__(self, seed: int, known: Sequence[Table]) -> None:
+        self.rng, self.known = random.Random(seed), known
+        self.ways: tuple[Callable[[Table], None], ...] = (
             self.drop, self.misspell, self.replace, self.replace, self.scale, self.scale, self.scale, self.scale,
-            self.exchange_part, self.exchange_material, self.switch, self.switch,
         )  # fmt: skip
 
-    def scene(self) -> Table:
-        table = copy.deepcopy(self.rng.choice(list(self.known.values())))
+    def changed(self) -> Table:
+        table = copy.deepcopy(self.rng.choice(self.known))
         for _ in range(self.rng.choice((1, 1, 2, 2, 3, 4))):
             self.rng.choice(self.ways)(table)
         return table
@@ -112,7 +118,15 @@ class Mutations:
         for _ in range(self.rng.choice((3, 14, 40))):
             deep = [deep]
         wide = self.rng.choice((1.0, -1.0)) * 10.0 ** self.rng.uniform(-300, 300)
-        kinds = (True, [], {"a": 1}, datetime.date(2020, 1, 1), [value] * self.rng.choice((1, 2, 200)), deep, wide)
+        kinds: Sequence[object] = (
+            True,
+            [],
+            {"a": 1},
+            datetime.date(2020, 1, 1),
+            [value] * self.rng.choice((1, 2, 200)),
+            deep,
+            wide,
+        )
         drawn = (self.rng.choice(TEXTS), self.rng.choice(EXTREMES), 10 ** self.rng.choice(DIGITS))
         return self.rng.choice((*kinds, *drawn, *drawn))
 
@@ -130,13 +144,21 @@ class Mutations:
                 self.rng.uniform(-1, 1) + self.rng.choice((0, 0, 1, -1, 2, -2, 4, -4, 8, -8))
             )
 
+
+class Scenes(Mutations):
+    """The same of the packaged scenes, whose parts and materials are exchanged as well, and commands on them."""
+
+    def __init__(self, seed: int) -> None:
+        super().__init__(seed, [table_of(PACKAGED.path(name)) for name in PACKAGED.names])
+        self.ways += (self.exchange_part, self.exchange_material, self.switch, self.switch)
+
     def exchange_part(self, table: Table) -> None:
-        part, other = self.rng.choice(TOP[1:]), self.rng.choice(list(self.known.values()))
+        part, other = self.rng.choice(TOP[1:]), self.rng.choice(self.known)
         if part in other:
             table[part] = copy.deepcopy(other[part])
 
     def exchange_material(self, table: Table) -> None:
-        other = self.rng.choice(list(self.known.values()))
+        other = self.rng.choice(self.known)
         found = [other[part]["material"] for part in BODIES if "material" in other.get(part, {})]
         body = table.get(self.rng.choice(BODIES))
         if found and isinstance(body, dict):
@@ -182,17 +204,64 @@ def test_a_changed_scene_runs_or_every_line_names_its_file_and_key(
     run: Callable[[Sequence[str]], Any],
     faults_of: Callable[..., list[str]],
 ) -> None:
-    mutations, wrong, codes = Mutations(SEED), [], set()
+    mutations, wrong, codes = Scenes(SEED), [], set()
     scene = tmp_path / "scene.toml"
     keys = "|".join(TOP)
     for _ in range(hundredth(SCENES)):
-        scene.write_text("".join(f"{json.dumps(k)} = {written(v)}\n" for k, v in mutations.scene().items()))
+        scene.write_text("".join(f"{json.dumps(k)} = {written(v)}\n" for k, v in mutations.changed().items()))
         command = mutations.command(scene, curve)
         ended = run(command)
         named = rf"scene\.toml: (({keys})[.\w]*|[^:]+: unknown key|name: )|--\w+: |.*curve\.csv: "
         named += "|.*: (not a TOML file|larger than)"
         found = faults_of(ended, named, solves=command[0] == "fit" or "cheapest" in command)
         wrong += [f"{fault}\n{scene.read_text()}" for fault in found]
+        codes.add(ended.code)
+    assert not wrong, "\n".join(wrong)
+    assert codes >= {0, 2}, "both what runs and what is refused is among them"
+
+
+SWEEPS: tuple[Table, ...] = (
+    {
+        "name": "map", "scene": "steel-ball", "methods": ["hertz", "mdr"], "tolerance": 1e-3,
+        "axes": {"striker.velocity": {"log": [0.1, 1.0], "count": 3}, "striker.radius": [1e-3, 2e-3]},
+    },
+    {
+        "name": "drawn", "scene": "polymer-sphere", "methods": ["correspondence"],
+        "zipped": {"striker.mass": [0.01, 0.02], "striker.velocity": [0.02, 0.01]},
+        "draws": {"count": 3, "seed": 7, "target.material.C1": {"log_uniform": [1e3, 1e5]}},
+    },
+)  # fmt: skip
+SHORT_PTMD = table_of(PTMD.path("paper"))
+SHORT_PTMD["motion"] |= {"end_time": 1.0, "window": 0.2}
+# Of each command, the files it takes and the parts that a line of bad input may name.
+STUDIES: dict[str, tuple[Sequence[Table], str]] = {
+    "sweep": (SWEEPS, "name|scene|methods|tolerance|axes|zipped|draws|striker|target"),
+    "ptmd": ([SHORT_PTMD], "name|structure|damper|ring|motion"),
+    "pound": ([table_of(POUND.path(name)) for name in POUND.names], "name|structure|gap|law|ground|motion"),
+}
+
+
+@pytest.mark.tenth
+@pytest.mark.parametrize("study", STUDIES)
+def test_a_changed_study_runs_or_every_line_names_its_file_and_key(
+    study: str,
+    tmp_path: Path,
+    campaign_size: Callable[[int], int],
+    run: Callable[[Sequence[str]], Any],
+    faults_of: Callable[..., list[str]],
+) -> None:
+    known, keys = STUDIES[study]
+    mutations, wrong, codes = Mutations(SEED, known), [], set()
+    for record in POUND.path("two-frames").parent.glob("*.csv"):
+        shutil.copy(record, tmp_path)
+    file = tmp_path / "study.toml"
+    count = campaign_size(campaign_size(CHANGED_STUDIES))
+    for table in (known[0], *(mutations.changed() for _ in range(count))):
+        file.write_text("".join(f"{json.dumps(k)} = {written(v)}\n" for k, v in table.items()))
+        ended = run([study, str(file), *(["--jobs", "1"] if study == "sweep" else [])])
+        named = rf"study\.toml: (({keys})[^:]*|[^:]+: unknown key|name: )|.*\.csv: "
+        named += "|.*: (not a TOML file|larger than|cannot be read)"
+        wrong += [f"{fault}\n{file.read_text()}" for fault in faults_of(ended, named, solves=True)]
         codes.add(ended.code)
     assert not wrong, "\n".join(wrong)
     assert codes >= {0, 2}, "both what runs and what is refused is among them"

@@ -329,7 +329,12 @@ class _Reader:
                 return []
             except BadInput as bad:
                 found = {fault: None for fault in bad.faults if found is None or fault in found}
-        own = {fault: Fault(self.source, fault.key, fault.message) for fault in found or () if fault.key in sweep.keys}
+        own = {
+            fault: Fault(self.source, key, fault.message)
+            for fault in found or ()
+            for key in sweep.keys
+            if f"{key}.".startswith(f"{fault.key}.")  # or a table that there is not, which only this key names
+        }
         return list(own.values()) if self.faults else [own.get(fault, fault) for fault in found or ()]
 
     def fault(self, key: str, message: str) -> None:

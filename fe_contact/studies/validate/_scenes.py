@@ -20,6 +20,7 @@ from lumped.numbers import Array
 from lumped.result.history import History
 from lumped.result.result import NO_KEY, Quantity, Result, worst
 from lumped.scene.scene import Scene
+from lumped.scene.tables import load
 from lumped.schema.files import SCENES
 
 BESIDE = ("correspondence", "hertz", "kelvin", "jankowski", "hunt_crossley")  # laws that a reader may switch on
@@ -78,10 +79,10 @@ def largest(found: Sequence[Move]) -> float:
 
 
 def answered(name: str) -> SceneAnswer:
-    """One packaged scene by its default method at its default tolerance; what fails with a name is told in it."""
+    """One packaged scene by its default method and its own settings; what fails with a name is told in it."""
     try:
-        scene = Scene.load(name)
-        found = simulate(scene, None, {})
+        scene, table = load(Scene, name)
+        found = simulate(scene, None, table)
         law, exact = _exact(scene) if found.method == FE else ("", None)
     except FeContactError as failure:
         return SceneAnswer(name, failure=" ".join(str(failure).split()))

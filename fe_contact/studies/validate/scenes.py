@@ -59,6 +59,7 @@ def of_answers(found: Sequence[SceneAnswer], left_out: Sequence[str] = ()) -> Ma
             (SCENES_TABLE, CHECKS_TABLE),
             _worst(found),
             HISTORIES,
+            missed="; ".join(short(found)),
         ),
         partial(write, found),
     )
@@ -92,16 +93,20 @@ def _model(found: Sequence[SceneAnswer]) -> Headline:
 
 
 def sentences(found: Sequence[SceneAnswer], left_out: Sequence[str]) -> list[str]:
-    """What was asked, what failed or missed its tolerance, what moved since it was published."""
-    failed = [f"{one.scene}: no answer: {one.failure}" for one in found if one.failure]
-    missed = [f"{one.scene}: {one.missed}" for one in found if one.missed]
+    """What was left out, what moved since it was published, what failed or missed its tolerance."""
     published = [one for one in found if one.published]
     moved = [one.scene for one in published if not largest(one.published) <= 1.0]
     said = [f"{len(published) - len(moved)} of {len(published)} answers agree with what is published of them, in "
             f"data/references/{': all but ' + ', '.join(moved) if moved else ''}."]  # fmt: skip
     if left_out:
         said.append(f"Left out of a quick answer, for they take minutes: {', '.join(left_out)}.")
-    return [*said, *failed, *missed]
+    return [*said, *short(found)]
+
+
+def short(found: Sequence[SceneAnswer]) -> list[str]:
+    """Which scenes have no answer, or none within their tolerance, and why."""
+    failed = [f"{one.scene}: no answer: {one.failure}" for one in found if one.failure]
+    return [*failed, *(f"{one.scene}: {one.missed}" for one in found if one.missed)]
 
 
 def _worst(found: Sequence[SceneAnswer]) -> Worst | None:
