@@ -50,10 +50,6 @@ class Bulk:
         slopes = np.concatenate([gradient, hoop[None]])[:, elements]
         return cls(slopes, weight[elements], vector_dofs(basis.element_dofs)[elements], 2 * int(basis.N))
 
-    def first(self, count: int) -> Bulk:
-        """Its first elements alone."""
-        return replace(self, slopes=self.slopes[:, :count], weight=self.weight[:count], dofs=self.dofs[:count])
-
     def gradient(self, displacement: Array) -> Array:
         """Of a displacement (2 N,), (5, elements, points)."""
         local = displacement[self.dofs]
@@ -168,7 +164,7 @@ def _keys(numbers: Indices, free: int) -> Indices:
 class CoredBody:
     """A ``core`` that answers by a ``response``; ``rest`` (n, n) stiffness of all else between ``rim`` nodes' (n,)
     degrees of freedom, and ``pull`` (n,) the forces that it bears undeformed, where it remembers; ``free`` degrees of
-    freedom of the core that are not held; those of the rest, ``outer`` (m,), are ``led`` (m, n) by the rim's.
+    freedom of the core that are not held.
     """
 
     core: Bulk
@@ -177,15 +173,12 @@ class CoredBody:
     pull: Array
     rim: Indices
     free: Indices
-    outer: Indices
-    led: Array
 
     @classmethod
     def whole(cls, core: Bulk, response: Response, fixed: Indices) -> CoredBody:
         """All of which answers by the response."""
         none = np.zeros(0, dtype=int)
-        free = np.setdiff1d(np.unique(core.dofs), fixed)
-        return cls(core, response, np.zeros((0, 0)), np.zeros(0), none, free, none, np.zeros((0, 0)))
+        return cls(core, response, np.zeros((0, 0)), np.zeros(0), none, np.setdiff1d(np.unique(core.dofs), fixed))
 
     @classmethod
     def of(cls, core: Bulk, response: Response, stiffness: Matrix, fixed: Indices, state: State = ()) -> CoredBody:
@@ -199,19 +192,11 @@ class CoredBody:
         loaded = np.flatnonzero(np.diff(beside.indptr))
         rim = np.setdiff1d(np.intersect1d(within, loaded), fixed)
         outer = np.setdiff1d(np.setdiff1d(loaded, within), fixed)
-        rest, led = beside[rim][:, rim].toarray(), np.zeros((0, rim.size))
+        rest = beside[rim][:, rim].toarray()
         if outer.size:
             coupling = beside[outer][:, rim]
-            led = -factorized(beside[outer][:, outer].tocsc())(coupling.toarray())
-            rest += coupling.T @ led
-        free = np.setdiff1d(within, fixed)
-        return cls(core, response, 0.5 * (rest + rest.T), np.zeros(rim.size), rim, free, outer, led)
-
-    def completed(self, displacement: Array) -> Array:
-        """A displacement (2 N,) of the core, with that of the rest which nothing else loads."""
-        found = displacement.copy()
-        found[self.outer] = self.led @ displacement[self.rim]
-        return found
+            rest -= coupling.T @ factorized(beside[outer][:, outer].tocsc())(coupling.toarray())
+        return cls(core, response, 0.5 * (rest + rest.T), np.zeros(rim.size), rim, np.setdiff1d(within, fixed))
 
 
 def _denoised(difference: Matrix, diagonal: Array) -> Matrix:

@@ -165,7 +165,7 @@ def balanced(
         raise EquilibriumLost(f"an element is inverted at depth {depth:.3g}")
     if touching is not None:
         guess = encounter.at(start, depth, stiffness, state, touching)
-        change = _whole(guess, factorized(guess.tangent(convex=False, pulls=foreseen))(-guess.residual))
+        change = _whole(guess, factorized(guess.tangent(convex=False, pulls=foreseen), ordered=True)(-guess.residual))
         guided = at(start + change)
         if np.isfinite(guided.energy):
             here, foreseen = guided, guess.loaded.foreseen(change)
@@ -189,7 +189,7 @@ def _hastened(
     for iteration in range(1, HASTY + 1):
         step = None if known is None else known(-here.residual)
         if known is None or step is None or abs(here.residual @ step) > settled * abs(here.energy):
-            known = factorized(here.tangent(convex=False, pulls=foreseen))
+            known = factorized(here.tangent(convex=False, pulls=foreseen), ordered=True)
             step = known(-here.residual)
         change = _whole(here, step)
         there = at(here.displacement + change)

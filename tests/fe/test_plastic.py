@@ -90,7 +90,7 @@ def test_it_yields_first_under_the_axis() -> None:
     presser = Presser(ground, 4000.0, course.unit)
     here = presser.first(depth / course.unit, math.sqrt(RADIUS * depth) / course.unit)
     assert not np.any(here.state[1])
-    core = ground.core
+    core = ground.encounter.body.core
     stress = ground.yielding.flowed(core.gradient(here.displacement), *here.state).stress
     mean = stress[[0, 3, 4]].mean(axis=0)
     mises = np.sqrt(1.5 * ((stress[[0, 3, 4]] - mean) ** 2).sum(axis=0) + 3.0 * stress[1] ** 2)
