@@ -118,7 +118,7 @@ class Indenting:
     def certified(self, numerics: Numerics) -> PressedBudget:
         """The forces and what each setting changes of them. Raises NotReached where contact does not settle."""
         self.progress(f"{numerics.elements_per_contact:g} elements along the contact radius")
-        base = press(self.elastic, self.depth, self.radii, numerics)
+        base = press(self.elastic, self.depth, self.radii, numerics, self._softer(numerics))
         errors = {cause: np.full(self.depth.size, error) for cause, error in self._budget(base, numerics).items()}
         return PressedBudget(base, errors, numerics)
 
@@ -133,21 +133,27 @@ class Indenting:
         """Relative error of the force by cause.
 
         The far field is varied on the other mesh, which as a rule is the cheaper one, unless the body ends before; the
-        penalty costs no mesh, but in large strains as much as one, and there a few depths tell of it.
+        penalty costs no mesh, and in large strains a few depths tell of it as they are reached.
         """
         other, by_mesh = other_mesh(numerics, base.mesh_order)
         far, farther = other_setting(other, "far_radius")
         penalty, stiffer = other_setting(numerics, "penalty")
         many, few = self._telling(FEWEST_LARGE), self._telling(FEWEST_SOFT)
+        on_soft = self._press(few, penalty) if base.softer is None else base.softer
         on_other = self._press(many, other)
         on_far = on_other if on_other.ends else self._press(many, far)
         by_penalty = factor(LEAST_ORDER["penalty"], stiffer)
         return {
             "mesh": _error(by_mesh, base.at(many), on_other),
-            "penalty": _error(by_penalty, base.at(few), self._press(few, penalty)),
+            "penalty": _error(by_penalty, base.at(few), on_soft),
             "far_field": _error(factor(LEAST_ORDER["far_field"], farther), on_other, on_far),
             "newton": base.newton,
         }
+
+    def _softer(self, numerics: Numerics) -> solids.Softer | None:
+        """Of large strains, which depths tell of the penalty, and of what other one."""
+        other = other_setting(numerics, "penalty")[0].penalty
+        return solids.Softer(self._telling(FEWEST_SOFT), other) if self.elastic.model.finite else None
 
     def _press(self, told: Indices, numerics: Numerics) -> PressedDepths:
         return press(self.elastic, self.depth[told], self.radii[told], numerics)
@@ -196,10 +202,15 @@ def settings(given: Given, shape: Shape, large: bool = False) -> Numerics:
     return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
 
 
-def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) -> PressedDepths:
-    """Every depth, m, with one setting of everything, from the largest to the smallest; ``radii`` to begin with, m."""
+def press(
+    indenter: Indenter, depth: Array, radii: Array, numerics: Numerics, softer: solids.Softer | None = None
+) -> PressedDepths:
+    """Every depth, m, with one setting of everything, from the largest to the smallest; ``radii`` to begin with, m.
+
+    ``softer``: of large strains, depths that another penalty is tried at.
+    """
     if indenter.model.finite:
-        return solids.press(indenter, depth, radii, numerics)
+        return solids.press(indenter, depth, radii, numerics, softer)
     body: Still = TARGETS.get(indenter.target.name).still(indenter, radii, numerics)
     force, radius = np.empty_like(depth), np.empty_like(depth)
     growth, problems, iterations = 1.0, 0, 0

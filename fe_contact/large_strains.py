@@ -20,7 +20,7 @@ from fe_contact.progress import Progress, silent
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, check_kind
 from fe_contact.solids.pressing import CORRECTED, check_large
 from fe_contact.threads import one_thread
-from lumped.errors import BadInput, Fault, NotReached
+from lumped.errors import NotReached
 from lumped.indentation import Indentation
 from lumped.laws import ting
 from lumped.load_curves.sampled import SampledCurve
@@ -29,7 +29,6 @@ from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import UNITS, Result, provenance, unmet
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Answered, Scene
-from lumped.shapes._block import Block
 
 DEPTHS = 10  # that tell the curve
 SHALLOWEST = 0.0144  # the least of them over the largest; below it lies a share of 2e-5 of a sphere's work
@@ -40,32 +39,13 @@ ROUNDS = 4  # work: of such enlargements
 SAMPLES = 160  # work: depths at which the polynomials are handed on
 SHARE = 1.0  # of the tolerance that the curve may err by: the bars of an impact are about as wide
 SECONDS = 3.0  # processor time of an impact to 1e-3, about: it ranks methods, no more
-DASHPOT = "a dashpot in parallel has no large strains in this version"
-ISOCHORIC = '"bulk": with large strains the whole stress relaxes in this version'
-BLOCK = "a block of large strains does not relax in this version"
 FINE_INTEGRATION = 1e-2  # of the tolerance
 
 
 def check_impact(scene: Scene, given: Given) -> None:
     """Raise BadInput for an impact with large strains that is not built."""
-    check_large(scene.source, scene.geometry, scene.model, given.get("enforcement", CORRECTED))
-    faults, source = list[Fault](), scene.source
-    geometry, material = scene.geometry, scene.geometry.material
-    if not material.young.is_elastic:
-        faults += [
-            Fault(source, key, f"{reason}; accepted: {cure}, or kinematics = 'small'")
-            for unlike, key, reason, cure in (
-                (material.young.viscosity > 0.0, "target.material.law", DASHPOT, "elastic, maxwell, sls or prony"),
-                (material.constant == "bulk", "target.material.constant", ISOCHORIC, '"poisson"'),
-                (isinstance(geometry.shape, Block), "striker.shape", BLOCK, "a striker with a profile"),
-            )
-            if unlike
-        ]
-    if scene.motion.impacts > 1:
-        reason = f"{scene.motion.impacts}: with model.kinematics = 'finite' one is followed; accepted: 1"
-        faults.append(Fault(source, "motion.impacts", reason))
-    if faults:
-        raise BadInput(faults)
+    enforcement = given.get("enforcement", CORRECTED)
+    check_large(scene.source, scene.geometry, scene.model, enforcement, scene.motion.impacts)
 
 
 @one_thread

@@ -146,7 +146,7 @@ class Marcher:
         pull = strike.gravity / self.solid.unit
         depth = here.depth + length * (here.velocity + 0.5 * length * (pull - slowed * here.force))
         fading = Fading.over(self.network, length)
-        found = self._equilibrium(here, depth, fading)
+        found = self._equilibrium(here, self.solid.lead * depth, fading)
         balance, force = found.balance, found.rigid_force
         given = 0.5 * length * (here.force + force)
         rim = balance.displacement[self.body.body.rim]
@@ -218,7 +218,7 @@ class Marcher:
 
     def _account(self, last: Instant, depth: float, speed: float) -> dict[str, float]:
         """Terms in J; the penalty holds nothing in the end."""
-        strike, joule = self.strike, self.scale * self.solid.unit
+        strike, joule = self.strike, self.scale * self.solid.unit / self.solid.lead
         brought = 0.5 * strike.mass * strike.velocity**2 + strike.mass * strike.gravity * depth
         stored = joule * self._stored(last)
         contact = joule * last.found.balance.touch.energy if last.found is not None else 0.0

@@ -248,7 +248,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/budget/variation.py", "Softening.errors", "0.0 -> 0.1"): "of quantities that there are not",
     ("fe_contact/budget/variation.py", "Softening.errors", "1.0 -> 0.1"): "of elastic contacts, which give back all",
     ("fe_contact/steppers/flat_end.py", "FlatStepper.step", "length * self.scheme"): "when a radius was",
-    ("fe_contact/waves/line_reading.py", "_contact", "1.0 -> 0.1"): "below all forces, of which the largest is sought",
     ("fe_contact/waves/certify.py", "DEGREE, REACH", ""): "another smoothing, about as wide",
     ("lumped/solvers/hereditary/march.py", "_landed", ""): "a break of the plan, or the same place but for rounding",
     ("fe_contact/waves/targets/layer.py", "ROUGH", ""): BEGINS,
@@ -727,12 +726,12 @@ def met(mutant: Mutant, tests: list[Asked], killers: set[str], budget: float, co
 def asked_of(mutant: Mutant, tests: list[Asked], killers: set[str], budget: float) -> list[Asked]:
     """Tests that reach what it changes, up to so many seconds: first those that killed others of its file, then fast.
 
-    What no test calls is a constant: then those that call what names it, or that name it themselves. So with a function
-    whose answers are kept, which only the first test that needs it calls.
+    Of a constant those that call what names it, or that name it themselves. So of a function whose answers are kept,
+    which only the first test that needs it calls.
     """
-    name, scope = mutant.scope.rpartition(".")[2], f"{mutant.file}:{mutant.scope}"
+    name = mutant.scope.rpartition(".")[2]
     near = [test for test in tests if test.reaches(mutant)]
-    if mutant.function.keeps or not any(scope in test.functions for test in tests):
+    if mutant.function.keeps or not mutant.function.line:
         changed = users(mutant.scope, mutant.file)
         near = [test for test in tests if changed & test.functions or name in words(test.test.partition("::")[0])]
     ordered = sorted(near, key=lambda test: (test.test not in killers, test.time))

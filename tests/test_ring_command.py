@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from fe_contact.studies.finite_exponents import local_exponent
 from fe_contact.studies.rings import (
     JUDGED,
     RingCurve,
     RingStruck,
     _struck,
     cases,
-    local_exponent,
     rings,
     verdict,
     write_rings,

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 import scipy.sparse.linalg as linalg
@@ -73,21 +73,30 @@ class Factorised:
         return answer if body.floating is None else body.floating.centred(answer)
 
 
-def factorized(matrix: Matrix) -> Callable[[Array], Array]:
+def factorized(matrix: Matrix, ordered: bool = False) -> Callable[[Array], Array]:
     """Back-substitution for a symmetric positive definite sparse matrix, of one right-hand side or several.
 
-    Raises MemoryError where the process may not have so much: SuperLU would crash, and BLAS ask for ever.
+    ``ordered``: rows stand as :func:`elimination_order` has them. Raises MemoryError where the process may not have so
+    much: SuperLU would crash, and BLAS ask for ever.
     """
+    solve: Callable[[Array], Array] = _factors(matrix, "NATURAL" if ordered else "MMD_AT_PLUS_A").solve
+    return solve
+
+
+def elimination_order(matrix: Matrix) -> Indices:
+    """Rows (n,) of such a matrix in the order that leaves factors sparse, the same for all of its pattern."""
+    return np.argsort(_factors(matrix, "MMD_AT_PLUS_A").perm_c)
+
+
+def _factors(matrix: Matrix, order: Literal["NATURAL", "MMD_AT_PLUS_A"]) -> Any:
     if FACTORS * matrix.nnz + WORK_SPACE > _room():
         raise MemoryError
-    factor = linalg.splu(
+    return linalg.splu(
         matrix.tocsc(),
-        permc_spec="MMD_AT_PLUS_A",
+        permc_spec=order,
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
-    solve: Callable[[Array], Array] = factor.solve
-    return solve
 
 
 def _room() -> float:

@@ -60,7 +60,8 @@ class PressedDepths:
     """Force over modulus, m^2, and contact radius, m, at every depth, (n,); counted work.
 
     ``mesh_order``: the most that the mesh's order can be, where the contact ends; ``ends``: whether the body does;
-    ``newton``: what another iteration would change of a force, relative, at most.
+    ``newton``: what another iteration would change of a force, relative, at most; ``softer`` the same at some of the
+    depths under another penalty, where that was asked.
     """
 
     force: Array
@@ -69,6 +70,7 @@ class PressedDepths:
     mesh_order: float
     ends: bool
     newton: float = 0.0
+    softer: PressedDepths | None = None
 
     def at(self, chosen: Indices) -> PressedDepths:
         """At some of the depths."""

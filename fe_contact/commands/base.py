@@ -15,7 +15,7 @@ from functools import partial
 from operator import methodcaller
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from fe_contact.progress import Progress, clear, log_to, terminal, to_all
 from fe_contact.settings import Given, faults
@@ -28,6 +28,9 @@ from lumped.scene.scene import Scene
 from lumped.scene.tables import load, load_indenter
 from lumped.schema import Table
 from lumped.schema.files import SCENES, overridden, parse_assignment, parsed
+
+if TYPE_CHECKING:
+    from fe_contact.studies.finite_exponents import StrainedRow
 
 DONE, NOT_REACHED = 0, 3  # two of the exit codes of cli, which loads this file only when it is needed
 WIDE = 88  # look: of a help that no terminal bounds
@@ -92,6 +95,14 @@ SCENE = (
     option("scene", help="scene file (TOML), or the name of a packaged one: fe-contact scenes"),
     option("--tolerance", metavar="T", help="relative error asked of forces, depths and times; default 1e-3"),
     override(),
+)
+
+
+KINEMATICS = option(
+    "--kinematics",
+    choices=("small", "finite"),
+    default="small",
+    help="finite: where each exponent leaves its small-strain value, for two energies",
 )
 
 
@@ -242,6 +253,18 @@ class StudyRun:
         if missed:
             complain(missed)
         return NOT_REACHED if missed else DONE
+
+
+def finite_exponents(args: argparse.Namespace, study: str, rows: Callable[[], Sequence[StrainedRow]]) -> int:
+    """What a study says with --kinematics finite: press, compare, write, draw; the exit code."""
+    from fe_contact.studies.finite_exponents import finite_exponents as compared
+    from fe_contact.studies.finite_exponents import told, write_finite
+    from fe_contact.studies.finite_exponents_chart import plot_finite
+
+    run = StudyRun.of(args, study, "finite")
+    found = compared(rows(), run.where, run.progress)
+    write, plot = partial(write_finite, study, found), partial(plot_finite, study, found)
+    return run.finish(f"{study}_finite.json", told(found), write, plot)
 
 
 def say(args: argparse.Namespace, content: Given, lines: Sequence[str], title: str = "") -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from pathlib import Path
 
 from fe_contact.commands import base
@@ -10,6 +11,10 @@ from fe_contact.commands import base
 
 def execute(args: argparse.Namespace) -> int:
     """Solve, check, write, draw; 0, or 3 where finite elements missed their tolerance."""
+    if args.kinematics == "finite":
+        from fe_contact.studies.exponents.layers import finite_rows
+
+        return base.finite_exponents(args, "exponents", partial(finite_rows, args.quick))
     from fe_contact.studies.exponents.impacts_chart import plot_impacts
     from fe_contact.studies.exponents.layers_chart import plot_layers
     from fe_contact.studies.exponents.study import study
@@ -27,7 +32,7 @@ def execute(args: argparse.Namespace) -> int:
 MEMBER = base.Command(
     "exponents and D from the half-space to the thin layer, checked by finite elements; how wrong those are that are "
     "read from impacts",
-    (*base.OUTPUT, base.quick("fewer points, two Poisson's ratios, three impacts")),
+    (*base.OUTPUT, base.KINEMATICS, base.quick("fewer points, two Poisson's ratios, three impacts")),
     execute,
     example="fe-contact exponents --quick",
 )

@@ -141,9 +141,10 @@ def summary(found: Fit, where: Path) -> str:
 
 
 def _shown(estimate: Estimate) -> str:
-    if estimate.low is None or estimate.high is None:
+    if estimate.low is None and estimate.high is None:
         return f"{estimate.value:.6g} {estimate.unit}, interval unknown".replace(" ,", ",")
-    return f"{estimate.value:.6g} ({estimate.low:.6g} to {estimate.high:.6g}) {estimate.unit}".rstrip()
+    low, high = ("open" if end is None else f"{end:.6g}" for end in (estimate.low, estimate.high))
+    return f"{estimate.value:.6g} ({low} to {high}) {estimate.unit}".rstrip()
 
 
 def _check_opensees(args: argparse.Namespace) -> None:

@@ -145,7 +145,9 @@ def _of_reference(found: Identified) -> Iterator[str]:
 
 
 def shown(one: Interval) -> str:
-    """A value with its interval."""
+    """A value with its interval; none where any other fits as well."""
+    if one.low is None and one.high is None:
+        return f"not told by the curves ({100.0 * one.level:g} %)"
     low, high = ("open" if end is None else f"{end:.5g}" for end in (one.low, one.high))
     return f"{one.value:.6g} ({low} to {high}, {100.0 * one.level:g} %) {one.unit}".rstrip()
 
@@ -157,9 +159,10 @@ def _check_written(path: Path | None) -> None:
 
 
 def _write_scene(path: Path, found: Identified) -> None:
-    """The scene file with the values found, which is called as the file is. Raises BadInput."""
+    """The scene file with the values found, called as the file is, and what speaks against them. Raises BadInput."""
+    remarks = "".join(f"# {one}\n" for one in found.warnings)
     try:
-        path.write_text(toml_text({**found.table, "name": path.stem}), encoding="utf-8")
+        path.write_text(remarks + toml_text({**found.table, "name": path.stem}), encoding="utf-8")
     except OSError as failure:
         raise BadInput(Fault(WRITE, str(path), f"cannot be written: {failure.strerror}")) from failure
 

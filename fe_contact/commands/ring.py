@@ -10,6 +10,10 @@ from fe_contact.commands import base
 
 def execute(args: argparse.Namespace) -> int:
     """Press, strike, judge, write, draw; 0, or 3 where finite elements missed their tolerance."""
+    if args.kinematics == "finite":
+        from fe_contact.studies.rings import finite_rows
+
+        return base.finite_exponents(args, "ring", finite_rows)
     from fe_contact.studies.rings import cases, missed, rings, struck, told, write_rings
     from fe_contact.studies.rings_chart import plot_rings
 
@@ -22,6 +26,6 @@ def execute(args: argparse.Namespace) -> int:
 
 MEMBER = base.Command(
     "rod in ring, O-ring and washer pressed, the paper's ring struck, by finite elements against its (27)-(32)",
-    base.OUTPUT,
+    (*base.OUTPUT, base.KINEMATICS),
     execute,
 )

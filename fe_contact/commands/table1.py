@@ -11,6 +11,10 @@ from fe_contact.commands import base
 
 def execute(args: argparse.Namespace) -> int:
     """Press, identify, judge, write, draw; 0, or 3 where bars leave a row undecided."""
+    if args.kinematics == "finite":
+        from fe_contact.studies.table1.study import finite_rows
+
+        return base.finite_exponents(args, "table1", finite_rows)
     from fe_contact.studies.table1.study import table1
     from fe_contact.studies.table1.verdict import told, undecided, write_table1
 
@@ -28,6 +32,6 @@ def execute(args: argparse.Namespace) -> int:
 
 MEMBER = base.Command(
     "the paper's Table 1 on trial: D, alpha and E* of every row by finite elements, with error bars and verdicts",
-    base.OUTPUT,
+    (*base.OUTPUT, base.KINEMATICS),
     execute,
 )

@@ -18,9 +18,9 @@ import numpy as np
 from fe_contact.assembly.forms import Array, check_compressible
 from fe_contact.budget.refine import Growth, missing
 from fe_contact.budget.variation import SAFETY
-from fe_contact.plastic.ground import Ground, Sizes, yielding_of
+from fe_contact.plastic.ground import Ground, Sizes, ground_of, yielding_of
 from fe_contact.plastic.path import ELASTIC_RATIO, Presser, Station
-from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
+from fe_contact.settings import DEFAULT_TOLERANCE, RANGES, Given, Numerics
 from lumped.errors import BadInput, Fault
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
@@ -39,9 +39,10 @@ SHALLOWEST = 1e-6  # depth of the first step over the largest: no mesh is finer
 FORGOTTEN = 0.3  # of the shallowest depth, the first step of what flows from the touch on: the next ones forget it
 BISECTIONS = 60  # work
 ELEMENTS = 7.0  # along the contact radius at the surface, at tolerance 1e-3, where a body begins to yield
-RIM_ELEMENTS = 1.4  # the same under a rim, which the mesh is refined to
+RIM_ELEMENTS = 2.0  # the same under a rim, which the mesh is refined to
 FEWEST_ELEMENTS = 12.0  # to begin with (under a rim fewer): at 80 yield depths bars of 8 were a third of their errors
 LEAST_STEPS = 24  # to begin with
+LEAST_ELEMENTS, LEAST_RIM_ELEMENTS = 4.0, 2.0  # that a user may choose: half as many still tell something
 MOST_ELEMENTS, MOST_STEPS = 32.0, 64  # to begin with
 ORDER = 3  # of the elements: they do not lock where flow keeps the volume
 STEPS = 12  # of a loading there, over six e-folds of the depth or so
@@ -74,13 +75,17 @@ def finer(shares: Mapping[str, Array], numerics: Numerics, pinned: Set[str]) -> 
     return None if found == numerics else found
 
 
-def check_given(given: Given, source: str) -> None:
-    """Raise BadInput for settings of bodies that do not yield."""
+def check_given(given: Given, source: str, profile: Shape) -> None:
+    """Raise BadInput for settings of bodies that do not yield, and for fewer elements than show a contact's edge."""
     found = [
         Fault(source, f"numerics.{key}", f"{given[key]}: with model.plasticity there is no choice; leave it out")
         for key in ("scheme", "enforcement")
         if key in given and given[key] != DEFAULTS[key]
     ]
+    least, (_, most) = LEAST_RIM_ELEMENTS if profile.fixed_radius else LEAST_ELEMENTS, RANGES["elements_per_contact"]
+    if given.get("elements_per_contact", least) < least:
+        reason = f"{given['elements_per_contact']:g}: with model.plasticity accepted from {least:g} to {most:g}"
+        found.append(Fault(source, "numerics.elements_per_contact", f"{reason}; the coarsest of three meshes has half"))
     if found:
         raise BadInput(found)
 
@@ -130,7 +135,7 @@ def smooth(x: Array, y: Array, spacing: float) -> Callable[[Array], Array]:
 @dataclass(frozen=True)
 class Course:
     """What is pressed into what, and how deep; m, Pa. ``first``, ``firm``: depths before which nothing yields, and
-    hardly anything; ``smallest`` and ``widest`` contact to expect.
+    hardly anything; ``shallow``: from where on contacts are to be resolved.
     """
 
     profile: Shape
@@ -140,6 +145,7 @@ class Course:
     hardening: float
     first: float
     firm: float
+    shallow: float
     deepest: float
 
     @classmethod
@@ -162,6 +168,7 @@ class Course:
             hardening=material.hardening_modulus or 0.0,
             first=first,
             firm=max(firm, first),
+            shallow=shallow,
             deepest=deepest,
         )
 
@@ -186,7 +193,7 @@ class Course:
 
     def ground(self, numerics: Numerics, cut: bool = False) -> Ground:
         """The half-space meshed. Raises BodyTooFine."""
-        smallest = 1.0 if self.rim else 0.5 * overlapping(self.profile, self.first) / self.unit
+        smallest = 1.0 if self.rim else 0.5 * overlapping(self.profile, self.shallow) / self.unit
         sizes = Sizes(
             elements=numerics.elements_per_contact,
             order=numerics.order,
@@ -196,7 +203,7 @@ class Course:
             cut=cut,
         )
         yielding = yielding_of(self.poisson, self.strength / self.modulus, self.hardening / self.modulus)
-        return Ground.of(self.profile, self.unit, yielding, self.poisson, sizes)
+        return ground_of(self.profile, self.unit, yielding, self.poisson, sizes)
 
     def depths(self, steps: int, end: float) -> Array:
         """Ends of the steps, m: coarse where nothing yields."""
@@ -303,17 +310,27 @@ def columns(places: list[Station]) -> Array:
     return np.array([(place.depth, place.force, place.radius) for place in places]).T
 
 
+class Contrast(NamedTuple, Generic[Told]):
+    """Two answers, and the factor that makes an error of what they differ by."""
+
+    first: Told
+    second: Told
+    factor: float
+
+
 class Varied(NamedTuple, Generic[Told]):
     """What runs with different settings tell.
 
     On a coarser mesh ``same`` has the settings' steps, ``finer`` twice as many, ``fewer`` half as many; as many as that
-    ``base`` on the finest mesh, ``softer`` with half the penalty, ``nearer`` with a mesh that ends half as far away.
+    ``base`` on the finest mesh, and on the coarsest ``third``, ``softer`` with half the penalty, ``nearer`` with a mesh
+    that ends half as far away.
     """
 
     base: Told
     same: Told
     finer: Told
     fewer: Told
+    third: Told
     softer: Told
     nearer: Told
 
@@ -322,13 +339,15 @@ class Varied(NamedTuple, Generic[Told]):
         """Of a ``run`` with settings, on a mesh that is cut or not."""
         coarse = coarser(numerics)
         few = coarse.varied(steps=max(coarse.steps // 2, FEWEST_STEPS))
+        third = few.varied(elements_per_contact=0.5 * numerics.elements_per_contact)
         return cls(
             base=run(numerics.varied(steps=few.steps), False),
             same=run(coarse, False),
             finer=run(coarse.varied(steps=2 * coarse.steps), False),
             fewer=run(few, False),
-            softer=run(few.varied(penalty=0.5 * few.penalty), False),
-            nearer=run(few, True),
+            third=run(third, False),
+            softer=run(third.varied(penalty=0.5 * third.penalty), False),
+            nearer=run(third, True),
         )
 
     def mended(self, onwards: Callable[[Told, Told, Told, float], Told]) -> Told:
@@ -341,20 +360,23 @@ class Varied(NamedTuple, Generic[Told]):
     def _fine(self, onwards: Callable[[Told, Told, Told, float], Told]) -> Told:
         return onwards(self.finer, self.finer, self.same, 1.0 / 3.0)
 
-    def pairs(self, onwards: Callable[[Told, Told, Told, float], Told]) -> dict[str, tuple[Told, Told, float]]:
-        """By cause two answers, and the factor that makes an error of what they differ by.
+    def pairs(self, onwards: Callable[[Told, Told, Told, float], Told]) -> dict[str, tuple[Contrast[Told], ...]]:
+        """By cause the pairs that tell its error together.
 
-        Of steps and mesh order one is trusted, where a contact's edge crosses elements that flow.
+        Of steps and mesh order one is trusted, where a contact's edge crosses elements that flow: of meshes as the mean
+        of what two pairs tell of the finest, for two of them may agree by chance.
         """
         coarse = onwards(self.same, self.same, self.fewer, 1.0 / 3.0)
+        ratio = math.sqrt(2.0)
+        half = 0.5 * SAFETY / (ratio - 1.0)
         return {
-            "mesh": (self.base, self.fewer, SAFETY / (math.sqrt(2.0) - 1.0)),
-            "penalty": (self.fewer, self.softer, SAFETY),
-            "time_step": (self._fine(onwards), coarse, SAFETY),
-            "far_field": (self.fewer, self.nearer, SAFETY / 3.0),
+            "mesh": (Contrast(self.base, self.fewer, half), Contrast(self.fewer, self.third, half / ratio)),
+            "penalty": (Contrast(self.third, self.softer, SAFETY),),
+            "time_step": (Contrast(self._fine(onwards), coarse, SAFETY),),
+            "far_field": (Contrast(self.third, self.nearer, SAFETY / 3.0),),
         }
 
 
 def coarser(numerics: Numerics) -> Numerics:
-    """The mesh on which all but itself is varied."""
+    """The next coarser mesh."""
     return replace(numerics, elements_per_contact=numerics.elements_per_contact / np.sqrt(2.0))

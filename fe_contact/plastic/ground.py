@@ -5,7 +5,8 @@ Lengths are in units of the widest contact, moduli of E*.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -52,57 +53,108 @@ class Sizes:
 
 
 @dataclass(frozen=True, eq=False)
+class Nest:
+    """The ground under contacts up to a ``reach``: its first elements may yield, ``outer`` of them the outermost."""
+
+    reach: float
+    encounter: Encounter
+    outer: npt.NDArray[np.bool_]
+
+    def holds(self, state: State) -> bool:
+        """Whether nothing has yielded beyond it."""
+        return not np.any(state[1][self.outer.size :] > 0.0)
+
+    def contained(self, state: State) -> bool:
+        """Whether nothing has yielded near its end, or beyond."""
+        return self.holds(state) and not np.any(state[1][: self.outer.size][self.outer] > 0.0)
+
+    def part(self, state: State) -> State:
+        """Of what all points remember, what is its own."""
+        return tuple(values[..., : self.outer.size, :] for values in state)
+
+    def whole(self, part: State, state: State) -> State:
+        """What all points remember, with its own part anew."""
+        pairs = zip(part, state, strict=True)
+        return tuple(np.concatenate([own, all_[..., self.outer.size :, :]], axis=-2) for own, all_ in pairs)
+
+
+@dataclass(frozen=True, eq=False)
 class Ground:
-    """What a rigid ``profile`` is pressed into; ``unit``: the widest contact, m; ``yielding`` in units of E*;
-    ``elements`` (e,) of the ``basis``: those that may yield.
+    """What a rigid ``profile`` is pressed into; ``unit``: the widest contact, m; ``yielding`` in units of E*.
+
+    ``nests``: those of its parts that were asked for, by their reach.
     """
 
-    encounter: Encounter
+    meshed: MeshedGround
+    obstacle: OnUndeformed
     yielding: Yielding
-    outer: npt.NDArray[np.bool_]
-    rim: bool
-    basis: Basis
-    elements: Indices
+    nests: dict[float, Nest] = field(default_factory=dict)
 
-    @classmethod
-    def of(cls, profile: Shape, unit: float, yielding: Yielding, poisson: float, sizes: Sizes) -> Ground:
-        """Raises BodyTooFine."""
-        meshed = _meshed(sizes, poisson)
-        shape = meshed.core.weight.shape
-        response = Plastic(yielding)
-        body = CoredBody.of(meshed.core, response, meshed.stiffness, meshed.fixed, at_rest(shape))
-        encounter = Encounter.of(body, meshed.skin, OnUndeformed(profile, unit))
-        return cls(encounter, yielding, meshed.outer, sizes.rim, meshed.basis, meshed.elements)
+    @property
+    def rim(self) -> bool:
+        """Whether all contacts end at radius 1."""
+        return self.meshed.sizes.rim
 
     @property
     def rest(self) -> State:
         """What the points remember that nothing has pressed."""
-        return at_rest(self.encounter.body.core.weight.shape)
+        return at_rest(self.core.weight.shape)
+
+    def nest(self, radius: float, state: State) -> Nest:
+        """The smallest that holds a contact of this radius and all that has yielded."""
+        least = 1.0 if self.rim else max(radius, self.meshed.sizes.smallest)
+        reach = min(2.0 ** math.ceil(math.log2(least)), 1.0)
+        while reach < 1.0 and not self._nest(reach).holds(state):
+            reach *= 2.0
+        return self._nest(reach)
+
+    def _nest(self, reach: float) -> Nest:
+        """Made once; what it leaves out is condensed."""
+        if reach not in self.nests:
+            known = self.meshed
+            near = known.distance[known.distance < CORE * reach]
+            core = known.core.first(near.size)
+            rest = at_rest(core.weight.shape)
+            body = CoredBody.of(core, Plastic(self.yielding), known.stiffness, known.fixed, rest)
+            encounter = Encounter.of(body, known.skin, self.obstacle)
+            self.nests[reach] = Nest(reach, encounter, near > GUARD * CORE * reach)
+        return self.nests[reach]
+
+    @property
+    def core(self) -> Bulk:
+        """All that may yield."""
+        return self.meshed.core
+
+    @property
+    def basis(self) -> Basis:
+        """Of the whole mesh."""
+        return self.meshed.basis
+
+    @property
+    def elements(self) -> Indices:
+        """Those of the basis that may yield, the core's, (e,)."""
+        return self.meshed.elements
 
     @cached_property
     def points(self) -> Array:
         """Radii of the quadrature points of the surface, ascending (q,)."""
-        return np.asarray(self.encounter.skin.place[0].ravel())
+        return np.asarray(self.meshed.skin.place[0].ravel())
 
     @property
     def unknowns(self) -> int:
-        """Of every Newton step."""
-        return self.encounter.body.free.size
-
-    def contained(self, state: State) -> bool:
-        """Whether nothing has yielded near the end of the core."""
-        return not np.any(state[1][self.outer] > 0.0)
+        """Of a Newton step under the widest contacts."""
+        return self._nest(1.0).encounter.body.free.size
 
     def stored(self, displacement: Array, state: State) -> float:
         """Elastic energy of a displacement (2 N,) in units of E* and length."""
-        body = self.encounter.body
+        body = self._nest(1.0).encounter.body
         points = self.yielding.stored(body.core.gradient(displacement), state[0])
         rim = displacement[body.rim]
         return float(np.vdot(body.core.weight, points) + 0.5 * rim @ body.rest @ rim)
 
     def worked(self, state: State) -> float:
         """Plastic work in these units."""
-        return float(np.vdot(self.encounter.body.core.weight, self.yielding.worked(state[1])))
+        return float(np.vdot(self.core.weight, self.yielding.worked(state[1])))
 
 
 def at_rest(shape: tuple[int, ...]) -> State:
@@ -112,17 +164,24 @@ def at_rest(shape: tuple[int, ...]) -> State:
 
 @dataclass(frozen=True, eq=False)
 class MeshedGround:
-    """All of a body that is known before its strength: its core, whole stiffness for E* = 1, held degrees of freedom,
-    skin; which elements of the core are its outermost, and which of the basis are the core's.
+    """All of a body that is known before its strength: whole stiffness for E* = 1, held degrees of freedom, skin;
+    which ``elements`` (e,) of the ``basis`` are its core's, by ``distance`` (e,) from the first touch.
     """
 
+    sizes: Sizes
+    basis: Basis
+    elements: Indices
+    distance: Array
     core: Bulk
     stiffness: Matrix
     fixed: Indices
     skin: Skin
-    outer: npt.NDArray[np.bool_]
-    basis: Basis
-    elements: Indices
+
+
+@cached
+def ground_of(profile: Shape, unit: float, yielding: Yielding, poisson: float, sizes: Sizes) -> Ground:
+    """Raises BodyTooFine."""
+    return Ground(_meshed(sizes, poisson), OnUndeformed(profile, unit), yielding)
 
 
 @cached
@@ -130,18 +189,16 @@ def _meshed(sizes: Sizes, poisson: float) -> MeshedGround:
     basis = _basis(_mesh(sizes), sizes.order)
     middles = basis.mesh.p[:, basis.mesh.t].mean(axis=1)
     distance = np.hypot(middles[0], middles[1])
-    elements = np.flatnonzero(distance < CORE)
-    surface = flat(basis)
-    places = np.stack([surface.coordinate, np.zeros_like(surface.coordinate)])
-    skin = Skin.of(surface, places, sizes.order, 2 * basis.N, None)
+    elements = np.argsort(distance, kind="stable")[: np.count_nonzero(distance < CORE)]
     return MeshedGround(
+        sizes=sizes,
+        basis=basis,
+        elements=elements,
+        distance=distance[elements],
         core=Bulk.of(basis, False, elements),
         stiffness=_stiffness(basis, poisson),
         fixed=held(basis, along=("axis",), across=()),
-        skin=skin,
-        outer=distance[elements] > GUARD * CORE,
-        basis=basis,
-        elements=elements,
+        skin=Skin.of(flat(basis), sizes.order, 2 * basis.N),
     )
 
 

@@ -22,6 +22,7 @@ from fe_contact.errors import MemoryTooSmall
 from fe_contact.march.impact import balanced
 from fe_contact.plastic.course import (
     BEYOND,
+    Contrast,
     Course,
     PlasticLoading,
     Varied,
@@ -311,8 +312,7 @@ class Striking:
         curve = Curve.of(march, Strike.of(self.scene))
         self._check_end(curve.duration)
         changes = {
-            cause: (Variation(runner.curve(first), runner.curve(second), factor),)
-            for cause, (first, second, factor) in told.pairs(_onwards).items()
+            cause: tuple(runner.variation(pair) for pair in pairs) for cause, pairs in told.pairs(_onwards).items()
         }
         work = TotalWork.of(works, runs.base.unknowns, sum(one.iterations for one in works), 0)
         return Budget(curve, march, changes, work, numerics)
@@ -338,19 +338,18 @@ class Striking:
 def dent(found: Budget) -> IndentationLeft:
     """What is left for ever, with its bar: nothing recovers."""
     left = found.curve.depth[-1:]
-    apart = [
-        one.factor * np.abs(one.first.depth[-1:] - one.second.depth[-1:])
-        for causes in found.changes.values()
-        for one in causes
-        if isinstance(one, Variation)
-    ]
-    return IndentationLeft(np.zeros(1), left, np.asarray(np.sum(apart, axis=0)), float(left[0]), ())
+    apart = [_left(change) for causes in found.changes.values() for change in causes if isinstance(change, Variation)]
+    return IndentationLeft(np.zeros(1), left, np.array([sum(apart)]), float(left[0]), ())
+
+
+def _left(one: Variation) -> float:
+    return one.factor * abs(float(one.first.depth[-1] - one.second.depth[-1]))
 
 
 def plan(scene: Scene, given: Given) -> Plan:
     """Settings and ledger, by a coarse run. Raises NotReached."""
     check_kind(given, False, scene.source)
-    check_given(given, scene.source)
+    check_given(given, scene.source, scene.profile)
     known = pilot(scene)
     radius, about = float(known.march.radius.max()), Curve.of(known.march, Strike.of(scene)).quantities
     duration, peak_time = about["duration"] or 0.0, about["peak_time"] or 0.0
@@ -406,6 +405,9 @@ class Runner:
         energy = 0.5 * mass * self.scene.velocity**2
         return Rebound(answer, mass, energy, released_power(self.course), self.course.power)
 
-    def curve(self, answer: Answered) -> Curve:
-        """The same, for comparison."""
-        return Curve.of(self.motion(answer).march(Work()), Strike.of(self.scene))
+    def variation(self, pair: Contrast[Answered]) -> Variation:
+        """Of the striker's motion."""
+        first, second = (
+            Curve.of(self.motion(answer).march(Work()), Strike.of(self.scene)) for answer in (pair.first, pair.second)
+        )
+        return Variation(first, second, pair.factor)

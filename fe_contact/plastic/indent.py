@@ -42,7 +42,7 @@ def indent(indenter: Indenter, depths: tuple[float, ...], given: Given, progress
     Raises BadInput for depths that cannot be, NotReached where nothing settles.
     """
     clock = Clock()
-    check_given(given, indenter.source)
+    check_given(given, indenter.source, indenter.profile)
     asked = np.array(indenter.checked(depths))
     course = Course.of(indenter, float(asked.min()), float(asked.max()))
     way = YieldingWay(course, asked, frozenset(given) - {"tolerance"}, progress)
@@ -87,8 +87,8 @@ class YieldingWay:
             logarithm=told.mended(_onwards),
             pressed=loadings.base.pressed,
             budget={
-                cause: around(depth, factor * np.abs(first - second))
-                for cause, (first, second, factor) in told.pairs(_onwards).items()
+                cause: around(depth, np.sum([one.factor * np.abs(one.first - one.second) for one in pairs], axis=0))
+                for cause, pairs in told.pairs(_onwards).items()
             },
             numerics=numerics,
             work={

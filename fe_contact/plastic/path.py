@@ -19,13 +19,13 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.errors import MemoryTooSmall
-from fe_contact.plastic.ground import Ground
+from fe_contact.plastic.ground import Ground, Nest
 from fe_contact.solids.base import State
 from fe_contact.solids.contact import Obstacle, Overlap, Points
 from fe_contact.solids.newton import Equilibrium, EquilibriumLost, balanced
 from lumped.errors import NotReached
 
-SETTLED = 1e-8  # of the energy, what the last iteration may change: it leaves the square of its share
+SETTLED = 2e-6  # of the energy, what the last iteration may change: it leaves the square of its share
 GUESSED = 0.3  # of the pressure: where the one given is further off it is given again
 GIVEN = 4  # times at most
 GAMMA = 1.0 - math.sqrt(0.5)  # share of a step that each stage takes
@@ -97,36 +97,42 @@ class Presser:
     def at_rest(self) -> Station:
         """Nothing touched yet."""
         ground = self.ground
-        size = ground.encounter.body.core.size
-        return Station(0.0, np.zeros(size), ground.rest, 0.0, np.zeros(ground.encounter.skin.weights.shape), 0.0)
+        skin = ground.meshed.skin
+        return Station(0.0, np.zeros(skin.size), ground.rest, 0.0, np.zeros(skin.weights.shape), 0.0)
 
     def settled(self, state: State, depth: float, displacement: Array, pressure: Array, radius: float) -> Station:
         """Equilibrium at a depth after ``state``; displacement, pressure and radius are guesses.
 
         The penalty only mends the pressure given: where that is far off, it is given again. Raises EquilibriumLost.
         """
-        stiffness = self.penalty / radius
-        touching: Points = (self.ground.points < radius).reshape(pressure.shape)
-        for number in range(GIVEN):
-            last = number == GIVEN - 1
-            found = self._balanced(state, depth, displacement, pressure, stiffness, touching)
-            touch = found.balance.touch
-            wrong = np.vdot(touch.skin.weights, np.abs(touch.pressure - pressure)) > GUESSED * found.balance.force
-            displacement, pressure, touching = found.balance.displacement, touch.pressure, touch.touching
-            if not wrong or last:
+        nest = self.ground.nest(radius, state)
+        while True:
+            found = self._given(nest, state, depth, displacement, pressure, radius)
+            reached, answer = self._edge(found), nest.whole(found.balance.loaded.answer.state, state)
+            if reached <= WIDEST * nest.reach and nest.contained(answer):
                 break
-        reached = self._edge(found)
-        if reached > WIDEST or not self.ground.contained(found.balance.loaded.answer.state):
-            raise MemoryTooSmall(self.unit * reached)
-        return Station(depth, displacement, found.balance.loaded.answer.state, touch.force, pressure, reached)
+            if nest.reach >= 1.0:
+                raise MemoryTooSmall(self.unit * reached)
+            nest = self.ground.nest(2.0 * nest.reach, state)
+        balance = found.balance
+        whole = nest.encounter.body.completed(balance.displacement)
+        return Station(depth, whole, answer, balance.force, balance.touch.pressure, reached)
 
-    def _balanced(
-        self, state: State, depth: float, start: Array, pressure: Array, stiffness: float, touching: Points
+    def _given(
+        self, nest: Nest, state: State, depth: float, displacement: Array, pressure: Array, radius: float
     ) -> Equilibrium:
-        obstacle = Given(self.ground.encounter.obstacle, pressure / stiffness)
-        encounter = replace(self.ground.encounter, obstacle=obstacle)
-        found = balanced(encounter, start, depth, stiffness, state, touching, SETTLED)
-        self.counts += (1, found.iterations)
+        stiffness, own = self.penalty / radius, nest.part(state)
+        touching: Points = (self.ground.points < radius).reshape(pressure.shape)
+        for _ in range(GIVEN):
+            obstacle = Given(nest.encounter.obstacle, pressure / stiffness)
+            encounter = replace(nest.encounter, obstacle=obstacle)
+            found = balanced(encounter, displacement, depth, stiffness, own, touching, SETTLED)
+            self.counts += (1, found.iterations)
+            touch = found.balance.touch
+            wrong = np.vdot(touch.skin.weights, np.abs(touch.pressure - pressure)) > GUESSED * touch.force
+            displacement, pressure, touching = found.balance.displacement, touch.pressure, touch.touching
+            if not wrong:
+                break
         return found
 
     def _edge(self, found: Equilibrium) -> float:

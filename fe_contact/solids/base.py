@@ -17,13 +17,16 @@ class PointAnswer:
 
     ``stress`` (5, ...), first Piola-Kirchhoff's, of small strains Cauchy's, Pa; ``tangent`` its derivative (5, 5, ...),
     symmetric; ``energy`` (...), J/m3, whose derivative the stress is, infinite where the material cannot be; ``state``
-    what the points remember at the end of the step.
+    what the points remember at the end of the step. ``pulls`` (2, ...) and ``drifts`` (2, 5, ...) as of
+    :class:`lumped.materials.energies.base.Strained`, None of small strains.
     """
 
     stress: Array
     tangent: Array
     energy: Array
     state: State = field(default=())
+    pulls: Array | None = None
+    drifts: Array | None = None
 
 
 class Response(Protocol):

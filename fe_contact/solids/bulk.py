@@ -7,7 +7,7 @@ which the response has at rest: eliminated once, it is a dense matrix between th
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -18,6 +18,7 @@ from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, vector_dofs
 from fe_contact.assembly.interior import factorized
 from fe_contact.solids.base import AXIAL, RADIAL, PointAnswer, Response, State
 from fe_contact.solids.rolled import Rolled
+from lumped.materials.energies.base import bent
 
 NOISE = 1e-11  # rounding: of an entry of a stiffness of which all has been taken away
 
@@ -49,6 +50,10 @@ class Bulk:
         slopes = np.concatenate([gradient, hoop[None]])[:, elements]
         return cls(slopes, weight[elements], vector_dofs(basis.element_dofs)[elements], 2 * int(basis.N))
 
+    def first(self, count: int) -> Bulk:
+        """Its first elements alone."""
+        return replace(self, slopes=self.slopes[:, :count], weight=self.weight[:count], dofs=self.dofs[:count])
+
     def gradient(self, displacement: Array) -> Array:
         """Of a displacement (2 N,), (5, elements, points)."""
         local = displacement[self.dofs]
@@ -67,6 +72,19 @@ class Loaded:
 
     bulk: Bulk
     answer: PointAnswer
+
+    def foreseen(self, change: Array) -> Array | None:
+        """The points' pulls, (2, elements, points), to first order after a ``change`` of the displacement, (2 N,)."""
+        answer = self.answer
+        if answer.pulls is None or answer.drifts is None:
+            return None
+        return np.asarray(answer.pulls + np.einsum("ai...,i...->a...", answer.drifts, self.bulk.gradient(change)))
+
+    def under(self, pulls: Array) -> Loaded:
+        """The same with a tangent by these pulls (2, elements, points) in place of its own."""
+        answer = self.answer
+        assert answer.pulls is not None
+        return Loaded(self.bulk, replace(answer, tangent=answer.tangent + bent(pulls - answer.pulls)))
 
     @cached_property
     def energy(self) -> float:
@@ -125,6 +143,13 @@ class Pattern:
         pointers = np.searchsorted(entries, free.size * np.arange(free.size + 1))
         return cls(places, (entries % free.size).astype(np.int32), pointers.astype(np.int32))
 
+    @property
+    def definite(self) -> Matrix:
+        """A positive definite matrix of this pattern, (free, free)."""
+        free = self.pointers.size - 1
+        ones = sparse.csc_matrix((np.ones(self.indices.size), self.indices, self.pointers), shape=(free, free))
+        return sparse.diags(1.0 + np.diff(self.pointers)) + ones
+
     def matrix(self, blocks: Sequence[Array]) -> Matrix:
         """The sum of blocks (m, k, k) as a sparse matrix, (free, free)."""
         values = np.concatenate([block.ravel() for block in blocks])
@@ -143,7 +168,7 @@ def _keys(numbers: Indices, free: int) -> Indices:
 class CoredBody:
     """A ``core`` that answers by a ``response``; ``rest`` (n, n) stiffness of all else between ``rim`` nodes' (n,)
     degrees of freedom, and ``pull`` (n,) the forces that it bears undeformed, where it remembers; ``free`` degrees of
-    freedom of the core that are not held.
+    freedom of the core that are not held; those of the rest, ``outer`` (m,), are ``led`` (m, n) by the rim's.
     """
 
     core: Bulk
@@ -152,12 +177,15 @@ class CoredBody:
     pull: Array
     rim: Indices
     free: Indices
+    outer: Indices
+    led: Array
 
     @classmethod
     def whole(cls, core: Bulk, response: Response, fixed: Indices) -> CoredBody:
         """All of which answers by the response."""
         none = np.zeros(0, dtype=int)
-        return cls(core, response, np.zeros((0, 0)), np.zeros(0), none, np.setdiff1d(np.unique(core.dofs), fixed))
+        free = np.setdiff1d(np.unique(core.dofs), fixed)
+        return cls(core, response, np.zeros((0, 0)), np.zeros(0), none, free, none, np.zeros((0, 0)))
 
     @classmethod
     def of(cls, core: Bulk, response: Response, stiffness: Matrix, fixed: Indices, state: State = ()) -> CoredBody:
@@ -171,11 +199,19 @@ class CoredBody:
         loaded = np.flatnonzero(np.diff(beside.indptr))
         rim = np.setdiff1d(np.intersect1d(within, loaded), fixed)
         outer = np.setdiff1d(np.setdiff1d(loaded, within), fixed)
-        rest = beside[rim][:, rim].toarray()
+        rest, led = beside[rim][:, rim].toarray(), np.zeros((0, rim.size))
         if outer.size:
             coupling = beside[outer][:, rim]
-            rest -= coupling.T @ factorized(beside[outer][:, outer].tocsc())(coupling.toarray())
-        return cls(core, response, 0.5 * (rest + rest.T), np.zeros(rim.size), rim, np.setdiff1d(within, fixed))
+            led = -factorized(beside[outer][:, outer].tocsc())(coupling.toarray())
+            rest += coupling.T @ led
+        free = np.setdiff1d(within, fixed)
+        return cls(core, response, 0.5 * (rest + rest.T), np.zeros(rim.size), rim, free, outer, led)
+
+    def completed(self, displacement: Array) -> Array:
+        """A displacement (2 N,) of the core, with that of the rest which nothing else loads."""
+        found = displacement.copy()
+        found[self.outer] = self.led @ displacement[self.rim]
+        return found
 
 
 def _denoised(difference: Matrix, diagonal: Array) -> Matrix:

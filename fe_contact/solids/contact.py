@@ -6,6 +6,7 @@ derivatives, by the same quadrature as the force on the striker.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, Protocol
@@ -15,7 +16,6 @@ import numpy.typing as npt
 
 from fe_contact.assembly.forms import Array, Indices, vector_dofs
 from fe_contact.assembly.surface import FACET_POINTS, Surface, lagrange
-from fe_contact.solids.rolled import Rolled
 from lumped.shapes import Shape
 
 Points = npt.NDArray[np.bool_]  # which of them, (facets, points)
@@ -89,6 +89,27 @@ class OnRound:
 
 
 @dataclass(frozen=True)
+class OnTop:
+    """A plane upon a ring of round section, of radius 1 about this ``mean_radius``."""
+
+    mean_radius: float
+
+    def overlap(self, place: Array, displacement: Array, depth: float) -> Overlap:
+        """See :class:`Obstacle`."""
+        normal = np.zeros_like(place)
+        normal[1] = 1.0
+        return Overlap(depth + place[1] + displacement[1], normal, np.zeros((2, *place.shape)))
+
+    def along(self, place: Array) -> Array:
+        """From the ring's top, left or right."""
+        return np.asarray(place[0] - self.mean_radius)
+
+    def place(self, angle: Array) -> Array:
+        """Of points of the section at angles from its top, (2, ...)."""
+        return np.stack([self.mean_radius + np.sin(angle), np.cos(angle) - 1.0])
+
+
+@dataclass(frozen=True)
 class OnUndeformed:
     """The same where the points were: small displacements, along the undeformed normal."""
 
@@ -107,6 +128,11 @@ class OnUndeformed:
         return np.asarray(place[0])
 
 
+def flat_places(coordinate: Array) -> Array:
+    """Of a boundary z = 0, (2, ...)."""
+    return np.stack([coordinate, np.zeros_like(coordinate)])
+
+
 @dataclass(frozen=True, eq=False)
 class Skin:
     """The facets where contact may happen: ``place`` (2, facets, points) of their quadrature points.
@@ -122,19 +148,16 @@ class Skin:
     size: int
 
     @classmethod
-    def of(cls, surface: Surface, places: Array, order: int, size: int, rolled: Rolled | None) -> Skin:
-        """Of a boundary, straight where ``rolled`` flat; ``places`` (2, n_s) of its nodes, elements of an ``order``."""
+    def of(cls, surface: Surface, order: int, size: int, placed: Callable[[Array], Array] = flat_places) -> Skin:
+        """Of a boundary of elements of an ``order``; ``placed``: where points of its coordinates are, (2, ...)."""
         corners = surface.corners(order)
         count = corners.size - 1
         gauss, weight = np.polynomial.legendre.leggauss(order + FACET_POINTS)
         nodes = order * np.arange(count)[:, None] + np.arange(order + 1)
-        ends = places[:, : count * order + 1 : order]
         share = 0.5 * (gauss + 1.0)
-        place = ends[:, :-1, None] + (ends[:, 1:] - ends[:, :-1])[:, :, None] * share
         coordinate = corners[:-1, None] + np.diff(corners)[:, None] * share
         weights = 0.5 * np.diff(corners)[:, None] * weight * surface.measure(coordinate)
-        bent = place if rolled is None else rolled.place(place)
-        return cls(bent, weights, lagrange(share, order), vector_dofs(surface.dofs[nodes].T), size)
+        return cls(placed(coordinate), weights, lagrange(share, order), vector_dofs(surface.dofs[nodes].T), size)
 
     @cached_property
     def products(self) -> Array:

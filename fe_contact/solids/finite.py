@@ -20,4 +20,4 @@ class Hyperelastic:
     def respond(self, gradient: Array, state: State) -> PointAnswer:
         """See :class:`fe_contact.solids.base.Response`."""
         found = strained(self.energy, gradient, self.shear, self.lame)
-        return PointAnswer(found.stress, found.tangent, found.energy)
+        return PointAnswer(found.stress, found.tangent, found.energy, (), found.pulls, found.drifts)

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array, Matrix
-from fe_contact.assembly.interior import factorized
+from fe_contact.assembly.interior import elimination_order, factorized
 from fe_contact.solids.base import State
 from fe_contact.solids.bulk import CoredBody, Loaded, Pattern
 from fe_contact.solids.contact import Obstacle, Points, Skin, Touch
 from lumped.errors import NotReached
 
+HASTY = 8  # work: whole steps before giving them up
 MOST_ITERATIONS = 60  # work: a step that needs more is made in halves
 SETTLED = 1e-9  # of the energy: the step that changes it by no more is the last one
 ENOUGH = 1e-4  # share of what the slope promises that a step has to lessen the energy by
@@ -40,9 +41,11 @@ class Encounter:
 
     @classmethod
     def of(cls, body: CoredBody, skin: Skin, obstacle: Obstacle) -> Encounter:
-        """Raises nothing: makes the pattern."""
+        """Raises nothing: makes the pattern, its rows in the order of their elimination."""
         blocks = [body.core.dofs, skin.dofs, body.rim[None]]
-        return cls(body, skin, Pattern.of(blocks, body.free, body.core.size), obstacle)
+        first = Pattern.of(blocks, body.free, body.core.size)
+        ordered = replace(body, free=body.free[elimination_order(first.definite)])
+        return cls(ordered, skin, Pattern.of(blocks, ordered.free, body.core.size), obstacle)
 
     def at(
         self, displacement: Array, depth: float, stiffness: float, state: State = (), touching: Points | None = None
@@ -89,9 +92,11 @@ class Balance:
         forces[body.rim] += body.rest @ self.displacement[body.rim] + body.pull
         return forces[body.free]
 
-    def tangent(self, convex: bool, unstrained: bool = False) -> Matrix:
-        """Sparse (free, free); ``convex``: without what the striker's bend takes; ``unstrained``: of a body at rest."""
-        loaded = self._at_rest if unstrained else self.loaded
+    def tangent(self, convex: bool, unstrained: bool = False, pulls: Array | None = None) -> Matrix:
+        """Sparse (free, free); ``convex``: without what the striker's bend takes; ``unstrained``: of a body at rest;
+        ``pulls`` (2, elements, points) in place of the body's own.
+        """
+        loaded = self._at_rest if unstrained else self.loaded if pulls is None else self.loaded.under(pulls)
         blocks = [loaded.matrices(), self.touch.matrices(convex), self.encounter.body.rest[None]]
         return self.encounter.pattern.matrix(blocks)
 
@@ -116,6 +121,10 @@ class Equilibrium:
         """Displacement to begin another depth with, (2 N,)."""
         return self.balance.displacement + (depth - self.balance.depth) * self.rate
 
+    def foreseen(self, depth: float) -> Array | None:
+        """The body's pulls there, (2, elements, points)."""
+        return self.balance.loaded.foreseen(self.predicted(depth) - self.balance.displacement)
+
     @property
     def rigid_force(self) -> float:
         """On the striker if the penalty were rigid, to first order in its softness."""
@@ -138,38 +147,84 @@ def balanced(
     state: State = (),
     touching: Points | None = None,
     settled: float = SETTLED,
+    foreseen: Array | None = None,
+    hasty: bool = False,
 ) -> Equilibrium:
     """From a displacement (2 N,) to begin with. Raises EquilibriumLost.
 
     ``touching``: points (facets, points) that are to touch in the first iteration; ``settled``: of the energy, what the
-    last one still changes.
+    last one still changes; ``foreseen``: the body's pulls there, as of :meth:`Loaded.foreseen`; ``hasty``: whether to
+    give up where no whole steps lead there.
     """
 
     def at(displacement: Array) -> Balance:
         return encounter.at(displacement, depth, stiffness, state)
 
-    if touching is not None:
-        guess = encounter.at(start, depth, stiffness, state, touching)
-        start = start + _whole(guess, _step(guess)[1])
     here = at(start)
     if not np.isfinite(here.energy):
         raise EquilibriumLost(f"an element is inverted at depth {depth:.3g}")
+    if touching is not None:
+        guess = encounter.at(start, depth, stiffness, state, touching)
+        change = _whole(guess, factorized(guess.tangent(convex=False, pulls=foreseen))(-guess.residual))
+        guided = at(start + change)
+        if np.isfinite(guided.energy):
+            here, foreseen = guided, guess.loaded.foreseen(change)
+    found = _hastened(here, at, settled, foreseen)
+    if found is not None:
+        return found
+    if hasty:
+        raise EquilibriumLost(f"no equilibrium in {HASTY} whole steps at depth {depth:.3g}")
+    return _descending(here, at, settled)
+
+
+def _hastened(
+    here: Balance, at: Callable[[Array], Balance], settled: float, foreseen: Array | None
+) -> Equilibrium | None:
+    """By whole steps, each with a tangent by the pulls that the one before foresaw; None where they do not lead there.
+
+    A step errs by its square, which a nearly incompressible body answers by a pressure that means nothing: as a part of
+    the tangent it spoils the next step (the mixed integration points of Magisano, Leonetti and Garcea 2017).
+    """
+    known: Callable[[Array], Array] | None = None
+    for iteration in range(1, HASTY + 1):
+        step = None if known is None else known(-here.residual)
+        if known is None or step is None or abs(here.residual @ step) > settled * abs(here.energy):
+            known = factorized(here.tangent(convex=False, pulls=foreseen))
+            step = known(-here.residual)
+        change = _whole(here, step)
+        there = at(here.displacement + change)
+        if not np.isfinite(there.energy):
+            return None
+        if abs(here.residual @ step) <= settled * abs(here.energy):
+            return _equilibrium(there, known, iteration)
+        foreseen = here.loaded.foreseen(change)
+        if not np.array_equal(here.touch.touching, there.touch.touching):
+            known = None
+        here = there
+    return None
+
+
+def _descending(here: Balance, at: Callable[[Array], Balance], settled: float) -> Equilibrium:
+    """By steps that lessen the energy. Raises EquilibriumLost."""
     for iteration in range(1, MOST_ITERATIONS + 1):
         solve, step = _step(here)
         slope = float(here.residual @ step)
-        done = -slope <= settled * abs(here.energy)
-        there = at(here.displacement + _whole(here, step)) if done else _descended(here, step, slope, at)
-        if done:
-            rate = _whole(there, solve(-there.touch.stiffening[there.encounter.body.free]))
-            return Equilibrium(there, rate, iteration)
-        here = there
-    raise EquilibriumLost(f"no equilibrium in {MOST_ITERATIONS} iterations at depth {depth:.3g}")
+        if -slope <= settled * abs(here.energy):
+            return _equilibrium(at(here.displacement + _whole(here, step)), solve, iteration)
+        here = _descended(here, step, slope, at)
+    raise EquilibriumLost(f"no equilibrium in {MOST_ITERATIONS} iterations at depth {here.depth:.3g}")
+
+
+def _equilibrium(there: Balance, solve: Callable[[Array], Array], iterations: int) -> Equilibrium:
+    """With its rate, by factors from next to it."""
+    rate = _whole(there, solve(-there.touch.stiffening[there.encounter.body.free]))
+    return Equilibrium(there, rate, iterations)
 
 
 def _step(here: Balance) -> tuple[Callable[[Array], Array], Array]:
     """Factors and Newton's step (free,); where the energy would climb by a convex model, then of a body at rest."""
     for convex, unstrained in ((False, False), (True, False), (True, True)):
-        solve = factorized(here.tangent(convex, unstrained))
+        solve = factorized(here.tangent(convex, unstrained), ordered=True)
         step = solve(-here.residual)
         if here.residual @ step <= 0.0:
             return solve, step

@@ -8,31 +8,32 @@ back-substitution tells dU/d(depth), and the displacement to begin the next dept
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array, Indices
-from fe_contact.assembly.operators import ElasticBody, moduli
-from fe_contact.bodies.pressing import PressedDepths, contact_end
-from fe_contact.contact.problem import ContactSolution
+from fe_contact.assembly.operators import ElasticBody, SolidMesh, moduli
+from fe_contact.bodies.pressing import PressedDepths, half_width
 from fe_contact.errors import ContactTooWide
 from fe_contact.settings import Numerics
 from fe_contact.solids.base import State
 from fe_contact.solids.block import press as pressed_alike
 from fe_contact.solids.bulk import Bulk, CoredBody
-from fe_contact.solids.contact import OnDeformed, OnRound, Skin
+from fe_contact.solids.contact import Obstacle, OnDeformed, OnRound, OnTop, Points, Skin, flat_places
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Balance, Encounter, Equilibrium, EquilibriumLost, balanced
 from fe_contact.solids.rolled import Rolled
 from fe_contact.targets.base import TARGETS
 from lumped.errors import BadInput, Fault
 from lumped.materials.energies.base import energy_of
-from lumped.scene.geometry import Geometry
+from lumped.scene.geometry import Geometry, finite_faults
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import Model
+from lumped.shapes import Shape
 from lumped.shapes._block import Block
-from lumped.targets import HalfSpace
 
 MESH_ORDER = 1.5  # of the force's error where the contact ends anywhere in an element
 CORRECTED = "corrected"
@@ -40,14 +41,15 @@ CORE = 0.5  # of the way from the contact to the end of the mesh strains may be 
 RAMP = (0.02, 0.2, 1.0)  # shares of the penalty with which a body is pressed for the first time
 FARTHEST = 2.0  # a depth over the one before it, beyond which another is put between
 LEAST_BEGUN = 0.05  # of a depth, that a body has to be pressed by from rest at once
-SPLITS = 12  # work: of the way to a depth that cannot be reached at once
+WIDENING = 0.5  # power of the depth that a contact is wide by, under a sphere
+NEAREST = 1.02  # a depth over the one before it, up to which a way is not made in halves
 
 
 @dataclass(frozen=True, eq=False)
 class Solid:
     """A body on its mesh, in units of ``unit``, m, and E*; forces in unit to the power ``dimension``.
 
-    ``ends``: whether the mesh is all of it.
+    ``ends``: whether the mesh is all of it; ``lead`` share of a depth by which the striker comes in here.
     """
 
     encounter: Encounter
@@ -55,6 +57,7 @@ class Solid:
     dimension: int
     unknowns: int
     ends: bool
+    lead: float
 
     @classmethod
     def of(cls, indenter: Indenter, radii: Array, numerics: Numerics) -> Solid:
@@ -69,14 +72,30 @@ class Solid:
         response = Hyperelastic(energy, shear, bulk - 2.0 * shear / 3.0)
         elements = np.arange(body.basis.nelems) if mesh.ends else _core(body)
         core = Bulk.of(body.basis, body.surface.dimension == 2, elements, rolled)
-        places = body.basis.doflocs[:, body.surface.dofs]
-        skin = Skin.of(body.surface, places, numerics.order, core.size, rolled)
         if mesh.ends:
             whole = CoredBody.whole(core, response, body.fixed)
         else:
             whole = CoredBody.of(core, response, body.stiffness(bulk, shear), body.fixed)
-        striker = OnDeformed(profile, unit) if rolled is None else OnRound((profile.tip_radius or 0.0) / unit)
-        return cls(Encounter.of(whole, skin, striker), unit, body.surface.dimension - 1, core.size, mesh.ends)
+        striker, placed = _touched(mesh, profile, rolled)
+        encounter = Encounter.of(whole, Skin.of(body.surface, numerics.order, core.size, placed), striker)
+        return cls(encounter, unit, body.surface.dimension - 1, core.size, mesh.ends, indenter.target.lead)
+
+    def pressed(self, reached: Equilibrium) -> Reached:
+        """In m. Raises ContactTooWide."""
+        radius = self.unit * contact_radius(reached.balance)
+        if not np.isfinite(radius):
+            raise ContactTooWide(self.unit * reached.balance.depth / self.lead)
+        return Reached(self.unit**self.dimension * reached.rigid_force, radius, reached.error, reached.iterations)
+
+
+def _touched(mesh: SolidMesh, profile: Shape, rolled: Rolled | None) -> tuple[Obstacle, Callable[[Array], Array]]:
+    """What touches a body, and where on it the points of its surface's coordinates are."""
+    if rolled is not None:
+        return OnRound((profile.tip_radius or 0.0) / mesh.unit), rolled.place_on
+    if mesh.mean_radius is not None:
+        above = OnTop(mesh.mean_radius)
+        return above, above.place
+    return OnDeformed(profile, mesh.unit), flat_places
 
 
 def _core(body: ElasticBody) -> Indices:
@@ -88,52 +107,78 @@ def _core(body: ElasticBody) -> Indices:
     return np.asarray(np.flatnonzero(away <= reach))
 
 
-def check_large(source: str, geometry: Geometry, model: Model, enforcement: str) -> None:
-    """Raise BadInput for what is not pressed with large strains in this version."""
-    shape, target, faults = geometry.shape, geometry.target, list[Fault]()
-    cure = "or model.kinematics = 'small'"
-
-    def refuse(key: str, reason: str) -> None:
-        faults.append(Fault(source, key, f"with model.kinematics = 'finite' {reason}; accepted: {cure}"))
-
-    meshed = not (isinstance(shape, Block) and shape.uniform)
-    if meshed and (target.name not in TARGETS.names or TARGETS.get(target.name).solid is None):
-        able = ", ".join(name for name, member in TARGETS.members.items() if member.solid is not None)
-        refuse("target.shape", f"a {shape.name} on a {target.name} is not built: {able} are")
-    elif shape.plane and isinstance(target, HalfSpace):
-        refuse("target.shape", "a half_space in plane strain is not built: layer and ring are")
-    elif meshed and target.fixed_radius(shape) is not None:
-        refuse("striker.shape", f"the rim of a {shape.name} is not built: rounded strikers, cones and powers are")
-    if geometry.striker_material is not None:
-        refuse("striker.material", "two bodies that yield are not built")
-    if model.inertia:
-        refuse("model.inertia", "waves are not built")
+def check_large(source: str, geometry: Geometry, model: Model, enforcement: str, impacts: int | None = None) -> None:
+    """Raise BadInput for what is not pressed with large strains in this version, or struck in so many ``impacts``."""
+    faults = finite_faults(source, model, geometry, impacts)
     if enforcement != CORRECTED:
-        refuse("numerics.enforcement", f"{enforcement} is not built: {CORRECTED} is")
+        reason = f"{enforcement} is not built with large strains in this version; accepted: {CORRECTED}"
+        faults.append(Fault(source, "numerics.enforcement", reason))
     if faults:
         raise BadInput(faults)
 
 
-def press(indenter: Indenter, depth: Array, radii: Array, numerics: Numerics) -> PressedDepths:
+class Softer(NamedTuple):
+    """At which of the depths to press again, and by what penalty."""
+
+    chosen: Indices
+    penalty: float
+
+
+class Reached(NamedTuple):
+    """At one depth: force over modulus, m^2, contact radius, m, what another iteration would change, iterations."""
+
+    force: float
+    radius: float
+    newton: float
+    iterations: int
+
+
+def press(
+    indenter: Indenter, depth: Array, radii: Array, numerics: Numerics, softer: Softer | None = None
+) -> PressedDepths:
     """Every depth, m, from the smallest on; ``radii`` of the contacts expected, m. Raises NotReached."""
     if isinstance(indenter.shape, Block):
         return pressed_alike(indenter, indenter.shape, depth)
-    solid = Solid.of(indenter, radii, numerics)
-    force, radius, newton = (np.empty_like(depth) for _ in range(3))
-    reached, iterations = None, 0
-    for i in np.argsort(depth):
+    solid, widening = Solid.of(indenter, radii, numerics), _widening(depth, radii)
+    reached, found, again = None, dict[int, Reached](), dict[int, Reached]()
+    for i in np.argsort(depth).tolist():
         stiffness = numerics.penalty * solid.unit / float(radii[i])
-        reached = advanced(solid.encounter, reached, float(depth[i]) / solid.unit, stiffness)
-        force[i] = solid.unit**solid.dimension * reached.rigid_force
-        radius[i] = solid.unit * contact_radius(reached.balance)
-        newton[i], iterations = reached.error, iterations + reached.iterations
-        if not np.isfinite(radius[i]):
-            raise ContactTooWide(float(depth[i]))
-    work = {"degrees_of_freedom": solid.unknowns, "contact_problems": depth.size, "iterations": iterations}
+        reached = advanced(solid.encounter, reached, solid.lead * float(depth[i]) / solid.unit, stiffness, widening)
+        found[i] = solid.pressed(reached)
+        if softer is not None and i in softer.chosen:
+            again[i] = solid.pressed(_pressed_by(softer.penalty / numerics.penalty * stiffness, reached))
+    told = _told(solid, found)
+    return told if softer is None else replace(told, softer=_told(solid, again))
+
+
+def _pressed_by(stiffness: float, reached: Equilibrium) -> Equilibrium:
+    """At the same depth by another penalty. Raises EquilibriumLost."""
+    here = reached.balance
+    return balanced(here.encounter, here.displacement, here.depth, stiffness, here.state, here.touch.touching)
+
+
+def _told(solid: Solid, found: Mapping[int, Reached]) -> PressedDepths:
+    """What was found at depths, by their places, ascending."""
+    rows = [found[i] for i in sorted(found)]
+    force, radius, newton, iterations = (np.array(column) for column in zip(*rows, strict=True))
+    work = {
+        "degrees_of_freedom": solid.unknowns,
+        "contact_problems": len(rows),
+        "iterations": int(iterations.sum()),
+    }
     return PressedDepths(force, radius, work, MESH_ORDER, solid.ends, float(newton.max()))
 
 
-def advanced(encounter: Encounter, before: Equilibrium | None, depth: float, stiffness: float) -> Equilibrium:
+def _widening(depth: Array, radii: Array) -> float:
+    """Power of the depth, m, that contact radii, m, grow by, about."""
+    first, last = int(depth.argmin()), int(depth.argmax())
+    spread = math.log(depth[last] / depth[first])
+    return math.log(radii[last] / radii[first]) / spread if spread > 0.0 else WIDENING
+
+
+def advanced(
+    encounter: Encounter, before: Equilibrium | None, depth: float, stiffness: float, widening: float = WIDENING
+) -> Equilibrium:
     """From an equilibrium to that of a larger depth, by as many steps as it takes. Raises EquilibriumLost."""
     if before is None:
         before = _begun(encounter, depth, stiffness)
@@ -141,19 +186,40 @@ def advanced(encounter: Encounter, before: Equilibrium | None, depth: float, sti
         return before
     count = math.ceil(math.log(depth / before.balance.depth) / math.log(FARTHEST)) or 1
     left = list(np.geomspace(depth, before.balance.depth, count, endpoint=False))
-    iterations, splits = 0, 0
+    iterations = 0
     while left:
         try:
-            found = balanced(encounter, before.predicted(left[-1]), left[-1], stiffness)
+            hasty = left[-1] > NEAREST * before.balance.depth
+            found = _onwards(before, left[-1], stiffness, widening, hasty)
         except EquilibriumLost:
-            splits += 1
-            if splits > SPLITS:
+            if not hasty:
                 raise
-            left.append(0.5 * (left[-1] + before.balance.depth))
+            left.append(math.sqrt(left[-1] * before.balance.depth))
             continue
         before, iterations = found, iterations + found.iterations
         left.pop()
     return replace(before, iterations=iterations)
+
+
+def _onwards(before: Equilibrium, depth: float, stiffness: float, widening: float, hasty: bool) -> Equilibrium:
+    """At another depth. Raises EquilibriumLost."""
+    return balanced(
+        before.balance.encounter,
+        before.predicted(depth),
+        depth,
+        stiffness,
+        touching=_touching(before, depth, widening),
+        foreseen=before.foreseen(depth),
+        hasty=hasty,
+    )
+
+
+def _touching(before: Equilibrium, depth: float, widening: float) -> Points:
+    """Points that will touch at another depth, where the contact is as wide as a power ``widening`` of it."""
+    balance, wider = before.balance, (depth / before.balance.depth) ** widening
+    along, touching = balance.encounter.obstacle.along(balance.touch.skin.place), balance.touch.touching
+    first, last = along[touching].min(initial=0.0), along[touching].max(initial=0.0)
+    return np.asarray((along >= wider * first) & (along <= wider * last))
 
 
 def _begun(encounter: Encounter, depth: float, stiffness: float) -> Equilibrium:
@@ -182,8 +248,8 @@ def contact_radius(balance: Balance) -> float:
     touch = balance.touch
     place = (touch.skin.place + touch.displacement).reshape(2, -1)
     overlap, along = touch.overlap.depth.ravel(), balance.encounter.obstacle.along(place)
-    edge = ContactSolution(overlap, 0, True, ()).edge(along)
-    if not np.isfinite(edge):
-        return edge
-    rise = np.asarray(balance.depth + place[1] - overlap)
-    return contact_end(along, edge, -overlap, rise)
+    at_rest = balance.encounter.obstacle.along(touch.skin.place.reshape(2, -1))
+    if at_rest[0] < 0.0:  # from where the first touch has come to
+        along = along - np.interp(0.0, at_rest, along)
+    apart = balance.depth + touch.displacement[1].ravel() - overlap  # the undeformed surfaces
+    return half_width(along, overlap, -overlap, height=np.maximum(apart, 0.0))

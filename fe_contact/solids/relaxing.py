@@ -78,6 +78,8 @@ class Relaxing:
             tangent=_stiffened(share * found.tangent, held),
             energy=share * found.energy + doubled(held, green(gradient)),
             state=self.fading.onwards(state, second(found.stress, gradient)),
+            pulls=None if found.pulls is None else share * found.pulls,
+            drifts=None if found.drifts is None else share * found.drifts,
         )
 
 

@@ -23,6 +23,10 @@ class Rolled:
         angle, distance = flat[0] / self.radius, self.radius - flat[1]
         return np.stack([distance * np.sin(angle), self.radius - distance * np.cos(angle)])
 
+    def place_on(self, arc: Array) -> Array:
+        """Of points of the circle itself."""
+        return self.place(np.stack([arc, np.zeros_like(arc)]))
+
     def stretch(self, flat: Array) -> Array:
         """Length along the circle over that on the mesh, (...)."""
         return np.asarray(1.0 - flat[1] / self.radius)

@@ -34,8 +34,11 @@ def plot_fit(curve: Curve, found: Fit, where: Path) -> tuple[Path, Path]:
 
 def _shown(estimate: Estimate) -> str:
     """A value with half its interval, cut at the interval's second digit."""
-    if estimate.low is None or estimate.high is None:
+    if estimate.low is None and estimate.high is None:
         return f"{estimate.value:.4g} {estimate.unit}, interval unknown".replace(" ,", ",")
+    if estimate.low is None or estimate.high is None:
+        side, end = ("above", estimate.low) if estimate.high is None else ("below", estimate.high)
+        return f"{estimate.value:.4g}, {side} {end:.4g} {estimate.unit}".rstrip()
     half = 0.5 * (estimate.high - estimate.low)
     digits = math.ceil(math.log10(abs(estimate.value) / half)) + 1 if 0.0 < half < abs(estimate.value) else MOST_DIGITS
     return f"{estimate.value:.{min(max(digits, 2), MOST_DIGITS)}g} ± {half:.2g} {estimate.unit}".rstrip()

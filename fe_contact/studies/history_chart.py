@@ -38,7 +38,8 @@ def plot_history(
     """
     with style.look():
         figure = Figure(figsize=(style.COLUMN, HEIGHT))
-        grid = figure.add_gridspec(2, 2, height_ratios=(1.6, 1.0), hspace=0.5, wspace=0.42)
+        apart = 0.42 if dented is None else 0.56  # heights below the surface are wide numbers
+        grid = figure.add_gridspec(2, 2, height_ratios=(1.6, 1.0), hspace=0.5, wspace=apart)
         grid.update(left=0.15, right=0.965, top=0.845, bottom=0.175)
         _force(figure.add_subplot(grid[0, :]), result)
         beside = solved is not None or dented is not None
@@ -159,13 +160,13 @@ def _dent(axes: Axes, dented: Dented, history: History) -> None:
     widest, deepest = np.nanmax(history.contact_radius), history.depth.max()
     radius = dented.radius / widest
     shown = radius <= DENT_SHOWN
-    for heights, colour, line, name in (
-        (dented.pressed, style.GREY, "--", "at the peak"),
-        (dented.left, style.BLUE, "-", "left"),
+    for heights, colour, line, name, place in (
+        (dented.pressed, style.GREY, "--", "at the peak", 0.21),
+        (dented.left, style.BLUE, "-", "left", 0.34),
     ):
-        axes.plot(radius[shown], heights[shown] / deepest, color=colour, linestyle=line, label=name)
+        axes.plot(radius[shown], heights[shown] / deepest, color=colour, linestyle=line)
+        axes.text(0.97, place, name, transform=axes.transAxes, color=colour, fontsize=6.2, ha="right")
     axes.set(xlabel=f"radius / {readable(widest, 'm', 3)}", ylabel="height / depth", xlim=(0, DENT_SHOWN))
-    axes.legend(loc="lower right")
     style.label(axes, "c", "indentation left")
 
 

@@ -65,7 +65,8 @@ def told(found: PtmdStudy) -> list[str]:
         m = result.measures
         halved = "not reached" if m.t50 is None else f"{m.t50:.3g} s"
         lines.append(
-            f"{name:19s} rms x1 {1e3 * m.rms_displacement:.4g} mm, max |a1| {m.max_acceleration:.4g} m/s2, "
+            f"{name:19s} rms x1 {1e3 * m.rms_displacement:.4g} mm over the first {m.window:.3g} s, "
+            f"max |a1| {m.max_acceleration:.4g} m/s2, "
             f"last above 50 % {halved}, contacts {m.contacts}"
         )
     m, energy = found.main.measures, found.main.energy

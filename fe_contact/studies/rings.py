@@ -22,6 +22,7 @@ from fe_contact.progress import Progress, silent
 from fe_contact.reference import fe
 from fe_contact.studies import journal
 from fe_contact.studies.files import Line, lines_of, write_study
+from fe_contact.studies.finite_exponents import SHARES, StrainedRow, local_exponent
 from lumped.indentation import Indentation
 from lumped.materials import Material
 from lumped.materials.networks import sls
@@ -109,6 +110,22 @@ def _case(indenter: Indenter) -> RingCase:
     return RingCase(indenter.name, indenter, math.pi * (target.inner_radius + pressed), target.height)
 
 
+def finite_rows() -> tuple[StrainedRow, ...]:
+    """Every case, its relaxed rubber, as large strains try it, against "(27)"."""
+    return tuple(
+        StrainedRow(
+            case.name,
+            case.indenter,
+            tuple(share * case.height for share in SHARES),
+            0.25 * math.pi * case.indenter.modulus(False) * case.length,
+            1.0,
+            case.indenter.shape.tip_radius,
+            case.height,
+        )
+        for case in cases()
+    )
+
+
 def rings(chosen: Sequence[RingCase], where: Path, progress: Progress = silent, jobs: int = 1) -> tuple[RingCurve, ...]:
     """Every case over three decades of depth, by so many processes; rows are kept in the folder `where`.
 
@@ -128,14 +145,6 @@ def curve(case: RingCase, found: Indentation) -> RingCurve:
     factor = found.force / (0.25 * math.pi * found.modulus * case.length * found.depth)
     exponent, exponent_error = local_exponent(found.depth, found.force, relative)
     return RingCurve(case, found, factor, relative * factor, exponent, exponent_error, found.model_ledger)
-
-
-def local_exponent(depth: Array, force: Array, relative: Array) -> tuple[Array, Array]:
-    """Slope of ln F on ln depth between the neighbours of every depth, and its bar; (n,)."""
-    places = np.arange(depth.size)
-    left, right = np.maximum(places - 1, 0), np.minimum(places + 1, depth.size - 1)
-    width = np.log(depth[right] / depth[left])
-    return np.log(force[right] / force[left]) / width, (relative[right] + relative[left]) / width
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,11 @@ import numpy as np
 import meshes
 from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made, operator_of
+from fe_contact.assembly.operators import ElasticBody, SolidMesh, axisymmetric, basis_on, made, operator_of
 from fe_contact.assembly.surface import crown
 from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.pressing import (
+    FINITE_REFINEMENT,
     LINE_REFINEMENT,
     MARGIN,
     STRUCK_REFINEMENT,
@@ -53,6 +54,16 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
         numerics=numerics,
         degrees_of_freedom=surface.degrees_of_freedom,
     )
+
+
+def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
+    """The same for large strains."""
+    target = indenter.target
+    assert isinstance(target, ORing)
+    zone, mean_radius = Zone.round(radii, target.section_radius), target.mean_radius / target.section_radius
+    elements = FINITE_REFINEMENT * numerics.elements_per_contact
+    body = _body(elements, numerics.order, zone.smallest, zone.reference, mean_radius)
+    return SolidMesh(body, target.section_radius, mean_radius=mean_radius, ends=True)
 
 
 def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
@@ -104,4 +115,4 @@ def _body(elements: float, order: int, smallest: float, contact: float, mean_rad
     return ElasticBody(basis, partial(axisymmetric, basis), fixed, crown(basis, contact, mean_radius))
 
 
-MEMBER = MeshedTarget(still, struck=struck, relaxing=relaxing, seconds=3.5)
+MEMBER = MeshedTarget(still, struck=struck, relaxing=relaxing, seconds=3.5, solid=solid)

@@ -55,7 +55,7 @@ def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     angle, thickness = reference / target.inner_radius, thickness_over(reference, target.thickness)
     elements = FINITE_REFINEMENT * numerics.elements_per_contact
     body = _body(elements, numerics.order, zone.smallest, thickness, angle)
-    return SolidMesh(body, reference, 1.0 / angle, ends=True)
+    return SolidMesh(body, reference, inner_radius=1.0 / angle, ends=True)
 
 
 def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:

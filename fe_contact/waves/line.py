@@ -22,14 +22,13 @@ from fe_contact.budget.refine import Finer
 from fe_contact.budget.variation import SAFETY
 from fe_contact.progress import Progress
 from fe_contact.settings import Given, Numerics, WaveNumerics
-from fe_contact.waves.line_reading import DENT, DEPTH, FORCE, TIME, VELOCITY, RodReading
+from fe_contact.waves.line_reading import DENT, DEPTH, FORCE, ROUNDING, TIME, VELOCITY, RodReading
 from lumped.result.history import LEAST_ROWS, History
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import RULED_ABSOLUTE, UNITS, LedgerEntry, Quantity, meets
 from lumped.result.score import distance
 from lumped.scene.scene import Scene
 
-ROUNDING = 1e-9  # relative, of what adds up over the steps
 COMPARED = 2001  # places along the contact at which two histories are compared
 # Where no order shows, in place of SAFETY: Oberkampf and Roy, Verification and Validation in Scientific Computing,
 # table 8.1 (ISBN 978-0-521-11360-1), after Roache.
@@ -149,6 +148,8 @@ class Line:
         fine, found = self.fine.reading, {}
         for cause, other in self.others.items():
             least = _nearby(fine, other.reading) if self._alone else _ended_later(self.fine, other)
+            if self.scene.profile.fixed_radius is not None:  # it jumps, and may stay at its peak
+                least["peak_time"] = _as_high(fine, other.reading, self.safety)
             if cause == "time_step":
                 halved = _halved(other.reading, self.quarter.reading)
                 least = {name: max(halved.get(name, 0.0), least.get(name, 0.0)) for name in halved | least}
@@ -218,6 +219,19 @@ def _nearby(fine: RodReading, coarse: RodReading) -> dict[str, float]:
         "restitution": slower / start,
         "impulse": fine.mass * slower,
     }
+
+
+def _as_high(fine: RodReading, coarse: RodReading, safety: float) -> float:
+    """How far from its peak, s, the force of the first contact may be as high, for all that the steps change there and
+    at the peak; without more ``safety`` than of those changes.
+    """
+    end, when = fine.quantities["duration"] or np.inf, fine.quantities["peak_time"] or 0.0
+    sides = when + ROUNDING * fine.rows[TIME, -1] * np.array([-1.0, 1.0])  # one of them is that of the peak
+    time = np.append(_places(fine), sides[fine.force_at(sides).argmax()])
+    force = fine.force_at(time)
+    change = coarse.force_at(time) - force
+    tied = time[(force + safety * np.abs(change - change[-1]) >= (1.0 - ROUNDING) * force[-1]) & (time <= end)]
+    return float(np.abs(tied - when).max()) / safety
 
 
 def _apart(fine: Run, coarse: Run) -> float:

@@ -28,6 +28,7 @@ LASTING = 0.5  # of the force before a front, which it would still have had
 RINGING, CLEAR = 8, 8  # steps at the ends of a contact in which its element rings, and those beside them
 DROPPED = 0.6  # of what was to be expected, below which a force drops
 UNENDED = {"duration": None, "restitution": None}
+ROUNDING = 1e-9  # relative, of what adds up over the steps
 
 
 def with_fronts(rows: Array, fronts: Steps, spoiled: int) -> Array:
@@ -146,8 +147,13 @@ def _rod_ended(rows: Array, end: float, gravity: float) -> Array:
 
 def _highest(rows: Array) -> tuple[float, float]:
     """Time and force of the highest row: where the force jumps no polynomial goes through its rows."""
-    top = int(np.argmax(rows[FORCE]))
+    top = _first_of_equals(rows[FORCE])
     return float(rows[TIME, top]), float(rows[FORCE, top])
+
+
+def _first_of_equals(force: Array) -> int:
+    """The first row as high as any but for rounding: a force that stays as it is has its peak where that begins."""
+    return int(np.argmax(force >= (1.0 - ROUNDING) * force.max()))
 
 
 @dataclass
@@ -284,7 +290,7 @@ def _contact(
     left = came + gravity * (end - start) - (after - before) / total
     inside = (rows[TIME] >= start) & (rows[TIME] <= end)
     inside[np.searchsorted(rows[TIME], start, side="right") - 1] = True
-    top = int(np.argmax(np.where(inside, rows[FORCE], -1.0)))
+    top = _first_of_equals(np.where(inside, rows[FORCE], 0.0))
     return {
         "start": start,
         "duration": end - start,

@@ -1,15 +1,13 @@
-"""The error of a law over its free parameters, the peak held where that is asked for, and how well a fit is known.
+"""The error of a law over its free parameters, the peak held where that is asked for, and where these are sought.
 
-One impact of a law, as a fit needs it: depth and force at any time, and the peak, at the least cost. Certainty is the
-covariance by the linearized least squares, intervals, and what to be warned of.
+One impact of a law, as a fit needs it: depth and force at any time, and the peak, at the least cost.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Set
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,14 +15,12 @@ from numpy.typing import NDArray
 from lumped import laws
 from lumped.errors import BadInput, NotReached
 from lumped.fit.measured import Measured
-from lumped.fit.record import Estimate
-from lumped.fit.space import TOUCH, Space
+from lumped.fit.space import REACH, TOUCH, Space
 from lumped.laws._force_law import ForceLaw, bodies_of
 from lumped.laws._hereditary import HereditaryLaw, Solve, once
 from lumped.numbers import local
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
-from lumped.schema.keys import Number
 from lumped.solvers.point.contact import motion
 from lumped.solvers.point.track import PointTrack, peak_of
 
@@ -38,17 +34,8 @@ LARGEST_STEP = 3.0  # safety: of the logarithm of a stiffness, in one step of th
 # Below what the differences of a Jacobian see.
 STEP_TOLERANCE, INTEGRATOR_TOLERANCE, RESULT_TOLERANCE = 1e-8, 1e-9, 1e-6
 PLACES = 801  # times of the contact at which depth and force are read
-CONFIDENCE = 0.95  # of the intervals
-# Steps of the differences, of the value or of this share of its guess, whichever is larger: a damping near zero has
-# no size of its own.
-STEP, LEAST_SHARE = 1e-3, 0.01
-# Residuals per relative change: below the first nothing is felt, above the second ratio two are one.
-UNFELT, ALIKE = 1e-9, 1e8
-CORRELATED = 0.99  # two parameters whose correlation lies beyond are named in a warning
-SYSTEMATIC = "neighbouring residuals are alike: what is left is the law's own error, and no interval holds it"
-AT_BOUND = 1e-6  # rounding: of the value, or for the touch of the duration: as near to its bound it lies on it
-SAYS_NOTHING = 100.0  # times the value: an interval as wide is the linearization's, and tells no more than none
-FORCE = Number(-math.inf, math.inf, "N")
+# In the coordinates of a 3-parameter solid of which all is sought.
+SOLID = ("E0", "R1", "R2")
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,155 +155,85 @@ def _of_result(result: Result) -> Candidate:
 
 
 @dataclass(frozen=True, eq=False)
-class Certainty:
-    """Covariance of the values of all free parameters, their intervals, and those of the force at `depth`, m."""
+class Coordinates:
+    """Where the parameters of a problem are sought: logarithms of what is positive, the touch in shares of the contact.
 
-    covariance: Array
-    parameters: Mapping[str, Estimate]
-    depth: float
-    force_at_depth: Estimate
-    warnings: tuple[str, ...]
+    Of the 3-parameter solid a slow relaxation tells the glassy modulus E0 (1 + R1) and the rate R1/R2 at which it
+    falls at first, and hardly more: in these the long valley of the error is straight, in E0 and R2 it is bent.
+    `near` are values of all that is free, around which a held peak is met. `beside`, in a parameter's unit: what is
+    added before its logarithm, so that none of it is not infinitely far away.
+    """
+
+    problem: FitProblem
+    near: Values
+    guess: Values
+    beside: Values
 
     @property
-    def correlation(self) -> Array:
-        """The correlation matrix; one on its diagonal also where nothing varies."""
-        return correlation_of(self.covariance)
+    def straight(self) -> bool:
+        """Whether the solid is sought by its glassy modulus and rate: all of it free, and without bounds."""
+        return set(SOLID) <= set(self.problem.searched) and not set(SOLID) & self.problem.space.bounds.keys()
 
+    def limits(self) -> Array:
+        """Lowest and highest place, shape (2, q)."""
+        names = self.problem.searched
+        limits = {name: self._own_limits(name) for name in names}
+        ends = np.array([self._plain({name: limits[name][i] for name in names}) for i in (0, 1)])
+        if self.straight:
+            rows = [names.index(name) for name in SOLID]
+            ends[:, rows] = self.place(self.near)[rows] + np.log(REACH) * np.array([[-1.0], [1.0]])
+        for name in self.beside.keys() - self.problem.space.bounds.keys():
+            ends[0, names.index(name)] = self.counted(name, 0.0)
+        return ends
 
-def certainty_of(problem: FitProblem, values: Mapping[str, float], guess: Mapping[str, float]) -> Certainty:
-    """At the solution `values`, by central differences around it. Raises NotReached."""
-    names = tuple(problem.space.free)
-    found = problem.candidate(values)
-    depth = found.half_depth()
-    error, force = problem.error_of(values, found), found.force_at_depth(depth)
-    slopes = _slopes(problem, values, guess, depth)
-    of_error = slopes[len(names) + 1 :]
-    felt = np.linalg.norm(of_error, axis=0) * _scales(problem, values, guess) > UNFELT
-    inverse, told = _inverse(of_error[:, felt], _scales(problem, values, guess)[felt])
-    freedom = problem.measured.points - len(problem.searched)
-    every = slopes[: len(names) + 1, felt]
-    spread = every @ inverse @ every.T * float(error @ error) / freedom
-    widths = _student(freedom) * np.sqrt(np.diag(spread)) if told and felt.any() else np.full(len(names) + 1, np.nan)
-    unfelt = {name for name, known in zip(problem.searched, felt, strict=True) if not known}
-    unknown = unfelt | {name for name in names if _at_bound(problem, name, values[name], guess)}
-    scales = {name: problem.measured.duration if name == TOUCH else max(values[name], guess[name]) for name in names}
-    parameters = {
-        name: _estimate(values[name], math.nan if name in unknown else width, problem.space.free[name], scales[name])
-        for name, width in zip(names, widths.tolist(), strict=False)
-    }
-    covariance = spread[:-1, :-1]
-    warnings = [
-        *_parameter_warnings(problem, parameters, guess, unfelt),
-        *_pair_warnings(problem, covariance, told),
-        *((SYSTEMATIC,) if problem.measured.systematic(error) else ()),
-    ]
-    of_force = _estimate(force, float(widths[-1]), FORCE, found.peak)
-    return Certainty(covariance, parameters, depth, of_force, tuple(warnings))
+    def opened(self) -> NDArray[np.bool_]:
+        """Which limits only end the search, shape (2, q); others are asked for, or the parameter itself ends there."""
+        rows = list[tuple[bool, bool]]()
+        for name in self.problem.searched:
+            low, high = self._own_limits(name)
+            key, solid = self.problem.space.free[name], self.straight and name in SOLID
+            bound = name in self.problem.space.bounds
+            whole = bound or name in self.beside
+            rows.append((not whole and (solid or low > key.low), solid or (not bound and high < key.high)))
+        return np.array(rows, dtype=bool).T
 
+    def _own_limits(self, name: str) -> tuple[float, float]:
+        """Those asked for; a touch that nobody has bounded lies within a contact's length of where the force begins."""
+        space, measured = self.problem.space, self.problem.measured
+        if name == TOUCH and name not in space.bounds:
+            return measured.begin - measured.duration, measured.begin + measured.duration
+        low, high = space.limits(name, self.guess[name])
+        return low, high
 
-def correlation_of(covariance: Array) -> Array:
-    """The correlation matrix of a covariance."""
-    spread = np.sqrt(np.diag(covariance))
-    scale = np.where(spread > 0.0, spread, 1.0)
-    matrix = covariance / np.outer(scale, scale)
-    np.fill_diagonal(matrix, 1.0)
-    return np.asarray(matrix)
+    def place(self, values: Values) -> Array:
+        """Where values are sought, shape (q,)."""
+        if not self.straight:
+            return self._plain(values)
+        glassy, ratio = values["E0"] * (1.0 + values["R1"]), values["R1"]
+        return self._plain({**values, "E0": glassy, "R2": values["R2"] / ratio})
 
+    def _plain(self, values: Values) -> Array:
+        return np.array([self.counted(name, values[name]) for name in self.problem.searched])
 
-def _scales(problem: FitProblem, values: Mapping[str, float], guess: Mapping[str, float]) -> Array:
-    """The size of every parameter searched."""
-    return np.array(
-        [
-            problem.measured.duration if name == TOUCH else max(values[name], LEAST_SHARE * guess[name])
-            for name in problem.searched
-        ]
-    )
+    def counted(self, name: str, value: float) -> float:
+        """A value of one parameter, sought or not, as it is counted."""
+        if name == TOUCH:
+            return value / self.problem.measured.duration
+        return float(np.log(value + self.beside.get(name, 0.0)))
 
+    def value(self, name: str, counted: float) -> float:
+        """The value of one parameter that is counted so."""
+        if name == TOUCH:
+            return counted * self.problem.measured.duration
+        return max(math.exp(counted) - self.beside.get(name, 0.0), self.problem.space.free[name].low)
 
-def _slopes(problem: FitProblem, values: Mapping[str, float], guess: Mapping[str, float], depth: float) -> Array:
-    """How all free values, the force at `depth` and the residuals change with each parameter searched."""
-    names = problem.searched
+    def size(self, name: str, value: float) -> float:
+        """How fast the value of a parameter grows as it is counted."""
+        return self.problem.measured.duration if name == TOUCH else value + self.beside.get(name, 0.0)
 
-    def state(changed: Mapping[str, float]) -> Array:
-        whole = problem.whole(changed, values)
-        found = problem.candidate(whole)
-        known = [whole[name] for name in problem.space.free]
-        return np.concatenate([known, [found.force_at_depth(depth)], problem.error_of(whole, found)])
-
-    def aside(name: str, place: float) -> tuple[float, Array]:
-        """The state with one value changed; the state found where no law has that value beside the others."""
-        try:
-            return place, state({**values, name: place})
-        except (BadInput, NotReached):
-            return values[name], state(values)
-
-    columns = []
-    for name, scale in zip(names, _scales(problem, values, guess), strict=True):
-        low, high = problem.space.limits(name, guess[name])
-        below, before = aside(name, max(values[name] - STEP * scale, low))
-        above, after = aside(name, min(values[name] + STEP * scale, high))
-        if above == below:
-            raise NotReached(f"no law has another {name} than {values[name]:.6g}; cure: hold it, or free another one")
-        columns.append((after - before) / (above - below))
-    size = len(problem.space.free) + 1 + problem.measured.time.size
-    return np.array(columns).T if columns else np.zeros((size, 0))
-
-
-def _inverse(slopes: Array, scales: Array) -> tuple[Array, bool]:
-    """(J^T J)^-1 of the values, and whether the parameters can be told apart; NaN where they cannot."""
-    if not scales.size:
-        return np.zeros((0, 0)), True
-    _, singular, axes = np.linalg.svd(slopes * scales, full_matrices=False)
-    if not singular[0] < ALIKE * singular[-1]:
-        return np.full((scales.size, scales.size), np.nan), False
-    spread = axes.T / singular * scales[:, None]
-    return spread @ spread.T, True
-
-
-def _student(freedom: int) -> float:
-    """Student's t of the two-sided confidence."""
-    from scipy.special import stdtrit
-
-    return float(stdtrit(freedom, 0.5 + 0.5 * CONFIDENCE))
-
-
-def _estimate(value: float, width: float, key: Number, scale: float) -> Estimate:
-    """A value with its interval, cut where the parameter ends; none of a width that is not known, or says nothing."""
-    if not width <= SAYS_NOTHING * scale:
-        return Estimate(value, None, None, key.unit)
-    return Estimate(value, max(value - width, key.low), min(value + width, key.high), key.unit)
-
-
-def _at_bound(problem: FitProblem, name: str, value: float, guess: Mapping[str, float]) -> bool:
-    """Whether a free parameter lies where the search may go no further."""
-    low, high = problem.space.limits(name, guess[name])
-    near = AT_BOUND * (problem.measured.duration if name == TOUCH else abs(value))
-    return min(value - low, high - value) <= near
-
-
-def _parameter_warnings(
-    problem: FitProblem, parameters: Mapping[str, Estimate], guess: Mapping[str, float], unfelt: Set[str]
-) -> Iterator[str]:
-    for name, estimate in parameters.items():
-        if name in unfelt:
-            yield f"{name} does not change the force around {estimate.value:.6g}: the curve does not tell it"
-        elif _at_bound(problem, name, estimate.value, guess):
-            yield f"{name} is at its bound, {estimate.value:.6g}: it has no interval"
-        elif estimate.low is None:
-            yield f"{name} has no interval: the curve hardly tells it"
-        elif estimate.low <= problem.space.free[name].low:
-            yield f"the interval of {name} reaches the least value it can have: the curve does not tell it from none"
-
-
-def _pair_warnings(problem: FitProblem, covariance: Array, told: bool) -> Iterator[str]:
-    names = tuple(problem.space.free)
-    if not told:
-        yield f"{', '.join(names)} are not told apart by this curve: hold one of them; intervals are left out"
-        return
-    correlation = correlation_of(covariance)
-    for i, j in combinations(range(len(names)), 2):
-        if problem.dependent not in (names[i], names[j]) and abs(correlation[i, j]) > CORRELATED:
-            yield (
-                f"{names[i]} and {names[j]} are correlated by {correlation[i, j]:+.4f}: hold one of them, or rely on "
-                "the force at half depth"
-            )
+    def whole(self, place: Array) -> dict[str, float]:
+        """All free parameters at a place. Raises NotReached."""
+        values = {n: self.value(n, x) for n, x in zip(self.problem.searched, place.tolist(), strict=True)}
+        if self.straight:
+            values |= {"E0": values["E0"] / (1.0 + values["R1"]), "R2": values["R2"] * values["R1"]}
+        return self.problem.whole(values, self.near)

@@ -1,13 +1,10 @@
 """How well each number is known: intervals by profile likelihood, correlation, and what no curve could tell.
 
-An end of an interval is the farthest value of a parameter at which all others, the touches too, can still be chosen so
-that the sum of squares stays within its bound (Venzon and Moolgavkar, doi 10.2307/2347496). On the linearized residuals
-that has an answer in closed form; it is repeated around the answer until it stays.
+All others, the touches too, are chosen anew at every value.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,15 +12,12 @@ from functools import cached_property
 import numpy as np
 
 from lumped.errors import NotReached
+from lumped.fit.profile import Ends
 from lumped.identify.histories import Histories
 from lumped.identify.keys import FreeKey
 from lumped.identify.record import LEVEL, Interval
 from lumped.numbers import Array
 
-REACHED, LONGEST, MOST_ENDS = 0.02, 0.7, 60  # of the bound; of a step in logarithms; work
-# Rounding: differences tell the slopes to about 1e-4; what is told worse than the best by that is not told. Safety: the
-# share of a parameter in such a combination that counts.
-ALIKE, MIXED = 1e4, 0.03
 # Rounding: slopes by differences depend on each other to about 2e-4 where the force knows one combination alone; an
 # exponent beside its factor is told by ten times as much. Safety: the share of a key in a combination that counts.
 ONE, MEMBER = 5e-4, 0.1
@@ -75,69 +69,26 @@ class LikelihoodProfile:
         return Interval(key.at(float(self.valley.sought[i])), low, high, LEVEL, key.kind.unit, tuple(unfound))
 
     def end(self, i: int, side: float) -> float | None:
-        """The farthest place of parameter i on a side, -1 or 1, with a sum of squares below the most; None: none.
+        """The farthest place of parameter i on a side, -1 or 1, see :class:`lumped.fit.profile.Ends`; None: none.
 
-        The slopes follow the steps (Broyden); where these end on the bound, slopes anew have to say that it is no
-        farther. Raises NotReached.
+        Raises NotReached.
         """
-        best, limits, slopes, fresh = self.valley.sought, self.valley.limits, self.slopes, False
-        sought, residuals = best, self.histories.residuals(best)
-        if _step_to_end(residuals, slopes, i, side, self.most) is None:
-            return None
-        for _ in range(MOST_ENDS):
-            step = _step_inside(residuals, slopes, i, side, self.most, sought, limits)
-            if step is None:
-                return None
-            there = np.clip(sought + step * min(1.0, LONGEST / float(np.abs(step).max())), *limits)
-            gone, before = there - sought, residuals
-            sought, residuals = there, self.histories.residuals(there)
-            excess = float(residuals @ residuals) - self.most
-            if there[i] in limits[:, i] and excess < 0.0:
-                return None
-            small = abs(gone[i]) <= REACHED * abs(there[i] - best[i])
-            if small and fresh:
-                return float(there[i] - gone[i])
-            fresh = small and abs(excess) <= REACHED * self.bound
-            if fresh:
-                slopes = self.histories.slopes(there)
-            elif gone.any():
-                slopes = slopes + np.outer(residuals - before - slopes @ gone, gone) / float(gone @ gone)
-        raise NotReached(f"no end in {MOST_ENDS} steps")
+        return self._ends.end(i, side)
 
-
-def _step_inside(
-    residuals: Array, slopes: Array, i: int, side: float, most: float, sought: Array, limits: Array
-) -> Array | None:
-    """The step to the end, without what stands at a limit and would leave it; None where there is none."""
-    held = np.zeros(sought.size, dtype=bool)
-    while True:
-        moving = np.flatnonzero(~held)
-        part = _step_to_end(residuals, slopes[:, moving], int(np.searchsorted(moving, i)), side, most)
-        if part is None:
-            return None
-        step = np.zeros(sought.size)
-        step[moving] = part
-        leaving = ((sought <= limits[0]) & (step < 0.0)) | ((sought >= limits[1]) & (step > 0.0))
-        leaving[i] = False
-        if not leaving.any():
-            return step
-        held |= leaving
-
-
-def _step_to_end(residuals: Array, slopes: Array, i: int, side: float, most: float) -> Array | None:
-    """max side d_i with |r + J d|^2 <= most: from the least squares on along C e_i, C = (J^T J)^-1.
-
-    None where J does not tell d_i from others.
-    """
-    left, singular, axes = np.linalg.svd(slopes, full_matrices=False)
-    told = singular * ALIKE > singular[0]
-    if np.abs(axes[~told, i]).max(initial=0.0) > MIXED:
-        return None
-    left, singular, axes = left[:, told], singular[told], axes[told]
-    to_least = -axes.T @ ((left.T @ residuals) / singular)
-    along = axes.T @ (axes[:, i] / singular**2)
-    remaining = most - float(np.sum((residuals + slopes @ to_least) ** 2))
-    return np.asarray(to_least + side * math.sqrt(max(remaining, 0.0) / float(along[i])) * along)
+    @cached_property
+    def _ends(self) -> Ends:
+        """What is sought is told itself, and a limit is the search's alone."""
+        own, limits = np.eye(self.valley.sought.size), self.valley.limits
+        return Ends(
+            seen=lambda sought: (sought, self.histories.residuals(sought)),
+            slopes=lambda sought: (own, self.histories.slopes(sought)),
+            best=self.valley.sought,
+            first=(own, self.slopes),
+            limits=limits,
+            opened=np.ones(limits.shape, dtype=bool),
+            most=self.most,
+            bound=self.bound,
+        )
 
 
 def correlation_of(slopes: Array) -> Array:

@@ -14,9 +14,10 @@ import numpy as np
 
 from lumped.errors import BadInput, Fault, NotReached
 from lumped.fit.noise import colour_of, colour_of_corner, whitened
+from lumped.fit.profile import REACHED
 from lumped.identify.histories import Histories, Noise, Samples
 from lumped.identify.keys import FREE, FreeKey, SceneFile, free_keys, starting_places
-from lumped.identify.profile import REACHED, Valley, quantile, untold
+from lumped.identify.profile import Valley, quantile, untold
 from lumped.laws import ting
 from lumped.laws._hereditary import problem_of
 from lumped.laws.base import check_mass

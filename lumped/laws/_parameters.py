@@ -21,6 +21,7 @@ from lumped.schema.keys import Choice, Key, Number
 Keys = Mapping[str, Key]
 T = TypeVar("T")
 STIFFNESS: Keys = {"k": Key(Number(1e-30, 1e30, "N/m^alpha"), "stiffness", required=False)}
+LINEAR_STIFFNESS: Keys = {"k": replace(STIFFNESS["k"], kind=Number(1e-30, 1e30, "N/m"))}  # of an exponent of one
 EXPONENT: Keys = {"alpha": Key(Number(0.5, 5.0), "exponent of the depth", required=False)}
 # A damper with the power (alpha - 1)/2 of the depth is infinite at touch for alpha below 1.
 EXPONENT_FROM_ONE: Keys = {"alpha": replace(EXPONENT["alpha"], kind=Number(1.0, 5.0))}
@@ -48,7 +49,7 @@ def formula_key(family: Family) -> Keys:
 def damped(family: Family, *dampings: Keys, exponent: Keys = EXPONENT) -> tuple[Keys, ...]:
     """The keys of a spring with a damper, given by one of its own `dampings` or by e and a formula of the family."""
     formula = [formula_key(family)] if family.published else []
-    return (STIFFNESS, exponent, RESTITUTION, *dampings, *formula, COMMON)
+    return (STIFFNESS if exponent else LINEAR_STIFFNESS, exponent, RESTITUTION, *dampings, *formula, COMMON)
 
 
 @dataclass
@@ -110,7 +111,8 @@ class Parameters:
         bodies = bodies_of(self.scene)
         peak = self.scene.geometry.shape.hertz_impact(relaxed, bodies.mass, bodies.velocity).force
         k = spring_of_peak(peak, alpha, bodies)
-        self.taken.append(f"k = {k:.6g} N/m^{alpha:g} from the Hertz impact with the relaxed modulus")
+        unit = "N/m" if alpha == 1.0 else f"N/m^{alpha:g}"
+        self.taken.append(f"k = {k:.6g} {unit} from the Hertz impact with the relaxed modulus")
         return k
 
     def damping(self, names: Sequence[str]) -> tuple[str, float]:

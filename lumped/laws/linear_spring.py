@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from lumped.laws._parameters import COMMON, STIFFNESS, Parameters
+from lumped.laws._parameters import COMMON, LINEAR_STIFFNESS, Parameters
 from lumped.laws._power_law import Undamped
 from lumped.laws.base import LawKind
 from lumped.scene.scene import Scene
@@ -25,4 +25,4 @@ def of(scene: Scene) -> LinearSpring:
     return LinearSpring(k=given.stiffness(1.0), **given.common())
 
 
-MEMBER = LawKind(of, __doc__, (STIFFNESS, COMMON))
+MEMBER = LawKind(of, __doc__, (LINEAR_STIFFNESS, COMMON))

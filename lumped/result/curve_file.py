@@ -210,4 +210,5 @@ def _finite(source: str, number: int, column: ColumnOfCurve, cell: str) -> float
             return value
     except ValueError:
         pass
-    raise BadInput(Fault(source, column.header, f"row {number} holds no number in this column, but {shown(cell)}"))
+    reason = f"row {number} holds no number in this column, but {shown(cell)}; accepted: as 1.5e-3"
+    raise BadInput(Fault(source, column.header, reason))

@@ -196,7 +196,7 @@ def _missing(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
 def _rate(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
     rows = pulse.rows.stop - pulse.rows.start
     if rows < FEW_ROWS and _single(scene):
-        said = f"sample rate: {rows} rows while the bodies press; accepted from {LEAST_ROWS}, better {10 * FEW_ROWS}"
+        said = f"sample rate: rows while the bodies press: {rows}; accepted from {LEAST_ROWS}, better {10 * FEW_ROWS}"
         yield Finding(f"{said}; cure: above {FEW_ROWS / pulse.width:.3g} rows a second", rows < LEAST_ROWS)
 
 
@@ -243,8 +243,8 @@ def _lasts(silence: Array) -> bool:
 
 def _touch(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
     if _single(scene) and not -EARLY * pulse.width <= pulse.start <= LATE * pulse.width:
-        said = f"pre-trigger: the force begins at about {pulse.start:.6g} s, and time zero has to be the first touch"
-        yield Finding(f"{said}; cure: subtract it from the times; fit: --free touch,...; identify finds it")
+        said = f"pre-trigger: the force begins before {pulse.start:.6g} s, and time zero has to be the first touch"
+        yield Finding(f"{said}; cure: subtract from the times the touch that fit --free touch,... or identify finds")
 
 
 def _impulse(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:

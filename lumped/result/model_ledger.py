@@ -12,12 +12,12 @@ from numpy.polynomial import Polynomial
 
 from lumped.errors import FeContactError
 from lumped.load_curves.base import LoadCurve
-from lumped.materials import Material, Relaxation
+from lumped.materials import Relaxation
 from lumped.materials.energies.base import energy_of
 from lumped.materials.radiation import Pulse
 from lumped.result.history import History
 from lumped.result.result import LedgerEntry, Quantity, percent
-from lumped.scene.geometry import plasticity_faults
+from lumped.scene.geometry import finite_faults, plasticity_faults
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
@@ -90,7 +90,7 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
     entries = [
         inertia(scene, resolved, peak),
         profile(scene.geometry.shape, resolved, peak),
-        strained_much(scene.geometry.material, resolved, height, peak, IN_AN_IMPACT),
+        strained_much(scene, resolved, height, peak, IN_AN_IMPACT),
         sideways(scene, peak),
         series(scene, peak),
         striker(scene),
@@ -136,7 +136,7 @@ class Ledger(Sequence[LedgerEntry]):
 def ledger_at_rest(indenter: Indenter, peak: Peak) -> tuple[LedgerEntry, ...]:
     """The same of a slow indentation at its deepest, which has neither inertia nor time."""
     shape, target, nu = indenter.shape, indenter.target, indenter.material.nu
-    entries = [strained_much(indenter.material, indenter.model, target.pressed_height(shape), peak)]
+    entries = [strained_much(indenter, indenter.model, target.pressed_height(shape), peak)]
     if indenter.material.yield_strength is not None:
         entries.append(plasticity(indenter, indenter.model, peak))
     if target.fixed_radius(shape) is None:
@@ -187,12 +187,15 @@ def profile(shape: Shape, model: Model, peak: Peak) -> LedgerEntry:
 
 
 def strained_much(
-    material: Material, model: Model, height: float | None, peak: Peak, share: float = 1.0
+    scene: Scene | Indenter, model: Model, height: float | None, peak: Peak, share: float = 1.0
 ) -> LedgerEntry:
-    """Included, by the energy of the material, or what :func:`finite_strain` estimates of it."""
-    if not model.finite:
-        return finite_strain(material.nu, height, peak, share, material.hyperelastic)
-    return LedgerEntry("finite strain", f"included: W = {energy_of(material.hyperelastic).formula}", 0.0)
+    """Included, by the energy of the material, or what :func:`finite_strain` estimates of it; no key if not built."""
+    material, impacts = scene.geometry.material, scene.motion.impacts if isinstance(scene, Scene) else None
+    if model.finite:
+        return LedgerEntry("finite strain", f"included: W = {energy_of(material.hyperelastic).formula}", 0.0)
+    found = finite_strain(material.nu, height, peak, share, material.hyperelastic)
+    refused = finite_faults("", replace(model, kinematics="finite"), scene.geometry, impacts)
+    return replace(found, key="", value=None, note=f"{found.note}; {refused[0]}") if refused else found
 
 
 def finite_strain(
@@ -284,8 +287,8 @@ def sideways(scene: Scene, peak: Peak) -> LedgerEntry:
         forces = [_struck(one, curve, scene, peak) for one in (_bulk_modulus(scene, peak), material.contact_modulus())]
     except FeContactError:  # no load curve, or one that ends before this depth
         return LedgerEntry(effect, treated, None, "no load curve tells it; run both of target.material.constant")
-    note, key = "both, by a power of the depth", f"{solid}.material.constant"
-    return LedgerEntry(effect, treated, abs(forces[0] / forces[1] - 1.0), note, key, value="bulk")
+    note, key = "both, by a power of the depth", "" if scene.model.finite else f"{solid}.material.constant"
+    return LedgerEntry(effect, treated, abs(forces[0] / forces[1] - 1.0), note, key, value="bulk" if key else None)
 
 
 def _bulk_modulus(scene: Scene, peak: Peak) -> Relaxation:

@@ -14,6 +14,9 @@ from lumped.shapes._block import Block
 from lumped.targets import Target
 
 YIELDING_UNDER = ("sphere", "cone", "power", "punch")  # strikers under which a half-space may yield
+STRAINED = (
+    "rounded strikers, cones and powers on half_space and layer, cylinders on layer and ring, an o_ring, sliding blocks"
+)
 SPARE_MASS = 0.01  # of a whole body with inertia, which its density gives way to
 
 
@@ -156,6 +159,38 @@ def plasticity_faults(source: str, model: Model, geometry: Geometry | None, impa
         ),
     ]
     return [Fault(source, key, reason) for refused, key, reason in wrong if refused]
+
+
+def finite_faults(source: str, model: Model, geometry: Geometry, impacts: int | None = None) -> list[Fault]:
+    """What stands beside `model.kinematics = "finite"` and cannot, pressed slowly or in so many `impacts`."""
+    if not model.finite:
+        return []
+    shape, target, material = geometry.shape, geometry.target, geometry.material
+    relaxing, state = impacts is not None and not material.young.is_elastic, "with large strains in this version"
+    part = "target" if target.deformable else "striker"
+    wrong = [
+        (
+            not target.strained_under(shape),
+            "striker.shape" if target.large_strains else "target.shape",
+            f"a {shape.name} on a {target.name} is not built {state}; accepted: {STRAINED}",
+        ),
+        (geometry.striker_material is not None, "striker.material", f"the striker is rigid {state}; leave it out"),
+        (model.inertia, "model.inertia", f"true: no waves {state}; accepted: false"),
+        (model.plasticity, "model.plasticity", f"true: nothing yields {state}; accepted: false"),
+        (
+            relaxing and material.young.viscosity > 0.0,
+            f"{part}.material.law",
+            f"no dashpot in parallel {state}; accepted: elastic, maxwell, sls, prony",
+        ),
+        (
+            relaxing and material.constant == "bulk",
+            f"{part}.material.constant",
+            f'"bulk": the whole stress relaxes {state}; accepted: "poisson"',
+        ),
+        (relaxing and isinstance(shape, Block), "striker.shape", f"a block does not relax {state}; accepted: elastic"),
+        (impacts is not None and impacts > 1, "motion.impacts", f"{impacts}: one is followed {state}; accepted: 1"),
+    ]
+    return [Fault(source, key, f"{reason}; or model.kinematics = small") for refused, key, reason in wrong if refused]
 
 
 def places(shape: Shape, target: Target, deep: str) -> dict[str, str]:

@@ -76,7 +76,7 @@ def _columns(source: str, rows: Iterator[list[str]], places: Mapping[str, int], 
                 found[name].append(float(row[place]))
             except (ValueError, IndexError) as error:
                 cell = row[place] if place < len(row) else ""
-                reason = f"row {number} holds no number in this column, but {shown(cell)}"
+                reason = f"row {number} holds no number in this column, but {shown(cell)}; accepted: as 1.5e-3"
                 raise BadInput(Fault(source, name, reason)) from error
     return {name: np.array(column) for name, column in found.items()}
 

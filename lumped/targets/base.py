@@ -29,13 +29,15 @@ class Target(Record, ABC):
     """The geometry of a struck body; its `name` is that of the scene file, its keys stand beside its fields.
 
     `deformable`: whether it has a material; `yielding_strikers`: whether its striker may have one. `has_inertia`:
-    whether its waves can be followed; `only_with_inertia`: whether nothing is left of it without them.
+    whether its waves can be followed; `only_with_inertia`: whether nothing is left of it without them. `large_strains`:
+    whether they are built of it, or of what strikes it, at all.
     """
 
     has_inertia: ClassVar[bool]
     only_with_inertia: ClassVar[bool] = False
     deformable: ClassVar[bool] = True
     yielding_strikers: ClassVar[bool] = False
+    large_strains: ClassVar[bool] = False
     through: ClassVar[str] = ""  # what no depth may reach, where that is the height pressed
 
     @property
@@ -99,6 +101,10 @@ class Target(Record, ABC):
     def waves_under(self, shape: Shape) -> bool:
         """Whether `model.inertia` can be true under a striker of this shape."""
         return self.has_inertia and shape.flat_radius == 0.0
+
+    def strained_under(self, shape: Shape) -> bool:
+        """Whether `model.kinematics` can be "finite" under a striker of this shape."""
+        return self.large_strains and self.fixed_radius(shape) is None
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """What is wrong with a striker of this shape that has a material as the target has, with inertia or without."""

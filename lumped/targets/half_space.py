@@ -24,6 +24,7 @@ class HalfSpace(Target):
     name: ClassVar[str] = "half_space"
     has_inertia: ClassVar[bool] = True
     yielding_strikers: ClassVar[bool] = True
+    large_strains: ClassVar[bool] = True
 
     @property
     def has_length(self) -> bool:
@@ -39,6 +40,10 @@ class HalfSpace(Target):
     def waves_under(self, shape: Shape) -> bool:
         """Not in plane strain."""
         return super().waves_under(shape) and not shape.plane
+
+    def strained_under(self, shape: Shape) -> bool:
+        """Not in plane strain."""
+        return super().strained_under(shape) and not shape.plane
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """Only a whole body with inertia: else one E* of both tells all, and a target of shape sphere knows it."""

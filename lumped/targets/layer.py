@@ -39,6 +39,7 @@ class Layer(Target):
     base: Annotated[str, BASE]
     name: ClassVar[str] = "layer"
     has_inertia: ClassVar[bool] = True
+    large_strains: ClassVar[bool] = True
     through: ClassVar[str] = "the layer's thickness"
 
     @property

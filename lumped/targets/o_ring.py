@@ -30,6 +30,7 @@ class ORing(Target):
     section_radius: Annotated[float, Key(SIZE, "radius of the section")]
     name: ClassVar[str] = "o_ring"
     has_inertia: ClassVar[bool] = False
+    large_strains: ClassVar[bool] = True
     through: ClassVar[str] = "the ring's thickness"
 
     def __post_init__(self) -> None:

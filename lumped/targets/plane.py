@@ -25,6 +25,7 @@ class Plane(Target):
     has_inertia: ClassVar[bool] = True
     deformable: ClassVar[bool] = False
     yielding_strikers: ClassVar[bool] = True
+    large_strains: ClassVar[bool] = True
     through: ClassVar[str] = "the block's"
 
     def pressed_height(self, shape: Shape) -> float | None:
@@ -47,6 +48,10 @@ class Plane(Target):
     def waves_under(self, shape: Shape) -> bool:
         """A block's too that is strained alike everywhere."""
         return not isinstance(shape, Block) or shape.uniform
+
+    def strained_under(self, shape: Shape) -> bool:
+        """A block that is strained alike everywhere."""
+        return isinstance(shape, Block) and shape.uniform
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is neither a block nor a sphere."""

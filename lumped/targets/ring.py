@@ -31,6 +31,7 @@ class Ring(Target):
     thickness: Annotated[float, Key(SIZE, "between the hole and what holds the ring")]
     name: ClassVar[str] = "ring"
     has_inertia: ClassVar[bool] = False
+    large_strains: ClassVar[bool] = True
     through: ClassVar[str] = "the ring's thickness"
 
     def __post_init__(self) -> None:

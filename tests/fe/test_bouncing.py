@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,7 +19,7 @@ from fe_contact.bodies.memory import SurfaceMemory, area_weights
 from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs
 from fe_contact.cli import main
-from fe_contact.march.impacts import Released, _fallen
+from fe_contact.march.impacts import FAINTEST, Grounded, Released, _fallen, follow
 from fe_contact.steppers.steps import Strike
 from lumped.laws import mdr
 from lumped.materials import Relaxation
@@ -47,6 +49,21 @@ def thrown(scene_of: Scenes, material: Mapping[str, Any], impacts: int = 2, **ta
 def polymer(scene_of: Scenes) -> tuple[lumped.Scene, lumped.Result]:
     scene = thrown(scene_of, SLS, 3)
     return scene, fe_contact.run(scene, tolerance=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("velocity", "why"), [(-0.1, Grounded.CAUGHT), (0.0, Grounded.CAUGHT), (0.5, Grounded.REST), (2.0, None)]
+)
+def test_what_touches_again_too_slowly_rests_and_what_is_overtaken_is_caught(velocity: float, why: Any) -> None:
+    """Velocities in units of the faintest that counts."""
+    strike = Strike(lambda r: r**2, 1.0, 0.3, 9.81, Relaxation(1.0), 10.0)
+    bouncer: Any = SimpleNamespace(
+        contact=lambda strike: SimpleNamespace(separated=True),
+        touch=lambda strike, march: replace(strike, velocity=velocity * FAINTEST * 0.3),
+    )
+    found = follow(bouncer, strike, 2)
+    assert found.grounded is why
+    assert len(found.contacts) == (2 if why is None else 1)
 
 
 # elastic

@@ -1,14 +1,16 @@
-"""Bars of large strains: random scenes against runs to a quarter of the tolerance."""
+"""Bars of large strains: random scenes, pressed and struck, against runs to a quarter of the tolerance."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from fe_contact import run
 from fe_contact.indentation import indent
-from lumped import NotReached
+from lumped import NotReached, Result, Scene
 from lumped.indentation import Indentation
 from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import ENERGIES
@@ -34,10 +36,31 @@ def scene(random: np.random.Generator) -> tuple[Indenter, tuple[float, ...]]:
     return pressed, (0.4 * deepest, deepest)
 
 
+def struck(random: np.random.Generator, branches: int) -> Scene:
+    """The same, struck so fast that it would go as deep if it were relaxed; so many branches of a Prony series."""
+    pressed, (_, deepest) = scene(random)
+    curve = pressed.target.load_curve(pressed.shape, pressed.material.nu)
+    brought = pressed.modulus(False) * float(curve.energy(deepest))
+    fast = Scene(pressed.shape, 1.0, float(np.sqrt(2.0 * brought)), pressed.material, target=pressed.target,
+                 model=pressed.model)  # fmt: skip
+    times = fast.elastic_contact_time * 10.0 ** random.uniform(-1.5, 0.5, branches)
+    moduli = 1e6 * random.uniform(0.2, 2.0, branches)
+    network = Relaxation(1e6, tuple(moduli.tolist()), tuple(sorted(times.tolist())))
+    return replace(fast, material=replace(pressed.material, young=network))
+
+
 def answer(pressed: Indenter, depths: tuple[float, ...], tolerance: float) -> Indentation | None:
     """None where a named failure says why there is none."""
     try:
         return indent(pressed, depths, {"tolerance": tolerance})
+    except NotReached:
+        return None
+
+
+def answer_to_impact(scene: Scene, tolerance: float) -> Result | None:
+    """The same of an impact."""
+    try:
+        return run(scene, tolerance=tolerance)
     except NotReached:
         return None
 
@@ -57,5 +80,23 @@ def test_finer_runs_lie_within_both_bars(campaign_size: Callable[..., int]) -> N
         apart = np.abs(loose.force - tight.force) / (loose.force_error + tight.force_error)
         if apart.max() > 1.0:
             wrong.append(f"{pressed.material} {pressed.target} {depths}: {apart}")
+    assert not wrong
+    assert np.mean(converged) >= LEAST
+
+
+def test_finer_impacts_lie_within_both_bars(
+    campaign_size: Callable[..., int], uncovered: Callable[..., dict[str, float]]
+) -> None:
+    """Elastic, with one branch, with two; all with --full, else the first, which has none."""
+    count, random = campaign_size(SCENES), np.random.default_rng(19)
+    converged, wrong = list[bool](), list[str]()
+    for number in range(count if count == SCENES else 1):
+        one = struck(random, number % 3)
+        loose = answer_to_impact(one, TOLERANCE)
+        tight = None if loose is None else answer_to_impact(one, 0.25 * TOLERANCE)
+        converged.append(loose is not None and loose.converged)
+        over = {} if loose is None or tight is None else uncovered(loose, tight)
+        if over:
+            wrong.append(f"{one.material} {one.target} {one.velocity:g}: {over}")
     assert not wrong
     assert np.mean(converged) >= LEAST

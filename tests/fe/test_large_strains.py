@@ -13,11 +13,13 @@ from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import basis_on
 from fe_contact.indentation import indent, settings
 from fe_contact.solids.base import PointAnswer, State
+from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
-from fe_contact.solids.contact import OnUndeformed
+from fe_contact.solids.contact import OnRound, OnUndeformed
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Equilibrium
 from fe_contact.solids.pressing import Solid, advanced, press
+from fe_contact.solids.rolled import Rolled
 from lumped import BadInput, Scene, laws
 from lumped.indentation import Indentation
 from lumped.materials import Material, Relaxation
@@ -26,6 +28,8 @@ from lumped.result.model_ledger import ENERGY_NAMES, FIRST_ORDER
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import LawChoice, Model
 from lumped.shapes import Sphere
+from lumped.shapes.prism import Prism
+from lumped.targets.plane import Plane
 
 COARSE = {"elements_per_contact": 2.0, "order": 3}
 
@@ -85,6 +89,42 @@ def test_a_patch_strained_alike_balances_and_its_tangent_is_a_slope(name: str, p
     change = tangent @ way
     assert (above.forces - below.forces) / 2e-6 == pytest.approx(change, abs=1e-6 * np.abs(change).max())
     assert (above.energy - below.energy) / 2e-6 == pytest.approx(float(loaded.forces @ way), abs=1e-7 * scale)
+
+
+def test_overlap_with_a_circle_has_the_slopes_that_differences_tell() -> None:
+    random, circle, step = np.random.default_rng(8), OnRound(1.7), 1e-5
+    place, moved = random.uniform(-0.8, 0.8, (2, 6, 5)), random.uniform(-0.1, 0.1, (2, 6, 5))
+    place[1] = -np.abs(place[1])
+    found = circle.overlap(place, moved, 0.2)
+    x, z = place + moved
+    assert found.depth == pytest.approx(1.7 - np.hypot(x, z + 0.2 - 1.7))
+    for along in range(2):
+        shift = np.zeros((2, 1, 1))
+        shift[along] = step
+        after, before = (circle.overlap(place, moved + sign * shift, 0.2) for sign in (1.0, -1.0))
+        assert found.normal[along] == pytest.approx((after.depth - before.depth) / (2.0 * step), abs=1e-8)
+        assert found.bend[along] == pytest.approx((after.normal - before.normal) / (2.0 * step), abs=1e-8)
+
+
+def test_slopes_on_a_ring_laid_flat_turn_with_it() -> None:
+    """Of x and z of the plane, told on the mesh: one along itself, zero along the other."""
+    random, rolled, step = np.random.default_rng(9), Rolled(2.0), 1e-5
+    flat = random.uniform(-1.0, 1.0, (2, 20))
+    shifts = step * np.eye(2)[:, :, None]
+    gradient = np.array([rolled.place(flat + one) - rolled.place(flat - one) for one in shifts]) / (2.0 * step)
+    found = rolled.slopes(np.moveaxis(gradient, 1, 2), flat)
+    assert found == pytest.approx(np.broadcast_to(np.eye(2)[:, None], found.shape), abs=1e-8)
+
+
+@pytest.mark.parametrize("sides", ["free", "confined"])
+def test_a_block_pressed_by_little_is_a_spring(sides: str) -> None:
+    """Its modulus over its thickness, and beyond that its strain."""
+    block = Prism(4.0, 0.5, sides)
+    depth = np.array([1e-4, 2e-4]) * 0.5
+    for nu in (0.1, 0.45):
+        indenter = Indenter(block, Material(Relaxation(1.0), nu, hyperelastic="neo_hooke"), Plane())
+        change = press_block(indenter, block, depth).force / (4.0 * depth / 0.5) - 1.0
+        assert abs(2.0 * change[0] - change[1]) < 1e-6
 
 
 def test_the_force_is_the_slope_of_the_energy() -> None:

@@ -9,10 +9,13 @@ import numpy as np
 import pytest
 
 from fe_contact import run
-from fe_contact.reference import plan
+from fe_contact.reference import check, plan
+from fe_contact.targets.base import TARGETS as MESHED
 from lumped import FeContactError, Scene
 from lumped.result.model_ledger import Peak, model_ledger
+from lumped.result.result import NO_KEY
 from lumped.schema.files import SCENES
+from lumped.targets import TARGETS
 
 HEAVY = 1000.0  # kg/m3
 PEAK = Peak(1.0, 1e-5, 1e-3, 1e-3)
@@ -39,6 +42,43 @@ def test_a_key_for_inertia_stands_where_it_works(name: str) -> None:
     except FeContactError as failure:
         works = "support" not in (said := str(failure)) and "mass" in said  # a flying ball has that of its density
     assert bool(entry.key) is works
+
+
+@pytest.mark.parametrize("name", [name for name in SCENES.names if Scene.load(name).has_geometry])
+def test_a_key_for_large_strains_stands_where_they_are_built(name: str) -> None:
+    """A dashpot, a constant bulk modulus that relaxes, flat ends, two bodies, waves: no larger model here."""
+    scene = Scene.load(name)
+    if scene.model.finite:
+        return
+    (entry,) = [one for one in model_ledger(scene, PEAK) if one.effect == "finite strain"]
+    try:
+        check(scene.changed({"model.kinematics": "finite"}), {})
+        works = True
+    except FeContactError:
+        works = False
+    assert (entry.key, entry.value) == (("model.kinematics", "finite") if works else ("", None))
+    assert entry.cure.endswith("kinematics=finite" if works else NO_KEY)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"target.material.constant": "bulk"},
+        {"target.material": {"law": "kelvin_voigt", "E": 1e6, "eta": 1e3, "nu": 0.4}},
+    ],
+    ids=["bulk", "dashpot"],
+)
+def test_what_does_not_relax_with_large_strains_has_no_larger_model(changes: dict[str, object]) -> None:
+    ledger = model_ledger(Scene.load("polymer-sphere", changes), PEAK)
+    (entry,) = [one for one in ledger if one.effect == "finite strain"]
+    assert entry.cure == NO_KEY
+    assert "with large strains in this version" in entry.note
+
+
+def test_targets_of_large_strains_are_those_that_have_a_mesh_for_them() -> None:
+    meshed = {name for name, member in MESHED.members.items() if member.solid is not None}
+    own = {name for name, part in TARGETS.members.items() if part.kind.large_strains}
+    assert own - {"plane"} == meshed
 
 
 def test_a_blocks_own_waves_press_as_the_ledger_says(campaign_size: Callable[[int], int]) -> None:

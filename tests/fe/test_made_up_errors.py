@@ -116,6 +116,14 @@ def test_errors_that_halve_with_the_step_are_covered_and_no_more(
         assert 0.25 < min(found.values()) <= max(found.values()) <= 1.0, (size, phase, found)
 
 
+def test_the_band_of_a_force_whose_errors_halve_with_the_step_holds_it_and_is_no_wider(settings: Numerics) -> None:
+    for size, phase in sizes(4)[:10]:
+        history = replace(judged(settings, {1: size}, phase), numerics=settings).history()
+        off, band = np.abs(history.force - TRUTH.force(history.time)), history.force_error
+        assert np.all(off <= band), (size, phase)
+        assert np.median(off[1:-1] / band[1:-1]) > 0.25, (size, phase)
+
+
 def test_errors_of_the_schemes_order_and_the_next_are_covered_and_the_bars_are_tight(settings: Numerics) -> None:
     """Tighter where the order shows clearly, which the next one may spoil."""
     for (size, phase), share in zip(sizes(2), np.linspace(0.0, 1.5, CASES), strict=True):

@@ -9,12 +9,15 @@ from typing import Any
 import numpy as np
 import pytest
 import restitution_laws as published
+from scipy.special import beta
 
 import fe_contact
 from fe_contact.indentation import indent
-from fe_contact.plastic.course import Course, settings
+from fe_contact.plastic.course import Course, Varied, settings
 from fe_contact.plastic.fields import PressedAgain
+from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, _at_most
 from fe_contact.plastic.path import Presser
+from fe_contact.steppers.steps import Work
 from fe_contact.studies.compare.study import compare
 from lumped import Result, Scene
 from lumped.errors import BadInput
@@ -87,7 +90,7 @@ def test_it_yields_first_under_the_axis() -> None:
     presser = Presser(ground, 4000.0, course.unit)
     here = presser.first(depth / course.unit, math.sqrt(RADIUS * depth) / course.unit)
     assert not np.any(here.state[1])
-    core = ground.encounter.body.core
+    core = ground.core
     stress = ground.yielding.flowed(core.gradient(here.displacement), *here.state).stress
     mean = stress[[0, 3, 4]].mean(axis=0)
     mises = np.sqrt(1.5 * ((stress[[0, 3, 4]] - mean) ** 2).sum(axis=0) + 3.0 * stress[1] ** 2)
@@ -101,6 +104,39 @@ def test_it_yields_first_under_the_axis() -> None:
     assert pressure / axis(deepest) == pytest.approx(first_yield(0.3)[0], rel=0.01)
     assert first_yield(0.3)[0] == pytest.approx(1.60, rel=0.01)
     assert deepest == pytest.approx(0.48, abs=0.01)
+
+
+@pytest.mark.parametrize("share", [1.0, 0.3])
+def test_a_striker_on_a_spring_that_gives_back_a_share_of_its_depth_moves_as_known(share: float) -> None:
+    """k d^(3/2) on the way in, and as round a release: its duration and restitution by the root of that share."""
+    k, mass, velocity, power = 3e9, 0.2, 1.5, 1.5
+    energy = 0.5 * mass * velocity**2
+    deepest = (2.5 * energy / k) ** 0.4
+    depth = deepest * np.geomspace(1e-3, 1.2, 300)
+    lost = (1.0 - share) * energy
+    given = Answered(depth, np.log(k * depth**1.5), np.sqrt(depth), share, SPRUNG, np.sqrt(SPRUNG), 0.0, lost)
+    found = Rebound(given, mass, energy, power, power).march(Work())
+    half = deepest / velocity * beta(0.4, 0.5) / 2.5
+    back = math.sqrt(share)
+    assert found.depth.max() == pytest.approx(deepest, rel=1e-6)
+    assert found.time[-1] == pytest.approx(half * (1.0 + back), rel=1e-5)
+    assert found.time[found.depth.argmax()] == pytest.approx(half, rel=1e-5)
+    assert found.impulse[-1] == pytest.approx(mass * velocity * (1.0 + back), rel=1e-5)
+    assert found.depth[-1] == pytest.approx((1.0 - share) * deepest, abs=1e-9 * deepest)
+    assert abs(found.energy["residual"]) < 1e-5 * energy
+    coming = found.depth[: found.depth.argmax() + 1]
+    speed = velocity - found.impulse[: coming.size] / mass
+    assert 0.5 * mass * speed**2 + 0.4 * k * coming**2.5 == pytest.approx(energy, rel=1e-5)
+    assert found.radius[: coming.size - 1] ** 2 == pytest.approx(coming[1:], rel=1e-3)
+
+
+def test_no_impact_goes_much_deeper_than_where_its_energy_is_spent_at_the_least_pressure() -> None:
+    """Three quarters of the strength on what overlaps, pi (2 R d - d^2): from there on to 1.15 times as deep."""
+    scene = Scene.from_dict(tables(mass=MASS, velocity=3.0))
+    energy = 0.5 * MASS * scene.velocity**2
+    depth = np.array([1.0, 1.0 / 1.15]) * _at_most(scene, energy)
+    most, before = 0.75 * STRENGTH * math.pi * (RADIUS * depth**2 - depth**3 / 3.0)
+    assert before < 1.05 * energy <= 1.05 * most
 
 
 @pytest.fixture(scope="module")
@@ -195,6 +231,32 @@ def test_bars_hold_against_finer_runs(
             assert uncovered(one, finer) == {}, (tolerance, nu, hardening, speed)
             converged.append(one.converged)
     assert np.mean(converged) >= 0.95
+
+
+def test_two_meshes_that_agree_by_chance_do_not_close_the_bar() -> None:
+    """A third one tells; where errors fall with order one, all three tell the finest mesh's own error."""
+
+    def onwards(one: float, better: float, worse: float, weight: float) -> float:
+        return one + weight * (better - worse)
+
+    def bar(fine: float, middle: float, coarse: float) -> float:
+        pairs = Varied(fine, middle, middle, middle, coarse, coarse, coarse).pairs(onwards)["mesh"]
+        return sum(pair.factor * abs(pair.first - pair.second) for pair in pairs)
+
+    assert bar(1.0, 1.0, 1.1) > 0.1
+    assert bar(1.01, 1.01 + 0.01 * (math.sqrt(2.0) - 1.0), 1.02) == pytest.approx(1.25 * 0.01)
+
+
+def test_a_punch_yields_with_the_coarsest_settings_and_fewer_elements_are_refused() -> None:
+    """The work of a rim's elastic contact, F = 2 E* a depth, where nothing but its very rim yields."""
+    depth, punch = [4e-6], {"shape": "punch", "radius": RADIUS}
+    found = pressed(depth, {"tolerance": 0.05}, **punch)
+    elastic = 2.0 * modulus(0.3) * RADIUS * found.depth
+    assert np.all(np.abs(found.force / elastic - 1.0) < 1e-2)
+    assert np.all(found.force < elastic * 1.001)
+    for few, accepted, striker in ((1.9, "from 2 to 32", punch), (3.9, "from 4 to 32", {})):
+        with pytest.raises(BadInput, match=rf"elements_per_contact: {few}.*{accepted}"):
+            pressed(depth, {"elements_per_contact": few}, **striker)
 
 
 @pytest.mark.tenth

@@ -8,7 +8,7 @@ d ln F/d ln depth at a point.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -20,6 +20,7 @@ from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.studies import journal
 from fe_contact.studies.files import Line, lines_of
+from fe_contact.studies.finite_exponents import SHARES, StrainedRow
 from lumped.load_curves.half_space import HalfSpaceCurve
 from lumped.load_curves.layer import LayerCurve, LayerPunch, LineLayer, PointLayer
 from lumped.load_curves.plane_contact import ParabolaProfile
@@ -49,6 +50,16 @@ ANY = 0.3  # nu on a sliding base, where it does not count
 TRIED = (0.1, 1.0, 5.0)  # contact radii over thickness at which finite elements check the row
 PLACES = {("bonded", 0.3): TRIED, ("bonded", 0.49): TRIED[1:], ("sliding", None): TRIED[1:2]}
 QUICK_PLACES = {("bonded", 0.3): TRIED[1:2]}
+FINITE_NU = 0.45  # of layers that are strained much
+# On them, by what a person calls them: as steep as strikers are, lengths in thicknesses.
+STEEP: Mapping[str, Shape] = {
+    "sphere, R = h": Sphere(1.0),
+    "sphere, R = 5 h": Sphere(5.0),
+    "cone of 20 degrees": Cone(20.0),
+    "0.1 r^4": PowerProfile(0.1, 4.0),
+    "cylinder, R = h": Cylinder(1.0, 1.0),
+}
+QUICK_STEEP = ("sphere, R = h",)
 KEPT = "exponents.jsonl"
 
 
@@ -305,6 +316,22 @@ def check(profile: Profile, base: str, nu: float | None, ratio: float) -> Check:
         exact_factor=force / row,
         converged=found.converged,
     )
+
+
+def finite_rows(quick: bool) -> tuple[StrainedRow, ...]:
+    """Layers of unit thickness as large strains try them, against the row of the half-space."""
+    shapes = {name: STEEP[name] for name in (QUICK_STEEP if quick else STEEP)}
+    bases = ("bonded",) if quick else ("bonded", "sliding")
+    return tuple(_strained(name, shape, base) for name, shape in shapes.items() for base in bases)
+
+
+def _strained(name: str, shape: Shape, base: str) -> StrainedRow:
+    material = Material(Relaxation(1.0), FINITE_NU)
+    modulus = shape.modulus(material).relaxed
+    factor = 0.25 * np.pi if shape.plane else float(shape.resolved("parabola").load_curve.force(1.0))
+    alpha = 1.0 if shape.plane else shape.exponent_of_force
+    pressed = Indenter(shape, material, target=Layer(1.0, base))
+    return StrainedRow(f"{name}, {base} layer", pressed, SHARES, factor * modulus, alpha, shape.tip_radius, 1.0)
 
 
 def _local(depth: Array, force: Array, error: Array) -> Quantity:

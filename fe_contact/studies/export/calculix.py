@@ -75,7 +75,7 @@ class CalculiX:
 
     def impact(self, case: ImpactCase) -> str:
         """Raises BadInput: CalculiX has no relaxation in time."""
-        raise BadInput(Fault("--to", "calculix", f"{case.name}: slow indentation alone; accepted: --depth, or ngsolve"))
+        raise BadInput(Fault("--to", "calculix", f"{case.name}: no impact; cure: --depth D, m, or --to ngsolve"))
 
 
 def _deck(case: StaticCase) -> Iterator[str]:

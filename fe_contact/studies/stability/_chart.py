@@ -19,6 +19,7 @@ from fe_contact.studies import style
 from fe_contact.studies.stability.base import Chart, Measure, Row, studies
 
 CELL, LETTER = 0.16, 0.062  # height of a row, width of a letter of its name, in
+UPRIGHT = 0.085  # width of a column's name that stands upright, in
 TALLEST = 9.0  # panels that are taller together stand beside each other, in
 BESIDE, LINE = 0.12, 0.13  # between them; height of a line of their titles, in
 DECADES = 2.0  # either side of the limit that the colours span
@@ -95,7 +96,9 @@ def _map(rows: Sequence[Row], title: str, chart: Chart) -> Figure:
         axes.set_yticks(range(len(names)), [""] * len(names) if place % layout.across else names, fontsize=5.6)
         last = place + layout.across >= layout.count
         rotation = 0 if len(columns) <= FEW else 90
-        axes.set_xticks(range(len(columns)), columns if last else [""] * len(columns), rotation=rotation, fontsize=5.6)
+        every = 1 if len(columns) <= FEW else math.ceil(UPRIGHT * len(columns) / layout.wide)  # as many as have room
+        shown = [one if last and not number % every else "" for number, one in enumerate(columns)]
+        axes.set_xticks(range(len(columns)), shown, rotation=rotation, fontsize=5.6)
     style.heading(figure, title, LINES, TITLE_WIDTH)
     return figure
 

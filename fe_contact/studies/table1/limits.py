@@ -15,6 +15,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.indentation import indent
+from fe_contact.studies.finite_exponents import first_beyond
 from lumped.indentation import Indentation, power_law
 from lumped.load_curves.half_plane import HalfPlane
 from lumped.load_curves.layer import LineLayer, PointLayer
@@ -32,7 +33,6 @@ from lumped.targets.layer import Layer
 from lumped.targets.plane import Plane
 
 LIMIT = 0.01  # departure from the power law that counts as its end
-LEAST = 1e-9  # departure below which rounding rules
 WIDTHS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)  # radius of a disc over its thickness
 BLOCK_DEPTH = 1e-3  # over the thickness: every answer is linear
 TOLERANCE = 3e-4  # of the indentations by finite elements
@@ -78,29 +78,9 @@ def reach(row: TableRow, curves: Mapping[float, Indentation], pressed: Mapping[f
     every = np.array(departures)
     worst = every[np.abs(every).argmax(axis=0), np.arange(every.shape[1])]
     share = next(iter(curves.values())).depth / row.length
-    held = _held(share, np.abs(worst), np.max(bars, axis=0))
+    never = Quantity(float(share[-1]), 0.0, "1")
+    held = first_beyond(share, np.abs(worst), np.max(bars, axis=0), LIMIT) or never
     return Reach(float(share[0]), float(share[-1]), held, share, worst)
-
-
-def _held(share: Array, departure: Array, bar: Array) -> Quantity:
-    """The first depth at which a departure passes the limit, by a parabola through three depths, all in logarithms.
-
-    Its bar: how far the bars of the forces move it, and how far it lies from the straight line's answer.
-    """
-    beyond = np.flatnonzero(departure > LIMIT)
-    if not beyond.size:
-        return Quantity(float(share[-1]), 0.0, "1")
-    if beyond[0] == 0:
-        return Quantity(0.0, float(share[0]), "1")
-    end = int(beyond[0])
-    near = slice(max(end - 2, 0), end + 1)
-    x, y = np.log(share[near]), np.log(np.maximum(departure[near], LEAST) / LIMIT)
-    slope = (y[-1] - y[-2]) / (x[-1] - x[-2])
-    straight = x[-1] - y[-1] / slope
-    roots = np.real(np.polynomial.Polynomial.fit(x, y, x.size - 1).roots())
-    bent = float(roots[np.abs(roots - straight).argmin()])
-    moved = abs(bent - straight) + float(bar[end]) / (LIMIT * slope)
-    return Quantity(math.exp(bent), math.exp(bent) * math.expm1(moved), "1")
 
 
 @dataclass(frozen=True)

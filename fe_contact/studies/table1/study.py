@@ -22,6 +22,8 @@ from fe_contact.indentation import indent
 from fe_contact.progress import Progress, silent
 from fe_contact.reference import solve
 from fe_contact.studies import journal
+from fe_contact.studies.finite_exponents import SHARES as FINITE_SHARES
+from fe_contact.studies.finite_exponents import StrainedRow
 from fe_contact.studies.table1.limits import CHORD, DEPTH, Block, Place, Reach, blocks, places, reach
 from lumped.errors import NotReached
 from lumped.indentation import Indentation, power_law
@@ -48,6 +50,7 @@ ENDS = (0.1, 0.95)  # the same where the slope of a logarithm is wanted
 DEEPER = 1.3  # greatest depth over the one at which line contact is tried, if it were as stiff as printed
 IMPACT_TOLERANCE = 1e-3  # of the certified impacts
 MASS = 1.0  # kg: the velocity follows from it
+FINITE_NU = 0.45  # of large strains: rubber, which bears them
 WORKERS = 2  # work: default processes side by side
 KEPT = "table1.jsonl"
 
@@ -100,6 +103,26 @@ def table1(where: Path, progress: Progress = silent, jobs: int = WORKERS) -> tup
     bonded = tuple(block for name in stuck for block in found[name])
     tried = (found[_named(row)] for row in ROWS.values())
     return tuple(replace(one, bonded=bonded) if one.row.block and not one.failure else one for one in tried)
+
+
+def finite_rows() -> tuple[StrainedRow, ...]:
+    """Every row of the table as large strains try it."""
+    return tuple(_strained(row) for row in ROWS.values())
+
+
+def _strained(row: TableRow) -> StrainedRow:
+    """Depths over the row's length, or, of the cone, in m: it has none."""
+    pressed = bodies(row, FINITE_NU)
+    scene = row.scene(*pressed)
+    return StrainedRow(
+        _named(row),
+        scene,
+        tuple(share * row.length for share in FINITE_SHARES),
+        row.factor * row.modulus(*pressed),
+        row.alpha,
+        radius=None if row.block or not row.length_name else row.length,
+        thickness=row.length if row.block else scene.target.body_depth,
+    )
 
 
 def _named(row: TableRow) -> str:

@@ -133,11 +133,17 @@ class StrainEnergy:
 
 @dataclass(frozen=True, eq=False)
 class Strained:
-    """``energy`` W (...), Pa; first Piola-Kirchhoff ``stress`` (5, ...) and ``tangent`` dP/dF (5, 5, ...), Pa."""
+    """``energy`` W (...), Pa; first Piola-Kirchhoff ``stress`` (5, ...) and ``tangent`` dP/dF (5, 5, ...), Pa.
+
+    ``pulls`` (2, ...) derivatives of W by D and j, which weigh :data:`BENDS` in the tangent, and ``drifts`` (2, 5, ...)
+    theirs by the gradient.
+    """
 
     energy: Array
     stress: Array
     tangent: Array
+    pulls: Array
+    drifts: Array
 
 
 # Second derivatives of D and of j in (rr, rz, zr, zz, tt): physics.
@@ -148,6 +154,8 @@ BENT_AREA = np.array(
     [[0, 0, 0, 1, 0], [0, 0, -1, 0, 0], [0, -1, 0, 0, 0], [1, 0, 0, 0, 0], [0, 0, 0, 0, 0]], dtype=float
 )
 
+BENDS = (BENT_SHAPE, BENT_AREA)
+
 
 def strained(energy: StrainEnergy, gradient: Array, shear: float, lame: float) -> Strained:
     """What an energy answers to a displacement gradient (5, ...), of components (rr, rz, zr, zz, tt).
@@ -157,18 +165,24 @@ def strained(energy: StrainEnergy, gradient: Array, shear: float, lame: float) -
     rr, rz, zr, zz, tt = gradient
     invariants = Invariants.of(gradient)
     if not (np.all(invariants.area.value > 0.0) and np.all(invariants.hoop.value > 0.0)):
-        return Strained(np.full(tt.shape, np.inf), np.zeros_like(gradient), np.zeros((5, *gradient.shape)))
+        none = np.zeros((5, *gradient.shape))
+        return Strained(np.full(tt.shape, np.inf), np.zeros_like(gradient), none, none[:2, 0], none[:2])
     density = energy.density(invariants, shear, lame)
     rise = np.zeros((3, *gradient.shape))
     rise[0, :4] = 2.0 * (rr - zz), 2.0 * (rz + zr), 2.0 * (rz + zr), 2.0 * (zz - rr)
     rise[1, :4] = 1.0 + zz, -zr, -rz, 1.0 + rr
     rise[2, 4] = 1.0
-    more = (1,) * tt.ndim
     stress = np.einsum("a...,ai...->i...", density.first, rise)
     pushed = np.einsum("ab...,bj...->aj...", density.second, rise)
     tangent = np.einsum("ai...,aj...->ij...", rise, pushed)
-    tangent += density.first[0] * BENT_SHAPE.reshape(5, 5, *more) + density.first[1] * BENT_AREA.reshape(5, 5, *more)
-    return Strained(density.value, stress, tangent)
+    tangent += bent(density.first[:2])
+    return Strained(density.value, stress, tangent, density.first[:2], pushed[:2])
+
+
+def bent(pulls: Array) -> Array:
+    """What derivatives of W by D and j, (2, ...), add to a tangent, (5, 5, ...)."""
+    more = (1,) * (pulls.ndim - 1)
+    return np.asarray(sum(pull * bend.reshape(5, 5, *more) for pull, bend in zip(pulls, BENDS, strict=True)))
 
 
 ENERGIES = Folder[StrainEnergy]("lumped.materials.energies", "material", "hyperelastic")
