@@ -23,7 +23,7 @@ from fe_contact.settings import DEFAULT_TOLERANCE, RANGES, Given, Numerics, chec
 from fe_contact.steppers.flat_end import FlatEnd
 from fe_contact.targets.base import TARGETS
 from lumped.errors import BadInput
-from lumped.laws import correspondence, mdr
+from lumped.laws import correspondence, mdr, ting
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.fixed_area import Column
 from lumped.load_curves.sampled import SampledCurve
@@ -164,7 +164,8 @@ def scales(scene: Scene, numerics: Numerics) -> mdr.ImpactScales:
         scene = with_constant_nu(scene, partial(_stiffness, scene, coarse))
     if not curve:
         scene = Answered.by(scene, _answer(scene, coarse))
-    return correspondence.estimate(scene)
+    grows_once = scene.gravity == 0.0 and not _flat(scene)
+    return correspondence.estimate(scene, ting.solve if grows_once else None)
 
 
 def _stiffness(scene: Scene, coarse: Numerics, elastic: Material) -> float:

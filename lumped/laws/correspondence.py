@@ -216,10 +216,13 @@ def of(scene: Scene) -> Correspondence:
     return Correspondence(**(law.values if law is not None and law.name == Correspondence.name else {}))
 
 
-def estimate(scene: Scene) -> ImpactScales:
-    """Scales of the impact on any target with a load curve: one integration, no bars. Raises NotReached, BadInput."""
+def estimate(scene: Scene, by: Solve | None = None) -> ImpactScales:
+    """Scales of the impact on any target with a load curve: one integration, no bars. Raises NotReached, BadInput.
+
+    ``by``: that of another law with memory, as long as it gets on; None: this one's.
+    """
     try:
-        answer = once(scene, ROUGH, solve)
+        answer = once(scene, ROUGH, by or solve)
     except FeContactError:  # a long step may try depths beyond the load curve which the motion never sees
         answer = once(scene, FINE, solve)
     value = {name: quantity or 0.0 for name, quantity in answer.values.items()}
