@@ -141,7 +141,7 @@ class OnSpring(Marcher):
 def test_steps_on_a_spring_err_as_their_square_whatever_time_was_expected(
     expected: float, settings_of: Callable[..., Numerics], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """k d^(3/2), lengths and forces in units of their own: the duration by the beta function, the rest by its energy."""
+    """k d^(3/2), lengths and forces in units of their own: the duration by the beta function, the rest by energy."""
     monkeypatch.setattr(relaxing_impact, "contact_radius", lambda balance: 1.0)
     unit, scale, mass, velocity = 0.02, 3.0, 0.4, 0.7
     strike = Strike(lambda r: r**2, mass, velocity, 0.0, Relaxation(1.0), 10.0)
