@@ -252,6 +252,8 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("lumped/solvers/hereditary/march.py", "_landed", ""): "a break of the plan, or the same place but for rounding",
     ("fe_contact/waves/targets/layer.py", "ROUGH", ""): BEGINS,
     ("fe_contact/steppers/flat_end.py", "FlatEnd.of", "SHALLOW * radius"): "the depth of a linear press, divided again",
+    ("fe_contact/steppers/flat_end.py", "FlatStepper.standing", ""): "the one place there is, from either end",
+    ("fe_contact/steppers/flat_end.py", "FlatStepper.clearance", "a tenth"): "zero where the one place lands",
     ("lumped/solvers/mdr/nest.py", "Prescribed.propose", "1 -> 0"): "a guard for a march of one step",
     ("lumped/solvers/mdr/nest.py", "Prescribed.propose", "if len"): "a guard for a march of one step",
 }

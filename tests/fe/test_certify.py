@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import Any
 
@@ -17,10 +17,11 @@ from fe_contact import reference
 from fe_contact.budget.budget import CAUSES, SETTING
 from fe_contact.budget.certify import Certified, certify
 from fe_contact.budget.plan import plan
-from fe_contact.budget.refine import dominant
+from fe_contact.budget.refine import Finer, dominant, refine
 from fe_contact.budget.variation import Softening
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import solve
+from fe_contact.errors import MemoryTooSmall
 from fe_contact.reference import result_of
 from fe_contact.settings import Numerics
 from fe_contact.steppers.steps import Strike
@@ -213,6 +214,34 @@ def test_refinement_touches_the_setting_of_its_cause_only(cause: str, scene_of: 
     assert {key for key in before if before[key] != after[key]} == {SETTING[cause]}
     assert after[SETTING[cause]] > before[SETTING[cause]]
     assert dominant(errors, numerics, (SETTING[cause],)) is None
+
+
+@dataclass
+class Outgrown:
+    """A way that settles on a mesh so many times as wide as the first one."""
+
+    least: float
+    rounds: int = 3
+
+    def certified(self, numerics: Numerics) -> Numerics:
+        if numerics.contact_radius < self.least:
+            raise MemoryTooSmall(numerics.contact_radius)
+        return numerics
+
+    def finer(self, found: Numerics) -> Finer:
+        return Finer(None)
+
+
+def test_a_contact_that_outgrows_its_mesh_gets_a_wider_one_a_few_times(
+    hertz_strike: Callable[..., Strike], settings_of: Callable[..., Numerics]
+) -> None:
+    numerics = settings_of(hertz_strike())
+    for wider in (1.0, 1.3, 2.0, 3.0):
+        found, refused = refine(Outgrown(wider * numerics.contact_radius), numerics)
+        assert wider <= found.contact_radius / numerics.contact_radius < 1.6 * wider
+        assert not refused
+    with pytest.raises(MemoryTooSmall):
+        refine(Outgrown(5.0 * numerics.contact_radius), numerics)
 
 
 def test_pinned_settings_are_kept_and_the_rest_is_refined(scene_of: Scenes) -> None:

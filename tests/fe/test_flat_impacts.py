@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 import fe_contact
+from fe_contact.march.impacts import SurfaceBouncer, follow
 from fe_contact.reference import solve
 from fe_contact.settings import Numerics
-from fe_contact.steppers.flat_end import FlatStepper
+from fe_contact.steppers.flat_end import FlatEnd, FlatStepper
 from fe_contact.steppers.steps import Strike
 from lumped import BadInput, Material, Model, Relaxation, Result, Scene, laws, simulate
 from lumped.scene.scene import Motion
@@ -189,6 +190,18 @@ def test_the_force_at_a_touch_is_that_of_a_first_step_without_length(
     for stepper in (first, FlatStepper(again, stiffness, 1.0, numerics)):
         assert stepper.step(stepper.touch(), [], 1e-9).force == pytest.approx(stepper.first_force, abs=1e-7)
     assert FlatStepper(again, stiffness, 1.0, numerics).first_force > 0.0
+
+
+def test_a_flat_end_that_bounces_comes_back_as_fast_as_it_came(settings_of: Settings) -> None:
+    """On an elastic body: the second touch is a contact and a flight of 2 v/g later, where the first one was."""
+    strike = Strike(np.zeros_like, 1.0, 0.3, 0.05, Relaxation(1.0), 40.0)
+    numerics = settings_of(strike, steps=80).varied(contact_time=math.pi / math.sqrt(2.5))
+    bouncer = SurfaceBouncer(FlatEnd(2.5, 1.0, 1, np.inf), lambda number, strike: numerics)
+    first, second = follow(bouncer, strike, 2).contacts
+    assert second.strike.velocity == pytest.approx(strike.velocity, rel=1e-5)
+    assert second.strike.touched_at == pytest.approx(first.march.time[-1] + 2.0 * 0.3 / 0.05, rel=1e-5)
+    assert second.strike.depth == pytest.approx(0.0, abs=1e-6)
+    assert second.march.time[-1] == pytest.approx(first.march.time[-1], rel=1e-5)
 
 
 def test_the_share_of_the_penalty_is_safety_times_what_half_of_it_changes() -> None:

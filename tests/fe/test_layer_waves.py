@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -65,6 +66,19 @@ def test_without_density_volume_and_shape_relax_apart_as_without_inertia() -> No
     still = simulate(Scene.load("rubber-layer-bulk"), "fe", {"tolerance": 3e-3}).quantities
     for key in RULED:
         assert curve.quantities[key] == pytest.approx(still[key].value, rel=1e-3), key
+
+
+def test_volume_and_shape_apart_resist_at_once_as_one_elastic_material_does() -> None:
+    given: Any = SimpleNamespace(stiffness=(np.diag([1.0, 2.0]), np.array([[3.0, 1.0], [1.0, 5.0]])))
+    bulk = {"law": "sls", "E1": 1e6, "E2": 2e6, "C1": 1e4, "nu": 0.4, "constant": "bulk", "density": 1e3}
+    relaxing = Scene.load("polymer-layer", {"target.material": bulk})
+    volume, shape = relaxing.geometry.material.bulk, relaxing.geometry.material.shear.glassy
+    young, nu = 9.0 * volume * shape / (3.0 * volume + shape), (1.5 * volume - shape) / (3.0 * volume + shape)
+    elastic = Scene.load("polymer-layer", {"target.material": {"law": "elastic", "E": young, "nu": nu}})
+    apart, whole = (layer._parts(scene, given, 0.3) for scene in (relaxing, elastic))
+    assert len(apart) == 2
+    summed, once = (sum(part.relaxation.glassy * part.stiffness for part in parts) for parts in (apart, whole))
+    assert summed == pytest.approx(once, rel=1e-12)
 
 
 @pytest.mark.tenth

@@ -115,7 +115,10 @@ def test_a_striker_on_a_spring_that_gives_back_a_share_of_its_depth_moves_as_kno
     depth = deepest * np.geomspace(1e-3, 1.2, 300)
     lost = (1.0 - share) * energy
     given = Answered(depth, np.log(k * depth**1.5), np.sqrt(depth), share, SPRUNG, np.sqrt(SPRUNG), 0.0, lost)
-    found = Rebound(given, mass, energy, power, power).march(Work())
+    rebound = Rebound(given, mass, energy, power, power)
+    shallow = deepest * np.geomspace(1e-6, 1.0, 9)
+    assert rebound.force(shallow) == pytest.approx(k * shallow**1.5, rel=1e-6)
+    found = rebound.march(Work())
     half = deepest / velocity * beta(0.4, 0.5) / 2.5
     back = math.sqrt(share)
     assert found.depth.max() == pytest.approx(deepest, rel=1e-6)

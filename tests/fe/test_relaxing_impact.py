@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.special import beta
 
-from fe_contact import run
+from fe_contact import relaxing_impact, run
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.curve import Curve, extrapolated
-from fe_contact.relaxing_impact import Marcher, plan
+from fe_contact.relaxing_impact import Instant, Marcher, plan
+from fe_contact.settings import Numerics
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.relaxing import Fading, Relaxing, doubled, green, second
 from fe_contact.steppers.steps import Strike
@@ -108,6 +115,55 @@ def test_a_light_impact_is_that_of_small_strains() -> None:
         assert found.quantities[name] == pytest.approx(small.quantities[name].value, rel=4e-3)
     assert abs(found.energy["residual"]) < 1e-3 * found.energy["in"]
     assert found.energy["viscous"] == pytest.approx(small.energy["viscous"], rel=0.02)
+
+
+@dataclass(frozen=True, eq=False)
+class OnSpring(Marcher):
+    """The force depth^(3/2) in place of a body."""
+
+    def _touch(self) -> Instant:
+        rest = Fading.over(self.network, 1.0).at_rest(1)
+        return Instant(0.0, 0.0, self.strike.velocity / self.solid.unit, 0.0, 0.0, 0.0, None, rest, rest)
+
+    def _equilibrium(self, here: Instant, depth: float, fading: Fading) -> Any:
+        loaded = SimpleNamespace(answer=SimpleNamespace(state=here.memory))
+        balance = SimpleNamespace(displacement=np.zeros(1), loaded=loaded, touch=SimpleNamespace(energy=0.0))
+        return SimpleNamespace(rigid_force=np.maximum(depth, 0.0) ** 1.5, iterations=1, balance=balance)
+
+    def _worked(self, here: Instant, found: Any) -> float:
+        return 0.0
+
+    def _stored(self, last: Instant) -> float:
+        return 0.0
+
+
+@pytest.mark.parametrize("expected", [0.7, 1.0, 1.4])
+def test_steps_on_a_spring_err_as_their_square_whatever_time_was_expected(
+    expected: float, settings_of: Callable[..., Numerics], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """k d^(3/2), lengths and forces in units of their own: the duration by the beta function, the rest by energy."""
+    monkeypatch.setattr(relaxing_impact, "contact_radius", lambda balance: 1.0)
+    unit, scale, mass, velocity = 0.02, 3.0, 0.4, 0.7
+    strike = Strike(lambda r: r**2, mass, velocity, 0.0, Relaxation(1.0), 10.0)
+    solid: Any = SimpleNamespace(unit=unit, encounter=SimpleNamespace(body=SimpleNamespace(rim=np.zeros(1, dtype=int))))
+    k, energy = scale / unit**1.5, 0.5 * mass * velocity**2
+    depth = (2.5 * energy / k) ** 0.4
+    true = {
+        "peak_depth": depth,
+        "peak_force": k * depth**1.5,
+        "duration": 2.0 * depth / velocity * beta(0.4, 0.5) / 2.5,
+        "impulse": 2.0 * mass * velocity,
+    }
+    errors = []
+    for steps in (60, 120):
+        numerics = settings_of(strike, steps=steps).varied(contact_time=expected * true["duration"], peak_share=0.5)
+        march = OnSpring(strike, solid, strike.relaxation, numerics, scale, 1.5).march()
+        found = Curve.of(march, strike).quantities
+        errors.append([found[name] / value - 1.0 for name, value in true.items()])
+        assert abs(march.energy["residual"]) < 1e-3 * energy
+    few, many = np.abs(errors)
+    assert few.max() < 1e-3
+    assert np.all(many < np.maximum(0.3 * few, 1e-7))
 
 
 REFUSED = {

@@ -6,6 +6,7 @@ import math
 from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from scipy.optimize import brentq
 from scipy.special import beta
 
 from lumped import Model, Motion, Quantity, Scene, laws, simulate
+from lumped.indentation import FiniteSize, power_law
 from lumped.laws import _force_law, _hereditary
 from lumped.laws._assembly import Answer, bars
 from lumped.numbers import Array
@@ -214,6 +216,36 @@ def test_what_creeps_to_rest_under_its_weight_is_said_to_rest() -> None:
         impulse, elapsed = result.quantities["impulse"], result.history.time[-1]
         given = scene.mass * (scene.velocity + scene.gravity * elapsed)
         assert abs(impulse.value - given) <= impulse.error < 1e-6 * given
+
+
+def signs(error: Array) -> Array:
+    """Errors of every sign, (2^n, n)."""
+    return error * np.array(list(product((-1.0, 1.0), repeat=error.size)))
+
+
+def test_the_bars_of_a_power_law_hold_whatever_the_signs_of_the_errors_and_no_more() -> None:
+    depth, error = np.geomspace(1e-4, 1e-2, 7), np.geomspace(0.002, 0.03, 7)
+    true, off = {"alpha": 1.4, "D": 3.0, "D_at_alpha": 3.0}, defaultdict(list)
+    for wrong in signs(error):
+        found = power_law(depth, 3.0 * depth**1.4 / (1.0 + wrong), error, 1.4)
+        for name, value in true.items():
+            quantity = found[name]
+            off[name].append(abs(value / quantity.value - 1.0) / (quantity.error / quantity.value))
+    for name, ratios in off.items():
+        assert 0.9 < max(ratios) < 1.0 + 1e-9, name
+
+
+def test_the_bars_of_what_finite_spheres_add_hold_whatever_the_signs_of_the_errors_and_no_more() -> None:
+    x, true, off = np.geomspace(0.01, 0.1, 5), {"c": 0.3, "k": -0.2, "d": 0.7}, defaultdict(list)
+    whole, error = x * (true["c"] + true["k"] * np.log(x) + true["d"] * x), 1e-3 * np.linspace(0.5, 1.0, 5)
+    for wrong in signs(error):
+        found = FiniteSize(x, whole + wrong, error)
+        for name, value in true.items():
+            off[name].append(abs(found.terms[name].value - value) / found.terms[name].error)
+        slope, middle = found.slope, whole / x
+        assert slope.value - slope.error <= middle.min() <= middle.max() <= slope.value + slope.error
+    for name, ratios in off.items():
+        assert max(ratios) == pytest.approx(1.0), name
 
 
 @pytest.mark.parametrize("name", ["peak_force", "restitution"])
