@@ -284,11 +284,13 @@ def _zeros(places: Array, values: Array, rounding: float) -> list[float]:
 
 
 def _place(points: Array, rise: Array, value: float) -> float:
-    """The place where the rise has this value, by a power between the points."""
+    """The place where the rise has this value, by a power between the points, by a line where a flat end has none."""
     after = int(rise.searchsorted(value))
     if after in (0, points.size):
         return float(points[min(after, points.size - 1)])
     pair = slice(after - 1, after + 1)
+    if rise[after - 1] <= 0.0:
+        return float(np.interp(value, rise[pair], points[pair]))
     return float(np.exp(np.interp(np.log(value), np.log(rise[pair]), np.log(points[pair]))))
 
 

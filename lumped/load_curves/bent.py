@@ -48,6 +48,12 @@ class BentCurve(KnownByRadius):
         """Contact radius of the first touch, m: that of a flat end."""
         return self.radii[0] if self.slope == 0.0 else 0.0
 
+    @property
+    def root_before(self) -> float:
+        """-pi s/(2 c) of a tip of slope s with a bend c on the axis, m."""
+        tipped = self.slope > 0.0 and 0.0 in self.radii
+        return -0.5 * np.pi * self.slope / self.bends[self.radii.index(0.0)] if tipped else float("-inf")
+
     def depth(self, contact_radius: ArrayLike) -> Real:
         """a [pi/2 s + sum c_k (w_k - t_k angle_k)], w_k = sqrt(a^2 - t_k^2), angle_k = arccos(t_k/a), m."""
         a = np.asarray(contact_radius, dtype=float)

@@ -60,6 +60,11 @@ class KnownByRadius(HalfSpaceCurve):
         """Contact radius of the first touch, m: zero, but under a flat end."""
         return 0.0
 
+    @property
+    def root_before(self) -> float:
+        """Where depth(a), continued below zero, would be none again, m: near a tip that is hardly one."""
+        return float("-inf")
+
     @abstractmethod
     def force_at(self, contact_radius: ArrayLike) -> Real:
         """F/E* at a contact radius, m^2."""

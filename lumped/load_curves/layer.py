@@ -11,6 +11,7 @@ Mech. 22, 442-450.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import ClassVar
@@ -22,15 +23,16 @@ from numpy.typing import ArrayLike
 from lumped.errors import BadInput, Fault, nearest
 from lumped.load_curves.base import LoadCurve, check_below, elastic_faults
 from lumped.load_curves.fixed_area import FixedArea, under_flat_end
-from lumped.load_curves.half_space import HalfSpaceCurve
+from lumped.load_curves.half_space import HalfSpaceCurve, KnownByRadius
 from lumped.load_curves.plane_contact import LineCurve
-from lumped.load_curves.tabulated import REACH, TabulatedCurve, TabulatedState, growing_edges
+from lumped.load_curves.tabulated import REACH, TabulatedCurve, TabulatedState, broken_edges, growing_edges
 from lumped.numbers import Array, gauss
 
 BASES = ("bonded", "sliding")
 # Beyond this wavenumber (times thickness) the deficit is below rounding.
 LAST_WAVENUMBER = 22.0
 WAVE_POINTS = 24  # Gauss points of each panel of wavenumbers
+POINTS_BETWEEN = 24  # places between two bends of a face
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,7 @@ class LayerCurve(TabulatedCurve):
     """What a layer answers to the profile which the half-space answers by the curve `half_space`.
 
     Contact radii up to 20 thicknesses and up to 0.85 of a sphere's radius; a depth of a thickness or more raises
-    BadInput. Relative accuracy 1e-8, or NotReached.
+    BadInput. Relative accuracy 1e-8, or NotReached; of the pressure under a face that bends 1e-4.
     """
 
     half_space: LoadCurve
@@ -93,23 +95,37 @@ class LayerCurve(TabulatedCurve):
 
     def __post_init__(self) -> None:
         if not isinstance(self.half_space, HalfSpaceCurve):
-            message = "must be a curve of the half-space under a profile that touches at a point"
+            message = "must be a curve of the half-space under a profile"
             raise BadInput(Fault("layer", "half_space", message))
 
     @cached_property
     def edges(self) -> tuple[float, ...]:
-        """Panels grow with the distance from the axis."""
-        return growing_edges(self.layer.thickness, self.half_space.extent)
+        """Panels grow with the distance from the axis, and from every bend of the face."""
+        smooth = growing_edges(self.layer.thickness, self.half_space.extent)
+        inside = [edge for edge in smooth if edge > self._least_radius]
+        before = self.half_space.root_before if isinstance(self.half_space, KnownByRadius) else -np.inf
+        return broken_edges([self._least_radius, *inside], self.breaks, before)
+
+    @cached_property
+    def breaks(self) -> tuple[float, ...]:
+        """Those of the half-space's own curve; on the axis a bend is a tip's curvature."""
+        curve = self.half_space
+        return tuple(one for one in curve.breaks if one > 0.0) if isinstance(curve, KnownByRadius) else ()
+
+    @property
+    def _least_radius(self) -> float:
+        """Contact radius of the first touch, m."""
+        return self.half_space.least_radius if isinstance(self.half_space, KnownByRadius) else 0.0
 
     def sample(self, contact_radius: float, refinement: float) -> Array:
         """Depth, force and stiffness over those of the half-space at this contact radius."""
         equation, h = self._equation(contact_radius, refinement), self.layer.thickness
-        profile = self.half_space.depth(h * equation.nodes)
-        punch, edge, weights = equation.punch, equation.edge, equation.weights
+        nodes, weights, edge, punch = equation.between([one / h for one in self.breaks if one < contact_radius])
+        profile = self.half_space.depth(h * nodes)
         own = float(self.half_space.depth(contact_radius))
-        depth = (own + (weights * edge) @ profile) / (1.0 + weights @ edge)
+        depth = (own + (weights * edge) @ profile) / (1.0 + equation.weights @ equation.edge)
         force = 2.0 * h * ((weights * punch) @ (depth - profile))
-        stiffness = 2.0 * h * (weights @ punch)
+        stiffness = 2.0 * h * (equation.weights @ equation.punch)
         return np.array([depth / own, force / self._own_force(contact_radius), stiffness / (2.0 * contact_radius)])
 
     def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> TabulatedState:
@@ -222,6 +238,19 @@ class DualEquation:
         """phi at the nodes for the right-hand side at the nodes, both of shape (n,)."""
         matrix = np.eye(self.nodes.size) - self._kernel_at(self.nodes) * self.weights
         return np.asarray(np.linalg.solve(matrix, source))
+
+    def between(self, breaks: Sequence[float]) -> tuple[Array, Array, Array, Array]:
+        """Places crowded also at `breaks`, ascending, weights, and `edge` and `punch` there, each of shape (m,)."""
+        if not breaks:
+            return self.nodes, self.weights, self.edge, self.punch
+        ends = np.array((0.0, *breaks, self.ratio))
+        share, weights = gauss(int(self.refinement * POINTS_BETWEEN))
+        nodes = (ends[:-1, None] + np.diff(ends)[:, None] * np.sin(0.5 * np.pi * share) ** 2).ravel()
+        each = (np.diff(ends)[:, None] * 0.5 * np.pi * np.sin(np.pi * share) * weights).ravel()
+        u, density = self._spectrum
+        waves_there = np.cos(np.outer(nodes, u)) * density
+        of_edge, of_punch = ((self.weights * phi) @ np.cos(np.outer(self.nodes, u)) for phi in (self.edge, self.punch))
+        return nodes, each, waves_there @ (np.cos(u * self.ratio) + of_edge), 1.0 + waves_there @ of_punch
 
     def correction_slope(self, phi: Array, t: Array) -> Array:
         """phi'(t) less the slope of its source, at any t; shapes (n,), (...) and (...)."""

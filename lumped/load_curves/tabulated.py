@@ -7,7 +7,7 @@ needed, from the smallest contact outwards.
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import ClassVar, NamedTuple
 
@@ -16,8 +16,8 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike
 
 from lumped.errors import NotReached
-from lumped.load_curves.base import KnownTogether
-from lumped.numbers import Array, Real
+from lumped.load_curves.base import GAUSS_POINTS, KnownTogether
+from lumped.numbers import Array, Real, gauss
 
 POINTS = 14  # Chebyshev points of a panel
 COSINES = np.cos(np.pi * (np.arange(POINTS) + 0.5) / POINTS)  # Chebyshev points on (-1, 1)
@@ -27,11 +27,15 @@ TESTED_AT = 0.985
 ACCURACY, REFINEMENT = 1e-8, 1.5
 # Newton's method squares its error: a step of 1e-6 leaves 1e-12.
 NEWTON_STEPS, LAST_STEP, STARTS_PER_PANEL = 10, 1e-6, 50
+NEAR = 1e-13  # rounding: of a flat end's radius, contacts no wider are that end
 # The largest contact radius served, in lengths of the body and in radii of a profile that ends; panels grow outwards
 # by this factor from the first, whose end is the lesser of two shares of the same.
 REACH, SHARE_OF_EXTENT = 20.0, 0.85
 # The shares: of the body's length, of the profile's extent; and the factor.
 FIRST_PANEL, FIRST_OF_EXTENT, GROWTH = 0.3, 0.3, 1.6
+# A panel over its distance from the last break before it, and so much more of it where no other follows; rounding, of a
+# panel: no place is nearer to its break.
+BROKEN_GROWTH, FEWER, LEAST_SHARE = 1.2, 1.5, 1e-24
 
 
 def panel(low: float, high: float, sample: Callable[[float], Array]) -> Array:
@@ -99,9 +103,14 @@ class TabulatedCurve(KnownTogether):
     def edges(self) -> tuple[float, ...]:
         """Contact radii between which the panels lie, ascending, the last the largest one served, m."""
 
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Edges beyond which the functions start anew as a root does, m: where the face bends."""
+        return ()
+
     @abstractmethod
     def sample(self, contact_radius: float, refinement: float) -> Array:
-        """The smooth functions at one contact radius, shape (3,)."""
+        """The functions, smooth between the breaks, at one contact radius, shape (3,)."""
 
     @abstractmethod
     def state(self, contact_radius: Array, smooth: Array, slopes: Array) -> TabulatedState:
@@ -135,23 +144,42 @@ class TabulatedCurve(KnownTogether):
 
     def contact_radius(self, depth: ArrayLike) -> Real:
         """Contact radius at a depth, m, by Newton's method in logarithms from a table."""
-        asked = np.maximum(np.asarray(depth, dtype=float), 0.0)
+        asked, least = np.maximum(np.asarray(depth, dtype=float), 0.0), self.edges[0]
         wanted = asked.ravel()[asked.ravel() > 0.0]
-        if not wanted.size:
-            return np.zeros_like(asked)
-        panels = self._panels_down_to(float(wanted.max()))
-        start = _start(self, panels)
-        radius = np.zeros(asked.size)
-        radius[asked.ravel() > 0.0] = self._invert(wanted, np.exp(_extended(np.log(wanted), *start)), panels)
+        radius = np.full(asked.size, least)
+        if wanted.size:
+            panels = self._panels_down_to(float(wanted.max()))
+            start = least + np.exp(_extended(np.log(wanted), *_start(self, panels)))
+            radius[asked.ravel() > 0.0] = self._invert(wanted, start, panels)
         return radius.reshape(asked.shape)
 
+    def energy(self, depth: ArrayLike) -> Array:
+        """Work of indentation, as every curve's, but from break to break."""
+        if not self.breaks:
+            return super().energy(depth)
+        a, least = np.asarray(self.contact_radius(depth)), self.edges[0]
+        starts = np.array((least, *(one for one in self.breaks if least < one < a.max(initial=0.0))))
+        before = np.cumsum([0.0, *self._work(starts[:-1], starts[1:])])
+        last = np.maximum(np.searchsorted(starts, a) - 1, 0)
+        return np.asarray(before[last] + self._work(starts[last], a))
+
+    def _work(self, low: Array, high: Array) -> Array:
+        """int F(x) depth'(x) dx between radii without a break between them, per unit E*, (...)."""
+        nodes, weights = gauss(GAUSS_POINTS)
+        width = np.asarray(high - low)
+        here = self.at(low[..., None] + width[..., None] * nodes**2)
+        return np.asarray(width * ((here.force * here.depth_slope) @ (2.0 * nodes * weights)))
+
     def _invert(self, depth: Array, radius: Array, panels: int) -> Array:
+        least, floor = self.edges[0], NEAR * self.edges[0]
+        beyond = np.maximum(radius - least, floor)
         for _ in range(NEWTON_STEPS):
-            here = self._at(radius, panels)
-            step = np.log(here.depth / depth) * here.depth / (radius * here.depth_slope)
-            radius = np.minimum(radius * np.exp(-step), self.edges[panels])
-            if np.abs(step).max() < LAST_STEP:
-                return radius
+            here = self._at(least + beyond, panels)
+            step = np.log(here.depth / depth) * here.depth / (beyond * here.depth_slope)
+            beyond = np.clip(beyond * np.exp(-step), floor, self.edges[panels] - least)
+            far = np.abs(step) * np.sqrt(beyond / (least + beyond)) >= LAST_STEP
+            if not np.any(far & ((beyond > floor) | (step < 0.0))):
+                return np.asarray(least + beyond)
         raise NotReached(f"the contact radius at a depth of {depth.max():g} m was not found")
 
     def _panels_down_to(self, depth: float) -> int:
@@ -163,7 +191,34 @@ class TabulatedCurve(KnownTogether):
 
     def _at(self, radius: Array, panels: int) -> TabulatedState:
         edges = np.array(self.edges[: panels + 1])
-        return self.state(radius, *evaluate(_tables(self, panels), edges, radius))
+        place, rate = _stretched(radius, edges, self.breaks)
+        smooth, slopes = evaluate(_tables(self, panels), edges, place)
+        return self.state(radius, smooth, slopes * rate)
+
+
+def _stretched(radius: Array, edges: Array, breaks: tuple[float, ...]) -> tuple[Array, Array]:
+    """Places in the panels, m, and how fast they grow with the radius, (n,): beyond a break its root is a place."""
+    if not breaks:
+        return radius, np.ones_like(radius)
+    index = np.clip(np.searchsorted(edges, radius) - 1, 0, edges.size - 2)
+    low, width = edges[index], np.diff(edges)[index]
+    root = np.sqrt(np.maximum((radius - low) / width, LEAST_SHARE))
+    rooted = np.isin(low, breaks)
+    return np.where(rooted, low + width * root, radius), np.where(rooted, 0.5 / root, 1.0)
+
+
+def broken_edges(edges: Sequence[float], breaks: Sequence[float], before: float) -> tuple[float, ...]:
+    """Edges of panels that begin anew at every break among them, m, and grow with the distance from the last one.
+
+    `before`: where the functions would break below the first edge, m, or minus infinity.
+    """
+    ends, found = sorted({*edges[1:], *(one for one in breaks if edges[0] < one < edges[-1])}), [edges[0]]
+    for end in ends:
+        while found[-1] < end:
+            low = found[-1]
+            wide = BROKEN_GROWTH * (low - max((one for one in breaks if one < low), default=before))
+            found.append(low + wide if low + FEWER * wide < end else end)
+    return tuple(found)
 
 
 def growing_edges(length: float, extent: float, reach: float = REACH) -> tuple[float, ...]:
@@ -182,11 +237,11 @@ def _extended(x: Array, known_x: Array, known_y: Array) -> Array:
 
 @lru_cache(maxsize=256)
 def _start(curve: TabulatedCurve, panels: int) -> tuple[Array, Array]:
-    """Logarithms of depth and contact radius, ascending: from them the inversion starts."""
+    """Logarithms of depth and of what the contact radius is above its least, ascending: the inversion starts there."""
     shares = np.linspace(0.0, 1.0, STARTS_PER_PANEL + 1)[1:]
     edges = np.array(curve.edges[: panels + 1])
     radius = (edges[:-1, None] + np.diff(edges)[:, None] * shares).ravel()
-    return np.log(curve._at(radius, panels).depth), np.log(radius)
+    return np.log(curve._at(radius, panels).depth), np.log(radius - edges[0])
 
 
 @lru_cache(maxsize=256)
@@ -199,10 +254,18 @@ def _tables(curve: TabulatedCurve, panels: int) -> Array:
 def _panel(curve: TabulatedCurve, index: int) -> Array:
     """One panel, shape (POINTS, 2, 3), certified."""
 
-    def error(radius: float, kept: Array, fresh: Array, slopes: Array) -> float:
-        one, other = (curve.state(np.array([radius]), smooth, slopes) for smooth in (kept, fresh))
+    def error(place: float, kept: Array, fresh: Array, slopes: Array) -> float:
+        one, other = (curve.state(np.array([radius_at(place)]), smooth, slopes) for smooth in (kept, fresh))
         ratios = (one.depth / other.depth, one.force / other.force, one.stiffness / other.stiffness)
         return max(abs(float(ratio[0]) - 1.0) for ratio in ratios)
 
     low, high = curve.edges[index : index + 2]
-    return certified((low, high), curve.sample, error, lambda a: f"the load curve at a contact radius of {a:g} m")
+    rooted = low in curve.breaks
+
+    def radius_at(place: float) -> float:
+        return low + (place - low) ** 2 / (high - low) if rooted else place
+
+    def sample(place: float, refinement: float) -> Array:
+        return curve.sample(radius_at(place), refinement)
+
+    return certified((low, high), sample, error, lambda a: f"the load curve at a contact radius of {radius_at(a):g} m")

@@ -17,10 +17,11 @@ from scipy.special import ive
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.layer import BASES, LayerCurve, LayerPunch, LineLayer, PointLayer
+from lumped.load_curves.tabulated import REACH
 from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.schema.keys import Choice, Key, Number, Part
-from lumped.shapes.base import Mixed, Shape
+from lumped.shapes.base import Shape
 from lumped.targets.base import MOVES, Target
 
 # m_a/(density area thickness) of a thick layer: what nu = 0 has, and what a bonded and a sliding base add times s^2;
@@ -57,11 +58,12 @@ class Layer(Target):
         return LayerCurve(shape.load_curve, elastic)
 
     def check_striker(self, source: str, shape: Shape) -> None:
-        """Raise BadInput for a face that bends: where it does, no panel of the layer's curve is smooth."""
+        """Raise BadInput also for a face whose flat part alone is wider than the layer's curve reaches."""
         super().check_striker(source, shape)
-        if isinstance(shape, Mixed):
-            reason = f"{shape.name}: on a half_space alone in this version; accepted on a layer: sphere, cone, power"
-            raise BadInput(Fault(source, "striker.shape", f"{reason}, punch, cylinder"))
+        reach = REACH * self.thickness
+        if shape.fixed_radius is None and shape.flat_radius >= reach:
+            reason = f"{shape.name}: its flat end is {shape.flat_radius:g} m wide; accepted below {reach:g} m"
+            raise BadInput(Fault(source, "striker.shape", f"{reason}, {REACH:g} thicknesses of the layer"))
 
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """What of the layer moves with the striker adds m_a to its mass m: the peak force falls by m_a/m.

@@ -1,4 +1,6 @@
-"""Strikers whose face bends, by finite elements: against Ting's exact answer on their closed load curves."""
+"""Strikers whose face bends, by finite elements: against Ting's exact answer on their closed load curves, and on
+layers, whose curve is an integral equation's, also against a finer run.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +16,7 @@ from lumped.shapes import Shape, Sphere
 from lumped.shapes.profile import Profile
 from lumped.shapes.rounded_punch import RoundedPunch
 from lumped.shapes.sphere_cone import SphereCone
+from lumped.targets.layer import Layer
 
 RULED = ("peak_force", "peak_depth", "duration", "impulse", "restitution")
 
@@ -56,3 +59,26 @@ def test_impacts_lie_within_their_bars(
                 name,
                 scene,
             )
+
+
+@pytest.mark.family
+@pytest.mark.parametrize("make", [sphere_cone, rounded_punch, profile])
+def test_impacts_on_a_layer_lie_within_their_bars(
+    make: Callable[[np.random.Generator, float], Shape],
+    campaign_size: Callable[[int], int],
+    uncovered: Callable[..., dict[str, float]],
+) -> None:
+    """Layers from one to ten contacts thick; the exact law shares no mesh, and a finer run no mesh and no time step."""
+    random, base = np.random.default_rng(1959), Scene.load("polymer-layer")
+    width = base.profile.hertz_impact(base.contact_modulus.glassy, base.mass, base.velocity).contact_radius
+    for _ in range(campaign_size(10)):
+        target = Layer(width * float(10.0 ** random.uniform(0.0, 1.0)), str(random.choice(["bonded", "sliding"])))
+        speed = 0.02 * float(10.0 ** random.uniform(-0.5, 0.0))
+        scene = replace(base, shape=make(random, 0.7 * width), target=target, velocity=speed)
+        tolerance = float(random.choice([1e-2, 3e-3]))
+        found, finer = (fe_contact.run(scene, tolerance=share * tolerance) for share in (1.0, 0.25))
+        exact = simulate(laws.get("ting").of(scene), scene, 1e-6)
+        assert found.converged, scene
+        assert finer.converged, scene
+        for other in (exact, finer):
+            assert not uncovered(found, other, RULED), scene

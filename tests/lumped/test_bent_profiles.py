@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from lumped import BadInput, Scene, laws, simulate
-from lumped.load_curves import ConeCurve, Hertz, SneddonSphere
+from lumped.load_curves import ConeCurve, Hertz, LayerCurve, LayerPunch, PointLayer, SneddonSphere
+from lumped.load_curves.bent import BentCurve
 from lumped.load_curves.half_space import KnownByRadius
 from lumped.shapes import Shape, Sphere
 from lumped.shapes.profile import Profile, read
@@ -142,14 +143,56 @@ def test_ting_and_the_springs_agree(shape: Shape, impact: Callable[..., Scene]) 
         assert exact.quantities[name].value == pytest.approx(row.quantities[name].value, rel=1e-5)
 
 
+THICKNESS = 4e-3
+BONDED = PointLayer(THICKNESS, 0.3)
+
+
+@pytest.mark.parametrize("layer", [BONDED, PointLayer(THICKNESS, 0.5), PointLayer(THICKNESS, 0.3, "sliding")], ids=str)
+def test_a_bend_that_is_none_changes_nothing_on_a_layer(layer: PointLayer) -> None:
+    """A parabola with a break in it: the panels that begin as a root does meet the smooth ones, which know of none."""
+    depth = THICKNESS * np.array([1e-6, 1e-3, 0.02, 0.0401, 0.08, 0.3])
+    broken, smooth = LayerCurve(BentCurve((0.0, 1e-3), (1.0 / RADIUS, 0.0)), layer), LayerCurve(Hertz(RADIUS), layer)
+    for ours, theirs in zip(broken.force_and_slope(depth), smooth.force_and_slope(depth), strict=True):
+        assert ours == pytest.approx(theirs, rel=3e-8)
+
+
+@pytest.mark.parametrize("shape", [SphereCone(RADIUS, 19.7), RoundedPunch(1e-3, RADIUS), PLATEAU], ids=lambda s: s.name)
+def test_on_a_layer_a_bend_is_met_from_both_sides(shape: Shape) -> None:
+    """Radius and depth are inverse, the edge meets the surface with a flat end's stiffness, and force is work's slope;
+    a layer as thick as the world is the half-space.
+    """
+    curve, bend = LayerCurve(curve_of(shape), BONDED), curve_of(shape).breaks[-1]
+    places = bend * WIDER[:4]
+    depth, force, step = np.asarray(curve.depth(places)), np.asarray(curve.force_at(places)), 1e-5
+    assert curve.contact_radius(depth) == pytest.approx(places, rel=1e-9)
+    around = (np.asarray(curve.force(depth * (1.0 + side * step))) for side in (1.0, -1.0))
+    assert np.subtract(*around)[1:] == pytest.approx((2.0 * step * depth * curve.dforce_ddepth(depth))[1:], rel=1e-6)
+    work = quad(lambda at: float(curve.force(at)), 0.0, depth[-1], epsabs=0.0, epsrel=1e-8, points=depth[:1])[0]
+    assert float(curve.energy(depth[-1])) == pytest.approx(work, rel=1e-6)
+    assert np.all(force > np.asarray(curve_of(shape).force(depth))), "a foundation stiffens"
+    thick = LayerCurve(curve_of(shape), PointLayer(1e5, 0.3))
+    assert thick.force(depth) == pytest.approx(curve_of(shape).force(depth), rel=1e-6)
+
+
+def test_a_rounded_end_of_no_width_is_a_sphere_and_of_no_edge_a_punch_on_a_layer() -> None:
+    depth = 0.05 * THICKNESS
+    force = [float(LayerCurve(BentCurve((b,), (1.0 / RADIUS,)), BONDED).force(depth)) for b in (1e-4, 5e-5)]
+    sphere = float(LayerCurve(Hertz(RADIUS), BONDED).force(depth))
+    assert (force[0] - sphere) / (force[1] - sphere) == pytest.approx(2.0, rel=0.1), "to first order"
+    edges = [1e-5, 1e-6]
+    force = [float(LayerCurve(BentCurve((2e-3,), (1.0 / edge,)), BONDED).force(depth)) for edge in edges]
+    punch = float(LayerPunch(2e-3, BONDED).force(depth))
+    assert 0.0 < force[1] / punch - 1.0 < 0.5 * (force[0] / punch - 1.0) < 0.05
+
+
 def test_what_is_refused_says_why(tmp_path: Path, impact: Callable[..., Scene]) -> None:
     for heights in ((0.0, 2e-5, 1e-5), (1e-6, 2e-5, 4e-5), (0.0, 3e-5, 4e-5), (0.0, 1e-5)):
         with pytest.raises(BadInput, match="accepted"):
             Profile((0.0, 1e-3, 2e-3), heights)
     with pytest.raises(BadInput, match="a corner at the radius"):
         Profile((0.0, 1e-3, 2e-3, 3e-3, 4e-3), (0.0, 1e-5, 2e-5, 1e-4, 1.8e-4))
-    with pytest.raises(BadInput, match="half_space alone"):
-        replace(impact(1.0, shape=TABLE), target=Layer(0.01, "bonded"))
+    with pytest.raises(BadInput, match=r"its flat end is 0\.3 m wide; accepted below 0\.2 m"):
+        replace(impact(1.0, shape=RoundedPunch(0.3, RADIUS)), target=Layer(0.01, "bonded"))
     with pytest.raises(BadInput, match="springs touch all at once"):
         laws.get("mdr").of(impact(1.0, shape=RoundedPunch(2e-3, RADIUS)))
     assert "ends at 0.004 m" in TABLE.check_contact(0.005)
