@@ -190,7 +190,7 @@ def advanced(
     while left:
         try:
             hasty = left[-1] > NEAREST * before.balance.depth
-            found = _onwards(before, left[-1], stiffness, widening, hasty)
+            found = onwards(before, left[-1], stiffness, widening, hasty)
         except EquilibriumLost:
             if not hasty:
                 raise
@@ -201,13 +201,25 @@ def advanced(
     return replace(before, iterations=iterations)
 
 
-def _onwards(before: Equilibrium, depth: float, stiffness: float, widening: float, hasty: bool) -> Equilibrium:
-    """At another depth. Raises EquilibriumLost."""
+def onwards(
+    before: Equilibrium,
+    depth: float,
+    stiffness: float,
+    widening: float = WIDENING,
+    hasty: bool = False,
+    encounter: Encounter | None = None,
+    state: State = (),
+) -> Equilibrium:
+    """At another depth, where the contact is as wide as a power ``widening`` of it. Raises EquilibriumLost.
+
+    ``encounter`` and ``state`` of a body that remembers.
+    """
     return balanced(
-        before.balance.encounter,
+        encounter or before.balance.encounter,
         before.predicted(depth),
         depth,
         stiffness,
+        state,
         touching=_touching(before, depth, widening),
         foreseen=before.foreseen(depth),
         hasty=hasty,
