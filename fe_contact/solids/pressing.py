@@ -77,7 +77,8 @@ class Solid:
         else:
             whole = CoredBody.of(core, response, body.stiffness(bulk, shear), body.fixed)
         striker, placed = _touched(mesh, profile, rolled)
-        encounter = Encounter.of(whole, Skin.of(body.surface, numerics.order, core.size, placed), striker)
+        skin = Skin.of(body.surface, numerics.order, core.size, placed)
+        encounter = replace(Encounter.of(whole, skin, striker), covered=mesh.covered)
         return cls(encounter, unit, body.surface.dimension - 1, core.size, mesh.ends, indenter.target.lead)
 
     def pressed(self, reached: Equilibrium) -> Reached:
@@ -92,6 +93,8 @@ def _touched(mesh: SolidMesh, profile: Shape, rolled: Rolled | None) -> tuple[Ob
     """What touches a body, and where on it the points of its surface's coordinates are."""
     if rolled is not None:
         return OnRound((profile.tip_radius or 0.0) / mesh.unit), rolled.place_on
+    if mesh.covered:
+        return OnTop(0.0), flat_places
     if mesh.mean_radius is not None:
         above = OnTop(mesh.mean_radius)
         return above, above.place
@@ -260,6 +263,8 @@ def contact_radius(balance: Balance) -> float:
     touch = balance.touch
     place = (touch.skin.place + touch.displacement).reshape(2, -1)
     overlap, along = touch.overlap.depth.ravel(), balance.encounter.obstacle.along(place)
+    if balance.encounter.covered:
+        return float(along.max())
     at_rest = balance.encounter.obstacle.along(touch.skin.place.reshape(2, -1))
     if at_rest[0] < 0.0:  # from where the first touch has come to
         along = along - np.interp(0.0, at_rest, along)

@@ -26,8 +26,11 @@ from lumped.result.model_ledger import ENERGY_NAMES, FIRST_ORDER
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import Model
 from lumped.shapes import Sphere
+from lumped.shapes.prism import Prism
 from lumped.shapes.punch import Punch
 from lumped.targets.o_ring import ORing
+from lumped.targets.plane import Plane
+from lumped.targets.washer import Washer
 
 COARSE = {"elements_per_contact": 2.0, "order": 3}
 
@@ -118,6 +121,21 @@ def test_an_o_ring_lightly_pressed_is_that_of_small_strains_and_stiffer_deep() -
     below, middle, above = (advanced(body.encounter, None, share * 0.2, 500.0) for share in (0.9999, 1.0, 1.0001))
     slope = (above.balance.energy - below.balance.energy) / (above.balance.depth - below.balance.depth)
     assert slope == pytest.approx(middle.balance.force, rel=1e-6)
+
+
+def test_a_washer_that_slides_between_two_planes_is_a_block() -> None:
+    """Strained alike everywhere: uniaxial stress, whose stretches are a closed form."""
+    material, model = Material(Relaxation(1.0), 0.45), Model(kinematics="finite")
+    depths = (0.01, 0.2)
+    washer = indent(Indenter(Punch(3.0), material, Washer(1.0, 2.0, 1.0, "sliding"), model=model), depths, {})
+    block = indent(Indenter(Prism(3.0 * np.pi, 1.0, "free", "sliding"), material, Plane(), model=model), depths, {})
+    assert washer.force == pytest.approx(block.force, rel=1e-6)
+    assert np.all(np.abs(washer.force - block.force) <= washer.force_error)
+    assert washer.contact_radius == pytest.approx(2.0 * block.contact_radius / np.sqrt(3.0), rel=5e-3)
+    bonded = Indenter(Punch(3.0), material, Washer(1.0, 2.0, 1.0, "bonded"), model=model)
+    found = press_any(bonded, np.array([0.2]), np.array([2.0]), settings(COARSE, Punch(3.0)))
+    assert float(found.force[0]) * bonded.modulus(False) > 1.1 * washer.force[1]
+    assert 2.0 < found.contact_radius[0] < washer.contact_radius[1]
 
 
 def test_a_nearly_incompressible_body_is_pressed_deep_in_few_iterations() -> None:
