@@ -42,7 +42,7 @@ RAMP = (0.02, 0.2, 1.0)  # shares of the penalty with which a body is pressed fo
 FARTHEST = 2.0  # a depth over the one before it, beyond which another is put between
 LEAST_BEGUN = 0.05  # of a depth, that a body has to be pressed by from rest at once
 WIDENING = 0.5  # power of the depth that a contact is wide by, under a sphere
-NEAREST = 1.02  # a depth over the one before it, up to which a way is not made in halves
+NEAREST = 0.02  # apart in ln depth, a way is not made in halves any more
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,20 +180,38 @@ def _widening(depth: Array, radii: Array) -> float:
 
 
 def advanced(
-    encounter: Encounter, before: Equilibrium | None, depth: float, stiffness: float, widening: float = WIDENING
+    encounter: Encounter,
+    before: Equilibrium | None,
+    depth: float,
+    stiffness: float,
+    widening: float = WIDENING,
+    state: State = (),
 ) -> Equilibrium:
-    """From an equilibrium to that of a larger depth, by as many steps as it takes. Raises EquilibriumLost."""
-    if before is None:
-        before = _begun(encounter, depth, stiffness)
-    if before.balance.depth == depth:
-        return before
-    count = math.ceil(math.log(depth / before.balance.depth) / math.log(FARTHEST)) or 1
-    left = list(np.geomspace(depth, before.balance.depth, count, endpoint=False))
+    """From an equilibrium, or from rest, to another depth, by as many steps as it takes. Raises EquilibriumLost.
+
+    ``widening``: power of the depth that a contact is wide by, about; ``state``: what points remember meanwhile.
+    """
     iterations = 0
+    if before is None:
+        before = _begun(encounter, depth, stiffness, state)
+        iterations = before.iterations
+        if before.balance.depth == depth:
+            return before
+    count = math.ceil(_apart(depth, before) / math.log(FARTHEST)) or 1
+    left = list(np.geomspace(depth, before.balance.depth, count, endpoint=False))
     while left:
+        hasty = _apart(left[-1], before) > NEAREST
         try:
-            hasty = left[-1] > NEAREST * before.balance.depth
-            found = onwards(before, left[-1], stiffness, widening, hasty)
+            found = balanced(
+                encounter,
+                before.predicted(left[-1]),
+                left[-1],
+                stiffness,
+                state,
+                touching=_touching(before, left[-1], widening),
+                foreseen=before.foreseen(left[-1]),
+                hasty=hasty,
+            )
         except EquilibriumLost:
             if not hasty:
                 raise
@@ -204,29 +222,9 @@ def advanced(
     return replace(before, iterations=iterations)
 
 
-def onwards(
-    before: Equilibrium,
-    depth: float,
-    stiffness: float,
-    widening: float = WIDENING,
-    hasty: bool = False,
-    encounter: Encounter | None = None,
-    state: State = (),
-) -> Equilibrium:
-    """At another depth, where the contact is as wide as a power ``widening`` of it. Raises EquilibriumLost.
-
-    ``encounter`` and ``state`` of a body that remembers.
-    """
-    return balanced(
-        encounter or before.balance.encounter,
-        before.predicted(depth),
-        depth,
-        stiffness,
-        state,
-        touching=_touching(before, depth, widening),
-        foreseen=before.foreseen(depth),
-        hasty=hasty,
-    )
+def _apart(depth: float, before: Equilibrium) -> float:
+    """Of a depth from that of an equilibrium, in logarithms."""
+    return abs(math.log(depth / before.balance.depth))
 
 
 def _touching(before: Equilibrium, depth: float, widening: float) -> Points:
@@ -237,12 +235,12 @@ def _touching(before: Equilibrium, depth: float, widening: float) -> Points:
     return np.asarray((along >= wider * first) & (along <= wider * last))
 
 
-def _begun(encounter: Encounter, depth: float, stiffness: float) -> Equilibrium:
+def _begun(encounter: Encounter, depth: float, stiffness: float, state: State) -> Equilibrium:
     """From rest to a depth, or to the part of it that can be reached at once. Raises EquilibriumLost."""
     start, share = np.zeros(encounter.skin.size), 1.0
     while True:
         try:
-            return pressed_first(encounter, share * depth, stiffness, start)
+            return pressed_first(encounter, share * depth, stiffness, start, state)
         except EquilibriumLost:
             share *= 0.5
             if share < LEAST_BEGUN:
