@@ -29,8 +29,7 @@ from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
 from fe_contact.solids.base import State
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Encounter, Equilibrium, EquilibriumLost
-from fe_contact.solids.newton import balanced as in_balance
-from fe_contact.solids.pressing import MESH_ORDER, Solid, contact_radius, pressed_first
+from fe_contact.solids.pressing import MESH_ORDER, WIDENING, Solid, advanced, contact_radius, pressed_first
 from fe_contact.solids.relaxing import Fading, Relaxing, doubled
 from fe_contact.steppers.steps import March, Strike, Work
 from lumped.materials import Relaxation
@@ -97,6 +96,11 @@ class Marcher:
     def body(self) -> Encounter:
         """At the moduli of a sudden strain."""
         return self.solid.encounter
+
+    @property
+    def widening(self) -> float:
+        """Power of the depth that a contact is wide by, about: F ~ depth a."""
+        return self.power - 1.0 if self.power > 1.0 else WIDENING
 
     @property
     def _sudden(self) -> Hyperelastic:
@@ -176,7 +180,7 @@ class Marcher:
         encounter = replace(self.body, body=relaxing)
         if here.found is not None:
             try:
-                return in_balance(encounter, here.found.predicted(depth), depth, penalty, here.memory)
+                return advanced(encounter, here.found, depth, penalty, self.widening, here.memory)
             except EquilibriumLost:
                 pass  # pressed in softly instead
         start = np.zeros(body.core.size) if here.found is None else here.found.balance.displacement

@@ -264,14 +264,15 @@ class ElasticBody:
 class SolidMesh:
     """A ``body`` for large strains, whose unit is ``unit``, m; ``inner_radius`` of a ring laid flat, in that unit.
 
-    ``mean_radius``, in that unit, of a ring of round section, whose surface counts angles from its top; ``ends``:
-    whether the mesh is all of it.
+    ``mean_radius``, in that unit, of a ring of round section, whose surface counts angles from its top; ``covered``:
+    whether a plane touches all of the surface from the first; ``ends``: whether the mesh is all of it.
     """
 
     body: ElasticBody
     unit: float
     inner_radius: float | None = None
     mean_radius: float | None = None
+    covered: bool = False
     ends: bool = False
 
 

@@ -90,7 +90,7 @@ class OnRound:
 
 @dataclass(frozen=True)
 class OnTop:
-    """A plane upon a ring of round section, of radius 1 about this ``mean_radius``."""
+    """A plane upon a ring of round section, of radius 1 about this ``mean_radius``, or, at 0, upon what is flat."""
 
     mean_radius: float
 

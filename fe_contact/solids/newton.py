@@ -32,12 +32,13 @@ class EquilibriumLost(NotReached):
 
 @dataclass(frozen=True, eq=False)
 class Encounter:
-    """A body whose ``skin`` a striker meets; its matrix has one ``pattern``."""
+    """A body whose ``skin`` a striker meets; its matrix has one ``pattern``; ``covered``: all of the skin at once."""
 
     body: CoredBody
     skin: Skin
     pattern: Pattern
     obstacle: Obstacle
+    covered: bool = False
 
     @classmethod
     def of(cls, body: CoredBody, skin: Skin, obstacle: Obstacle) -> Encounter:

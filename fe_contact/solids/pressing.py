@@ -42,7 +42,7 @@ RAMP = (0.02, 0.2, 1.0)  # shares of the penalty with which a body is pressed fo
 FARTHEST = 2.0  # a depth over the one before it, beyond which another is put between
 LEAST_BEGUN = 0.05  # of a depth, that a body has to be pressed by from rest at once
 WIDENING = 0.5  # power of the depth that a contact is wide by, under a sphere
-NEAREST = 1.02  # a depth over the one before it, up to which a way is not made in halves
+NEAREST = 0.02  # apart in ln depth, a way is not made in halves any more
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +77,8 @@ class Solid:
         else:
             whole = CoredBody.of(core, response, body.stiffness(bulk, shear), body.fixed)
         striker, placed = _touched(mesh, profile, rolled)
-        encounter = Encounter.of(whole, Skin.of(body.surface, numerics.order, core.size, placed), striker)
+        skin = Skin.of(body.surface, numerics.order, core.size, placed)
+        encounter = replace(Encounter.of(whole, skin, striker), covered=mesh.covered)
         return cls(encounter, unit, body.surface.dimension - 1, core.size, mesh.ends, indenter.target.lead)
 
     def pressed(self, reached: Equilibrium) -> Reached:
@@ -92,6 +93,8 @@ def _touched(mesh: SolidMesh, profile: Shape, rolled: Rolled | None) -> tuple[Ob
     """What touches a body, and where on it the points of its surface's coordinates are."""
     if rolled is not None:
         return OnRound((profile.tip_radius or 0.0) / mesh.unit), rolled.place_on
+    if mesh.covered:
+        return OnTop(0.0), flat_places
     if mesh.mean_radius is not None:
         above = OnTop(mesh.mean_radius)
         return above, above.place
@@ -177,20 +180,38 @@ def _widening(depth: Array, radii: Array) -> float:
 
 
 def advanced(
-    encounter: Encounter, before: Equilibrium | None, depth: float, stiffness: float, widening: float = WIDENING
+    encounter: Encounter,
+    before: Equilibrium | None,
+    depth: float,
+    stiffness: float,
+    widening: float = WIDENING,
+    state: State = (),
 ) -> Equilibrium:
-    """From an equilibrium to that of a larger depth, by as many steps as it takes. Raises EquilibriumLost."""
-    if before is None:
-        before = _begun(encounter, depth, stiffness)
-    if before.balance.depth == depth:
-        return before
-    count = math.ceil(math.log(depth / before.balance.depth) / math.log(FARTHEST)) or 1
-    left = list(np.geomspace(depth, before.balance.depth, count, endpoint=False))
+    """From an equilibrium, or from rest, to another depth, by as many steps as it takes. Raises EquilibriumLost.
+
+    ``widening``: power of the depth that a contact is wide by, about; ``state``: what points remember meanwhile.
+    """
     iterations = 0
+    if before is None:
+        before = _begun(encounter, depth, stiffness, state)
+        iterations = before.iterations
+        if before.balance.depth == depth:
+            return before
+    count = math.ceil(_apart(depth, before) / math.log(FARTHEST)) or 1
+    left = list(np.geomspace(depth, before.balance.depth, count, endpoint=False))
     while left:
+        hasty = _apart(left[-1], before) > NEAREST
         try:
-            hasty = left[-1] > NEAREST * before.balance.depth
-            found = _onwards(before, left[-1], stiffness, widening, hasty)
+            found = balanced(
+                encounter,
+                before.predicted(left[-1]),
+                left[-1],
+                stiffness,
+                state,
+                touching=_touching(before, left[-1], widening),
+                foreseen=before.foreseen(left[-1]),
+                hasty=hasty,
+            )
         except EquilibriumLost:
             if not hasty:
                 raise
@@ -201,17 +222,9 @@ def advanced(
     return replace(before, iterations=iterations)
 
 
-def _onwards(before: Equilibrium, depth: float, stiffness: float, widening: float, hasty: bool) -> Equilibrium:
-    """At another depth. Raises EquilibriumLost."""
-    return balanced(
-        before.balance.encounter,
-        before.predicted(depth),
-        depth,
-        stiffness,
-        touching=_touching(before, depth, widening),
-        foreseen=before.foreseen(depth),
-        hasty=hasty,
-    )
+def _apart(depth: float, before: Equilibrium) -> float:
+    """Of a depth from that of an equilibrium, in logarithms."""
+    return abs(math.log(depth / before.balance.depth))
 
 
 def _touching(before: Equilibrium, depth: float, widening: float) -> Points:
@@ -222,12 +235,12 @@ def _touching(before: Equilibrium, depth: float, widening: float) -> Points:
     return np.asarray((along >= wider * first) & (along <= wider * last))
 
 
-def _begun(encounter: Encounter, depth: float, stiffness: float) -> Equilibrium:
+def _begun(encounter: Encounter, depth: float, stiffness: float, state: State) -> Equilibrium:
     """From rest to a depth, or to the part of it that can be reached at once. Raises EquilibriumLost."""
     start, share = np.zeros(encounter.skin.size), 1.0
     while True:
         try:
-            return pressed_first(encounter, share * depth, stiffness, start)
+            return pressed_first(encounter, share * depth, stiffness, start, state)
         except EquilibriumLost:
             share *= 0.5
             if share < LEAST_BEGUN:
@@ -248,6 +261,8 @@ def contact_radius(balance: Balance) -> float:
     touch = balance.touch
     place = (touch.skin.place + touch.displacement).reshape(2, -1)
     overlap, along = touch.overlap.depth.ravel(), balance.encounter.obstacle.along(place)
+    if balance.encounter.covered:
+        return float(along.max())
     at_rest = balance.encounter.obstacle.along(touch.skin.place.reshape(2, -1))
     if at_rest[0] < 0.0:  # from where the first touch has come to
         along = along - np.interp(0.0, at_rest, along)

@@ -9,10 +9,10 @@ import numpy as np
 import meshes
 from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.forms import Array
-from fe_contact.assembly.operators import ElasticBody, axisymmetric, basis_on, made
+from fe_contact.assembly.operators import ElasticBody, SolidMesh, axisymmetric, basis_on, made
 from fe_contact.assembly.surface import Surface, ring_area
 from fe_contact.bodies.bulk_memory import Moduli
-from fe_contact.bodies.pressing import BodyStill, Still, held, thickness_over
+from fe_contact.bodies.pressing import FINITE_REFINEMENT, BodyStill, Still, held, thickness_over
 from fe_contact.settings import Numerics
 from fe_contact.steppers import bulk_surface
 from fe_contact.steppers.bulk_surface import BulkSurface
@@ -43,6 +43,15 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     )
 
 
+def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
+    """The washer for large strains under a punch that covers it; no smaller at its corners, which yield without end."""
+    target = indenter.target
+    assert isinstance(target, Washer)
+    elements, order, inner, outer, rim, bonded = _sizes(target, target.outer_radius, numerics)
+    body = _body(FINITE_REFINEMENT * elements, order, inner, outer, rim, bonded, False)
+    return SolidMesh(body, target.height, covered=True, ends=True)
+
+
 def relaxing(geometry: Geometry, numerics: Numerics) -> BulkSurface:
     """The washer of constant bulk modulus in an impact."""
     target, rim = geometry.target, geometry.target.fixed_radius(geometry.shape)
@@ -65,9 +74,11 @@ def _sizes(target: Target, rim: float, numerics: Numerics) -> Sizes:
 
 
 @cached
-def _body(elements: float, order: int, inner: float, outer: float, rim: float, bonded: bool) -> ElasticBody:
-    """Of unit height, loaded up to the rim alone."""
-    basis = basis_on(made(meshes.washer, elements, inner, outer, rim, bonded), order)
+def _body(
+    elements: float, order: int, inner: float, outer: float, rim: float, bonded: bool, graded: bool = True
+) -> ElasticBody:
+    """Of unit height, loaded up to the rim alone; ``graded`` to the corners of a bonded base."""
+    basis = basis_on(made(meshes.washer, elements, inner, outer, rim, bonded and graded), order)
     fixed = held(basis, along=("base",) if bonded else (), across=("base",))
     dofs = basis.get_dofs("surface").flatten()
     dofs = dofs[np.argsort(basis.doflocs[0, dofs])]
@@ -83,4 +94,4 @@ def _body(elements: float, order: int, inner: float, outer: float, rim: float, b
     return ElasticBody(basis, partial(axisymmetric, basis), fixed, surface)
 
 
-MEMBER = MeshedTarget(still, relaxing=relaxing)
+MEMBER = MeshedTarget(still, relaxing=relaxing, solid=solid)

@@ -15,7 +15,8 @@ from lumped.targets import Target
 
 YIELDING_UNDER = ("sphere", "cone", "power", "punch")  # strikers under which a half-space may yield
 STRAINED = (
-    "rounded strikers, cones and powers on half_space and layer, cylinders on layer and ring, an o_ring, sliding blocks"
+    "rounded strikers, cones and powers on half_space and layer, cylinders on layer and ring, an o_ring, a "
+    "covered washer, sliding blocks"
 )
 SPARE_MASS = 0.01  # of a whole body with inertia, which its density gives way to
 

@@ -25,6 +25,7 @@ class Washer(Target):
     base: Annotated[str, BASE]
     name: ClassVar[str] = "washer"
     has_inertia: ClassVar[bool] = False
+    large_strains: ClassVar[bool] = True
     through: ClassVar[str] = "the washer's height"
 
     def __post_init__(self) -> None:
@@ -51,6 +52,10 @@ class Washer(Target):
     def fixed_radius(self, shape: Shape) -> float | None:
         """Up to the rim of the punch, or to its own."""
         return None if shape.fixed_radius is None else min(shape.fixed_radius, self.outer_radius)
+
+    def strained_under(self, shape: Shape) -> bool:
+        """A punch that covers it: no rim of the punch cuts in."""
+        return self.fixed_radius(shape) == self.outer_radius
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is no punch, or passes through the hole."""

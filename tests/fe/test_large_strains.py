@@ -11,7 +11,8 @@ from skfem import MeshTri
 from fe_contact import large_strains, run
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import basis_on
-from fe_contact.indentation import indent, settings
+from fe_contact.indentation import expected, indent, settings
+from fe_contact.indentation import press as press_any
 from fe_contact.solids.base import PointAnswer, State
 from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
@@ -29,7 +30,10 @@ from lumped.scene.indenter import Indenter
 from lumped.scene.tables import LawChoice, Model
 from lumped.shapes import Sphere
 from lumped.shapes.prism import Prism
+from lumped.shapes.punch import Punch
+from lumped.targets.o_ring import ORing
 from lumped.targets.plane import Plane
+from lumped.targets.washer import Washer
 
 COARSE = {"elements_per_contact": 2.0, "order": 3}
 
@@ -134,6 +138,52 @@ def test_the_force_is_the_slope_of_the_energy() -> None:
     slope = (above.balance.energy - below.balance.energy) / (above.balance.depth - below.balance.depth)
     assert slope == pytest.approx(middle.balance.force, rel=1e-6)
     assert middle.error < 1e-6
+
+
+def o_ring(kinematics: str) -> Indenter:
+    """E* = 1, the section's radius is a fifth."""
+    material = Material(Relaxation(1.0 - 0.45**2), 0.45)
+    return Indenter(Punch(2.0), material, ORing(1.0, 0.2), model=Model(kinematics=kinematics))
+
+
+def test_an_o_ring_lightly_pressed_is_that_of_small_strains_and_stiffer_deep() -> None:
+    """Force and half-width by the condensed section; deep, the force is the slope of the energy of both halves."""
+    numerics, depth = settings(COARSE, Punch(2.0)), np.array([2e-4, 0.08])
+    small, large = o_ring("small"), o_ring("finite")
+    radii = expected(small, depth, numerics)
+    found, known = (press_any(one, depth, radii, numerics) for one in (large, small))
+    assert found.force[0] == pytest.approx(known.force[0], rel=3e-3)
+    assert found.contact_radius[0] == pytest.approx(known.contact_radius[0], rel=0.03)
+    assert found.force[1] > 1.1 * known.force[1]
+    assert known.contact_radius[1] < found.contact_radius[1] < 0.2
+    body = Solid.of(large, radii, numerics)
+    below, middle, above = (advanced(body.encounter, None, share * 0.2, 500.0) for share in (0.9999, 1.0, 1.0001))
+    slope = (above.balance.energy - below.balance.energy) / (above.balance.depth - below.balance.depth)
+    assert slope == pytest.approx(middle.balance.force, rel=1e-6)
+
+
+def test_a_washer_that_slides_between_two_planes_is_a_block() -> None:
+    """Strained alike everywhere: uniaxial stress, whose stretches are a closed form."""
+    material, model = Material(Relaxation(1.0), 0.45), Model(kinematics="finite")
+    depths = (0.01, 0.2)
+    washer = indent(Indenter(Punch(3.0), material, Washer(1.0, 2.0, 1.0, "sliding"), model=model), depths, {})
+    block = indent(Indenter(Prism(3.0 * np.pi, 1.0, "free", "sliding"), material, Plane(), model=model), depths, {})
+    assert washer.force == pytest.approx(block.force, rel=1e-6)
+    assert np.all(np.abs(washer.force - block.force) <= washer.force_error)
+    assert washer.contact_radius == pytest.approx(2.0 * block.contact_radius / np.sqrt(3.0), rel=5e-3)
+    bonded = Indenter(Punch(3.0), material, Washer(1.0, 2.0, 1.0, "bonded"), model=model)
+    found = press_any(bonded, np.array([0.2]), np.array([2.0]), settings(COARSE, Punch(3.0)))
+    assert float(found.force[0]) * bonded.modulus(False) > 1.1 * washer.force[1]
+    assert 2.0 < found.contact_radius[0] < washer.contact_radius[1]
+
+
+def test_a_nearly_incompressible_body_is_pressed_deep_in_few_iterations() -> None:
+    """Whole steps, by the stress that each foresaw: a line search on the energy alone takes ten times as many."""
+    body = solid(sphere(0.4999), 0.2)
+    first = advanced(body.encounter, None, 0.02 / body.unit, 500.0)
+    found = advanced(body.encounter, first, 0.2 / body.unit, 500.0)
+    assert found.iterations < 60
+    assert found.error < 1e-6
 
 
 @pytest.mark.family
