@@ -39,8 +39,11 @@ def plain(value: object) -> Any:  # as it was: a table of a mapping, a list of a
 def encoded(value: object, given: Sequence[object] = ()) -> object:
     """Plain data for json.dumps, from which :func:`decoded` makes the value again; NaN and infinities stay.
 
-    A dataclass becomes a dictionary of its fields; one that equals a `given` dataclass, its place among those.
+    A dataclass becomes a dictionary of its fields; one that equals a `given` dataclass, its place among those; one that
+    is a sequence, a list.
     """
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [encoded(item, given) for item in value]
     if is_dataclass(value):
         for place, one in enumerate(given):
             if type(one) is type(value) and one == value:
@@ -48,8 +51,6 @@ def encoded(value: object, given: Sequence[object] = ()) -> object:
         return {one.name: encoded(getattr(value, one.name), given) for one in fields(value)}
     if isinstance(value, Mapping):
         return {str(key): encoded(item, given) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [encoded(item, given) for item in value]
     if isinstance(value, np.generic | np.ndarray):
         return value.tolist()
     return value
@@ -70,6 +71,8 @@ def decoded(kind: Any, content: Any, given: Sequence[object] = ()) -> Any:  # ty
         return content if content is None or len(others) > 1 else decoded(others[0], content, given)
     if origin is np.ndarray:
         return np.array(content, dtype=float)
+    if origin is Sequence:
+        return tuple(decoded(parts[0], item, given) for item in content)
     if origin is tuple:
         kinds = parts[:1] * len(content) if parts[1:] == (...,) else parts
         return tuple(decoded(*pair, given) for pair in zip(kinds, content, strict=True))

@@ -145,7 +145,9 @@ def test_steps_on_a_spring_err_as_their_square_whatever_time_was_expected(
     monkeypatch.setattr(relaxing_impact, "contact_radius", lambda balance: 1.0)
     unit, scale, mass, velocity = 0.02, 3.0, 0.4, 0.7
     strike = Strike(lambda r: r**2, mass, velocity, 0.0, Relaxation(1.0), 10.0)
-    solid: Any = SimpleNamespace(unit=unit, encounter=SimpleNamespace(body=SimpleNamespace(rim=np.zeros(1, dtype=int))))
+    solid: Any = SimpleNamespace(
+        unit=unit, lead=1.0, encounter=SimpleNamespace(body=SimpleNamespace(rim=np.zeros(1, dtype=int)))
+    )
     k, energy = scale / unit**1.5, 0.5 * mass * velocity**2
     depth = (2.5 * energy / k) ** 0.4
     true = {
