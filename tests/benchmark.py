@@ -276,7 +276,7 @@ def table(ratios: list[Ratio]) -> str:
     dearest = {one.group: one.what for one in sorted(ratios, key=lambda one: one.median) if one.group in MANY}
     shown = [one for one in ratios if dearest.get(one.group, one.what) == one.what]
     rows = [
-        f"| {one.group}: {one.what}{MANY.get(one.group, '')} | {one.median:.2g} | {one.bound:.2g} |\n" for one in shown
+        f"| {one.group}: {one.what}{MANY.get(one.group, '')} | {one.median:.3g} | {one.bound:.3g} |\n" for one in shown
     ]
     return "| cost in bare imports | measured | goal |\n|---|---|---|\n" + "".join(rows)
 

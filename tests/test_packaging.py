@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import runpy
 import subprocess
 import sys
 import tomllib
@@ -75,6 +76,12 @@ def test_both_commands_install_the_same_system_packages() -> None:
 
 def test_the_cure_for_a_missing_library_is_what_the_readme_installs() -> None:
     assert apt_packages(APT_LINE) == apt_packages(RUN_COMMAND) - {"python3-venv"}
+
+
+def test_the_readme_shows_the_costs_that_were_recorded() -> None:
+    benchmark = runpy.run_path(str(ROOT / "tests" / "benchmark.py"))
+    ratios, _ = benchmark["recorded"]()
+    assert benchmark["TABLE"].findall(README) == [benchmark["table"](ratios)]
 
 
 def test_the_readme_has_no_gaps() -> None:
