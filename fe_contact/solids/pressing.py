@@ -198,7 +198,7 @@ def advanced(
         if before.balance.depth == depth:
             return before
     count = math.ceil(_apart(depth, before) / math.log(FARTHEST)) or 1
-    left = list(np.geomspace(depth, before.balance.depth, count, endpoint=False))
+    left: list[float] = np.geomspace(depth, before.balance.depth, count, endpoint=False).tolist()
     while left:
         hasty = _apart(left[-1], before) > NEAREST
         try:
