@@ -153,7 +153,7 @@ def struck(row: dict[str, str]) -> tuple[float, float]:
 
 @cache
 def impact(name: str) -> fe_contact.Result:
-    return fe_contact.run(Scene.load(name), tolerance=1e-3)
+    return fe_contact.run(Scene.load(name), tolerance=5e-4)
 
 
 def test_the_impact_of_another_program_is_ours_at_every_time() -> None:
@@ -161,4 +161,4 @@ def test_the_impact_of_another_program_is_ours_at_every_time() -> None:
     ours = impact("polymer-layer").history
     bars = np.interp(theirs["time_s"], ours.time, ours.force_error) + theirs["force_error_N"]
     assert np.all(np.abs(ours.force_at(theirs["time_s"]) - theirs["force_N"]) <= bars)
-    assert bars.max() < 5e-3 * ours.force.max(), "bars that say something"
+    assert bars.max() < 4e-3 * ours.force.max()
