@@ -23,7 +23,7 @@ from fe_contact.cli import main
 from fe_contact.studies.sweep import study
 from fe_contact.studies.sweep.cases import load
 from fe_contact.studies.sweep.chart import plot_sweep
-from fe_contact.studies.sweep.table import SweepTable, _rank_correlation
+from fe_contact.studies.sweep.table import SweepTable
 from lumped import Scene
 from lumped.errors import BadInput
 from lumped.result.result import UNITS
@@ -320,11 +320,6 @@ def test_ranks_say_which_key_moves_what() -> None:
     assert ranks[SPEED] == pytest.approx(
         spearmanr(table.numbers[SPEED], table.values[:, 0, force]).statistic, rel=1e-12
     )
-
-
-def test_equal_values_share_their_ranks() -> None:
-    first, second = np.random.default_rng(4).integers(0, 6, (2, 50)).astype(float)
-    assert _rank_correlation(first, second) == pytest.approx(spearmanr(first, second).statistic, rel=1e-12)
 
 
 # processes

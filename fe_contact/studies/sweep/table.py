@@ -77,6 +77,8 @@ class SweepTable:
 
         Empty where the quantity varies by less than its bars, or takes too few values.
         """
+        from scipy.stats import spearmanr
+
         known = self.converged[:, method] & np.isfinite(self.values[:, method, quantity])
         values = self.values[known, method, quantity]
         keys = {key: column[known] for key, column in self.numbers.items()}
@@ -84,7 +86,7 @@ class SweepTable:
         if np.unique(values).size < LEAST_RANKED or np.ptp(values) <= 2.0 * bars.max():
             return {}
         varied = {key: column for key, column in keys.items() if np.unique(column).size >= LEAST_RANKED}
-        return {key: _rank_correlation(column, values) for key, column in varied.items()}
+        return {key: float(spearmanr(column, values).statistic) for key, column in varied.items()}
 
     @property
     def header(self) -> list[str]:
@@ -184,17 +186,6 @@ class SweepTable:
         for quantity in range(len(UNITS)):
             yield self.values[..., quantity].ravel()
             yield self.errors[..., quantity].ravel()
-
-
-def _rank_correlation(first: Array, second: Array) -> float:
-    """Spearman's, of two columns (n,): Pearson's of their ranks."""
-    return float(np.corrcoef(_ranks(first), _ranks(second))[0, 1])
-
-
-def _ranks(values: Array) -> Array:
-    """Of values (n,), from 1 on; equal ones have the mean of theirs."""
-    _, place, counts = np.unique(values, return_inverse=True, return_counts=True)
-    return np.asarray((np.cumsum(counts) - 0.5 * (counts - 1))[place])
 
 
 def _cell(value: object) -> object:
