@@ -44,7 +44,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
 
 
 def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
-    """The washer for large strains under a punch that covers it; no smaller at its corners, which yield without end."""
+    """The washer for large strains, covered by a punch; no finer at its corners, where stresses are infinite."""
     target = indenter.target
     assert isinstance(target, Washer)
     elements, order, inner, outer, rim, bonded = _sizes(target, target.outer_radius, numerics)
