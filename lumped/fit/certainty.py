@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from lumped.errors import BadInput, NotReached
 from lumped.fit.problem import SOLID, Coordinates, FitProblem, Values
-from lumped.fit.profile import MIXED, Ends, Seen
+from lumped.fit.profile import MIXED, Ends, Seen, forward_slopes, open_side
 from lumped.fit.record import Estimate
 from lumped.fit.space import TOUCH
 from lumped.numbers import Array
@@ -25,7 +25,7 @@ from lumped.numbers import Array
 CONFIDENCE = 0.95  # of the intervals
 STEP = 1e-3  # of the differences
 # Residuals per relative change: below the first nothing is felt, above the second ratio two are one.
-UNFELT, ALIKE = 1e-9, 1e8
+UNFELT, INSEPARABLE = 1e-9, 1e8
 RATIO = "R1"
 STRAIGHT = 0.01  # an interval no wider, relatively, to either side is that of the linearization
 CORRELATED = 0.99  # two parameters whose correlation lies beyond are named in a warning
@@ -254,13 +254,8 @@ class Surroundings:
 
     def _seen_slopes(self, place: Array) -> Seen:
         """Forward differences, backward at an upper limit. Raises BadInput, NotReached."""
-        here, steps = self._seen(place), np.where(place + STEP <= self._limits[1], STEP, -STEP)
-        beside = [self._seen(there) for there in place + np.diag(steps)]
-        quantities, residuals = (
-            np.array([(there[part] - here[part]) / step for there, step in zip(beside, steps, strict=True)]).T
-            for part in (0, 1)
-        )
-        return quantities, residuals
+        both = forward_slopes(lambda there: np.concatenate(self._seen(there)), place, self._limits[1], STEP)
+        return both[: self._first - 1], both[self._first - 1 :]
 
 
 def inverse(slopes: Array) -> tuple[Array, bool]:
@@ -269,7 +264,7 @@ def inverse(slopes: Array) -> tuple[Array, bool]:
     if not size:
         return np.zeros((0, 0)), True
     _, singular, axes = np.linalg.svd(slopes, full_matrices=False)
-    if not singular[0] < ALIKE * singular[-1]:
+    if not singular[0] < INSEPARABLE * singular[-1]:
         return np.full((size, size), np.nan), False
     spread = axes.T / singular
     return spread @ spread.T, True
@@ -300,10 +295,9 @@ def _parameter_warnings(
             yield f"{name} is at its bound, {estimate.value:.6g}: it has no interval"
         elif estimate.low is None and estimate.high is None:
             yield f"{name} has no interval: the curve hardly tells it"
-        elif estimate.low is None or estimate.high is None:
-            side = "below" if estimate.low is None else "above"
+        elif side := open_side(estimate.low, estimate.high):
             yield f"the interval of {name} is open {side}: no value there is excluded"
-        elif estimate.low <= problem.space.free[name].low:
+        elif estimate.low is not None and estimate.low <= problem.space.free[name].low:
             yield f"the interval of {name} reaches the least value it can have: the curve does not tell it from none"
 
 

@@ -52,9 +52,7 @@ class Ends:
         quantities, residuals = self.seen(sought)
         begin = here = float(quantities[i])
         left = np.linalg.svd(slopes, full_matrices=False)[0]
-        residuals = residuals - left @ (
-            left.T @ residuals
-        )  # the best place is the best: what slopes say else is rounding
+        residuals = residuals - left @ (left.T @ residuals)  # here is the best place: what slopes say else is rounding
         for steps in range(MOST_ENDS):
             step = _step_inside(residuals, slopes, side * along, self.most, sought, self.limits)
             if step is None:
@@ -90,6 +88,17 @@ class Ends:
         depends = np.abs(ahead) > MIXED * np.abs(ahead).max()
         held = (place == self.limits) & np.array([ahead < 0.0, ahead > 0.0]) & self.opened
         return bool(held[:, depends].any())
+
+
+def open_side(low: float | None, high: float | None) -> str:
+    """Where an interval has no end, "below" or "above"; empty where it has both."""
+    return "below" if low is None else "above" if high is None else ""
+
+
+def forward_slopes(of: Callable[[Array], Array], place: Array, highest: Array, length: float) -> Array:
+    """How values (n,) change with a place (q,), (n, q): forward differences, backward at the `highest` place."""
+    here, steps = of(place), np.where(place + length <= highest, length, -length)
+    return np.array([(of(there) - here) / step for there, step in zip(place + np.diag(steps), steps, strict=True)]).T
 
 
 def _step_inside(

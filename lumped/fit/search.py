@@ -20,7 +20,7 @@ from lumped.errors import BadInput, Fault, NotReached
 from lumped.fit.certainty import certainty_of
 from lumped.fit.measured import Measured
 from lumped.fit.problem import Coordinates, FitProblem
-from lumped.fit.profile import ALIKE
+from lumped.fit.profile import ALIKE, forward_slopes
 from lumped.fit.record import Fit
 from lumped.fit.space import (
     TOUCH,
@@ -296,10 +296,7 @@ class Descent:
 
     def slopes(self, place: Array) -> Array:
         """Forward differences, backward at an upper bound; shape (n, q)."""
-        here, highest = self.error(place), self._coordinates.limits()[1]
-        steps = np.where(place + DIFFERENCE <= highest, DIFFERENCE, -DIFFERENCE)
-        columns = [(self.error(there) - here) / step for there, step in zip(place + np.diag(steps), steps, strict=True)]
-        return np.array(columns).T
+        return forward_slopes(self.error, place, self._coordinates.limits()[1], DIFFERENCE)
 
     @property
     def _nothing(self) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumped.fit.noise import Whiteness, autocovariance, memory, whiteness
+from lumped.fit.profile import open_side
 from lumped.identify.ensemble import posterior_of
 from lumped.identify.histories import Histories
 from lumped.identify.profile import LikelihoodProfile, Valley, correlation_of, quantile
@@ -31,10 +32,11 @@ def answer(
     sought = valleys[0].sought
     whitened = histories.whitened(histories.differences(sought))
     tested = whiteness(_inside(histories, sought, whitened))
-    widened = 1.0 if tested.noise else max(map(memory, whitened))
-    bound, least = quantile(histories) * widened, histories.squares(sought)
+    growth = 1.0 if tested.noise else max(map(memory, whitened))
+    widened = math.sqrt(growth)
+    bound, least = quantile(histories) * growth, histories.squares(sought)
     profiles, told = _apart([LikelihoodProfile(histories, one, least + bound, bound) for one in valleys], least)
-    posterior, bands = posterior_of(histories, profiles, widened, sample) if sample else (None, None)
+    posterior, bands = posterior_of(histories, profiles, growth, sample) if sample else (None, None)
     parameters = {name: hull([one.parameters[name] for one in told]) for name in told[0].parameters}
     curves = tuple(_fitted(histories, sought, names, bands or [np.zeros(0)] * len(names)))
     table = histories.file.with_values(histories.keys, sought[: len(histories.keys)])
@@ -96,8 +98,7 @@ def _warnings(parameters: Mapping[str, Interval], valleys: Sequence[ToldValley])
             yield f"{name}: the search for its {' and '.join(one.unfound)} end did not converge; hold another key"
         elif one.low is None and one.high is None:
             yield f"{name}: the curves do not tell it; hold it, or add a history at another velocity"
-        elif one.low is None or one.high is None:
-            side = "below" if one.low is None else "above"
+        elif side := open_side(one.low, one.high):
             yield f"{name}: its interval is open {side}: no value there is excluded"
     for i, j in combinations(range(len(names)), 2):
         if abs(correlation[i, j]) > CORRELATED:
@@ -114,7 +115,7 @@ def _of_residuals(tested: Whiteness, widened: float, curves: Sequence[FittedCurv
         worst = max(curves, key=lambda curve: curve.error)
         told = f"what is left is no noise (Ljung-Box, p = {tested.probability:.1g}): the model errs by about"
         cause = f"{told} {100.0 * worst.error:.2g} % of the peak, or the noise is coloured (--corner)"
-        yield f"{cause}; the intervals are {math.sqrt(widened):.2g} times as wide, and not to be trusted"
+        yield f"{cause}; the intervals are {widened:.2g} times as wide, and not to be trusted"
 
 
 def _of_the_sample(posterior: Posterior | None, valleys: Sequence[ToldValley]) -> Iterator[str]:

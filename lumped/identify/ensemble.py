@@ -94,12 +94,13 @@ def _moved(density: Density, here: Array, logs: Array, moving: Places, others: P
 
 
 def posterior_of(
-    histories: Histories, profiles: Sequence[LikelihoodProfile], widened: float, count: int
+    histories: Histories, profiles: Sequence[LikelihoodProfile], growth: float, count: int
 ) -> tuple[Posterior, list[Array]]:
     """At least so many draws of what is sought, and of every curve the band of the law's force, N, (2, n).
 
     The likelihood has the noise's deviation integrated out, as the bound of the profiles has, S^(-(n - p)/2); the prior
-    is flat where the search looks: in the logarithm of what is above zero. `widened`: see the record.
+    is flat where the search looks: in the logarithm of what is above zero. `growth`: the sum of squares over
+    the noise may grow so many times as much as of noise alone.
     """
     least = histories.squares(profiles[0].valley.sought)
     every = np.array([one.valley.limits for one in profiles])
@@ -109,7 +110,7 @@ def posterior_of(
         if np.any(place < low) or np.any(place > high):
             return -math.inf
         alone = replace(histories, known={})  # thousands of impacts would fill the memory
-        return -0.5 * histories.freedom / widened * math.log(max(alone.squares(place), least) / least)
+        return -0.5 * histories.freedom / growth * math.log(max(alone.squares(place), least) / least)
 
     rng, walkers = np.random.default_rng(SEED), WALKERS * histories.size + 4
     start = np.array([_begun(density, profiles[i % len(profiles)], low, high, rng) for i in range(walkers)])

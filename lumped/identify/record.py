@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -163,9 +162,8 @@ class Identified:
 
     `parameters` by dotted keys, SI units, their intervals over all `valleys`, of which the likeliest is the first;
     `table`: the scene file with the values found; `whiteness` tests what is left, and `warnings` say what it means.
-    `widened`: the sum of squares over the noise may grow so many times as much as of noise alone, and intervals are as
-    wide as its root; the file has the root. `posterior`: its
-    draws, `by_reference`: what a reference changed, `each`: what every curve says alone, where these were asked for.
+    `widened`: the intervals are so many times as wide as those of noise alone. `posterior`: its draws, `by_reference`:
+    what a reference changed, `each`: what every curve says alone, where these were asked for.
     """
 
     source: str
@@ -197,7 +195,7 @@ class Identified:
             "parameters": self._parameters,
             "correlation": {"names": list(self.parameters), "matrix": self.valleys[0].correlation.tolist()},
             "valleys": [asdict(one) | {"correlation": one.correlation.tolist()} for one in self.valleys],
-            "model": {"adequate": self.adequate, "error": error, "widened": math.sqrt(self.widened), **test},
+            "model": {"adequate": self.adequate, "error": error, "widened": self.widened, **test},
             "onset_s": [curve.touch for curve in self.curves],
             "noise": [curve.noise_content() for curve in self.curves],
             "posterior": self.posterior and self.posterior.to_json(list(self.parameters)),
