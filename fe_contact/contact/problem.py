@@ -72,17 +72,12 @@ class PressedSurface:
 
     def work(self, forces: Array) -> float:
         """Of forces (q,) at the points on the displacement that they cause."""
-        if self.compliance is not None:
-            return float(forces @ self.compliance @ forces)
-        load = self.trace.T @ forces
-        return float(load @ dgetrs(*self._factors, load)[0])
+        return float(forces @ self.displaced(forces))
 
     def displaced(self, forces: Array) -> Array:
         """The points (q,) under forces (q,) at them."""
         if self.compliance is not None:
             return np.asarray(self.compliance @ forces)
-        if self.recurring:
-            return np.asarray(self._yields @ forces)
         return np.asarray(self.trace @ dgetrs(*self._factors, self.trace.T @ forces)[0])
 
     def in_shapes(self, pressure: Array) -> Array:
@@ -101,11 +96,6 @@ class PressedSurface:
     def _factors(self) -> tuple[Array, npt.NDArray[np.int32]]:
         """Of the stiffness alone, with their pivots."""
         return dgetrf(self.stiffness)[:2]
-
-    @cached_property
-    def _yields(self) -> Array:
-        """Displacement at the points per force at the points, (q, q)."""
-        return np.asarray(self.trace @ np.linalg.solve(self.stiffness, self.trace.T))
 
     @cached_property
     def _directions(self) -> Array:
