@@ -174,9 +174,7 @@ def _by_stiffness(runs: Runs, value: Curve, end: FlatEnd, numerics: Numerics) ->
     return found
 
 
-def _far_field(
-    runs: Runs, value: Curve, cheap: Numerics, mesh: Numerics, number: int, alone: bool
-) -> Causes:
+def _far_field(runs: Runs, value: Curve, cheap: Numerics, mesh: Numerics, number: int, alone: bool) -> Causes:
     """By one press of either surface where an elastic one follows one contact; else by a march more, on the
     varied mesh: beside a small contact the far field changes what a surface remembers by more than it does the contact.
 

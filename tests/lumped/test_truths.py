@@ -93,6 +93,7 @@ def test_an_early_end_time_ends_the_history(law: str, end: float, impact: Build,
     between_rows = 1e-5 * value(whole, "peak_force")  # what straight lines may err by
     assert abs(result.history.force[-1] - whole.history.force_at(end * unit_time)) <= bars + between_rows
     assert bars <= 3e-5 * value(whole, "peak_force")
+    assert max(result.work.values()) < max(whole.work.values())
 
 
 def test_a_dashpot_alone_stops_the_striker_where_it_should(impact: Build) -> None:
