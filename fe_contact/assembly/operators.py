@@ -32,7 +32,7 @@ MOST_UNKNOWNS = 200_000  # of one body: its factors take a gigabyte and half a m
 SOLVED_AT_ONCE = 32  # right-hand sides: more of them leave the processor's cache
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SurfaceOperator:
     """A body seen through its surface, in units of contact radius and contact modulus: all that an impact asks of it.
 
