@@ -222,21 +222,18 @@ class Marcher:
 
     def _account(self, last: Instant, depth: float, speed: float) -> dict[str, float]:
         """Terms in J; the penalty holds nothing in the end."""
-        strike, joule = self.strike, self.scale * self.solid.unit / self.solid.lead
+        strike, joule, found = self.strike, self.scale * self.solid.unit / self.solid.lead, last.found
+        assert found is not None  # no impact ends where it begins
         brought = 0.5 * strike.mass * strike.velocity**2 + strike.mass * strike.gravity * depth
-        stored = joule * self._stored(last)
-        contact = joule * last.found.balance.touch.energy if last.found is not None else 0.0
+        stored = joule * self._stored(last, found.balance.displacement)
         none = dict.fromkeys(("radiated", "numerical"), 0.0)
         out = 0.5 * strike.mass * speed**2
         known = {"in": brought, "out": out, "stored": stored, "viscous": joule * last.work - stored}
-        return balanced({**known, "contact": contact, **none})
+        return balanced({**known, "contact": joule * found.balance.touch.energy, **none})
 
-    def _stored(self, last: Instant) -> float:
-        """By what lasts and by every branch."""
-        if last.found is None:
-            return 0.0
+    def _stored(self, last: Instant, displacement: Array) -> float:
+        """By what lasts and by every branch, displaced so in the end, (2 N,)."""
         body, sudden = self.body.body, self._sudden
-        displacement = last.found.balance.displacement
         rim, shares = displacement[body.rim], np.array(self.network.moduli) / self.network.glassy
         lasting = self.network.relaxed / self.network.glassy
         elastic = body.core.answered(displacement, sudden)

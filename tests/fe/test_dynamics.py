@@ -227,6 +227,15 @@ def ledger_closes(scheme: str, mass_name: str, seed: int) -> None:
     assert all(min(e.rigid, e.deformable, e.strain, e.contact) >= 0.0 for e in ledgers)
 
 
+@pytest.mark.parametrize("rho", [0.0, 1.0])
+@pytest.mark.parametrize("name", IMPLICIT)
+def test_no_step_is_too_long_for_an_implicit_scheme(name: str, rho: float) -> None:
+    """Whatever spectral radius is asked for: a free oscillator, in steps of half a period and of many."""
+    for step in (3.0, 1e3):
+        found = moved(oscillator(Relaxation(1.0)), name, step, 100.0 * step, rho).final
+        assert np.hypot(found.displacement, found.velocity) < 2.0
+
+
 def test_the_trapezoidal_rule_loses_nothing_and_a_damped_scheme_only_what_oscillates_fast() -> None:
     """Free vibration of a bar: 0, a little, much, by the scheme's own formula and by what is left in the bar."""
     bar = Bar(1.0, 1.0, 1.0, Relaxation(1.0))
