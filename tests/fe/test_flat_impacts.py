@@ -125,7 +125,7 @@ def test_three_marches_tell_all(monkeypatch: pytest.MonkeyPatch) -> None:
     assert (work.factorizations, work.solves) == (len(loads), sum(map(sum, loads)))
     assert work.factorizations == 3, "another penalty takes none"
     assert work.marches == 3
-    assert work.contact_problems == work.steps
+    assert work.contact_problems == work.iterations == work.steps
 
 
 def test_a_confined_plate_of_constant_bulk_modulus_relaxes_by_its_shear_alone(agree: Callable[..., None]) -> None:
