@@ -74,6 +74,19 @@ def test_rows_of_a_curve_with_waves_follow_the_tolerance(numerics: WaveNumerics)
     assert of_half == rows
 
 
+def test_the_deepest_of_several_contacts_is_what_may_be_too_deep(
+    numerics: WaveNumerics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    row = [SimpleNamespace(curve=SimpleNamespace(quantities={"peak_depth": depth})) for depth in (1.0, 2.0, None)]
+    cost = SimpleNamespace(check=lambda spent: None, unknowns=1, all_steps=1)
+    monkeypatch.setattr(certify, "certify", lambda runs, chosen: SimpleNamespace(row=row))
+    monkeypatch.setattr(certify, "cost_of", lambda *of: cost)
+    sunk = list[float]()
+    made_up: Any = SimpleNamespace(check_sunk=sunk.append, spent=0.0)
+    Waves(made_up, made_up, made_up, str, made_up).certified(numerics)
+    assert sunk == [2.0]
+
+
 def test_a_run_that_fails_tells_nothing_of_any_contact_and_is_not_run_again(numerics: WaveNumerics) -> None:
     class Failing(AnyRuns[WaveNumerics]):
         tried = 0
