@@ -77,14 +77,16 @@ class SweepTable:
 
         Empty where the quantity varies by less than its bars, or takes too few values.
         """
+        from scipy.stats import spearmanr
+
         known = self.converged[:, method] & np.isfinite(self.values[:, method, quantity])
         values = self.values[known, method, quantity]
         keys = {key: column[known] for key, column in self.numbers.items()}
         bars = self.errors[known, method, quantity]
         if np.unique(values).size < LEAST_RANKED or np.ptp(values) <= 2.0 * bars.max():
             return {}
-        varied = {key: _ranks(column) for key, column in keys.items() if np.unique(column).size >= LEAST_RANKED}
-        return {key: float(np.corrcoef(ranks, _ranks(values))[0, 1]) for key, ranks in varied.items()}
+        varied = {key: column for key, column in keys.items() if np.unique(column).size >= LEAST_RANKED}
+        return {key: float(spearmanr(column, values).statistic) for key, column in varied.items()}
 
     @property
     def header(self) -> list[str]:
@@ -184,12 +186,6 @@ class SweepTable:
         for quantity in range(len(UNITS)):
             yield self.values[..., quantity].ravel()
             yield self.errors[..., quantity].ravel()
-
-
-def _ranks(values: Array) -> Array:
-    """Of values (n,), equal ones the mean of theirs: loading scipy.stats would cost more than a hundred cases do."""
-    _, place, counts = np.unique(values, return_inverse=True, return_counts=True)
-    return np.asarray((np.cumsum(counts) - 0.5 * (counts - 1))[place])
 
 
 def _cell(value: object) -> object:
