@@ -18,6 +18,7 @@ from lumped.schema import Table
 from lumped.schema.keys import Record, written
 from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
+from lumped.targets._strains import Pressed, StrainField
 
 NEEDS_DENSITY = "needs target.material.density"
 NO_SPEED = "a dashpot alone has no wave speed"
@@ -53,6 +54,22 @@ class Target(Record, ABC):
     def pressed_height(self, shape: Shape) -> float | None:
         """What is flattened as a whole, m, which a depth strains by its share; None where only the contact is."""
         return self.body_depth
+
+    def strains(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> StrainField:
+        """Small strains, about, at a `depth`, m, under a contact of `contact_radius`, m, as :meth:`pressed` has it."""
+        return self.pressed(shape, nu, depth, contact_radius).strains()
+
+    def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
+        """The body as a layer, pressed by `depth`, m, so that the contact ends at `contact_radius`, m.
+
+        Here its base holds it.
+        """
+
+        def fall(along: Array) -> Array:
+            place = np.abs(along) / self.length_of_place
+            return np.asarray(self.overlap(shape, 0.0, depth) - self.overlap(shape, place, depth))
+
+        return Pressed(nu, depth, contact_radius, fall, shape.plane, self.body_depth or math.inf)
 
     @property
     def length_of_place(self) -> float:

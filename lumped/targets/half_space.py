@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import inf
 from typing import Annotated, ClassVar
 
 from lumped.errors import BadInput, Fault
@@ -10,6 +11,7 @@ from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.half_plane import HalfPlane
 from lumped.schema.keys import Key, Number, Part
 from lumped.shapes.base import Shape
+from lumped.targets._strains import Pressed
 from lumped.targets.base import Target
 
 
@@ -44,6 +46,10 @@ class HalfSpace(Target):
     def strained_under(self, shape: Shape) -> bool:
         """Not in plane strain."""
         return super().strained_under(shape) and not shape.plane
+
+    def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
+        """Down to the datum."""
+        return replace(super().pressed(shape, nu, depth, contact_radius), thickness=self.datum_depth or inf)
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """Only a whole body with inertia: else one E* of both tells all, and a target of shape sphere knows it."""

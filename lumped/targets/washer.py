@@ -11,6 +11,7 @@ from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, Shape
+from lumped.targets._strains import StrainField, alike
 from lumped.targets.base import MOVES, NEEDS_DENSITY, Target
 from lumped.targets.layer import BASE, moving_share
 
@@ -48,6 +49,10 @@ class Washer(Target):
         share = moving_share(material.nu, self.base, half / self.height, 0.0, plane=True)
         added = share * material.density * 2.0 * half * around * self.height / pulse.mass
         return min(added, 1.0), MOVES.format(added)
+
+    def strains(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> StrainField:
+        """Alike everywhere, its sides free: a bonded base holds them less than it seems."""
+        return alike(nu, depth / self.height, free=True)
 
     def fixed_radius(self, shape: Shape) -> float | None:
         """Up to the rim of the punch, or to its own."""
