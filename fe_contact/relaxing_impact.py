@@ -23,6 +23,7 @@ from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, dominant
 from fe_contact.budget.variation import SAFETY, Variation, factor
 from fe_contact.errors import MemoryTooSmall, TooManySteps
+from fe_contact.indentation import COARSEST
 from fe_contact.march.impact import STEPS_ALLOWED, balanced, share_of_rest, step_length, time_left
 from fe_contact.progress import Progress
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
@@ -41,7 +42,6 @@ from lumped.scene.scene import Scene
 ROUNDS = 3  # refinements before giving up
 SECONDS = 15.0  # processor time of an impact to 1e-3, about
 ELEMENTS = 3.0  # along the contact radius, at tolerance 1e-3
-COARSEST = 2.0  # of them: half of fewer tells nothing
 PENALTY = 1000.0  # stiffness of the contact
 SMALLEST = 0.2  # contact over the widest one for which the mesh is made
 LAST = 1e-3  # of the expected contact time: with less left the end is read off the trend

@@ -16,7 +16,7 @@ from lumped.targets import Target
 YIELDING_UNDER = ("sphere", "cone", "power", "punch")  # strikers under which a half-space may yield
 STRAINED = (
     "rounded strikers, cones and powers on half_space and layer, cylinders on layer and ring, an o_ring, a "
-    "covered washer, sliding blocks"
+    "covered washer, blocks"
 )
 SPARE_MASS = 0.01  # of a whole body with inertia, which its density gives way to
 
@@ -188,7 +188,6 @@ def finite_faults(source: str, model: Model, geometry: Geometry, impacts: int | 
             f"{part}.material.constant",
             f'"bulk": the whole stress relaxes {state}; accepted: "poisson"',
         ),
-        (relaxing and isinstance(shape, Block), "striker.shape", f"a block does not relax {state}; accepted: elastic"),
         (impacts is not None and impacts > 1, "motion.impacts", f"{impacts}: one is followed {state}; accepted: 1"),
     ]
     return [Fault(source, key, f"{reason}; or model.kinematics = small") for refused, key, reason in wrong if refused]

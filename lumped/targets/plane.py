@@ -58,8 +58,8 @@ class Plane(Target):
         return not isinstance(shape, Block) or shape.uniform
 
     def strained_under(self, shape: Shape) -> bool:
-        """A block that is strained alike everywhere."""
-        return isinstance(shape, Block) and shape.uniform
+        """A block."""
+        return isinstance(shape, Block)
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is neither a block nor a sphere."""

@@ -176,6 +176,22 @@ def test_a_washer_that_slides_between_two_planes_is_a_block() -> None:
     assert 2.0 < found.contact_radius[0] < washer.contact_radius[1]
 
 
+def test_a_bonded_block_is_that_of_small_strains_where_it_is_lightly_pressed() -> None:
+    """Deep, the force is the slope of the energy of both halves."""
+    material, block = Material(Relaxation(1.0), 0.45), Prism(np.pi, 0.8, "free", "bonded")
+    depth = np.array([4e-4, 0.16])
+    large = Indenter(block, material, Plane(), model=Model(kinematics="finite"))
+    numerics, radii = settings(COARSE, block), np.array([1.0, 1.0])
+    found, known = (press_any(one, depth, radii, numerics) for one in (large, replace(large, model=Model())))
+    assert found.force[0] == pytest.approx(known.force[0], rel=5e-3)
+    assert found.force[1] > 1.1 * known.force[1]
+    assert found.contact_radius == pytest.approx(1.0, rel=5e-3)
+    body = Solid.of(large, radii, numerics)
+    below, middle, above = (advanced(body.encounter, None, share * 0.08, 500.0) for share in (0.9999, 1.0, 1.0001))
+    slope = (above.balance.energy - below.balance.energy) / (above.balance.depth - below.balance.depth)
+    assert slope == pytest.approx(middle.balance.force, rel=1e-6)
+
+
 def test_a_nearly_incompressible_body_is_pressed_deep_in_few_iterations() -> None:
     """Whole steps, by the stress that each foresaw: a line search on the energy alone takes ten times as many."""
     body = solid(sphere(0.4999), 0.2)
