@@ -14,10 +14,6 @@ from lumped.shapes._block import Block
 from lumped.targets import Target
 
 YIELDING_UNDER = ("sphere", "cone", "power", "punch")  # strikers under which a half-space may yield
-STRAINED = (
-    "rounded strikers, cones and powers on half_space and layer, cylinders on layer and ring, an o_ring, a "
-    "covered washer, blocks"
-)
 SPARE_MASS = 0.01  # of a whole body with inertia, which its density gives way to
 
 
@@ -167,13 +163,14 @@ def finite_faults(source: str, model: Model, geometry: Geometry, impacts: int | 
     if not model.finite:
         return []
     shape, target, material = geometry.shape, geometry.target, geometry.material
+    instead = target.strained_instead(shape)
     relaxing, state = impacts is not None and not material.young.is_elastic, "with large strains in this version"
     part = "target" if target.deformable else "striker"
     wrong = [
         (
-            not target.strained_under(shape),
+            bool(instead),
             "striker.shape" if target.large_strains else "target.shape",
-            f"a {shape.name} on a {target.name} is not built {state}; accepted: {STRAINED}",
+            f"a {shape.name} on a {target.name} is not built {state}; accepted: {instead}",
         ),
         (geometry.striker_material is not None, "striker.material", f"the striker is rigid {state}; leave it out"),
         (model.inertia, "model.inertia", f"true: no waves {state}; accepted: false"),

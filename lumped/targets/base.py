@@ -119,9 +119,11 @@ class Target(Record, ABC):
         """Whether `model.inertia` can be true under a striker of this shape."""
         return self.has_inertia and shape.flat_radius == 0.0
 
-    def strained_under(self, shape: Shape) -> bool:
-        """Whether `model.kinematics` can be "finite" under a striker of this shape."""
-        return self.large_strains and self.fixed_radius(shape) is None
+    def strained_instead(self, shape: Shape) -> str:
+        """What can have large strains in place of this body under a striker of this shape; empty where it can."""
+        if not self.large_strains:
+            return 'a rigid striker, not flat, on target.shape = "half_space" or "layer"'
+        return 'striker.shape = "rounded_punch"' if self.fixed_radius(shape) is not None else ""
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """What is wrong with a striker of this shape that has a material as the target has, with inertia or without."""

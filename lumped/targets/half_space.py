@@ -43,9 +43,9 @@ class HalfSpace(Target):
         """Not in plane strain."""
         return super().waves_under(shape) and not shape.plane
 
-    def strained_under(self, shape: Shape) -> bool:
-        """Not in plane strain."""
-        return super().strained_under(shape) and not shape.plane
+    def strained_instead(self, shape: Shape) -> str:
+        """A layer in plane strain."""
+        return 'target.shape = "layer"' if shape.plane else super().strained_instead(shape)
 
     def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
         """Down to the datum."""

@@ -57,9 +57,9 @@ class Plane(Target):
         """A block's too that is strained alike everywhere."""
         return not isinstance(shape, Block) or shape.uniform
 
-    def strained_under(self, shape: Shape) -> bool:
-        """A block."""
-        return isinstance(shape, Block)
+    def strained_instead(self, shape: Shape) -> str:
+        """A block, or what is rigid on a half-space."""
+        return "" if isinstance(shape, Block) else f"a prism or a plate; or a rigid {shape.name} on a half_space"
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is neither a block nor a sphere."""

@@ -58,9 +58,10 @@ class Washer(Target):
         """Up to the rim of the punch, or to its own."""
         return None if shape.fixed_radius is None else min(shape.fixed_radius, self.outer_radius)
 
-    def strained_under(self, shape: Shape) -> bool:
-        """A punch that covers it: no rim of the punch cuts in."""
-        return self.fixed_radius(shape) == self.outer_radius
+    def strained_instead(self, shape: Shape) -> str:
+        """A punch that covers it, whose rim does not cut in."""
+        covered = self.fixed_radius(shape) == self.outer_radius
+        return "" if covered else f"a striker.radius from {self.outer_radius:g} m on, which covers the washer"
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is no punch, or passes through the hole."""
