@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from lumped.errors import BadInput, Fault
 from lumped.load_curves import HertzImpact
 from lumped.materials import Creep, Material, Relaxation
+from lumped.materials.energies.base import DEFAULT, ENERGIES, energy_of
 from lumped.scene.tables import Model
 from lumped.schema import Table
 from lumped.shapes import Shape
@@ -181,13 +182,24 @@ def finite_faults(source: str, model: Model, geometry: Geometry, impacts: int | 
             f"no dashpot in parallel {state}; accepted: elastic, maxwell, sls, prony",
         ),
         (
-            relaxing and material.constant == "bulk",
+            relaxing and material.constant == "bulk" and target.endless,
             f"{part}.material.constant",
-            f'"bulk": the whole stress relaxes {state}; accepted: "poisson"',
+            f'"bulk": in a {target.name} the whole stress relaxes {state}; accepted: "poisson"',
+        ),
+        (
+            relaxing and material.constant == "bulk" and not energy_of(material.hyperelastic).splits,
+            f"{part}.material.hyperelastic",
+            f"{material.hyperelastic or DEFAULT}: its volume does not stand apart and relaxes with all else; "
+            f'accepted: {", ".join(_split())}, or constant = "poisson"',
         ),
         (impacts is not None and impacts > 1, "motion.impacts", f"{impacts}: one is followed {state}; accepted: 1"),
     ]
     return [Fault(source, key, f"{reason}; or model.kinematics = small") for refused, key, reason in wrong if refused]
+
+
+def _split() -> list[str]:
+    """Energies of the volume and of what changes none."""
+    return [name for name, energy in ENERGIES.members.items() if energy.splits]
 
 
 def places(shape: Shape, target: Target, deep: str) -> dict[str, str]:

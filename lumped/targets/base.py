@@ -31,7 +31,7 @@ class Target(Record, ABC):
 
     `deformable`: whether it has a material; `yielding_strikers`: whether its striker may have one. `has_inertia`:
     whether its waves can be followed; `only_with_inertia`: whether nothing is left of it without them. `large_strains`:
-    whether they are built of it, or of what strikes it, at all.
+    whether they are built of it, or of what strikes it, at all. `endless`: whether it goes on beyond any mesh.
     """
 
     has_inertia: ClassVar[bool]
@@ -39,6 +39,7 @@ class Target(Record, ABC):
     deformable: ClassVar[bool] = True
     yielding_strikers: ClassVar[bool] = False
     large_strains: ClassVar[bool] = False
+    endless: ClassVar[bool] = False
     through: ClassVar[str] = ""  # what no depth may reach, where that is the height pressed
 
     @property

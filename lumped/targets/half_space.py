@@ -27,6 +27,7 @@ class HalfSpace(Target):
     has_inertia: ClassVar[bool] = True
     yielding_strikers: ClassVar[bool] = True
     large_strains: ClassVar[bool] = True
+    endless: ClassVar[bool] = True
 
     @property
     def has_length(self) -> bool:

@@ -42,6 +42,7 @@ class Layer(Target):
     name: ClassVar[str] = "layer"
     has_inertia: ClassVar[bool] = True
     large_strains: ClassVar[bool] = True
+    endless: ClassVar[bool] = True
     through: ClassVar[str] = "the layer's thickness"
 
     @property

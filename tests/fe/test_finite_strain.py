@@ -145,7 +145,7 @@ def test_the_ledger_has_a_spheres_first_order_as_finite_elements_find_it(nu: flo
         )
 
 
-SCENES = 80  # of a geometry, all with --full
+SCENES = 40  # of a geometry
 FACTOR = 3.0
 CANCELLED = 0.1  # of the largest change by any energy, where cubic terms and gap cancel
 
@@ -198,9 +198,12 @@ def measured(pressed: Indenter, depth: float) -> tuple[float, float]:
 def test_what_the_ledger_says_of_large_strains_is_within_a_factor_of_three(
     name: str, campaign_size: Callable[..., int]
 ) -> None:
-    """Of random scenes, energies and Poisson's ratios, each pressed with large strains and with small ones."""
+    """Of random scenes, energies and Poisson's ratios, each pressed with large strains and with small ones.
+
+    All scenes with --full, else the first of a geometry.
+    """
     random, wrong = np.random.default_rng(31), list[str]()
-    for _ in range(campaign_size(SCENES)):
+    for _ in range(SCENES if campaign_size(SCENES) == SCENES else 1):
         (shape, target, depth), nu = drawn(random, name), float(random.uniform(0.0, 0.49))
         energy = str(random.choice(ENERGIES.names))
         small = Indenter(shape, Material(Relaxation(1.0), nu, hyperelastic=energy), target)
