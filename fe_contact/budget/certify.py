@@ -61,6 +61,7 @@ MESH_ORDER = {3: 1, 4: 2}  # by element order: the edge allows three in the forc
 WITNESS = 2  # times the order have the elements that tell of those which lock
 WITNESS_ELEMENTS = 4.0  # of them along the contact radius, at least
 MESH_ORDER_ANYWHERE = 1.5  # where the edge falls anywhere in an element: the pressure has a root there
+NEAR_ANYWHERE = 0.6  # of the largest depth: down to it the edge passes half an element, and a chance agreement shows
 # what a mesh that stays changes weighs so much by a dashpot: its force jitters, which hides in what adds up
 DAMPED_ANYWHERE = {"duration": 8.0, "restitution": 3.0, "impulse": 3.0}
 DAMPED_SINCE = 0.5  # share of the contact from which path and speed count there: the end alone may agree by chance
@@ -145,7 +146,7 @@ def _by_mesh(
     if follows_contact:
         return mesh, change()
     damped = {"weights": DAMPED_ANYWHERE, "since": DAMPED_SINCE} if viscous else {}
-    return mesh, change(unresolved=np.inf, **damped)
+    return mesh, change(unresolved=np.inf, near=NEAR_ANYWHERE, **damped)
 
 
 def _judging(numerics: Numerics, cheap: Numerics, cause: str, stays: bool = False) -> Numerics:

@@ -165,8 +165,8 @@ def factorised(matrix: Array) -> Callable[[Array], Array]:
 class ContactProblem:
     """A surface, its free overlap (q,), the penalty stiffness, and the striker's retreat per force, 0 held fixed.
 
-    ``yielding`` (q,): per force at each point, on surfaces that do not recur; there is no energy then, nor its line
-    search.
+    ``yielding`` (q,): per force at each point, on surfaces that do not recur; so nearly alike where points touch that
+    the energy's slope is Newton's residual all the same.
     """
 
     surface: PressedSurface
@@ -215,7 +215,7 @@ def solve(problem: ContactProblem, touching: Touching) -> ContactSolution:
         if found == held:
             settled = answer.trusted or _balances(problem, gap)
             return _solution(problem, gap, iteration, settled)
-        if iteration >= guarded and isinstance(problem.yielding, float):
+        if iteration >= guarded:
             point = _Point(answer.springs * gap, retreat, gap)
             if before is not None:
                 point, still = _descended(problem, before, point)
@@ -351,7 +351,7 @@ class _Point:
     def energy(self, problem: ContactProblem) -> float:
         """J of the module's formula."""
         strain = problem.surface.work(self.forces)
-        striker = self.retreat**2 / float(problem.yielding) if problem.yielding else 0.0
+        striker = self.retreat * float(self.forces.sum())
         pressed = problem.surface.weights @ np.maximum(self.gap, 0.0) ** 2
         return 0.5 * (strain + striker + problem.penalty * float(pressed))
 
