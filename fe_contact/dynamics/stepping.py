@@ -28,12 +28,13 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse as sparse
 
 from fe_contact.assembly.forms import Array, Indices, Matrix
 from fe_contact.assembly.interior import factorized
 from fe_contact.contact.enforcement.base import Enforcement
 from fe_contact.contact.problem import ContactProblem, PressedSurface, Touching
-from fe_contact.dynamics.body import BodyState, BodyWithMass, Pressing, internal
+from fe_contact.dynamics.body import BodyState, BodyWithMass, Pressing, internal, pushed_and_damped, state_of
 from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.errors import ContactNotSettled
 from lumped.errors import BadInput, Fault
@@ -100,6 +101,13 @@ class ImplicitStepper:
         return state
 
     @cached_property
+    def _matrices(self) -> Matrix:
+        """Unit stiffness of every part, inertia and damping, one above the other."""
+        body = self.body
+        damping = sparse.csr_matrix((body.size, body.size)) if body.damping is None else body.damping
+        return sparse.vstack([*(part.stiffness for part in body.parts), body.inertia, damping]).tocsr()
+
+    @cached_property
     def moved(self) -> Array:
         """Increments (N, m) of unit surface forces."""
         return np.asarray((1 - self.scheme.alpha_f) * self.solve(self.body.pressing.push.toarray()))
@@ -141,36 +149,32 @@ class ImplicitStepper:
     def _known(self, state: BodyState) -> Array:
         """Forces that the past fixes, (N,)."""
         body, (alpha_m, alpha_f, _, _) = self.body, self.scheme
-        v, a = self._newmark(state, np.zeros(body.size))  # at the end of a step in which nothing moves
-        forces = body.weight - body.inertia @ ((1 - alpha_m) * a + alpha_m * state.acceleration)
-        forces -= alpha_f * state.internal
-        for part, law, branches in zip(body.parts, self.laws, state.branches, strict=True):
-            held = part.past(law, state.displacement, branches)
-            faded = law.late @ ((law.decay - 1.0)[:, None] * branches)
-            forces -= part.stiffness @ ((1 - alpha_f) * held + faded)
+        forces = body.weight - ((1 - alpha_m) * self._newmark(state.pushed, 0.0)[2] + alpha_m * state.pushed[2])
+        for part, law, pulls in zip(body.parts, self.laws, state.pulls, strict=True):
+            held = (1 - alpha_f) * part.past(law, pulls[0], pulls[1:])
+            forces -= held + alpha_f * part.stressed(pulls[0], pulls[1:]) + (law.late * (law.decay - 1.0)) @ pulls[1:]
         if body.damping is not None:
-            forces -= body.damping @ ((1 - alpha_f) * v + alpha_f * state.velocity)
+            forces -= (1 - alpha_f) * self._newmark(state.damped, 0.0)[1] + alpha_f * state.damped[1]
         return np.asarray(forces)
 
-    def _newmark(self, state: BodyState, change: Array) -> tuple[Array, Array]:
-        """Velocity and acceleration at the end of a step with an increment of displacement."""
+    def _newmark(self, motion: Array, change: Array | float) -> Array:
+        """Displacement, velocity and acceleration (3, N), or a matrix times these, after an increment of the first."""
         (_, _, beta, gamma), dt = self.scheme, self.step
-        v, a = state.velocity, state.acceleration
+        u, v, a = motion
         late = (change - dt * v - dt**2 * (0.5 - beta) * a) / (beta * dt**2)
-        return v + dt * ((1 - gamma) * a + gamma * late), late
+        return np.array([u + change, v + dt * ((1 - gamma) * a + gamma * late), late])
 
     def _moved(self, state: BodyState, change: Array, found: Found) -> BodyState:
-        velocity, acceleration = self._newmark(state, change)
-        displacement = state.displacement + change
-        branches = tuple(law.moved(own, change) for law, own in zip(self.laws, state.branches, strict=True))
+        """The state after an increment (N,)."""
+        *pulled, pushed, damped = self._matrices.dot(change).reshape(-1, self.body.size)
         return BodyState(
             time=state.time + self.step,
-            displacement=displacement,
-            velocity=velocity,
-            acceleration=acceleration,
-            branches=branches,
-            internal=internal(self.body, displacement, branches),
+            motion=self._newmark(state.motion, change),
+            branches=tuple(law.moved(own, change) for law, own in zip(self.laws, state.branches, strict=True)),
             signed_pressure=found.signed_pressure,
+            pulls=tuple(law.pulled(own, pull) for law, own, pull in zip(self.laws, state.pulls, pulled, strict=True)),
+            pushed=self._newmark(state.pushed, pushed),
+            damped=self._newmark(state.damped, damped),
         )
 
 
@@ -193,8 +197,9 @@ class ExplicitStepper:
             return state
         ahead = state.displacement + self.step * (state.velocity + self.step / 2 * state.acceleration)
         found = self._constrained(state, ahead, self.step**2 / 2)
-        pushed = state.acceleration + self._accelerated(self.body.pressing.load(found.pressure))
-        return state._replace(acceleration=pushed, signed_pressure=found.signed_pressure)
+        motion = state.motion.copy()
+        motion[2] += self._accelerated(self.body.pressing.load(found.pressure))
+        return state_of(self.body, state.time, motion, state.branches, found.signed_pressure)
 
     def advance(self, state: BodyState) -> tuple[BodyState, Found]:
         """The state a step later; raises ContactNotSettled."""
@@ -207,15 +212,18 @@ class ExplicitStepper:
             change, found = self._settled(state, change)
         displacement = state.displacement + change
         branches = tuple(law.moved(own, change) for law, own in zip(self.laws, state.branches, strict=True))
-        forces = internal(body, displacement, branches)
+        pulled = (part.stiffness @ change for part in body.parts)
+        pulls = tuple(law.pulled(own, pull) for law, own, pull in zip(self.laws, state.pulls, pulled, strict=True))
+        forces = internal(body, pulls)
         driving = body.weight - forces if body.damping is None else body.weight - forces - body.damping @ middle
         if found is None:
             found = self._pressed(state, displacement, middle, driving)
         acceleration = self._accelerated(driving + body.pressing.load(found.pressure))
         velocity = middle + dt / 2 * acceleration
         velocity[body.massless] = change[body.massless] / dt
-        pressure = found.signed_pressure
-        return BodyState(state.time + dt, displacement, velocity, acceleration, branches, forces, pressure), found
+        motion = np.array([displacement, velocity, acceleration])
+        images = pushed_and_damped(body, motion)
+        return BodyState(state.time + dt, motion, branches, found.signed_pressure, pulls, *images), found
 
     def _accelerated(self, forces: Array) -> Array:
         """Acceleration (N,) under forces (N,) or of several, (N, m); zero without mass."""

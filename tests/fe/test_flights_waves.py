@@ -10,7 +10,7 @@ import scipy.sparse as sparse
 from scipy.optimize import brentq
 
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
-from fe_contact.dynamics.body import BodyState, BodyWithMass, Part, Pressing, internal, undeformed
+from fe_contact.dynamics.body import BodyWithMass, Part, Pressing, state_of, undeformed
 from fe_contact.dynamics.march import Choices, Moment, account_at_start
 from fe_contact.dynamics.schemes import generalised_alpha
 from fe_contact.dynamics.stepping import Enforced
@@ -50,10 +50,11 @@ class Case:
     def parted(self) -> Moment:
         body, at_rest = self.body, undeformed(self.body, np.zeros(2))
         displacement, branches = np.array([self.place, -self.place]), (np.array([[self.branch, 0.0]]),)
-        forces = internal(body, displacement, branches)
+        force = self.place + RELAXATION.moduli[0] * self.branch
         velocity = np.array([self.rising, -self.speed])
-        acceleration = np.array([-forces[0] - self.dashpot * self.rising, self.gravity])
-        state = BodyState(0.0, displacement, velocity, acceleration, branches, forces, at_rest.signed_pressure)
+        acceleration = np.array([-force - self.dashpot * self.rising, self.gravity])
+        motion = np.array([displacement, velocity, acceleration])
+        state = state_of(body, 0.0, motion, branches, at_rest.signed_pressure)
         return Moment(state, account_at_start(body, state))
 
     def touch(self) -> float:
