@@ -203,34 +203,42 @@ class BodyWithMass:
 class BodyState(NamedTuple):
     """A body at an instant, s, with N degrees of freedom and q points of contact, SI units.
 
-    ``motion`` (3, N): displacement, velocity, acceleration; ``branches`` of every part, (k, N); ``signed_pressure``
-    (q,), negative where open. What the body's matrices make of that: ``pulls`` (1 + k, N) of every part, its unit
-    stiffness times the displacement and each branch; ``pushed`` and ``damped`` (3, N), inertia and damping times the
-    motion. All are linear, so that a step needs the matrices once, times its increment.
+    ``motions`` (3, 3, N): displacement, velocity and acceleration, the inertia times these, the damping times these;
+    ``branches`` of every part, (k, N), and its ``pulls`` (1 + k, N): its unit stiffness times the displacement and each
+    branch; ``signed_pressure`` (q,), negative where open. All are linear in the increment of a step, which is all that
+    the matrices are multiplied with.
     """
 
     time: float
-    motion: Array
+    motions: Array
     branches: tuple[Array, ...]
-    signed_pressure: Array
     pulls: tuple[Array, ...]
-    pushed: Array
-    damped: Array
+    signed_pressure: Array
 
     @property
     def displacement(self) -> Array:
         """(N,), m."""
-        return np.asarray(self.motion[0])
+        return np.asarray(self.motions[0, 0])
 
     @property
     def velocity(self) -> Array:
         """(N,), m/s."""
-        return np.asarray(self.motion[1])
+        return np.asarray(self.motions[0, 1])
 
     @property
     def acceleration(self) -> Array:
         """(N,), m/s2."""
-        return np.asarray(self.motion[2])
+        return np.asarray(self.motions[0, 2])
+
+    @property
+    def pushed(self) -> Array:
+        """Inertia times displacement, velocity, acceleration, (3, N)."""
+        return np.asarray(self.motions[1])
+
+    @property
+    def damped(self) -> Array:
+        """Damping times displacement, velocity, acceleration, (3, N)."""
+        return np.asarray(self.motions[2])
 
     @property
     def pressure(self) -> Array:
@@ -241,18 +249,18 @@ class BodyState(NamedTuple):
 def state_of(
     body: BodyWithMass, time: float, motion: Array, branches: tuple[Array, ...], signed_pressure: Array
 ) -> BodyState:
-    """The state with all that the matrices make of it."""
+    """The state of displacement, velocity and acceleration (3, N), with all that the matrices make of it."""
     pulls = tuple(
         np.array([part.stiffness @ along for along in (motion[0], *own)])
         for part, own in zip(body.parts, branches, strict=True)
     )
-    return BodyState(time, motion, branches, signed_pressure, pulls, *pushed_and_damped(body, motion))
+    return BodyState(time, motions_of(body, motion), branches, pulls, signed_pressure)
 
 
-def pushed_and_damped(body: BodyWithMass, motion: Array) -> tuple[Array, Array]:
-    """Inertia and damping times displacement, velocity and acceleration, each (3, N)."""
-    damped = np.zeros_like(motion) if body.damping is None else np.asarray((body.damping @ motion.T).T)
-    return np.asarray((body.inertia @ motion.T).T), damped
+def motions_of(body: BodyWithMass, motion: Array) -> Array:
+    """Displacement, velocity and acceleration (3, N), inertia times and damping times these, (3, 3, N)."""
+    damped = np.zeros_like(motion) if body.damping is None else (body.damping @ motion.T).T
+    return np.array([motion, (body.inertia @ motion.T).T, damped])
 
 
 def undeformed(body: BodyWithMass, velocity: Array) -> BodyState:
@@ -260,7 +268,8 @@ def undeformed(body: BodyWithMass, velocity: Array) -> BodyState:
     branches = tuple(np.zeros((len(part.relaxation.moduli), body.size)) for part in body.parts)
     forces = body.weight if body.damping is None else body.weight - body.damping @ velocity
     motion, free = np.array([np.zeros(body.size), velocity, np.zeros(body.size)]), body.massive
-    motion[2, free] = factorized(body.inertia[free][:, free])(forces[free])
+    if forces.any():
+        motion[2, free] = factorized(body.inertia[free][:, free])(forces[free])
     return state_of(body, 0.0, motion, branches, -np.ones(body.pressing.weights.size))
 
 

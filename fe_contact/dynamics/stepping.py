@@ -34,7 +34,7 @@ from fe_contact.assembly.forms import Array, Indices, Matrix
 from fe_contact.assembly.interior import factorized
 from fe_contact.contact.enforcement.base import Enforcement
 from fe_contact.contact.problem import ContactProblem, PressedSurface, Touching
-from fe_contact.dynamics.body import BodyState, BodyWithMass, Pressing, internal, pushed_and_damped, state_of
+from fe_contact.dynamics.body import BodyState, BodyWithMass, Pressing, internal, motions_of, state_of
 from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.errors import ContactNotSettled
 from lumped.errors import BadInput, Fault
@@ -85,7 +85,8 @@ def surface_of(compliance: Array, pressing: Pressing, nodes: Indices | slice = s
     symmetric = (compliance + compliance.T) / 2
     stiffness = np.linalg.inv(symmetric)
     trace = pressing.trace[:, nodes]
-    return PressedSurface((stiffness + stiffness.T) / 2, trace, pressing.weights, carriers=pressing.carriers)
+    square = (stiffness + stiffness.T) / 2
+    return PressedSurface(square, trace, pressing.weights, recurring=False, carriers=pressing.carriers)
 
 
 class ImplicitStepper:
@@ -94,6 +95,7 @@ class ImplicitStepper:
     def __init__(self, body: BodyWithMass, scheme: Scheme, enforced: Enforced, step: float) -> None:
         self.body, self.scheme, self.enforced, self.step = body, scheme, enforced, step
         self.laws = [part.law(step) for part in body.parts]
+        self._onwards, self._of_change = _newmark(scheme, step)
         self.solve = factorized(self._effective())
 
     def begun(self, state: BodyState) -> BodyState:
@@ -147,35 +149,37 @@ class ImplicitStepper:
         return matrix
 
     def _known(self, state: BodyState) -> Array:
-        """Forces that the past fixes, (N,)."""
+        """Forces that the past fixes, (N,): those of a step in which nothing moves."""
         body, (alpha_m, alpha_f, _, _) = self.body, self.scheme
-        forces = body.weight - ((1 - alpha_m) * self._newmark(state.pushed, 0.0)[2] + alpha_m * state.pushed[2])
+        forces = body.weight - ((1 - alpha_m) * self._onwards[2] @ state.pushed + alpha_m * state.pushed[2])
         for part, law, pulls in zip(body.parts, self.laws, state.pulls, strict=True):
             held = (1 - alpha_f) * part.past(law, pulls[0], pulls[1:])
             forces -= held + alpha_f * part.stressed(pulls[0], pulls[1:]) + (law.late * (law.decay - 1.0)) @ pulls[1:]
         if body.damping is not None:
-            forces -= (1 - alpha_f) * self._newmark(state.damped, 0.0)[1] + alpha_f * state.damped[1]
+            forces -= (1 - alpha_f) * self._onwards[1] @ state.damped + alpha_f * state.damped[1]
         return np.asarray(forces)
-
-    def _newmark(self, motion: Array, change: Array | float) -> Array:
-        """Displacement, velocity and acceleration (3, N), or a matrix times these, after an increment of the first."""
-        (_, _, beta, gamma), dt = self.scheme, self.step
-        u, v, a = motion
-        late = (change - dt * v - dt**2 * (0.5 - beta) * a) / (beta * dt**2)
-        return np.array([u + change, v + dt * ((1 - gamma) * a + gamma * late), late])
 
     def _moved(self, state: BodyState, change: Array, found: Found) -> BodyState:
         """The state after an increment (N,)."""
-        *pulled, pushed, damped = self._matrices.dot(change).reshape(-1, self.body.size)
+        *pulled, pushed, damped = (self._matrices @ change).reshape(-1, change.size)
+        moves = np.array([change, pushed, damped])
         return BodyState(
             time=state.time + self.step,
-            motion=self._newmark(state.motion, change),
+            motions=self._onwards @ state.motions + self._of_change[:, None] * moves[:, None],
             branches=tuple(law.moved(own, change) for law, own in zip(self.laws, state.branches, strict=True)),
-            signed_pressure=found.signed_pressure,
             pulls=tuple(law.pulled(own, pull) for law, own, pull in zip(self.laws, state.pulls, pulled, strict=True)),
-            pushed=self._newmark(state.pushed, pushed),
-            damped=self._newmark(state.damped, damped),
+            signed_pressure=found.signed_pressure,
         )
+
+
+def _newmark(scheme: Scheme, dt: float) -> tuple[Array, Array]:
+    """What displacement, velocity and acceleration at a step's end owe to those at its start, (3, 3), and to the
+    increment of the displacement, (3,).
+    """
+    _, _, beta, gamma = scheme
+    late = np.array([0.0, -1.0 / (beta * dt), 1.0 - 0.5 / beta])
+    faster = np.array([0.0, 1.0, dt * (1.0 - gamma)]) + gamma * dt * late
+    return np.array([[1.0, 0.0, 0.0], faster, late]), np.array([1.0, gamma / (beta * dt), 1.0 / (beta * dt**2)])
 
 
 class ExplicitStepper:
@@ -197,7 +201,7 @@ class ExplicitStepper:
             return state
         ahead = state.displacement + self.step * (state.velocity + self.step / 2 * state.acceleration)
         found = self._constrained(state, ahead, self.step**2 / 2)
-        motion = state.motion.copy()
+        motion = state.motions[0].copy()
         motion[2] += self._accelerated(self.body.pressing.load(found.pressure))
         return state_of(self.body, state.time, motion, state.branches, found.signed_pressure)
 
@@ -221,9 +225,8 @@ class ExplicitStepper:
         acceleration = self._accelerated(driving + body.pressing.load(found.pressure))
         velocity = middle + dt / 2 * acceleration
         velocity[body.massless] = change[body.massless] / dt
-        motion = np.array([displacement, velocity, acceleration])
-        images = pushed_and_damped(body, motion)
-        return BodyState(state.time + dt, motion, branches, found.signed_pressure, pulls, *images), found
+        motions = motions_of(body, np.array([displacement, velocity, acceleration]))
+        return BodyState(state.time + dt, motions, branches, pulls, found.signed_pressure), found
 
     def _accelerated(self, forces: Array) -> Array:
         """Acceleration (N,) under forces (N,) or of several, (N, m); zero without mass."""
