@@ -24,6 +24,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sparse
 
+from fe_contact.assembly.cache import Store
 from fe_contact.assembly.forms import Array, Matrix
 from fe_contact.dynamics.body import BodyState, BodyWithMass, internal, undeformed
 from fe_contact.dynamics.schemes.base import Scheme
@@ -35,6 +36,7 @@ MOST_STEPS = 200_000  # of a small body: a minute and a half, nearly all of it b
 MOST_WORK = 3e8  # unknowns times steps, of a large one: some eight minutes of one core
 ROUNDING = 1e-9  # of times that are sums of steps
 UNBOUNDED = 1e6  # multiple of the fastest that gravity and the start explain
+KEPT = 8  # lengths of step whose factors are kept, some 10 MB each
 JUST_SAFE = 1e-9  # rounding of a stage that just keeps the limit
 
 
@@ -148,11 +150,30 @@ def march(
     Raises ContactNotSettled, MotionUnbounded or TooManySteps; BadInput for a scheme that the body does not admit.
     """
     state = undeformed(body, velocity)
-    return onwards(body, Moment(state, account_at_start(body, state)), choices, end_time, watch, finished)
+    steppers = Steppers(body, choices.enforced)
+    return onwards(steppers, Moment(state, account_at_start(body, state)), choices, end_time, watch, finished)
+
+
+class Steppers:
+    """Steppers of one ``body`` by the contact ``enforced`` there, ``made`` so many; those used last are kept."""
+
+    def __init__(self, body: BodyWithMass, enforced: Enforced) -> None:
+        self.body, self.enforced, self.made = body, enforced, 0
+        self._kept = Store(KEPT)
+
+    def of(self, scheme: Scheme, step: float) -> ExplicitStepper | ImplicitStepper:
+        """One for steps of a length, s, at hand or new."""
+        return self._kept.find((scheme, step), lambda: self.new(scheme, step))
+
+    def new(self, scheme: Scheme, step: float) -> ExplicitStepper | ImplicitStepper:
+        """One for a length that does not come again, s."""
+        self.made += 1
+        kind: type[ExplicitStepper | ImplicitStepper] = ExplicitStepper if scheme.explicit else ImplicitStepper
+        return kind(self.body, scheme, self.enforced, step)
 
 
 def onwards(
-    body: BodyWithMass,
+    steppers: Steppers,
     begun: Moment,
     choices: Choices,
     end_time: float,
@@ -160,8 +181,9 @@ def onwards(
     finished: Callable[[Sample], bool],
 ) -> Motion:
     """The same from a moment on, with which another ``end_time``, s, and the lengths of the steps begin anew."""
-    parts = stages(body, choices.enforced, choices.step) if choices.scheme.staged else 1
-    stepper = _stepper(body, choices, choices.step / parts)
+    body, scheme = steppers.body, choices.scheme
+    parts = stages(body, choices.enforced, choices.step) if scheme.staged else 1
+    stepper = steppers.of(scheme, choices.step / parts)
     state, energies, start = stepper.begun(begun.state), begun.energies, begun.state.time
     fastest = UNBOUNDED * (np.abs(state.velocity).max() + np.abs(body.gravity).max() * end_time)
     samples, most = [_sample(body, state, 0.0, watch, energies, 0)], min(MOST_STEPS, int(MOST_WORK / body.size))
@@ -170,25 +192,20 @@ def onwards(
             raise TooManySteps(most, state.time)
         length = choices.length(state.time - start) / parts
         if length != stepper.step:
-            stepper = _stepper(body, choices, length)
+            stepper = steppers.of(scheme, length)
         impulse, iterations = 0.0, 0
         for _ in range(parts):
             before = state
             state, found = stepper.advance(before)
             if not np.abs(state.velocity).max() <= fastest:  # nan is no less
                 raise MotionUnbounded(state.time)
-            energies = account_after(energies, body, choices.scheme, before, state)
+            energies = account_after(energies, body, scheme, before, state)
             impulse += _impulse(body, before, state)
             iterations += found.iterations
         samples.append(_sample(body, state, impulse, watch, energies, iterations))
         if finished(samples[-1]):
             break
     return Motion(tuple(samples), state, parts)
-
-
-def _stepper(body: BodyWithMass, choices: Choices, step: float) -> ExplicitStepper | ImplicitStepper:
-    kind: type[ExplicitStepper | ImplicitStepper] = ExplicitStepper if choices.scheme.explicit else ImplicitStepper
-    return kind(body, choices.scheme, choices.enforced, step)
 
 
 def _impulse(body: BodyWithMass, before: BodyState, after: BodyState) -> float:

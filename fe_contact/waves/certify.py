@@ -38,9 +38,9 @@ from fe_contact.march.impacts import Followed, follow
 from fe_contact.progress import Count, Counted, Progress, uncounted
 from fe_contact.settings import Numerics, WaveNumerics
 from fe_contact.steppers.steps import March, Strike
-from fe_contact.waves.impact import Flights, WaveBouncer
+from fe_contact.waves.impact import WaveBouncer
 from fe_contact.waves.moving import Moving
-from fe_contact.waves.plan import Cost, graded
+from fe_contact.waves.plan import Cost
 from lumped.result.result import LedgerEntry, meets
 from lumped.scene.scene import Scene
 
@@ -64,16 +64,17 @@ tells_of_mesh = partial(other_mesh, most=ORDER["mesh"], nodes=LEAST_NODES)
 
 
 class WaveRun(NamedTuple):
-    """The contacts of one run on a body of so many unknowns, and what its flights took."""
+    """The contacts of one run on a body of so many unknowns, steps ``flown`` between them, and ``factorizations``."""
 
     followed: Followed
     size: int
-    flights: Flights
+    flown: int
+    factorizations: int
 
     @property
     def steps(self) -> int:
         """Of contacts and flights."""
-        return self.flights.steps + sum(one.march.work.steps for one in self.followed.contacts)
+        return self.flown + sum(one.march.work.steps for one in self.followed.contacts)
 
 
 class WaveRuns(AnyRuns[WaveNumerics]):
@@ -101,7 +102,7 @@ class WaveRuns(AnyRuns[WaveNumerics]):
             body = self._moving(self._scene, settings)
             bouncer = WaveBouncer(body, self._scene, settings, partial(self._count, body.body.size))
             followed = follow(bouncer, self._strike, self._scene.motion.impacts)
-            self._runs[settings] = WaveRun(followed, body.body.size, bouncer.flights)
+            self._runs[settings] = WaveRun(followed, body.body.size, bouncer.flights.steps, bouncer.steppers.made)
             self._curves[settings] = tuple(curve_of(one.march, one.strike, settings) for one in followed.contacts)
         return self._runs[settings].followed
 
@@ -112,18 +113,15 @@ class WaveRuns(AnyRuns[WaveNumerics]):
 
     def work(self) -> TotalWork:
         """What all runs cost together: a factorisation for every length of step, one back-substitution a step."""
-        marches = [(one.march, settings) for settings, run in self._runs.items() for one in run.followed.contacts]
         runs = list(self._runs.values())
-        factorizations = sum(_lengths(*one) for one in marches) + sum(run.flights.factorizations for run in runs)
-        flown, solves = sum(run.flights.steps for run in runs), sum(run.steps for run in runs)
-        unknowns = max(run.size for run in runs)
-        return TotalWork.of([march.work for march, _ in marches], unknowns, factorizations, solves, flown)
-
-
-def _lengths(march: March, settings: WaveNumerics) -> int:
-    """How many lengths of step a march took."""
-    end = float(march.time[-1])
-    return 1 + sum(at < end for at in graded(settings)[1])
+        marches = [one.march.work for run in runs for one in run.followed.contacts]
+        return TotalWork.of(
+            marches,
+            degrees_of_freedom=max(run.size for run in runs),
+            factorizations=sum(run.factorizations for run in runs),
+            solves=sum(run.steps for run in runs),
+            flown=sum(run.flown for run in runs),
+        )
 
 
 def certify(runs: WaveRuns, numerics: WaveNumerics) -> Several:
