@@ -5,6 +5,10 @@ chatter which no order describes. The change between settings in the ratio 1 : 2
 by 1.25 times itself. The far field errs as the square of its distance, as without inertia: half as far, an echo comes
 back within the contact.
 
+A contact ends anywhere within a step, and a body that rings ends it sooner or later than its last forces say. Every
+length of step leaves another share of itself of that, in which no order shows: the finer of two durations then errs by
+less than twice their distance.
+
 A march with waves as a curve: through fewer rows than steps, between which the contact's chatter averages out.
 
 Points of a mesh that stays begin and end their contact one by one, and a dashpot in parallel differentiates that. The
@@ -33,7 +37,7 @@ from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, Growth, missing
 from fe_contact.budget.runs import AnyRuns
 from fe_contact.budget.several import Judged, Several
-from fe_contact.budget.variation import SAFETY, Variation, factor
+from fe_contact.budget.variation import SAFETY, UNORDERED, Variation, factor
 from fe_contact.march.impacts import Followed, follow
 from fe_contact.progress import Count, Counted, Progress, uncounted
 from fe_contact.settings import Numerics, WaveNumerics
@@ -145,7 +149,7 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
     changes: dict[str, Causes] = {
         "mesh": (changed(cheap, mesh, by_mesh), reading(contact.march, contact.strike, numerics)),
         "penalty": (changed(cheap, penalty, factor(ORDER["penalty"], stiffer)),),
-        "time_step": (changed(numerics, half, factor(ORDER["time_step"], False)),),
+        "time_step": (changed(numerics, half, factor(ORDER["time_step"], False), EndMoved),),
         "far_field": (changed(coarse, far, factor(ORDER["far_field"], farther)),),
     }
     return curve_of(contact.march, contact.strike, numerics), changes
@@ -154,14 +158,6 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
 def _nodes(settings: WaveNumerics) -> float:
     """Along the contact radius."""
     return settings.elements_per_contact * settings.order
-
-
-def _changed(
-    curve: Callable[[WaveNumerics], Curve | None], first: WaveNumerics, second: WaveNumerics, trusted: float
-) -> Variation | None:
-    """Variation between settings, ``trusted`` so many times as the error of the first; None where either failed."""
-    one, other = curve(first), curve(second)
-    return None if one is None or other is None else Moved(one, other, trusted)
 
 
 class Moved(Variation):
@@ -185,6 +181,28 @@ class Moved(Variation):
         time = np.minimum(self.first.dense_time[self.late :], curve.duration)
         impulse = curve.read(time).impulse
         return impulse, curve.velocity(time, impulse)
+
+
+class EndMoved(Moved):
+    """The same by the length of the steps, of which the end of a contact knows no order; only where it is read."""
+
+    @cached_property
+    def errors(self) -> dict[str, float]:
+        """Error of every quantity, in its unit."""
+        errors = super().errors
+        return errors | {"duration": errors["duration"] * UNORDERED / self.factor}
+
+
+def _changed(
+    curve: Callable[[WaveNumerics], Curve | None],
+    first: WaveNumerics,
+    second: WaveNumerics,
+    trusted: float,
+    kind: type[Moved] = Moved,
+) -> Variation | None:
+    """Variation between settings, ``trusted`` so many times as the error of the first; None where either failed."""
+    one, other = curve(first), curve(second)
+    return None if one is None or other is None else kind(one, other, trusted)
 
 
 def curve_of(march: March, strike: Strike, numerics: Numerics, share: float = 1.0) -> Curve:
