@@ -89,8 +89,8 @@ class Marcher:
         radii = np.array([SMALLEST, 1.0]) * numerics.contact_radius
         solid, network = Solid.of(indenter, radii, numerics), scene.contact_modulus
         scale = network.glassy * geometry.shape.total * solid.unit**solid.dimension
-        power = 1.0 if geometry.shape.plane else scene.profile.exponent_of_force
-        return cls(Strike.of(scene), solid, network, numerics, scale, power)
+        strike = Strike.of(scene)
+        return cls(strike, solid, network, numerics, scale, strike.power)
 
     @property
     def body(self) -> Encounter:
