@@ -89,8 +89,8 @@ class Marcher:
         sudden = solid.encounter.body.response
         assert isinstance(sudden, Hyperelastic)
         scale = scene.contact_modulus.glassy * geometry.shape.total * solid.unit**solid.dimension
-        power = 1.0 if geometry.shape.plane else scene.profile.exponent_of_force
-        return cls(Strike.of(scene), solid, FadingLaw.of(sudden, material), numerics, scale, power)
+        strike = Strike.of(scene)
+        return cls(strike, solid, FadingLaw.of(sudden, material), numerics, scale, strike.power)
 
     @property
     def body(self) -> Encounter:
