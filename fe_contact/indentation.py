@@ -39,6 +39,7 @@ ROUNDS = 5  # refinements before giving up
 FEWEST = 12  # depths that tell an error bar
 FEWEST_SOFT = 4  # those of them that tell what the penalty changes
 FEWEST_LARGE = 8  # the same of large strains, where each takes a Newton iteration or five on the whole mesh
+COARSEST = 2.0  # elements of large strains along a contact: half of fewer tells nothing
 SPREAD = 0.6  # of them at least, smallest over largest: contact edges over an element of the coarser mesh
 BISECTIONS = 40  # work: halvings of the place where undeformed surfaces cease to overlap
 SMALL = 1e-3  # radius, in depths, from which the search for the overlap's end begins
@@ -196,7 +197,7 @@ def settings(given: Given, shape: Shape, large: bool = False) -> Numerics:
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
     elements = ELEMENTS * max(1.0, (1e-4 / tolerance) ** 0.25)
     if large:
-        elements *= min(1.0, (DEFAULT_TOLERANCE / tolerance) ** 0.5)
+        elements = max(COARSEST, elements * min(1.0, (DEFAULT_TOLERANCE / tolerance) ** 0.5))
     penalty = DEFAULTS["penalty"] * (1.0 if shape.fixed_radius is None else RIM_PENALTY)
     chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "penalty": penalty, "steps": 8}
     return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)

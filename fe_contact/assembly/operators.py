@@ -269,7 +269,8 @@ class SolidMesh:
     """A ``body`` for large strains, whose unit is ``unit``, m; ``inner_radius`` of a ring laid flat, in that unit.
 
     ``mean_radius``, in that unit, of a ring of round section, whose surface counts angles from its top; ``covered``:
-    whether a plane touches all of the surface from the first; ``ends``: whether the mesh is all of it.
+    whether a plane touches all of the surface from the first; ``ends``: whether the mesh is all of it; ``lead``: share
+    of a depth that is pressed here, half of it where both sides are alike.
     """
 
     body: ElasticBody
@@ -278,6 +279,7 @@ class SolidMesh:
     mean_radius: float | None = None
     covered: bool = False
     ends: bool = False
+    lead: float = 1.0
 
 
 @on_disk
