@@ -275,9 +275,15 @@ class Curve:
 
     @cached_property
     def near_peak(self) -> slice:
-        """Dense times from the first to the last at which the force is nearly as large as ever."""
+        """Dense times from the first to the last at which the force is nearly as large as ever, at least three.
+
+        Of one that is largest at the very end the last alone may be.
+        """
         near = np.flatnonzero(self.dense_force > PEAK_SHARE * self.dense_force.max())
-        return slice(int(near[0]), int(near[-1]) + 1)
+        first, last = int(near[0]), int(near[-1])
+        if first == last < len(self.shares) - 1:
+            first, last = max(first - 1, 0), last + 1
+        return slice(first, last + 1)
 
     @property
     def _force_peak(self) -> tuple[float, float]:

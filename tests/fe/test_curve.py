@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from fe_contact.budget.curve import PLACES, Curve, LocalPolynomials, fitted_peak, peak, seen_from_both_sides
+from fe_contact.budget.curve import PEAK_SHARE, PLACES, Curve, LocalPolynomials, fitted_peak, peak, seen_from_both_sides
 from fe_contact.budget.variation import calmest
 from fe_contact.march.impact import STEPS_ALLOWED, share_of_rest, step_length, time_left
 from fe_contact.steppers.steps import Strike
@@ -66,6 +68,19 @@ def test_a_force_that_jitters_from_step_to_step_is_read_through_fewer() -> None:
 @pytest.mark.parametrize("steps", [40, 80, 256])
 def test_a_smooth_force_keeps_its_steps(steps: int) -> None:
     assert len(calmest(bump(steps, 0.0)).x) == steps + 1
+
+
+def test_a_spike_between_two_rows_is_a_peak_like_any_other() -> None:
+    """As a dashpot's at touch may be, narrower than the rows lie apart."""
+    smooth, x, alone = bump(64, 0.0), np.linspace(0.0, 1.0, 65), 0
+    for place in np.linspace(0.2, 0.4, 41):
+        impulse = 0.5 * (1.0 + np.tanh((x**2 - place) / 2e-3))
+        mean = np.concatenate([[0.0], impulse[1:] / x[1:] ** 2])
+        spike = replace(smooth, mean_force=mean, radius_squared=np.array([1.0, 2.0]))
+        alone += np.count_nonzero(spike.dense_force > PEAK_SHARE * spike.dense_force.max()) == 1
+        assert spike.quantities["peak_time"] == pytest.approx(place, abs=0.02)
+        assert spike.quantities["peak_force"] == pytest.approx(spike.dense_force.max(), rel=0.1)
+    assert alone > 0
 
 
 @pytest.mark.parametrize("place", [0.07, 0.31, 0.5, 0.64, 0.93])
