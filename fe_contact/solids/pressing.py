@@ -67,7 +67,7 @@ class Solid:
         mesh = make(indenter, radii, numerics)
         body, unit, profile = mesh.body, mesh.unit, indenter.profile
         rolled = None if mesh.inner_radius is None else Rolled(mesh.inner_radius)
-        bulk, shear = moduli(indenter.material.nu)
+        bulk, shear = _moduli(indenter)
         energy = energy_of(indenter.material.hyperelastic)
         response = Hyperelastic(energy, shear, bulk - 2.0 * shear / 3.0)
         elements = np.arange(body.basis.nelems) if mesh.ends else _core(body)
@@ -79,7 +79,7 @@ class Solid:
         striker, placed = _touched(mesh, profile, rolled)
         skin = Skin.of(body.surface, numerics.order, core.size, placed)
         encounter = replace(Encounter.of(whole, skin, striker), covered=mesh.covered)
-        return cls(encounter, unit, body.surface.dimension - 1, core.size, mesh.ends, indenter.target.lead)
+        return cls(encounter, unit, body.surface.dimension - 1, core.size, mesh.ends, mesh.lead)
 
     def pressed(self, reached: Equilibrium) -> Reached:
         """In m. Raises ContactTooWide."""
@@ -87,6 +87,14 @@ class Solid:
         if not np.isfinite(radius):
             raise ContactTooWide(self.unit * reached.balance.depth / self.lead)
         return Reached(self.unit**self.dimension * reached.rigid_force, radius, reached.error, reached.iterations)
+
+
+def _moduli(indenter: Indenter) -> tuple[float, float]:
+    """Bulk and shear modulus where the modulus of force, which is a block's own, counts as one."""
+    material = indenter.material
+    share = material.contact_modulus().glassy / indenter.shape.modulus(material).glassy
+    bulk, shear = moduli(material.nu)
+    return share * bulk, share * shear
 
 
 def _touched(mesh: SolidMesh, profile: Shape, rolled: Rolled | None) -> tuple[Obstacle, Callable[[Array], Array]]:
@@ -140,7 +148,7 @@ def press(
     indenter: Indenter, depth: Array, radii: Array, numerics: Numerics, softer: Softer | None = None
 ) -> PressedDepths:
     """Every depth, m, from the smallest on; ``radii`` of the contacts expected, m. Raises NotReached."""
-    if isinstance(indenter.shape, Block):
+    if isinstance(indenter.shape, Block) and indenter.shape.uniform:
         return pressed_alike(indenter, indenter.shape, depth)
     solid, widening = Solid.of(indenter, radii, numerics), _widening(depth, radii)
     reached, found, again = None, dict[int, Reached](), dict[int, Reached]()
