@@ -13,8 +13,10 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpec
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 COLUMN, PAGE = 3.5, 7.2  # widths of a paper's column and page, in
 TITLE_SIZE, TITLE_LETTERS = 9.5, 11.5  # pt; letters of that size in an inch
@@ -28,7 +30,7 @@ CYCLE = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
 # A law has one colour in every chart; laws of one kind have neighbouring ones.
 LAWS = {
     "linear_spring": "#7f7f7f", "kelvin": "#2f4b7c", "mahmoud": "#8a6d1f", "impact_bilinear": "#5b3a1e",
-    "hertz": ORANGE, "jankowski": "#f06eaa", "hunt_crossley": PURPLE, "hertzdamp": "#8e44ad",
+    "hertz": ORANGE, "jankowski": "#e0218a", "hunt_crossley": PURPLE, "hertzdamp": "#8e44ad",
     "khatiwada": "#5e2b80", "tsuji": "#b0003a", "kuwabara_kono": "#7a9a01",
     "correspondence": VERMILION, "ting": BLUE, "mdr": GREEN, "rod_waves": "#00a3b4",
     "bar_waves": "#0b5d57",
@@ -114,6 +116,15 @@ def with_error(value: float, error: float, unit: str = "") -> str:
         return f"{value * factor:.6g} {name}".rstrip() + f" ± {error / abs(value):.0e} of it"
     digits = max(0, -math.floor(math.log10(error * factor))) if error > 0.0 else 4
     return f"{value * factor:.{digits}f} ± {error * factor:.{digits}f} {name}".rstrip()
+
+
+def plain_numbers(*axes: Axis) -> None:
+    """Where an axis is logarithmic: 1, 2 and 5 of each decade as they are written, and no other."""
+    for axis in axes:
+        if axis.get_scale() == "log":
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
 
 
 def label(axes: Axes, letter: str, text: str) -> None:
