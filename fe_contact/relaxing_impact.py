@@ -89,8 +89,8 @@ class Marcher:
         sudden = solid.encounter.body.response
         assert isinstance(sudden, Hyperelastic)
         scale = scene.contact_modulus.glassy * geometry.shape.total * solid.unit**solid.dimension
-        power = 1.0 if geometry.shape.plane else scene.profile.exponent_of_force
-        return cls(Strike.of(scene), solid, FadingLaw.of(sudden, material), numerics, scale, power)
+        strike = Strike.of(scene)
+        return cls(strike, solid, FadingLaw.of(sudden, material), numerics, scale, strike.power)
 
     @property
     def body(self) -> Encounter:
@@ -216,21 +216,18 @@ class Marcher:
 
     def _account(self, last: Instant, depth: float, speed: float) -> dict[str, float]:
         """Terms in J; the penalty holds nothing in the end."""
-        strike, joule = self.strike, self.scale * self.solid.unit / self.solid.lead
+        strike, joule, found = self.strike, self.scale * self.solid.unit / self.solid.lead, last.found
+        assert found is not None  # no impact ends where it begins
         brought = 0.5 * strike.mass * strike.velocity**2 + strike.mass * strike.gravity * depth
-        stored = joule * self._stored(last)
-        contact = joule * last.found.balance.touch.energy if last.found is not None else 0.0
+        stored = joule * self._stored(last, found.balance.displacement)
         none = dict.fromkeys(("radiated", "numerical"), 0.0)
         out = 0.5 * strike.mass * speed**2
         known = {"in": brought, "out": out, "stored": stored, "viscous": joule * last.work - stored}
-        return balanced({**known, "contact": contact, **none})
+        return balanced({**known, "contact": joule * found.balance.touch.energy, **none})
 
-    def _stored(self, last: Instant) -> float:
-        """By what lasts and by every branch."""
-        if last.found is None:
-            return 0.0
+    def _stored(self, last: Instant, displacement: Array) -> float:
+        """By what lasts and by every branch, displaced so in the end, (2 N,)."""
         body, law = self.body.body, self.law
-        displacement = last.found.balance.displacement
         rim, shares = displacement[body.rim], np.array(law.network.moduli) / law.network.glassy
         lasting, nu = law.network.relaxed / law.network.glassy, law.branches_nu
         found = body.core.answered(displacement, law.lasting).energy + float(0.5 * lasting * rim @ body.rest @ rim)

@@ -131,7 +131,7 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
         "mesh": (by_mesh, *(() if by_steps else steps.jitter)),
         "penalty": (_variation(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
         "time_step": (*steps.changes, *(steps.jitter if by_steps else ())),
-        "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
+        "far_field": _far_field(runs, steps.value, cheap, mesh, number, alone),
     }
     return steps.value, changes
 
@@ -175,9 +175,7 @@ def _by_stiffness(runs: Runs, value: Curve, end: FlatEnd, numerics: Numerics) ->
     return found
 
 
-def _far_field(
-    runs: Runs, value: Curve, cheap: Numerics, mesh: Numerics, number: int, alone: bool
-) -> Variation | Softening | None:
+def _far_field(runs: Runs, value: Curve, cheap: Numerics, mesh: Numerics, number: int, alone: bool) -> Causes:
     """By one press of either surface where an elastic one follows one contact; else by a march more, on the
     varied mesh: beside a small contact the far field changes what a surface remembers by more than it does the contact.
 
@@ -190,10 +188,10 @@ def _far_field(
         other = runs.surface(far)
         assert isinstance(surface, Deformable)
         assert isinstance(other, Deformable)
-        return Softening(value, factor(order, farther) * compliance_change(surface, other))
+        return (Softening(value, factor(order, farther) * compliance_change(surface, other)),)
     if runs.surface(varied) is runs.surface(mesh):
-        return Softening(value, 0.0)
-    return _variation(runs.curve(number, mesh), runs.curve(number, varied), factor(order, farther))
+        return ()
+    return (_variation(runs.curve(number, mesh), runs.curve(number, varied), factor(order, farther)),)
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,6 @@ FINER = 1.2  # elements and steps on such a mesh where a round contact meets a b
 SPARE = 1.2  # such a mesh is fine beyond the largest contact, where the gap tells how wide that is
 BAND = 1.125  # ratio of the radii that such meshes are made for: impacts whose contacts are about as wide share them
 RIM_PENALTY = 16.0  # penalty under a rim over the usual: the pressure is infinite there
-VISCOUS_ORDER = 0.18  # six elements instead of four at 1e-4
 STEPS_AT_DEFAULT = 40  # and no fewer at any tolerance: halved twice, they still tell something
 STEPS_ORDER = 0.176  # steps grow with tolerance to this power: 60 at 1e-4
 FLAT_STEPS = 4  # as many under a flat end: its area presses at once, whatever relaxes fast, and a step is one sum
@@ -114,13 +113,11 @@ def _settings(scene: Scene, tolerance: float) -> Numerics:
 
 
 def _elements(scene: Scene, tolerance: float) -> float:
-    """Elements along the contact radius; a dashpot asks for more, since it differentiates the mesh's error."""
-    order = VISCOUS_ORDER if scene.contact_modulus.viscosity > 0 else 0.0
+    """Elements along the contact radius."""
     fewest = FIXED_ELEMENTS * _finer(scene) if _stays(scene) else ELEMENTS
     if not _stays(scene) and not _flat(scene):
         fewest *= math.pow(min(max(1e-4 / tolerance, 0.1), 1.0), LOOSER)
-    finer = max(1.0, math.pow(1e-4 / tolerance, 0.25), math.pow(DEFAULT_TOLERANCE / tolerance, order))
-    return round(fewest * finer, 6)
+    return round(fewest * max(1.0, math.pow(1e-4 / tolerance, 0.25)), 6)
 
 
 def _stays(scene: Scene) -> bool:

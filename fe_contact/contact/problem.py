@@ -61,7 +61,10 @@ class PressedSurface:
 
     def held(self, springs: Array) -> Array:
         """Stiffness with springs (q,) at the points, (n, n), in the order of columns that LAPACK needs."""
-        return np.asarray(self.stiffness + (self._squares @ springs).reshape(self.stiffness.shape)).T
+        places, squares = self._squares
+        held = self.stiffness.copy()
+        held.ravel()[places] += squares @ springs
+        return held.T
 
     def gaps(self, springs: Array) -> Callable[[Array], Array]:
         """What is left of any overlap (q,) where springs (q,) stand between the surfaces."""
@@ -72,17 +75,12 @@ class PressedSurface:
 
     def work(self, forces: Array) -> float:
         """Of forces (q,) at the points on the displacement that they cause."""
-        if self.compliance is not None:
-            return float(forces @ self.compliance @ forces)
-        load = self.trace.T @ forces
-        return float(load @ dgetrs(*self._factors, load)[0])
+        return float(forces @ self.displaced(forces))
 
     def displaced(self, forces: Array) -> Array:
         """The points (q,) under forces (q,) at them."""
         if self.compliance is not None:
             return np.asarray(self.compliance @ forces)
-        if self.recurring:
-            return np.asarray(self._yields @ forces)
         return np.asarray(self.trace @ dgetrs(*self._factors, self.trace.T @ forces)[0])
 
     def in_shapes(self, pressure: Array) -> Array:
@@ -103,11 +101,6 @@ class PressedSurface:
         return dgetrf(self.stiffness)[:2]
 
     @cached_property
-    def _yields(self) -> Array:
-        """Displacement at the points per force at the points, (q, q)."""
-        return np.asarray(self.trace @ np.linalg.solve(self.stiffness, self.trace.T))
-
-    @cached_property
     def _directions(self) -> Array:
         """The shape functions times the root of the weights, made orthonormal, (q, rank)."""
         shapes = self.trace if self.carriers is None else self.carriers
@@ -115,16 +108,18 @@ class PressedSurface:
         return np.asarray(found[:, sizes > INDEPENDENT * sizes[0]])
 
     @cached_property
-    def _squares(self) -> Matrix:
-        """Every point's trace times itself as a column, sparse (n n, q): a point sees the nodes of its facet alone."""
+    def _squares(self) -> tuple[npt.NDArray[np.intp], Matrix]:
+        """Every point's trace times itself as a column, sparse (m, q), and of the n n places those m that are not zero:
+        a point sees the nodes of its facet alone.
+        """
         points, nodes = self.trace.shape
         rows = sparse.csr_matrix(self.trace)
         seen = [rows.indices[start:end] for start, end in zip(rows.indptr, rows.indptr[1:], strict=False)]
         pairs = [(ours[:, None] * nodes + ours).ravel() for ours in seen]
         values = [np.outer(own := self.trace[i, ours], own).ravel() for i, ours in enumerate(seen)]
         columns = np.repeat(np.arange(points), [len(pair) for pair in pairs])
-        entries = (np.concatenate(values), (np.concatenate(pairs), columns))
-        return sparse.csr_matrix(entries, shape=(nodes * nodes, points))
+        places, row = np.unique(np.concatenate(pairs), return_inverse=True)
+        return places, sparse.csr_matrix((np.concatenate(values), (row, columns)), shape=(places.size, points))
 
 
 def _between_points(compliance: Array, springs: Array) -> Callable[[Array], Array]:

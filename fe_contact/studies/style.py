@@ -17,6 +17,8 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpec
 
 COLUMN, PAGE = 3.5, 7.2  # widths of a paper's column and page, in
+TITLE_SIZE, TITLE_LETTERS = 9.5, 11.5  # pt; letters of that size in an inch
+LEAST_TITLE = 0.65  # of that size: a title of more letters is smaller, at most by so much, and then cut
 
 # Okabe and Ito's palette, https://jfly.uni-koeln.de/color/
 BLACK, GREY = "#1a1a1a", "#8c8c8c"
@@ -123,8 +125,10 @@ def heading(figure: Figure, title: str, lines: list[str], width: int) -> None:
     """A bold title and lines below it, wrapped at ``width`` characters, at the figure's upper left."""
     height = figure.get_figheight()
     wrapped = [part for line in lines for part in textwrap.wrap(line, width, subsequent_indent="    ")]
-    left = 0.08 / figure.get_figwidth()
-    figure.text(left, 1 - 0.06 / height, title, fontsize=9.5, fontweight="bold", va="top", color=BLACK)
+    left, room = 0.08 / figure.get_figwidth(), TITLE_LETTERS * figure.get_figwidth()
+    size = TITLE_SIZE * max(LEAST_TITLE, min(1.0, room / max(len(title), 1)))
+    shown = title if len(title) <= room / LEAST_TITLE else f"{title[: int(room / LEAST_TITLE) - 1]}…"
+    figure.text(left, 1 - 0.06 / height, shown, fontsize=size, fontweight="bold", va="top", color=BLACK)
     figure.text(left, 1 - 0.27 / height, "\n".join(wrapped), va="top", linespacing=1.45, color="#333333")
 
 

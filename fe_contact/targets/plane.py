@@ -40,6 +40,7 @@ class BlockStill:
     degrees_of_freedom: int
     mesh_order: ClassVar[float] = np.inf  # that of the elements: nothing moves over the mesh
     ends: ClassVar[bool] = True
+    operator: ClassVar[None] = None
 
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m."""

@@ -6,6 +6,7 @@ needed, from the smallest contact outwards.
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from functools import lru_cache
@@ -184,7 +185,7 @@ class TabulatedCurve(KnownTogether):
 
     def _panels_down_to(self, depth: float) -> int:
         for panels in range(1, len(self.edges)):
-            if float(self._at(np.array([self.edges[panels]]), panels).depth[0]) >= depth:
+            if _start(self, panels)[0][-1] >= math.log(depth):
                 return panels
         reason = f"the contact grows beyond {self.edges[-1]:g} m; cure: a smaller depth, a lower velocity"
         raise NotReached(f"the load curve at a depth of {depth:g} m: {reason}")
@@ -210,13 +211,14 @@ def _stretched(radius: Array, edges: Array, breaks: tuple[float, ...]) -> tuple[
 def broken_edges(edges: Sequence[float], breaks: Sequence[float], before: float) -> tuple[float, ...]:
     """Edges of panels that begin anew at every break among them, m, and grow with the distance from the last one.
 
+    From the first break b itself it is that of -b: beyond b functions go by sqrt(a^2 - b^2), whose other end that is.
     `before`: where the functions would break below the first edge, m, or minus infinity.
     """
     ends, found = sorted({*edges[1:], *(one for one in breaks if edges[0] < one < edges[-1])}), [edges[0]]
     for end in ends:
         while found[-1] < end:
             low = found[-1]
-            wide = BROKEN_GROWTH * (low - max((one for one in breaks if one < low), default=before))
+            wide = BROKEN_GROWTH * (low - max([before, *(one if one < low else -one for one in breaks if one <= low)]))
             found.append(low + wide if low + FEWER * wide < end else end)
     return tuple(found)
 

@@ -13,7 +13,7 @@ from fe_contact.budget.curve import PEAK_SHARE, PLACES, Curve, LocalPolynomials,
 from fe_contact.budget.variation import calmest
 from fe_contact.march.impact import STEPS_ALLOWED, share_of_rest, step_length, time_left
 from fe_contact.steppers.steps import Strike
-from lumped import Scene
+from lumped import Relaxation, Scene
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -40,6 +40,20 @@ def bump(steps: int, jitter: float) -> Curve:
     mean = np.concatenate([[0.0], impulse[1:] / time[1:]])
     strike = Strike.of(Scene.load("polymer-layer"))
     return Curve(strike, 1.0, True, x, mean, time, np.array([0.0, 1.0]), np.ones(2), 0.0, {})
+
+
+@pytest.mark.parametrize("within", [1e-4, 1e-2, 0.3])
+@pytest.mark.parametrize("power", [1.0, 1.5, 2.0])
+def test_a_branch_that_relaxes_within_the_first_step_is_read_as_its_law_says(power: float, within: float) -> None:
+    """A striker that nothing slows, a branch ``within`` the first of forty steps, ten thousand times as stiff."""
+    x = np.linspace(0.0, 1.0, 41)
+    relaxation = Relaxation(1.0, (1e4,), (within * x[1] ** 2,))
+    strike = Strike(lambda r: r**2, 1.0, 1.0, 0.0, relaxation, 10.0, power=power)
+    mean = np.concatenate([[0.0], x[1:] ** (2 * power) * relaxation.felt(x[1:] ** 2, power)[1] / (power + 1.0)])
+    curve = Curve(strike, 1.0, True, x, mean, x**2, np.array([0.0, 1.0]), np.array([0.0, 1.0]), 0.0, {})
+    time = x[1] ** 2 * np.geomspace(1e-6, 5.0, 100)
+    true = time**power * relaxation.felt(time, power)[0]
+    np.testing.assert_allclose(curve.force(time), true, rtol=1e-6, atol=1e-12 * true[-1])
 
 
 def test_a_force_that_jitters_from_step_to_step_is_read_through_fewer() -> None:

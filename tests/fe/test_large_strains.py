@@ -209,6 +209,7 @@ def test_a_nearly_incompressible_body_is_pressed_deep_in_few_iterations() -> Non
     found = advanced(body.encounter, first, 0.2 / body.unit, 500.0)
     assert found.iterations < 60
     assert found.error < 1e-6
+    assert advanced(body.encounter, first, first.balance.depth, 500.0).iterations == 1, "where it is already"
 
 
 @pytest.mark.family

@@ -163,8 +163,9 @@ def test_a_step_into_a_ring_ends_with_the_force_of_the_depth_it_ends_at() -> Non
     assert isinstance(stepper, FixedStepper)
     step = stepper.step(stepper.touch(), (), 0.25 * numerics.contact_time)
     offer = stepper.body.offer(stepper.touch().memory.body, step.length)
-    overlap = offer.now * stepper.contact.overlap(step.state.depth) + offer.past
-    pressed = ContactProblem(offer.surface, overlap, numerics.penalty / WIDTH)
+    target, angles = scene.geometry.target, stepper.places / scene.geometry.target.length_of_place
+    overlap = np.maximum(target.overlap(scene.profile, angles, step.state.depth), -10.0 * step.radius)
+    pressed = ContactProblem(offer.surface, offer.now * overlap + offer.past, numerics.penalty / WIDTH)
     still = ENFORCEMENTS.get(numerics.enforcement).enforce(pressed, step.solution.sets[0])
     force = stepper.surface.operator.force(stepper.scale, still.pressure)
     assert force == pytest.approx(step.force, rel=1e-9)

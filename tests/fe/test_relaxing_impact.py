@@ -210,7 +210,7 @@ class OnSpring(Marcher):
     def _worked(self, here: Instant, found: Any) -> float:
         return 0.0
 
-    def _stored(self, last: Instant) -> float:
+    def _stored(self, last: Instant, displacement: Array) -> float:
         return 0.0
 
 

@@ -185,6 +185,16 @@ def test_a_rounded_end_of_no_width_is_a_sphere_and_of_no_edge_a_punch_on_a_layer
     assert 0.0 < force[1] / punch - 1.0 < 0.5 * (force[0] / punch - 1.0) < 0.05
 
 
+def test_a_cone_with_a_small_sphere_at_its_tip_is_a_cone_on_a_layer() -> None:
+    """The tip that is missing counts to first order in its width, a hundredth of a panel's; deeper is as much force."""
+    cone, depth = LayerCurve(ConeCurve(20.0), BONDED), 0.1 * THICKNESS
+    radii = (2e-5, 1e-5)
+    curves = [LayerCurve(SphereCone(radius, 20.0).load_curve, BONDED) for radius in radii]
+    more = [float(curve.force(depth)) / float(cone.force(depth)) - 1.0 for curve in curves]
+    assert more[0] / more[1] == pytest.approx(2.0, rel=3e-3)
+    assert 0.0 < more[0] < 0.01
+
+
 def test_what_is_refused_says_why(tmp_path: Path, impact: Callable[..., Scene]) -> None:
     for heights in ((0.0, 2e-5, 1e-5), (1e-6, 2e-5, 4e-5), (0.0, 3e-5, 4e-5), (0.0, 1e-5)):
         with pytest.raises(BadInput, match="accepted"):
