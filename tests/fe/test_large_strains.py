@@ -28,6 +28,7 @@ from lumped.materials.energies.base import ENERGIES, energy_of, strained
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import LawChoice, Model
 from lumped.shapes import Sphere
+from lumped.shapes.cone import Cone
 from lumped.shapes.prism import Prism
 from lumped.shapes.punch import Punch
 from lumped.targets.o_ring import ORing
@@ -190,6 +191,15 @@ def test_a_bonded_block_is_that_of_small_strains_where_it_is_lightly_pressed() -
     below, middle, above = (advanced(body.encounter, None, share * 0.08, 500.0) for share in (0.9999, 1.0, 1.0001))
     slope = (above.balance.energy - below.balance.energy) / (above.balance.depth - below.balance.depth)
     assert slope == pytest.approx(middle.balance.force, rel=1e-6)
+
+
+def test_under_a_steep_cone_every_depth_answers_alike() -> None:
+    """F ~ depth^2 at any strain, since nothing but the depth has a length: shallow and deep, not lost at the tip."""
+    pressed = replace(sphere(0.3), shape=Cone(18.0))
+    depth = np.array([0.002, 0.03, 0.1])
+    numerics = settings(COARSE, pressed.shape, True)
+    found = press(pressed, depth, expected(pressed, depth, numerics), numerics)
+    assert found.force / depth**2 == pytest.approx(found.force[-1] / depth[-1] ** 2, rel=2e-3)
 
 
 def test_a_nearly_incompressible_body_is_pressed_deep_in_few_iterations() -> None:
