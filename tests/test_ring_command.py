@@ -80,9 +80,10 @@ def test_the_files_say_what_was_found(curves: dict[str, RingCurve], tmp_path: Pa
         rows = list(csv.DictReader(file))
     assert content == json.loads((tmp_path / "ring.json").read_text(encoding="utf-8"))
     assert [one["verdict"]["word"] for one in content["rings"]] == ["holds at one depth", "wrong"]
-    ledger = {one["effect"]: one["estimate"] for one in content["rings"][0]["model_ledger"]}
-    assert ledger["finite strain"] == pytest.approx(0.3)
-    assert ledger["finite length"] == pytest.approx(0.45**2 * 0.2)
+    ledger = {one["effect"]: one for one in content["rings"][0]["model_ledger"]}
+    low, high = ledger["finite strain"]["spread"]
+    assert low < -0.3 < 0.3 < high, "energies alike at small strains differ by more than the strain, either way"
+    assert ledger["finite length"]["estimate"] == pytest.approx(0.45**2 * 0.2)
     for row in rows:
         assert (row["beyond_small_strain"] == "True") == (float(row["strain"]) > 0.05)
         assert float(row["row_deviation"]) == pytest.approx(float(row["row_force_N"]) / float(row["force_N"]) - 1.0)

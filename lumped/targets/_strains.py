@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from math import ceil, inf, pi
 
 import numpy as np
-from scipy.special import j0, j1
 
 from lumped.materials.energies.base import Invariants, StrainEnergy
 from lumped.numbers import Array, gauss
@@ -151,6 +150,8 @@ def _from(reach: float, points: int) -> tuple[Array, Array]:
 
 def _kernels(phase: Array, plane: bool) -> tuple[Array, Array]:
     """What is even and what is odd along the surface."""
+    from scipy.special import j0, j1  # late: a scene that is only read needs none
+
     return (np.cos(phase), np.sin(phase)) if plane else (j0(phase), j1(phase))
 
 
