@@ -190,9 +190,12 @@ def _watch(reader: socket.socket, ended: threading.Event) -> None:
 
 
 def _failed(failure: Exception, args: argparse.Namespace) -> int:
-    from lumped.errors import FeContactError
+    from lumped.errors import BadInput, FeContactError
     from meshes.errors import MeshError
 
+    if isinstance(failure, BadInput):
+        keys = (text.partition("=")[0].strip() for text in getattr(args, "overrides", ()))
+        return _said(str(failure.told_of("--set", keys)), failure.exit_code, "")
     if isinstance(failure, FeContactError | MeshError):
         return _said(str(failure), failure.exit_code, "")
     if isinstance(failure, MemoryError):

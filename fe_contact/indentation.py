@@ -14,7 +14,7 @@ from typing import ClassVar
 import numpy as np
 
 from fe_contact.assembly.forms import Array, Indices, check_compressible
-from fe_contact.bodies.pressing import PressedDepths, Still
+from fe_contact.bodies.pressing import Pressed, PressedDepths, Still
 from fe_contact.budget.certify import LEAST_ORDER, other_mesh, other_setting
 from fe_contact.budget.plan import DEFAULTS, ELEMENTS, RIM_PENALTY
 from fe_contact.budget.refine import Finer, dominant, refine
@@ -39,6 +39,7 @@ ROUNDS = 5  # refinements before giving up
 FEWEST = 12  # depths that tell an error bar
 FEWEST_SOFT = 4  # those of them that tell what the penalty changes
 FEWEST_LARGE = 8  # the same of large strains, where each takes a Newton iteration or five on the whole mesh
+COARSEST = 2.0  # elements of large strains along a contact: half of fewer tells nothing
 SPREAD = 0.6  # of them at least, smallest over largest: contact edges over an element of the coarser mesh
 BISECTIONS = 40  # work: halvings of the place where undeformed surfaces cease to overlap
 SMALL = 1e-3  # radius, in depths, from which the search for the overlap's end begins
@@ -196,7 +197,7 @@ def settings(given: Given, shape: Shape, large: bool = False) -> Numerics:
     tolerance = float(given.get("tolerance", DEFAULT_TOLERANCE))
     elements = ELEMENTS * max(1.0, (1e-4 / tolerance) ** 0.25)
     if large:
-        elements *= min(1.0, (DEFAULT_TOLERANCE / tolerance) ** 0.5)
+        elements = max(COARSEST, elements * min(1.0, (DEFAULT_TOLERANCE / tolerance) ** 0.5))
     penalty = DEFAULTS["penalty"] * (1.0 if shape.fixed_radius is None else RIM_PENALTY)
     chosen = {**DEFAULTS, "tolerance": tolerance, "elements_per_contact": elements, "penalty": penalty, "steps": 8}
     return Numerics(**{**chosen, **given}, contact_radius=1.0, contact_time=1.0, peak_share=0.5)
@@ -212,13 +213,17 @@ def press(
     if indenter.model.finite:
         return solids.press(indenter, depth, radii, numerics, softer)
     body: Still = TARGETS.get(indenter.target.name).still(indenter, radii, numerics)
-    force, radius = np.empty_like(depth), np.empty_like(depth)
-    growth, problems, iterations = 1.0, 0, 0
-    for i in np.argsort(-depth):
-        found = body.press(float(depth[i]), growth * float(radii[i]))
-        force[i], radius[i], growth = found.force, found.contact_radius, found.contact_radius / radii[i]
-        problems, iterations = problems + found.problems, iterations + found.iterations
-    work = {"degrees_of_freedom": body.degrees_of_freedom, "contact_problems": problems, "iterations": iterations}
+    growth, found = 1.0, dict[int, Pressed]()
+    for i in np.argsort(-depth).tolist():
+        found[i] = body.press(float(depth[i]), growth * float(radii[i]))
+        growth = found[i].contact_radius / float(radii[i])
+    pressed = [found[i] for i in sorted(found)]
+    work = {
+        "degrees_of_freedom": body.degrees_of_freedom,
+        "contact_problems": sum(one.problems for one in pressed),
+        "iterations": sum(one.iterations for one in pressed),
+    }
+    force, radius = np.array([(one.force, one.contact_radius) for one in pressed]).T
     return PressedDepths(force, radius, work, body.mesh_order, body.ends)
 
 
@@ -233,14 +238,14 @@ def _error(trusted: float, first: PressedDepths, second: PressedDepths) -> float
 def expected(indenter: Indenter, depth: Array, numerics: Numerics) -> Array:
     """Contact radii which the meshes are made for, m, shape (n,); they enter no value.
 
-    Where the undeformed surfaces overlap, times what a coarse mesh finds of it at the extreme depths.
+    Of a body without a length of its own by its exact curve; else where the undeformed surfaces overlap, times what a
+    coarse mesh finds of it at the extreme depths.
     """
+    if not indenter.target.has_length:
+        return np.asarray(indenter.target.load_curve(indenter.profile, indenter.material.nu).contact_radius(depth))
     overlapping = _overlapping(indenter, depth)
     if indenter.target.fixed_radius(indenter.shape) is not None:
         return overlapping
-    if not indenter.target.has_length:
-        curve = indenter.target.load_curve(indenter.profile, indenter.material.nu) if indenter.model.finite else None
-        return overlapping if curve is None else np.asarray(curve.contact_radius(depth))
     ends = [int(depth.argmin()), int(depth.argmax())]
     coarse = numerics.varied(elements_per_contact=SCOUTING, order=SCOUTING_ORDER)
     reach = overlapping[ends] * np.array([LEAST_SHARE, LARGEST_SHARE])

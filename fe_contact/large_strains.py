@@ -113,10 +113,7 @@ def _known(scene: Scene, deepest: float, given: Given, progress: Progress) -> Kn
 def _fitted(pressed: Indentation, deepest: float, degree: int) -> tuple[Chebyshev, Chebyshev]:
     """Polynomials in the logarithm of the depth."""
     place = 1.0 - np.log(pressed.depth / deepest) / math.log(SHALLOWEST)
-    force, radius = (
-        Chebyshev.fit(place, np.log(values), degree, domain=[0.0, 1.0])
-        for values in (pressed.force, pressed.contact_radius)
-    )
+    force, radius = (Chebyshev.fit(place, np.log(of), degree) for of in (pressed.force, pressed.contact_radius))
     return force, radius
 
 

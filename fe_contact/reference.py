@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar, Generic, TypeVar
 
@@ -28,6 +27,7 @@ from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics, WaveNumerics
 from fe_contact.steppers.steps import Strike
 from fe_contact.targets.base import TARGETS, seconds_of_impact, struck
 from lumped.errors import BadInput, Fault
+from lumped.numbers import Clock
 from lumped.result.result import (
     UNITS,
     LedgerEntry,
@@ -52,15 +52,14 @@ Answer = TypeVar("Answer", bound=Solution, covariant=True)
 
 @dataclass(frozen=True)
 class SolvedBy(Generic[Answer]):
-    """A certified impact with the plan it began from; CPU and wall time, s.
+    """A certified impact with the plan it began from; ``timing``: processor and wall time, s.
 
     ``refused``: why no finer settings were tried that may have met the tolerance; empty where none was refused.
     """
 
     plan: Plan
     certified: Answer
-    cpu: float
-    wall: float
+    timing: Mapping[str, float]
     refused: str
 
     @property
@@ -139,13 +138,13 @@ def _solved(
     progress: Progress,
     way_of: Callable[[Scene, Plan, Progress], ImpactWay[Answer]],
 ) -> SolvedBy[Answer]:
-    cpu, wall = time.process_time(), time.perf_counter()
+    clock = Clock()
     progress("what to expect of the contact")
     chosen = plan(scene, given)
     way = way_of(scene, chosen, progress)
     found, refused = refine(way, chosen.numerics)
     chosen = replace(chosen, ledger=way.ledger(found))
-    return SolvedBy(chosen, found, time.process_time() - cpu, time.perf_counter() - wall, refused)
+    return SolvedBy(chosen, found, clock.read(), refused)
 
 
 @dataclass(frozen=True, eq=False)
@@ -285,7 +284,7 @@ def result_of(scene: Scene, solved: SolvedBy[Solution]) -> Result:
         energy=found.energy,
         energy_error=found.energy_errors,
         provenance=provenance(),
-        timing={"cpu_s": solved.cpu, "wall_s": solved.wall},
+        timing=solved.timing,
         work=found.counted,
         contacts=found.contacts,
         message="; ".join(said),

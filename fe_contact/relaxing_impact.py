@@ -23,6 +23,7 @@ from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, dominant
 from fe_contact.budget.variation import SAFETY, Variation, factor
 from fe_contact.errors import MemoryTooSmall, TooManySteps
+from fe_contact.indentation import COARSEST
 from fe_contact.march.impact import STEPS_ALLOWED, balanced, share_of_rest, step_length, time_left
 from fe_contact.progress import Progress
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
@@ -30,9 +31,8 @@ from fe_contact.solids.base import State
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Encounter, Equilibrium, EquilibriumLost
 from fe_contact.solids.pressing import MESH_ORDER, WIDENING, Solid, advanced, contact_radius, pressed_first
-from fe_contact.solids.relaxing import Fading, Relaxing, doubled
+from fe_contact.solids.relaxing import Fading, FadingLaw, doubled
 from fe_contact.steppers.steps import March, Strike, Work
-from lumped.materials import Relaxation
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import LedgerEntry, meets
 from lumped.scene.indenter import Indenter
@@ -41,7 +41,6 @@ from lumped.scene.scene import Scene
 ROUNDS = 3  # refinements before giving up
 SECONDS = 15.0  # processor time of an impact to 1e-3, about
 ELEMENTS = 3.0  # along the contact radius, at tolerance 1e-3
-COARSEST = 2.0  # of them: half of fewer tells nothing
 PENALTY = 1000.0  # stiffness of the contact
 SMALLEST = 0.2  # contact over the widest one for which the mesh is made
 LAST = 1e-3  # of the expected contact time: with less left the end is read off the trend
@@ -76,7 +75,7 @@ class Marcher:
 
     strike: Strike
     solid: Solid
-    network: Relaxation
+    law: FadingLaw
     numerics: Numerics
     scale: float
     power: float
@@ -84,13 +83,14 @@ class Marcher:
     @classmethod
     def of(cls, scene: Scene, numerics: Numerics) -> Marcher:
         """On a mesh for these settings."""
-        geometry = scene.geometry
-        indenter = Indenter(geometry.shape, geometry.material, geometry.target, None, scene.model)
-        radii = np.array([SMALLEST, 1.0]) * numerics.contact_radius
-        solid, network = Solid.of(indenter, radii, numerics), scene.contact_modulus
-        scale = network.glassy * geometry.shape.total * solid.unit**solid.dimension
-        power = 1.0 if geometry.shape.plane else scene.profile.exponent_of_force
-        return cls(Strike.of(scene), solid, network, numerics, scale, power)
+        geometry, material = scene.geometry, scene.geometry.material
+        indenter = Indenter(geometry.shape, material.elastic(instant=True), geometry.target, None, scene.model)
+        solid = Solid.of(indenter, np.array([SMALLEST, 1.0]) * numerics.contact_radius, numerics)
+        sudden = solid.encounter.body.response
+        assert isinstance(sudden, Hyperelastic)
+        scale = scene.contact_modulus.glassy * geometry.shape.total * solid.unit**solid.dimension
+        strike = Strike.of(scene)
+        return cls(strike, solid, FadingLaw.of(sudden, material), numerics, scale, strike.power)
 
     @property
     def body(self) -> Encounter:
@@ -101,12 +101,6 @@ class Marcher:
     def widening(self) -> float:
         """Power of the depth that a contact is wide by, about: F ~ depth a."""
         return self.power - 1.0 if self.power > 1.0 else WIDENING
-
-    @property
-    def _sudden(self) -> Hyperelastic:
-        response = self.body.body.response
-        assert isinstance(response, Hyperelastic)
-        return response
 
     def march(self) -> March:
         """From the first touch to separation, or to the end of the motion. Raises NotReached."""
@@ -127,7 +121,7 @@ class Marcher:
         return self._record(instants, separated)
 
     def _touch(self) -> Instant:
-        core, none = self.body.body.core, Fading.over(self.network, 1.0)
+        core, none = self.body.body.core, Fading.over(self.law.network, 1.0)
         memory, rim = none.at_rest(4, *core.weight.shape), none.at_rest(self.body.body.rim.size)
         return Instant(0.0, 0.0, self.strike.velocity / self.solid.unit, 0.0, 0.0, 0.0, None, memory, rim)
 
@@ -149,7 +143,7 @@ class Marcher:
         slowed = self.scale / (strike.mass * self.solid.unit)
         pull = strike.gravity / self.solid.unit
         depth = here.depth + length * (here.velocity + 0.5 * length * (pull - slowed * here.force))
-        fading = Fading.over(self.network, length)
+        fading = Fading.over(self.law.network, length)
         found = self._equilibrium(here, self.solid.lead * depth, fading)
         balance, force = found.balance, found.rigid_force
         given = 0.5 * length * (here.force + force)
@@ -173,7 +167,7 @@ class Marcher:
         body, penalty = self.body.body, self.numerics.penalty * self.solid.unit / self.numerics.contact_radius
         relaxing = replace(
             body,
-            response=Relaxing(self._sudden, fading),
+            response=self.law.over(fading),
             rest=fading.at_once * body.rest,
             pull=body.rest @ fading.held(here.rim),
         )
@@ -222,30 +216,25 @@ class Marcher:
 
     def _account(self, last: Instant, depth: float, speed: float) -> dict[str, float]:
         """Terms in J; the penalty holds nothing in the end."""
-        strike, joule = self.strike, self.scale * self.solid.unit / self.solid.lead
+        strike, joule, found = self.strike, self.scale * self.solid.unit / self.solid.lead, last.found
+        assert found is not None  # no impact ends where it begins
         brought = 0.5 * strike.mass * strike.velocity**2 + strike.mass * strike.gravity * depth
-        stored = joule * self._stored(last)
-        contact = joule * last.found.balance.touch.energy if last.found is not None else 0.0
+        stored = joule * self._stored(last, found.balance.displacement)
         none = dict.fromkeys(("radiated", "numerical"), 0.0)
         out = 0.5 * strike.mass * speed**2
         known = {"in": brought, "out": out, "stored": stored, "viscous": joule * last.work - stored}
-        return balanced({**known, "contact": contact, **none})
+        return balanced({**known, "contact": joule * found.balance.touch.energy, **none})
 
-    def _stored(self, last: Instant) -> float:
-        """By what lasts and by every branch."""
-        if last.found is None:
-            return 0.0
-        body, sudden = self.body.body, self._sudden
-        displacement = last.found.balance.displacement
-        rim, shares = displacement[body.rim], np.array(self.network.moduli) / self.network.glassy
-        lasting = self.network.relaxed / self.network.glassy
-        elastic = body.core.answered(displacement, sudden)
-        found = float(lasting * (elastic.energy + 0.5 * rim @ body.rest @ rim))
-        nu = 0.5 * sudden.lame / (sudden.lame + sudden.shear)
+    def _stored(self, last: Instant, displacement: Array) -> float:
+        """By what lasts and by every branch, displaced so in the end, (2 N,)."""
+        body, law = self.body.body, self.law
+        rim, shares = displacement[body.rim], np.array(law.network.moduli) / law.network.glassy
+        lasting, nu = law.network.relaxed / law.network.glassy, law.branches_nu
+        found = body.core.answered(displacement, law.lasting).energy + float(0.5 * lasting * rim @ body.rest @ rim)
         for share, stress, moved in zip(shares, last.memory[1], last.rim[1], strict=True):
             trace = stress[0] + stress[1] + stress[2]
             square = doubled(stress, stress) - nu / (1.0 + nu) * trace**2
-            points = float(np.vdot(body.core.weight, square)) / (4.0 * sudden.shear)
+            points = float(np.vdot(body.core.weight, square)) / (4.0 * law.sudden.shear)
             found += float(points + 0.5 * moved @ body.rest @ moved) / share
         return found
 

@@ -45,6 +45,10 @@ class Fault:
         inside = self.key if "." in self.key else ".".join(part for part in (place, self.key) if part)
         return Fault(source, inside, self.message)
 
+    def is_of(self, key: str) -> bool:
+        """Whether it is of a dotted key, of one inside it, or of the table around it."""
+        return any(f"{own}.".startswith(f"{key}.") or f"{key}.".startswith(f"{own}.") for own in self.key.split(", "))
+
     def __str__(self) -> str:
         source, key = shortened(printable(self.source), SHOWN_OF_A_LINE), shortened(printable(self.key))
         return ": ".join(part for part in (source, key, printable(self.message)) if part)
@@ -59,6 +63,13 @@ class BadInput(FeContactError):
         found = (faults,) if isinstance(faults, Fault) else tuple(faults)
         self.faults: tuple[Fault, ...] = found[:SHOWN_FAULTS]
         super().__init__("\n".join(str(fault) for fault in self.faults))
+
+    def told_of(self, option: str, keys: Iterable[str]) -> BadInput:
+        """The same, where each fault of one of the keys is the option's, which gave its value in place of a file."""
+        given = [key for key in keys if key]
+        return BadInput(
+            replace(fault, source=option) if any(fault.is_of(key) for key in given) else fault for fault in self.faults
+        )
 
 
 class CannotWrite(FeContactError):

@@ -47,6 +47,7 @@ TABLE = (
     Constant(CERTIFY, "WITNESS", DERIVED, "of elements that lock those of twice the order tell, see UNORDERED"),
     Constant(CERTIFY, "WITNESS_ELEMENTS", MEASURED, "of them along the contact radius, at least"),
     Constant(CERTIFY, "MESH_ORDER_ANYWHERE", DERIVED, "pressure's root at an edge within an element"),
+    Constant(CERTIFY, "NEAR_ANYWHERE", MEASURED, "TOP of what such a mesh changes of the path", 0.998),
     Constant(CERTIFY, "DAMPED_ANYWHERE", MEASURED, "weights of a mesh that stays under a dashpot, which jitters", {}),
     Constant(CERTIFY, "DAMPED_SINCE", MEASURED, "LATE of what such a mesh changes, by chance little at the end", 0.75),
     Constant(CERTIFY, "LEAST_HALVED", MEASURED, "fewer steps are doubled instead of halved", 10),

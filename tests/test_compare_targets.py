@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,11 +12,13 @@ import pytest
 from fe_contact.cli import main
 from fe_contact.fields import check_fields, felt
 from fe_contact.reference import result_of, solve
+from fe_contact.studies.compare import study
 from fe_contact.studies.compare.deviations import pressure_error, rebound_steps, surface_radii
 from fe_contact.studies.compare.study import WITHIN
 from fe_contact.studies.history_chart import plot_history
 from lumped import Scene, laws, simulate
 from lumped.errors import BadInput
+from lumped.numbers import Array
 
 
 def test_a_washer_is_compared_with_laws_on_its_own_slow_curve(tmp_path: Path) -> None:
@@ -25,6 +28,25 @@ def test_a_washer_is_compared_with_laws_on_its_own_slow_curve(tmp_path: Path) ->
     assert any(line.startswith("correspondence, ting: ") and WITHIN in line for line in content["verdict"])
     assert set(content["refused"]) == {*laws.available()} - {"correspondence", "ting"}
     assert (tmp_path / "compare.png").exists()
+
+
+def test_the_bar_of_a_slow_curve_holds_what_lies_between_its_depths(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where every depth is exact: a curve that stiffens as an O-ring's does."""
+
+    def force(depth: Array) -> Array:
+        return np.asarray(depth**1.2 * (1.0 + (2e3 * depth) ** 2))
+
+    def exact(_: object, depths: tuple[float, ...], __: object) -> SimpleNamespace:
+        depth = np.array(depths)
+        told = {"force": force(depth), "force_error": 0.0, "contact_radius": depth**0.5}
+        return SimpleNamespace(**told, modulus=1.0 / scene.geometry.shape.total)
+
+    scene = Scene.load("polymer-o-ring")
+    monkeypatch.setattr(study, "indent", exact)
+    answered, bar = study.known(scene, 2e-4)
+    between = np.geomspace(2e-6, 2e-4, 200)
+    worst = np.abs(answered.load_curve.force(between) / force(between) - 1.0).max()
+    assert 0.1 * bar < worst < bar
 
 
 def test_the_chart_of_a_block_tells_sizes_as_they_are(tmp_path: Path) -> None:

@@ -207,10 +207,11 @@ def test_a_contact_as_wide_as_the_datum_is_deep_is_refused(empty: Path, capsys: 
 def test_strains_beyond_the_small_are_said(write: Any, empty: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """In the ledger of every method, and in one line that leaves the exit code alone."""
     for method in ("fe", "ting"):
-        assert exit_code(write(target=LAYER), "--depths", "1e-6,1e-3", "--method", method, "--out", method) == 0
+        pressed = write(SLS + '\nhyperelastic = "st_venant_kirchhoff"', target=LAYER)
+        assert exit_code(pressed, "--depths", "1e-6,1e-3", "--method", method, "--out", method) == 0
         result = json.loads((empty / method / "result.json").read_text())
         (strain,) = [e["estimate"] for e in result["model_ledger"] if e["effect"] == "finite strain"]
-        assert strain == pytest.approx(0.5), "half the layer's thickness"
+        assert 0.4 < strain < 0.8, "pressed by half of its thickness"
         assert result["model_sufficient"] is False
         (line,) = capsys.readouterr().err.splitlines()
         assert "finite strain" in line

@@ -32,7 +32,7 @@ MOST_UNKNOWNS = 200_000  # of one body: its factors take a gigabyte and half a m
 SOLVED_AT_ONCE = 32  # right-hand sides: more of them leave the processor's cache
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SurfaceOperator:
     """A body seen through its surface, in units of contact radius and contact modulus: all that an impact asks of it.
 
@@ -230,14 +230,18 @@ def system_matrix(basis: Basis, poisson: float, ends: tuple[str, ...] = ("far",)
 
     ``ends``: boundaries beyond which the half-space goes on, or, in plane strain, the half-plane.
     """
-    from skfem import FacetBasis
-
-    facets = np.concatenate([basis.mesh.boundaries[name] for name in ends])
-    outside = FacetBasis(basis.mesh, basis.elem, facets=facets, intorder=2 * basis.elem.maxdeg + 4)
-    law = isotropic(1 - poisson**2, poisson)
+    law, outside = isotropic(1 - poisson**2, poisson), boundary(basis, ends)
     if plane:
         return (plane_stiffness(basis, law) + plane_robin(outside, poisson)).tocsc()
     return (stiffness(basis, law) + robin(outside, poisson)).tocsc()
+
+
+def boundary(basis: Basis, ends: tuple[str, ...]) -> Basis:
+    """Scalar facet basis of boundaries of a mesh."""
+    from skfem import FacetBasis
+
+    facets = np.concatenate([basis.mesh.boundaries[name] for name in ends])
+    return FacetBasis(basis.mesh, basis.elem, facets=facets)
 
 
 @dataclass(frozen=True, eq=False)
@@ -265,7 +269,8 @@ class SolidMesh:
     """A ``body`` for large strains, whose unit is ``unit``, m; ``inner_radius`` of a ring laid flat, in that unit.
 
     ``mean_radius``, in that unit, of a ring of round section, whose surface counts angles from its top; ``covered``:
-    whether a plane touches all of the surface from the first; ``ends``: whether the mesh is all of it.
+    whether a plane touches all of the surface from the first; ``ends``: whether the mesh is all of it; ``lead``: share
+    of a depth that is pressed here, half of it where both sides are alike.
     """
 
     body: ElasticBody
@@ -274,6 +279,7 @@ class SolidMesh:
     mean_radius: float | None = None
     covered: bool = False
     ends: bool = False
+    lead: float = 1.0
 
 
 @on_disk

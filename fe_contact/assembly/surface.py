@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -55,6 +55,11 @@ def flat(basis: Basis, dimension: int = 3, motion: Callable[[Array], Array] = np
         zone=CONTACT_ZONE,
         dimension=dimension,
     )
+
+
+def face(basis: Basis, rim: float) -> Surface:
+    """The same up to the ``rim`` of a flat end, and no facet more."""
+    return replace(flat(basis), zone=rim * (1.0 - 1e-12))
 
 
 def crown(basis: Basis, contact: float, mean_radius: float | None) -> Surface:

@@ -43,11 +43,10 @@ class Bar:
 
 @dataclass(frozen=True, eq=False)
 class LineElements:
-    """Elements along [0, length]: ``nodes`` (n,), ``dofs`` (e, 2), ``mass`` (e, 2, 2), kg, and the ``stiffness`` of
-    unit modulus, sparse (n, n), m. Node 0 is the near end.
+    """Of e elements: ``dofs`` (e, 2), ``mass`` (e, 2, 2), kg, and the ``stiffness`` of unit modulus, sparse
+    (e + 1, e + 1), m. Node 0 is the near end.
     """
 
-    nodes: Array
     dofs: Any
     mass: Array
     stiffness: Matrix
@@ -66,7 +65,6 @@ def line_elements(bar: Bar, elements: int, tip: float = 1.0) -> LineElements:
     mass = np.multiply.outer(bar.density * bar.area * lengths, np.array([[2.0, 1.0], [1.0, 2.0]]) / 6)
     springs = np.multiply.outer(bar.area / lengths, np.array([[1.0, -1.0], [-1.0, 1.0]]))
     return LineElements(
-        nodes=np.append(0.0, np.cumsum(lengths)),
         dofs=dofs,
         mass=mass,
         stiffness=scatter(springs, dofs, elements + 1).tocsc(),
@@ -75,8 +73,7 @@ def line_elements(bar: Bar, elements: int, tip: float = 1.0) -> LineElements:
 
 def falling(bar: Bar, elements: int, mass: Mass, gravity: float, gap: float = 0.0, tip: float = 1.0) -> BodyWithMass:
     """A bar that moves freely towards a rigid plane, ``gap``, m, away; displacements count away from the plane."""
-    line = line_elements(bar, elements, tip)
-    size = line.nodes.size
+    line, size = line_elements(bar, elements, tip), elements + 1
     rigid = np.zeros(size)
     rigid[-1] = bar.end_mass
     return BodyWithMass(

@@ -106,6 +106,10 @@ class Still(Protocol):
     def ends(self) -> bool:
         """Whether the mesh is all of the body, so that there is no far field to err."""
 
+    @property
+    def operator(self) -> SurfaceOperator | None:
+        """Of the one mesh; None of a block, which is not condensed."""
+
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m; ``guess``: a contact radius to begin with, m. Raises NotReached."""
 
@@ -120,9 +124,14 @@ class OnMesh:
     ends: ClassVar[bool] = False
 
     @property
+    def operator(self) -> SurfaceOperator:
+        """Of the one mesh."""
+        return self.surface.operator
+
+    @property
     def degrees_of_freedom(self) -> int:
         """Unknowns of the one mesh."""
-        return self.surface.operator.degrees_of_freedom
+        return self.operator.degrees_of_freedom
 
 
 @dataclass(frozen=True)

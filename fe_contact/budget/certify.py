@@ -61,6 +61,7 @@ MESH_ORDER = {3: 1, 4: 2}  # by element order: the edge allows three in the forc
 WITNESS = 2  # times the order have the elements that tell of those which lock
 WITNESS_ELEMENTS = 4.0  # of them along the contact radius, at least
 MESH_ORDER_ANYWHERE = 1.5  # where the edge falls anywhere in an element: the pressure has a root there
+NEAR_ANYWHERE = 0.6  # of the largest depth: down to it the edge passes half an element, and a chance agreement shows
 # what a mesh that stays changes weighs so much by a dashpot: its force jitters, which hides in what adds up
 DAMPED_ANYWHERE = {"duration": 8.0, "restitution": 3.0, "impulse": 3.0}
 DAMPED_SINCE = 0.5  # share of the contact from which path and speed count there: the end alone may agree by chance
@@ -130,7 +131,7 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
         "mesh": (by_mesh, *(() if by_steps else steps.jitter)),
         "penalty": (_variation(curve(pressed), curve(penalty), factor(LEAST_ORDER["penalty"], stiffer)),),
         "time_step": (*steps.changes, *(steps.jitter if by_steps else ())),
-        "far_field": (_far_field(runs, steps.value, cheap, mesh, number, alone),),
+        "far_field": _far_field(runs, steps.value, cheap, mesh, number, alone),
     }
     return steps.value, changes
 
@@ -145,7 +146,7 @@ def _by_mesh(
     if follows_contact:
         return mesh, change()
     damped = {"weights": DAMPED_ANYWHERE, "since": DAMPED_SINCE} if viscous else {}
-    return mesh, change(unresolved=np.inf, **damped)
+    return mesh, change(unresolved=np.inf, near=NEAR_ANYWHERE, **damped)
 
 
 def _judging(numerics: Numerics, cheap: Numerics, cause: str, stays: bool = False) -> Numerics:
@@ -174,9 +175,7 @@ def _by_stiffness(runs: Runs, value: Curve, end: FlatEnd, numerics: Numerics) ->
     return found
 
 
-def _far_field(
-    runs: Runs, value: Curve, cheap: Numerics, mesh: Numerics, number: int, alone: bool
-) -> Variation | Softening | None:
+def _far_field(runs: Runs, value: Curve, cheap: Numerics, mesh: Numerics, number: int, alone: bool) -> Causes:
     """By one press of either surface where an elastic one follows one contact; else by a march more, on the
     varied mesh: beside a small contact the far field changes what a surface remembers by more than it does the contact.
 
@@ -189,10 +188,10 @@ def _far_field(
         other = runs.surface(far)
         assert isinstance(surface, Deformable)
         assert isinstance(other, Deformable)
-        return Softening(value, factor(order, farther) * compliance_change(surface, other))
+        return (Softening(value, factor(order, farther) * compliance_change(surface, other)),)
     if runs.surface(varied) is runs.surface(mesh):
-        return Softening(value, 0.0)
-    return _variation(runs.curve(number, mesh), runs.curve(number, varied), factor(order, farther))
+        return ()
+    return (_variation(runs.curve(number, mesh), runs.curve(number, varied), factor(order, farther)),)
 
 
 @dataclass(frozen=True)

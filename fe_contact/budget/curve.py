@@ -6,6 +6,10 @@ comes from the impulse, the one quantity that a step of any scheme knows exactly
 ``G = impulse / t``, which stays regular at touch: ``F = d(t G)/dt = G + x/2 dG/dx``.
 Between nodes lie polynomials through the nearest six, several fields at once.
 
+A branch that relaxes within the first step leaves its time in the force, which no step would ever show. But as long as
+the striker is hardly slowed its load grows by a known power of time, hence the force by a known function. What is left
+of ``G`` without it is smooth.
+
 Contact radius over time, from the radii found in the steps of a march.
 
 The squared radius is smooth in time but for two corners: where the depth is greatest and, in a viscous contact,
@@ -36,6 +40,8 @@ HALF_AS_HIGH = 0.25  # of the error of a peak's place, of fourth order in the wi
 SHARES = np.linspace(0.0, 1.0, 601)  # of the contact, equally spaced
 EARLIEST = 4  # rows after touch that tell whether steps or shares are more crowded there
 DENSE = SHARES**2 * (3 - 2 * SHARES)  # shares of the contact, crowded at its ends, for peaks and norms
+FIRST = 3  # steps: what relaxes later, polynomials tell
+BEGUN = 1e-12  # rounding: of x, below which a contact has only begun
 INSIDE = np.arange(1, 8)[:, None] / 8  # places put into every interval
 
 
@@ -170,8 +176,30 @@ class Curve:
 
     @cached_property
     def polynomials(self) -> LocalPolynomials:
-        """Mean force and depth between the steps, over x."""
-        return LocalPolynomials.through(self.x, np.stack([self.mean_force, self.depth]))
+        """Mean force but for how it began, and depth, between the steps, over x; at touch it has only begun."""
+        rest = self.mean_force - self._begun(self.x)[0]
+        rest[0] = self.mean_force[0] if self.flat else 0.0
+        return LocalPolynomials.through(self.x, np.stack([rest, self.depth]))
+
+    def resolved(self, x: Array) -> tuple[Array, Array, Array]:
+        """Mean force and force, N, and depth, m, at x."""
+        (rest, depth), (slope, _) = self.polynomials.at(x)
+        mean, force = self._begun(x)
+        return rest + mean, rest + force + 0.5 * x * slope, depth
+
+    def _begun(self, x: Array) -> tuple[Array, Array]:
+        """Mean force and force at x, N, of a load that grows on as it began, as large as the mean over the first step.
+
+        None under a flat end, whose area presses at once, and where no branch relaxes within the first steps.
+        """
+        relaxation, power = self.strike.relaxation, self.strike.power
+        shortest = min(relaxation.times, default=np.inf)
+        if self.flat or shortest > self.duration * self.x[: FIRST + 1][-1] ** 2:
+            return np.zeros_like(x), np.zeros_like(x)
+        time, first = self.duration * np.maximum(x, BEGUN) ** 2, self.duration * float(self.x[1]) ** 2
+        load = self.mean_force[1] * (time / first) ** power / relaxation.felt(first, power)[1]
+        now, mean = relaxation.felt(time, power)
+        return load * mean, load * (power + 1.0) * now
 
     def read(self, time: Array) -> Reading:
         """Force, zero outside the contact, impulse and depth up to its end.
@@ -180,8 +208,8 @@ class Curve:
         """
         inside = (time >= 0) & ((time < self.duration) if self.separated else True)
         x = self.share(time)
-        (mean, depth), (slope, _) = self.polynomials.at(x)
-        return Reading(np.where(inside, np.maximum(mean + 0.5 * x * slope, 0.0), 0.0), mean * time, depth)
+        mean, force, depth = self.resolved(x)
+        return Reading(np.where(inside, np.maximum(force, 0.0), 0.0), mean * time, depth)
 
     def force(self, time: Array) -> Array:
         """Contact force, N; zero outside the contact."""
@@ -247,9 +275,15 @@ class Curve:
 
     @cached_property
     def near_peak(self) -> slice:
-        """Dense times from the first to the last at which the force is nearly as large as ever."""
+        """Dense times from the first to the last at which the force is nearly as large as ever, at least three.
+
+        Of one that is largest at the very end the last alone may be.
+        """
         near = np.flatnonzero(self.dense_force > PEAK_SHARE * self.dense_force.max())
-        return slice(int(near[0]), int(near[-1]) + 1)
+        first, last = int(near[0]), int(near[-1])
+        if first == last < len(self.shares) - 1:
+            first, last = max(first - 1, 0), last + 1
+        return slice(first, last + 1)
 
     @property
     def _force_peak(self) -> tuple[float, float]:
@@ -278,7 +312,12 @@ class Curve:
     @property
     def fitless(self) -> bool:
         """Whether no place comes or goes, under a flat end, so that nothing jitters; or the striker comes to rest."""
-        return bool(np.ptp(self.radius_squared) == 0.0) or self.near_peak.stop == len(self.shares)
+        return self.flat or self.near_peak.stop == len(self.shares)
+
+    @cached_property
+    def flat(self) -> bool:
+        """Whether the same area presses from the first touch to the last."""
+        return bool(np.ptp(self.radius_squared) == 0.0)
 
     @cached_property
     def quantities(self) -> dict[str, float | None]:
@@ -300,7 +339,7 @@ def extrapolated(fine: Curve, coarse: Curve, order: int) -> Curve:
     """Richardson's extrapolation of two curves whose step lengths are as one to two."""
     weight = 1 / (2**order - 1)
 
-    (mean, depth), _ = coarse.polynomials.at(fine.x)
+    mean, _, depth = coarse.resolved(fine.x)
     found = Curve(
         strike=_onwards(fine.strike, coarse.strike, weight),
         duration=fine.duration + weight * (fine.duration - coarse.duration),

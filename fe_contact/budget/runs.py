@@ -74,7 +74,7 @@ class Runs(AnyRuns[Numerics]):
         self._strike, self._geometry, self._impacts = strike, geometry, impacts
         self._works: list[Work] = []
         self._radii: dict[int, list[Array]] = {}
-        self._surfaces: dict[int, Struck] = {}
+        self._surfaces = set[Struck]()
         self._places: dict[int, dict[str, float]] = {}
 
     def placed(self, settings: Numerics, few: int) -> Numerics:
@@ -108,12 +108,12 @@ class Runs(AnyRuns[Numerics]):
         """What contact sees of the struck body."""
         self._counted(0.0)  # a word before what may take long
         surface = struck(self._geometry, settings)
-        self._surfaces[id(surface)] = surface
+        self._surfaces.add(surface)
         return surface
 
     def work(self, finest: Struck) -> TotalWork:
         """What all runs cost together."""
-        surfaces = self._surfaces.values()
+        surfaces = self._surfaces
         factorizations, solves = sum(one.factorizations for one in surfaces), sum(one.solves for one in surfaces)
         return TotalWork.of(self._works, finest.degrees_of_freedom, factorizations, solves)
 

@@ -226,10 +226,8 @@ def _moved(budget: Budget, of: Callable[[Strike], float]) -> Shares:
 
 
 def _error(change: Variation | Softening | None, of: Callable[[Strike], float]) -> float:
-    """Of one change; infinite where the variation failed."""
-    if change is None:
+    """Of one change, several contacts with each setting; infinite where the variation failed."""
+    if not isinstance(change, Variation):
         return np.inf
-    if isinstance(change, Softening):  # of several contacts only where a body that ends has no far field
-        return 0.0
     trust = change.factor * max(change.weights.values(), default=1.0)
     return float(trust * abs(of(change.first.strike) - of(change.second.strike)))

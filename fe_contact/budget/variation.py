@@ -44,7 +44,8 @@ class Variation:
     """Two curves that differ in one setting, and the factor that turns their difference into an error.
 
     ``weights``: what that factor is to be multiplied with for quantities that deserve less trust. ``unresolved``: time
-    up to which no order shows, s; where it is not told, the first step of the second curve.
+    up to which no order shows, s; where it is not told, the first step of the second curve. ``near``: share of the
+    largest depth above which the path counts for that.
     """
 
     first: Curve
@@ -53,6 +54,7 @@ class Variation:
     weights: Mapping[str, float] = field(default_factory=dict)
     unresolved: float | None = None
     since: float = LATE
+    near: float = TOP
 
     @cached_property
     def errors(self) -> dict[str, float]:
@@ -66,7 +68,7 @@ class Variation:
         around = {
             "peak_force": self._peak_force,
             "peak_time": self._peak_time,
-            "peak_depth": float(depth[first.dense.depth > TOP * first.dense.depth.max()].max()),
+            "peak_depth": float(depth[first.dense.depth > self.near * first.dense.depth.max()].max()),
             "duration": float(depth[self.late :].max()) / speed if speed > 0.0 else np.inf,
             "impulse": self.impulse,
             "restitution": self.velocity / first.strike.velocity,

@@ -283,9 +283,10 @@ def report(
     title: str,
 ) -> int:
     """Say what was found, warn of a tolerance not reached and of a model that is too small; the exit code."""
-    say(args, content, [*lines, f"written to {where}"], title)
-    if not result.converged:
-        complain(result.message)
+    missed = "" if result.converged else result.message  # said once, on stderr
+    say(args, content, [*(line for line in lines if line != missed), f"written to {where}"], title)
+    if missed:
+        complain(missed)
     if not result.model_sufficient:
         complain(f"the model is too small for the tolerance: {worst(result.model_ledger).sentence}")
     return DONE if result.converged else NOT_REACHED

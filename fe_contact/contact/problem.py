@@ -61,7 +61,10 @@ class PressedSurface:
 
     def held(self, springs: Array) -> Array:
         """Stiffness with springs (q,) at the points, (n, n), in the order of columns that LAPACK needs."""
-        return np.asarray(self.stiffness + (self._squares @ springs).reshape(self.stiffness.shape)).T
+        places, squares = self._squares
+        held = self.stiffness.copy()
+        held.ravel()[places] += squares @ springs
+        return held.T
 
     def gaps(self, springs: Array) -> Callable[[Array], Array]:
         """What is left of any overlap (q,) where springs (q,) stand between the surfaces."""
@@ -72,17 +75,12 @@ class PressedSurface:
 
     def work(self, forces: Array) -> float:
         """Of forces (q,) at the points on the displacement that they cause."""
-        if self.compliance is not None:
-            return float(forces @ self.compliance @ forces)
-        load = self.trace.T @ forces
-        return float(load @ dgetrs(*self._factors, load)[0])
+        return float(forces @ self.displaced(forces))
 
     def displaced(self, forces: Array) -> Array:
         """The points (q,) under forces (q,) at them."""
         if self.compliance is not None:
             return np.asarray(self.compliance @ forces)
-        if self.recurring:
-            return np.asarray(self._yields @ forces)
         return np.asarray(self.trace @ dgetrs(*self._factors, self.trace.T @ forces)[0])
 
     def in_shapes(self, pressure: Array) -> Array:
@@ -103,11 +101,6 @@ class PressedSurface:
         return dgetrf(self.stiffness)[:2]
 
     @cached_property
-    def _yields(self) -> Array:
-        """Displacement at the points per force at the points, (q, q)."""
-        return np.asarray(self.trace @ np.linalg.solve(self.stiffness, self.trace.T))
-
-    @cached_property
     def _directions(self) -> Array:
         """The shape functions times the root of the weights, made orthonormal, (q, rank)."""
         shapes = self.trace if self.carriers is None else self.carriers
@@ -115,16 +108,18 @@ class PressedSurface:
         return np.asarray(found[:, sizes > INDEPENDENT * sizes[0]])
 
     @cached_property
-    def _squares(self) -> Matrix:
-        """Every point's trace times itself as a column, sparse (n n, q): a point sees the nodes of its facet alone."""
+    def _squares(self) -> tuple[npt.NDArray[np.intp], Matrix]:
+        """Every point's trace times itself as a column, sparse (m, q), and of the n n places those m that are not zero:
+        a point sees the nodes of its facet alone.
+        """
         points, nodes = self.trace.shape
         rows = sparse.csr_matrix(self.trace)
         seen = [rows.indices[start:end] for start, end in zip(rows.indptr, rows.indptr[1:], strict=False)]
         pairs = [(ours[:, None] * nodes + ours).ravel() for ours in seen]
         values = [np.outer(own := self.trace[i, ours], own).ravel() for i, ours in enumerate(seen)]
         columns = np.repeat(np.arange(points), [len(pair) for pair in pairs])
-        entries = (np.concatenate(values), (np.concatenate(pairs), columns))
-        return sparse.csr_matrix(entries, shape=(nodes * nodes, points))
+        places, row = np.unique(np.concatenate(pairs), return_inverse=True)
+        return places, sparse.csr_matrix((np.concatenate(values), (row, columns)), shape=(places.size, points))
 
 
 def _between_points(compliance: Array, springs: Array) -> Callable[[Array], Array]:
@@ -165,8 +160,8 @@ def factorised(matrix: Array) -> Callable[[Array], Array]:
 class ContactProblem:
     """A surface, its free overlap (q,), the penalty stiffness, and the striker's retreat per force, 0 held fixed.
 
-    ``yielding`` (q,): per force at each point, on surfaces that do not recur; there is no energy then, nor its line
-    search.
+    ``yielding`` (q,): per force at each point, on surfaces that do not recur; so nearly alike where points touch that
+    the energy's slope is Newton's residual all the same.
     """
 
     surface: PressedSurface
@@ -215,7 +210,7 @@ def solve(problem: ContactProblem, touching: Touching) -> ContactSolution:
         if found == held:
             settled = answer.trusted or _balances(problem, gap)
             return _solution(problem, gap, iteration, settled)
-        if iteration >= guarded and isinstance(problem.yielding, float):
+        if iteration >= guarded:
             point = _Point(answer.springs * gap, retreat, gap)
             if before is not None:
                 point, still = _descended(problem, before, point)
@@ -351,7 +346,7 @@ class _Point:
     def energy(self, problem: ContactProblem) -> float:
         """J of the module's formula."""
         strain = problem.surface.work(self.forces)
-        striker = self.retreat**2 / float(problem.yielding) if problem.yielding else 0.0
+        striker = self.retreat * float(self.forces.sum())
         pressed = problem.surface.weights @ np.maximum(self.gap, 0.0) ** 2
         return 0.5 * (strain + striker + problem.penalty * float(pressed))
 

@@ -43,6 +43,10 @@ class PartLaw(NamedTuple):
         """The branches (k, N) after an increment (N,)."""
         return np.asarray(self.decay[:, None] * branches + self.gain[:, None] * change)
 
+    def pulled(self, pulls: Array, pull: Array) -> Array:
+        """Stiffness times displacement and branches (1 + k, N) after an increment of which it makes ``pull``, (N,)."""
+        return np.vstack([pulls[0] + pull, self.moved(pulls[1:], pull)])
+
 
 @dataclass(frozen=True, eq=False)
 class Part:
@@ -63,10 +67,6 @@ class Part:
         lag = np.where(ratios < SLOW, ratios / 12.0, -1.0 / lost - 0.5 - 1.0 / ratios)
         return PartLaw(now, 1.0 + lost, gain, np.asarray(self.relaxation.moduli) * lag)
 
-    def later(self, law: PartLaw, before: Array, after: Array) -> Array:
-        """Nodal forces (N,) that make up for the lag, of branches (k, N) at both ends of a step."""
-        return np.asarray(self.stiffness @ (law.late @ (after - before)))
-
     def past(self, law: PartLaw, displacement: Array, branches: Array) -> Array:
         """Displacement times modulus, (N,), at the end of a step in which nothing moves; ``branches`` (k, N)."""
         relaxation = self.relaxation
@@ -83,24 +83,25 @@ class Part:
         held = relaxation.equilibrium * (displacement + change / 2)
         return np.asarray(held + of_change.sum() * change + of_past @ branches)
 
-    def stored(self, displacement: Array, branches: Array) -> float:
-        """Elastic energy of springs and branches, J."""
-        relaxation = self.relaxation
-        equilibrium = relaxation.equilibrium * float(displacement @ (self.stiffness @ displacement))
-        energies = [float(branch @ (self.stiffness @ branch)) for branch in branches]
-        return 0.5 * (equilibrium + float(np.dot(relaxation.moduli, energies)))
+    def stored(self, displacement: Array, branches: Array, pulls: Array) -> float:
+        """Elastic energy of springs and branches, J; ``pulls`` (1 + k, N) are the stiffness times either."""
+        springs = (self.relaxation.equilibrium, *self.relaxation.moduli)
+        held = [float(along @ pull) for along, pull in zip((displacement, *branches), pulls, strict=True)]
+        return 0.5 * float(np.dot(springs, held))
 
-    def heat(self, step: float, change: Array, branches: Array) -> float:
-        """Heat of the dashpots over a step in which the displacement changes linearly, J."""
+    def heat(self, step: float, change: Array, pulled: Array, branches: Array, pulls: Array) -> float:
+        """Heat of the dashpots over a step in which the displacement changes linearly, J.
+
+        ``pulled`` (N,) and ``pulls`` (k, N): the stiffness times the change, and times the branches at the start.
+        """
         if self.relaxation.is_elastic:
             return 0.0
-        relaxation, pulled = self.relaxation, self.stiffness @ change
-        pull = float(change @ pulled)
+        relaxation, pull = self.relaxation, float(change @ pulled)
         lost = relaxation.viscosity * pull / step
-        for modulus, tau, branch in zip(relaxation.moduli, relaxation.times, branches, strict=True):
+        for modulus, tau, branch, own in zip(relaxation.moduli, relaxation.times, branches, pulls, strict=True):
             x, share = step / tau, tau / step  # the branch tends to share x change; the rest fades away
             across = float(branch @ pulled)
-            fading = float(branch @ (self.stiffness @ branch)) - 2 * share * across + share**2 * pull
+            fading = float(branch @ own) - 2 * share * across + share**2 * pull
             mixed = share * across - share**2 * pull
             lost += modulus * (fading * -np.expm1(-2 * x) / 2 + 2 * mixed * -np.expm1(-x) + share**2 * pull * x)
         return lost
@@ -202,17 +203,42 @@ class BodyWithMass:
 class BodyState(NamedTuple):
     """A body at an instant, s, with N degrees of freedom and q points of contact, SI units.
 
-    ``displacement``, ``velocity``, ``acceleration`` (N,); ``branches`` of every part, (k, N); ``internal`` (N,) nodal
-    forces of the stress, without damping; ``signed_pressure`` (q,), negative where open.
+    ``motions`` (3, 3, N): displacement, velocity and acceleration, the inertia times these, the damping times these;
+    ``branches`` of every part, (k, N), and its ``pulls`` (1 + k, N): its unit stiffness times the displacement and each
+    branch; ``signed_pressure`` (q,), negative where open. All are linear in the increment of a step, which is all that
+    the matrices are multiplied with.
     """
 
     time: float
-    displacement: Array
-    velocity: Array
-    acceleration: Array
+    motions: Array
     branches: tuple[Array, ...]
-    internal: Array
+    pulls: tuple[Array, ...]
     signed_pressure: Array
+
+    @property
+    def displacement(self) -> Array:
+        """(N,), m."""
+        return np.asarray(self.motions[0, 0])
+
+    @property
+    def velocity(self) -> Array:
+        """(N,), m/s."""
+        return np.asarray(self.motions[0, 1])
+
+    @property
+    def acceleration(self) -> Array:
+        """(N,), m/s2."""
+        return np.asarray(self.motions[0, 2])
+
+    @property
+    def pushed(self) -> Array:
+        """Inertia times displacement, velocity, acceleration, (3, N)."""
+        return np.asarray(self.motions[1])
+
+    @property
+    def damped(self) -> Array:
+        """Damping times displacement, velocity, acceleration, (3, N)."""
+        return np.asarray(self.motions[2])
 
     @property
     def pressure(self) -> Array:
@@ -220,22 +246,34 @@ class BodyState(NamedTuple):
         return np.maximum(self.signed_pressure, 0.0)
 
 
+def state_of(
+    body: BodyWithMass, time: float, motion: Array, branches: tuple[Array, ...], signed_pressure: Array
+) -> BodyState:
+    """The state of displacement, velocity and acceleration (3, N), with all that the matrices make of it."""
+    pulls = tuple(
+        np.array([part.stiffness @ along for along in (motion[0], *own)])
+        for part, own in zip(body.parts, branches, strict=True)
+    )
+    return BodyState(time, motions_of(body, motion), branches, pulls, signed_pressure)
+
+
+def motions_of(body: BodyWithMass, motion: Array) -> Array:
+    """Displacement, velocity and acceleration (3, N), inertia times and damping times these, (3, 3, N)."""
+    damped = np.zeros_like(motion) if body.damping is None else (body.damping @ motion.T).T
+    return np.array([motion, (body.inertia @ motion.T).T, damped])
+
+
 def undeformed(body: BodyWithMass, velocity: Array) -> BodyState:
     """A relaxed body about to touch, moving with ``velocity`` (N,); its acceleration balances gravity and damping."""
-    displacement = np.zeros(body.size)
     branches = tuple(np.zeros((len(part.relaxation.moduli), body.size)) for part in body.parts)
     forces = body.weight if body.damping is None else body.weight - body.damping @ velocity
-    acceleration = np.zeros(body.size)
-    free = body.massive
-    acceleration[free] = factorized(body.inertia[free][:, free])(forces[free])
-    open_points = -np.ones(body.pressing.weights.size)
-    return BodyState(
-        0.0, displacement, velocity, acceleration, branches, internal(body, displacement, branches), open_points
-    )
+    motion, free = np.array([np.zeros(body.size), velocity, np.zeros(body.size)]), body.massive
+    if forces.any():
+        motion[2, free] = factorized(body.inertia[free][:, free])(forces[free])
+    return state_of(body, 0.0, motion, branches, -np.ones(body.pressing.weights.size))
 
 
-def internal(body: BodyWithMass, displacement: Array, branches: tuple[Array, ...]) -> Array:
+def internal(body: BodyWithMass, pulls: tuple[Array, ...]) -> Array:
     """Nodal forces of the stress, (N,), N."""
-    parts = zip(body.parts, branches, strict=True)
-    forces = [part.stiffness @ part.stressed(displacement, own) for part, own in parts]
-    return np.asarray(sum(forces, np.zeros(body.size)))
+    forces = [part.stressed(own[0], own[1:]) for part, own in zip(body.parts, pulls, strict=True)]
+    return np.asarray(sum(forces[1:], forces[0]))

@@ -24,8 +24,9 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sparse
 
+from fe_contact.assembly.cache import Store
 from fe_contact.assembly.forms import Array, Matrix
-from fe_contact.dynamics.body import BodyState, BodyWithMass, undeformed
+from fe_contact.dynamics.body import BodyState, BodyWithMass, internal, undeformed
 from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.dynamics.stepping import Enforced, ExplicitStepper, ImplicitStepper
 from fe_contact.errors import ContactLost, MotionUnbounded, TooManySteps
@@ -35,6 +36,7 @@ MOST_STEPS = 200_000  # of a small body: a minute and a half, nearly all of it b
 MOST_WORK = 3e8  # unknowns times steps, of a large one: some eight minutes of one core
 ROUNDING = 1e-9  # of times that are sums of steps
 UNBOUNDED = 1e6  # multiple of the fastest that gravity and the start explain
+KEPT = 8  # lengths of step whose factors are kept, some 10 MB each
 JUST_SAFE = 1e-9  # rounding of a stage that just keeps the limit
 
 
@@ -148,11 +150,30 @@ def march(
     Raises ContactNotSettled, MotionUnbounded or TooManySteps; BadInput for a scheme that the body does not admit.
     """
     state = undeformed(body, velocity)
-    return onwards(body, Moment(state, account_at_start(body, state)), choices, end_time, watch, finished)
+    steppers = Steppers(body, choices.enforced)
+    return onwards(steppers, Moment(state, account_at_start(body, state)), choices, end_time, watch, finished)
+
+
+class Steppers:
+    """Steppers of one ``body`` by the contact ``enforced`` there, ``made`` so many; those used last are kept."""
+
+    def __init__(self, body: BodyWithMass, enforced: Enforced) -> None:
+        self.body, self.enforced, self.made = body, enforced, 0
+        self._kept = Store(KEPT)
+
+    def of(self, scheme: Scheme, step: float) -> ExplicitStepper | ImplicitStepper:
+        """One for steps of a length, s, at hand or new."""
+        return self._kept.find((scheme, step), lambda: self.new(scheme, step))
+
+    def new(self, scheme: Scheme, step: float) -> ExplicitStepper | ImplicitStepper:
+        """One for a length that does not come again, s."""
+        self.made += 1
+        kind: type[ExplicitStepper | ImplicitStepper] = ExplicitStepper if scheme.explicit else ImplicitStepper
+        return kind(self.body, scheme, self.enforced, step)
 
 
 def onwards(
-    body: BodyWithMass,
+    steppers: Steppers,
     begun: Moment,
     choices: Choices,
     end_time: float,
@@ -160,8 +181,9 @@ def onwards(
     finished: Callable[[Sample], bool],
 ) -> Motion:
     """The same from a moment on, with which another ``end_time``, s, and the lengths of the steps begin anew."""
-    parts = stages(body, choices.enforced, choices.step) if choices.scheme.staged else 1
-    stepper = _stepper(body, choices, choices.step / parts)
+    body, scheme = steppers.body, choices.scheme
+    parts = stages(body, choices.enforced, choices.step) if scheme.staged else 1
+    stepper = steppers.of(scheme, choices.step / parts)
     state, energies, start = stepper.begun(begun.state), begun.energies, begun.state.time
     fastest = UNBOUNDED * (np.abs(state.velocity).max() + np.abs(body.gravity).max() * end_time)
     samples, most = [_sample(body, state, 0.0, watch, energies, 0)], min(MOST_STEPS, int(MOST_WORK / body.size))
@@ -170,25 +192,20 @@ def onwards(
             raise TooManySteps(most, state.time)
         length = choices.length(state.time - start) / parts
         if length != stepper.step:
-            stepper = _stepper(body, choices, length)
+            stepper = steppers.of(scheme, length)
         impulse, iterations = 0.0, 0
         for _ in range(parts):
             before = state
             state, found = stepper.advance(before)
             if not np.abs(state.velocity).max() <= fastest:  # nan is no less
                 raise MotionUnbounded(state.time)
-            energies = account_after(energies, body, choices.scheme, before, state)
+            energies = account_after(energies, body, scheme, before, state)
             impulse += _impulse(body, before, state)
             iterations += found.iterations
         samples.append(_sample(body, state, impulse, watch, energies, iterations))
         if finished(samples[-1]):
             break
     return Motion(tuple(samples), state, parts)
-
-
-def _stepper(body: BodyWithMass, choices: Choices, step: float) -> ExplicitStepper | ImplicitStepper:
-    kind: type[ExplicitStepper | ImplicitStepper] = ExplicitStepper if choices.scheme.explicit else ImplicitStepper
-    return kind(body, choices.scheme, choices.enforced, step)
 
 
 def _impulse(body: BodyWithMass, before: BodyState, after: BodyState) -> float:
@@ -278,20 +295,26 @@ def account_after(
     account: Energies, body: BodyWithMass, scheme: Scheme, before: BodyState, after: BodyState
 ) -> Energies:
     """The account one step later."""
-    step = after.time - before.time
-    change = after.displacement - before.displacement
-    standing = _standing(body, after)
-    radiated = 0.0 if body.dashpots is None else float(change @ (body.dashpots @ change)) / step
-    heats = [part.heat(step, change, own) for part, own in zip(body.parts, before.branches, strict=True)]
-    numerical = _of_inertia(body, scheme, before, after, step) + _of_stress(body, scheme, before, after, step, change)
+    step, change = after.time - before.time, after.displacement - before.displacement
+    standing, pulled = _standing(body, after), [late[0] - early[0] for early, late in _pulls(before, after)]
+    heats = [
+        part.heat(step, change, pull, own, pulls[1:])
+        for part, pull, own, pulls in zip(body.parts, pulled, before.branches, before.pulls, strict=True)
+    ]
     pressed = _contact_work(body, scheme, before, after, change) - (standing[-1] - account.contact)
+    numerical = _of_inertia(scheme, before, after, step) + _of_stress(body, scheme, before, after, step, change)
     return Energies(
         account.work + float(body.weight @ change),
         *standing,
         account.viscous + sum(heats),
-        account.radiated + radiated,
+        account.radiated + _radiated(body, before, after, step, change),
         account.numerical + numerical + pressed,
     )
+
+
+def _pulls(before: BodyState, after: BodyState) -> zip[tuple[Array, Array]]:
+    """Of every part, at both ends of a step."""
+    return zip(before.pulls, after.pulls, strict=True)
 
 
 def _standing(body: BodyWithMass, state: BodyState) -> tuple[float, float, float, float]:
@@ -299,18 +322,27 @@ def _standing(body: BodyWithMass, state: BodyState) -> tuple[float, float, float
     v = state.velocity
     overlap = np.maximum(body.pressing.overlap(state.displacement), 0.0)
     springs = 0.5 * float((body.pressing.weights * state.pressure) @ overlap)
-    strain = 0.5 * float(state.displacement @ state.internal)
-    if not body.is_elastic:
-        parts = zip(body.parts, state.branches, strict=True)
-        strain = sum(part.stored(state.displacement, own) for part, own in parts)
-    return 0.5 * float(body.rigid @ v**2), 0.5 * float(v @ (body.mass @ v)), strain, springs
+    parts = zip(body.parts, state.branches, state.pulls, strict=True)
+    strain = sum(part.stored(state.displacement, own, pulls) for part, own, pulls in parts)
+    moving = state.pushed[1] - body.rigid * v
+    return 0.5 * float(body.rigid @ v**2), 0.5 * float(v @ moving), strain, springs
 
 
-def _of_inertia(body: BodyWithMass, scheme: Scheme, before: BodyState, after: BodyState, step: float) -> float:
+def _radiated(body: BodyWithMass, before: BodyState, after: BodyState, step: float, change: Array) -> float:
+    """What dashpots carry away: of all damping, what no parallel viscosity of a material does."""
+    if body.dashpots is None:
+        return 0.0
+    forces = after.damped[0] - before.damped[0]
+    for part, (early, late) in zip(body.parts, _pulls(before, after), strict=True):
+        forces = forces - part.relaxation.viscosity * (late[0] - early[0])
+    return float(change @ forces) / step
+
+
+def _of_inertia(scheme: Scheme, before: BodyState, after: BodyState, step: float) -> float:
     """Loss by the balance of inertia."""
     alpha_m, _, beta, gamma = scheme
     change, mean = after.acceleration - before.acceleration, (after.acceleration + before.acceleration) / 2
-    pushed = body.inertia @ change
+    pushed = after.pushed[2] - before.pushed[2]
     swift = (before.velocity + after.velocity) / 2
     first = step * (1 - alpha_m - gamma) * float(swift @ pushed)
     return first + step**2 * (beta - gamma / 2) * float(pushed @ (mean + (0.5 - alpha_m) * change))
@@ -321,22 +353,15 @@ def _of_stress(
 ) -> float:
     """Loss by stress and damping that are not averages over the step."""
     late, early = 1 - scheme.alpha_f, scheme.alpha_f
-    forces = late * after.internal + early * before.internal - _average(body, before, after, step, change)
-    if not (body.is_elastic or scheme.explicit):
-        parts = zip(body.parts, before.branches, after.branches, strict=True)
-        forces = forces + sum(p.later(p.law(step), z, own) for p, z, own in parts)
+    forces = late * internal(body, after.pulls) + early * internal(body, before.pulls)
+    for part, (start, end) in zip(body.parts, _pulls(before, after), strict=True):
+        forces = forces - part.averaged(step, start[0], end[0] - start[0], start[1:])
+        if not scheme.explicit:
+            forces = forces + part.law(step).late @ (end[1:] - start[1:])
     if body.damping is not None:
-        forces = forces + body.damping @ (late * after.velocity + early * before.velocity - change / step)
+        damped = after.damped[0] - before.damped[0]
+        forces = forces + late * after.damped[1] + early * before.damped[1] - damped / step
     return float(change @ forces)
-
-
-def _average(body: BodyWithMass, before: BodyState, after: BodyState, step: float, change: Array) -> Array:
-    """Nodal forces (N,) of the stress, over a step in which the displacement changes linearly."""
-    if body.is_elastic:
-        return 0.5 * (before.internal + after.internal)
-    parts = zip(body.parts, before.branches, strict=True)
-    means = [p.stiffness @ p.averaged(step, before.displacement, change, own) for p, own in parts]
-    return np.asarray(sum(means, np.zeros(body.size)))
 
 
 def _contact_work(body: BodyWithMass, scheme: Scheme, before: BodyState, after: BodyState, change: Array) -> float:

@@ -28,12 +28,13 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse as sparse
 
 from fe_contact.assembly.forms import Array, Indices, Matrix
 from fe_contact.assembly.interior import factorized
 from fe_contact.contact.enforcement.base import Enforcement
 from fe_contact.contact.problem import ContactProblem, PressedSurface, Touching
-from fe_contact.dynamics.body import BodyState, BodyWithMass, Pressing, internal
+from fe_contact.dynamics.body import BodyState, BodyWithMass, Pressing, internal, motions_of, state_of
 from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.errors import ContactNotSettled
 from lumped.errors import BadInput, Fault
@@ -84,7 +85,8 @@ def surface_of(compliance: Array, pressing: Pressing, nodes: Indices | slice = s
     symmetric = (compliance + compliance.T) / 2
     stiffness = np.linalg.inv(symmetric)
     trace = pressing.trace[:, nodes]
-    return PressedSurface((stiffness + stiffness.T) / 2, trace, pressing.weights, carriers=pressing.carriers)
+    square = (stiffness + stiffness.T) / 2
+    return PressedSurface(square, trace, pressing.weights, recurring=False, carriers=pressing.carriers)
 
 
 class ImplicitStepper:
@@ -93,11 +95,19 @@ class ImplicitStepper:
     def __init__(self, body: BodyWithMass, scheme: Scheme, enforced: Enforced, step: float) -> None:
         self.body, self.scheme, self.enforced, self.step = body, scheme, enforced, step
         self.laws = [part.law(step) for part in body.parts]
+        self._onwards, self._of_change = _newmark(scheme, step)
         self.solve = factorized(self._effective())
 
     def begun(self, state: BodyState) -> BodyState:
         """The first state: the pressure of a first step belongs to its end."""
         return state
+
+    @cached_property
+    def _matrices(self) -> Matrix:
+        """Unit stiffness of every part, inertia and damping, one above the other."""
+        body = self.body
+        damping = sparse.csr_matrix((body.size, body.size)) if body.damping is None else body.damping
+        return sparse.vstack([*(part.stiffness for part in body.parts), body.inertia, damping]).tocsr()
 
     @cached_property
     def moved(self) -> Array:
@@ -139,39 +149,37 @@ class ImplicitStepper:
         return matrix
 
     def _known(self, state: BodyState) -> Array:
-        """Forces that the past fixes, (N,)."""
+        """Forces that the past fixes, (N,): those of a step in which nothing moves."""
         body, (alpha_m, alpha_f, _, _) = self.body, self.scheme
-        v, a = self._newmark(state, np.zeros(body.size))  # at the end of a step in which nothing moves
-        forces = body.weight - body.inertia @ ((1 - alpha_m) * a + alpha_m * state.acceleration)
-        forces -= alpha_f * state.internal
-        for part, law, branches in zip(body.parts, self.laws, state.branches, strict=True):
-            held = part.past(law, state.displacement, branches)
-            faded = law.late @ ((law.decay - 1.0)[:, None] * branches)
-            forces -= part.stiffness @ ((1 - alpha_f) * held + faded)
+        forces = body.weight - ((1 - alpha_m) * self._onwards[2] @ state.pushed + alpha_m * state.pushed[2])
+        for part, law, pulls in zip(body.parts, self.laws, state.pulls, strict=True):
+            held = (1 - alpha_f) * part.past(law, pulls[0], pulls[1:])
+            forces -= held + alpha_f * part.stressed(pulls[0], pulls[1:]) + (law.late * (law.decay - 1.0)) @ pulls[1:]
         if body.damping is not None:
-            forces -= body.damping @ ((1 - alpha_f) * v + alpha_f * state.velocity)
+            forces -= (1 - alpha_f) * self._onwards[1] @ state.damped + alpha_f * state.damped[1]
         return np.asarray(forces)
 
-    def _newmark(self, state: BodyState, change: Array) -> tuple[Array, Array]:
-        """Velocity and acceleration at the end of a step with an increment of displacement."""
-        (_, _, beta, gamma), dt = self.scheme, self.step
-        v, a = state.velocity, state.acceleration
-        late = (change - dt * v - dt**2 * (0.5 - beta) * a) / (beta * dt**2)
-        return v + dt * ((1 - gamma) * a + gamma * late), late
-
     def _moved(self, state: BodyState, change: Array, found: Found) -> BodyState:
-        velocity, acceleration = self._newmark(state, change)
-        displacement = state.displacement + change
-        branches = tuple(law.moved(own, change) for law, own in zip(self.laws, state.branches, strict=True))
+        """The state after an increment (N,)."""
+        *pulled, pushed, damped = (self._matrices @ change).reshape(-1, change.size)
+        moves = np.array([change, pushed, damped])
         return BodyState(
             time=state.time + self.step,
-            displacement=displacement,
-            velocity=velocity,
-            acceleration=acceleration,
-            branches=branches,
-            internal=internal(self.body, displacement, branches),
+            motions=self._onwards @ state.motions + self._of_change[:, None] * moves[:, None],
+            branches=tuple(law.moved(own, change) for law, own in zip(self.laws, state.branches, strict=True)),
+            pulls=tuple(law.pulled(own, pull) for law, own, pull in zip(self.laws, state.pulls, pulled, strict=True)),
             signed_pressure=found.signed_pressure,
         )
+
+
+def _newmark(scheme: Scheme, dt: float) -> tuple[Array, Array]:
+    """What displacement, velocity and acceleration at a step's end owe to those at its start, (3, 3), and to the
+    increment of the displacement, (3,).
+    """
+    _, _, beta, gamma = scheme
+    late = np.array([0.0, -1.0 / (beta * dt), 1.0 - 0.5 / beta])
+    faster = np.array([0.0, 1.0, dt * (1.0 - gamma)]) + gamma * dt * late
+    return np.array([[1.0, 0.0, 0.0], faster, late]), np.array([1.0, gamma / (beta * dt), 1.0 / (beta * dt**2)])
 
 
 class ExplicitStepper:
@@ -193,8 +201,9 @@ class ExplicitStepper:
             return state
         ahead = state.displacement + self.step * (state.velocity + self.step / 2 * state.acceleration)
         found = self._constrained(state, ahead, self.step**2 / 2)
-        pushed = state.acceleration + self._accelerated(self.body.pressing.load(found.pressure))
-        return state._replace(acceleration=pushed, signed_pressure=found.signed_pressure)
+        motion = state.motions[0].copy()
+        motion[2] += self._accelerated(self.body.pressing.load(found.pressure))
+        return state_of(self.body, state.time, motion, state.branches, found.signed_pressure)
 
     def advance(self, state: BodyState) -> tuple[BodyState, Found]:
         """The state a step later; raises ContactNotSettled."""
@@ -207,15 +216,17 @@ class ExplicitStepper:
             change, found = self._settled(state, change)
         displacement = state.displacement + change
         branches = tuple(law.moved(own, change) for law, own in zip(self.laws, state.branches, strict=True))
-        forces = internal(body, displacement, branches)
+        pulled = (part.stiffness @ change for part in body.parts)
+        pulls = tuple(law.pulled(own, pull) for law, own, pull in zip(self.laws, state.pulls, pulled, strict=True))
+        forces = internal(body, pulls)
         driving = body.weight - forces if body.damping is None else body.weight - forces - body.damping @ middle
         if found is None:
             found = self._pressed(state, displacement, middle, driving)
         acceleration = self._accelerated(driving + body.pressing.load(found.pressure))
         velocity = middle + dt / 2 * acceleration
         velocity[body.massless] = change[body.massless] / dt
-        pressure = found.signed_pressure
-        return BodyState(state.time + dt, displacement, velocity, acceleration, branches, forces, pressure), found
+        motions = motions_of(body, np.array([displacement, velocity, acceleration]))
+        return BodyState(state.time + dt, motions, branches, pulls, found.signed_pressure), found
 
     def _accelerated(self, forces: Array) -> Array:
         """Acceleration (N,) under forces (N,) or of several, (N, m); zero without mass."""

@@ -14,9 +14,8 @@ import numpy.typing as npt
 
 import meshes
 from fe_contact.assembly.cache import cached
-from fe_contact.assembly.far_field import robin
-from fe_contact.assembly.forms import Array, Basis, Indices, Matrix, isotropic, stiffness
-from fe_contact.assembly.operators import MOST_UNKNOWNS, element, made, moduli
+from fe_contact.assembly.forms import Array, Basis, Indices, Matrix
+from fe_contact.assembly.operators import MOST_UNKNOWNS, element, made, moduli, system_matrix
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import held
 from fe_contact.errors import BodyTooFine
@@ -133,7 +132,7 @@ def _meshed(sizes: Sizes, poisson: float) -> MeshedGround:
     elements = np.flatnonzero(distance < CORE)
     return MeshedGround(
         core=Bulk.of(basis, False, elements),
-        stiffness=_stiffness(basis, poisson),
+        stiffness=system_matrix(basis, poisson),
         fixed=held(basis, along=("axis",), across=()),
         skin=Skin.of(flat(basis), sizes.order, 2 * basis.N),
         outer=distance[elements] > GUARD * CORE,
@@ -169,15 +168,6 @@ def _basis(mesh: MeshTri, order: int) -> Basis:
     if unknowns > MOST_UNKNOWNS:
         raise BodyTooFine(f"a body of {unknowns} unknowns", f"accepted up to {MOST_UNKNOWNS}")
     return CellBasis(mesh, element(order), intorder=2 * order - 1)
-
-
-def _stiffness(basis: Basis, poisson: float) -> Matrix:
-    """With the far field, for E* = 1, sparse (2 N, 2 N)."""
-    from skfem import FacetBasis
-
-    order = basis.elem.maxdeg
-    outside = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["far"], intorder=2 * order + 4)
-    return (stiffness(basis, isotropic(1.0 - poisson**2, poisson)) + robin(outside, poisson)).tocsc()
 
 
 def yielding_of(poisson: float, strength: float, hardening: float) -> Yielding:

@@ -39,7 +39,7 @@ MESH_ORDER = 1.5  # of the force's error where the contact ends anywhere in an e
 CORRECTED = "corrected"
 CORE = 0.5  # of the way from the contact to the end of the mesh strains may be large
 RAMP = (0.02, 0.2, 1.0)  # shares of the penalty with which a body is pressed for the first time
-FARTHEST = 2.0  # a depth over the one before it, beyond which another is put between
+FARTHEST = 2.0  # a depth over the one before it, beyond which another is put between, or under a tip another mesh
 LEAST_BEGUN = 0.05  # of a depth, that a body has to be pressed by from rest at once
 WIDENING = 0.5  # power of the depth that a contact is wide by, under a sphere
 NEAREST = 0.02  # apart in ln depth, a way is not made in halves any more
@@ -67,7 +67,7 @@ class Solid:
         mesh = make(indenter, radii, numerics)
         body, unit, profile = mesh.body, mesh.unit, indenter.profile
         rolled = None if mesh.inner_radius is None else Rolled(mesh.inner_radius)
-        bulk, shear = moduli(indenter.material.nu)
+        bulk, shear = _moduli(indenter)
         energy = energy_of(indenter.material.hyperelastic)
         response = Hyperelastic(energy, shear, bulk - 2.0 * shear / 3.0)
         elements = np.arange(body.basis.nelems) if mesh.ends else _core(body)
@@ -79,7 +79,7 @@ class Solid:
         striker, placed = _touched(mesh, profile, rolled)
         skin = Skin.of(body.surface, numerics.order, core.size, placed)
         encounter = replace(Encounter.of(whole, skin, striker), covered=mesh.covered)
-        return cls(encounter, unit, body.surface.dimension - 1, core.size, mesh.ends, indenter.target.lead)
+        return cls(encounter, unit, body.surface.dimension - 1, core.size, mesh.ends, mesh.lead)
 
     def pressed(self, reached: Equilibrium) -> Reached:
         """In m. Raises ContactTooWide."""
@@ -87,6 +87,14 @@ class Solid:
         if not np.isfinite(radius):
             raise ContactTooWide(self.unit * reached.balance.depth / self.lead)
         return Reached(self.unit**self.dimension * reached.rigid_force, radius, reached.error, reached.iterations)
+
+
+def _moduli(indenter: Indenter) -> tuple[float, float]:
+    """Bulk and shear modulus where the modulus of force, which is a block's own, counts as one."""
+    material = indenter.material
+    share = material.contact_modulus().glassy / indenter.shape.modulus(material).glassy
+    bulk, shear = moduli(material.nu)
+    return share * bulk, share * shear
 
 
 def _touched(mesh: SolidMesh, profile: Shape, rolled: Rolled | None) -> tuple[Obstacle, Callable[[Array], Array]]:
@@ -140,18 +148,36 @@ def press(
     indenter: Indenter, depth: Array, radii: Array, numerics: Numerics, softer: Softer | None = None
 ) -> PressedDepths:
     """Every depth, m, from the smallest on; ``radii`` of the contacts expected, m. Raises NotReached."""
-    if isinstance(indenter.shape, Block):
+    if isinstance(indenter.shape, Block) and indenter.shape.uniform:
         return pressed_alike(indenter, indenter.shape, depth)
-    solid, widening = Solid.of(indenter, radii, numerics), _widening(depth, radii)
-    reached, found, again = None, dict[int, Reached](), dict[int, Reached]()
-    for i in np.argsort(depth).tolist():
-        stiffness = numerics.penalty * solid.unit / float(radii[i])
-        reached = advanced(solid.encounter, reached, solid.lead * float(depth[i]) / solid.unit, stiffness, widening)
-        found[i] = solid.pressed(reached)
-        if softer is not None and i in softer.chosen:
-            again[i] = solid.pressed(_pressed_by(softer.penalty / numerics.penalty * stiffness, reached))
+    found, again, widening = dict[int, Reached](), dict[int, Reached](), _widening(depth, radii)
+    for together in _together(indenter.profile, depth):
+        solid, reached = Solid.of(indenter, radii[together], numerics), None
+        for i in together:
+            stiffness = numerics.penalty * solid.unit / float(radii[i])
+            reached = advanced(solid.encounter, reached, solid.lead * float(depth[i]) / solid.unit, stiffness, widening)
+            found[i] = solid.pressed(reached)
+            if softer is not None and i in softer.chosen:
+                again[i] = solid.pressed(_pressed_by(softer.penalty / numerics.penalty * stiffness, reached))
     told = _told(solid, found)
     return told if softer is None else replace(told, softer=_told(solid, again))
+
+
+def _together(profile: Shape, depth: Array) -> list[list[int]]:
+    """Places of the depths, ascending, that one mesh serves: all of them, or under a tip those of about one size.
+
+    Strains grow towards a tip as the logarithm of the distance: elements as small as a slight contact needs would turn
+    inside out under a deep one.
+    """
+    ascending: list[int] = np.argsort(depth).tolist()
+    if float(profile.slope(np.zeros(()))) == 0.0:
+        return [ascending]
+    groups = list[list[int]]()
+    for i in ascending:
+        if not groups or depth[i] > FARTHEST * depth[groups[-1][0]]:
+            groups.append([])
+        groups[-1].append(i)
+    return groups
 
 
 def _pressed_by(stiffness: float, reached: Equilibrium) -> Equilibrium:

@@ -2,21 +2,22 @@
 
 S(t) = g_inf S0 + sum_i h_i ,  h_i' + h_i/tau_i = g_i S0' ,  S0 = dW/dE at the moduli of a sudden strain
 
-(Simo 1987, doi 10.1016/0045-7825(87)90107-1, who relaxes the isochoric part alone; here it is the whole of S, as in
-FEBio's viscoelastic solid). At small strain it is the network with a constant Poisson's ratio. Over a step S0 changes
-evenly, so that S is ``at_once`` S0 + H with H known: its potential is at_once W + H:E, its tangent symmetric.
+Where Poisson's ratio stays it is the whole of S, as in FEBio's viscoelastic solid; where the bulk modulus stays, the
+isochoric part alone (Simo 1987, doi 10.1016/0045-7825(87)90107-1). At small strain it is the network itself. Over a
+step S0 changes evenly, so that S is ``at_once`` S0 + H with H known: its potential is at_once W + H:E, its tangent
+symmetric.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
-from fe_contact.solids.base import PointAnswer, State
+from fe_contact.solids.base import PointAnswer, Response, State
 from fe_contact.solids.finite import Hyperelastic
-from lumped.materials import Relaxation
+from lumped.materials import Material, Relaxation
 
 SHEARED = np.array([1.0, 1.0, 1.0, 2.0])  # how often each component of (rr, zz, tt, rz) stands in a double product
 
@@ -81,6 +82,73 @@ class Relaxing:
             pulls=None if found.pulls is None else share * found.pulls,
             drifts=None if found.drifts is None else share * found.drifts,
         )
+
+
+@dataclass(frozen=True, eq=False)
+class Volumed:
+    """What keeps its ``shape`` for a while, and its ``volume`` for ever."""
+
+    shape: Relaxing
+    volume: Hyperelastic
+
+    def respond(self, gradient: Array, state: State) -> PointAnswer:
+        """See :class:`fe_contact.solids.base.Response`."""
+        shape, volume = self.shape.respond(gradient, state), self.volume.respond(gradient, ())
+        return PointAnswer(
+            stress=shape.stress + volume.stress,
+            tangent=shape.tangent + volume.tangent,
+            energy=shape.energy + volume.energy,
+            state=shape.state,
+            pulls=_sum(shape.pulls, volume.pulls),
+            drifts=_sum(shape.drifts, volume.drifts),
+        )
+
+
+def _sum(first: Array | None, other: Array | None) -> Array | None:
+    """None where either is."""
+    return None if first is None or other is None else first + other
+
+
+@dataclass(frozen=True, eq=False)
+class FadingLaw:
+    """A ``sudden`` answer and the ``network`` that all of it fades by, or, where the bulk modulus is ``steady``, what
+    changes no volume.
+    """
+
+    sudden: Hyperelastic
+    network: Relaxation
+    steady: bool
+
+    @classmethod
+    def of(cls, sudden: Hyperelastic, material: Material) -> FadingLaw:
+        """Of a material that answers so at once."""
+        steady = material.constant == "bulk"
+        return cls(sudden, material.shear if steady else material.young, steady)
+
+    def over(self, fading: Fading) -> Response:
+        """In one step."""
+        if not self.steady:
+            return Relaxing(self.sudden, fading)
+        volume = replace(self.sudden, shear=0.0, lame=self._bulk)
+        return Volumed(Relaxing(self._with(self.sudden.shear, 0.0), fading), volume)
+
+    @property
+    def lasting(self) -> Hyperelastic:
+        """What is left for ever."""
+        share = self.network.relaxed / self.network.glassy
+        return self._with(share * self.sudden.shear, self._bulk if self.steady else share * self._bulk)
+
+    @property
+    def branches_nu(self) -> float:
+        """Poisson's ratio of what fades."""
+        return 0.5 if self.steady else 0.5 * self.sudden.lame / (self.sudden.lame + self.sudden.shear)
+
+    @property
+    def _bulk(self) -> float:
+        return self.sudden.lame + 2.0 * self.sudden.shear / 3.0
+
+    def _with(self, shear: float, bulk: float) -> Hyperelastic:
+        return replace(self.sudden, shear=shear, lame=bulk - 2.0 * shear / 3.0)
 
 
 def green(gradient: Array) -> Array:

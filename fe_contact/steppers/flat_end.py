@@ -9,11 +9,12 @@ One time step of an impact by a flat end: its area touches at once, so that dept
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from fe_contact.assembly.forms import Array
+from fe_contact.assembly.operators import SurfaceOperator
 from fe_contact.bodies.memory import SurfaceMemory, step_law
 from fe_contact.bodies.pressing import Still
 from fe_contact.contact.problem import ContactSolution
@@ -32,20 +33,20 @@ Pressing = Callable[[Indenter, Array, Numerics], Still]  # at rest; radii of the
 
 @dataclass(frozen=True)
 class FlatEnd:
-    """``stiffness``: force per depth for unit modulus, m; ``radius`` of the contact, m.
+    """``stiffness``: force per depth for unit modulus, m; ``radius`` of the contact, m. Alike are those on one mesh.
 
-    The contract of :class:`fe_contact.steppers.struck.Struck`; ``mesh_order`` as of
+    The contract of :class:`fe_contact.steppers.struck.Struck`; ``mesh_order`` and ``operator`` as of
     :class:`fe_contact.bodies.pressing.Still`.
     """
 
-    stiffness: float
+    stiffness: float = field(compare=False)
     radius: float
     degrees_of_freedom: int
     mesh_order: float
+    operator: SurfaceOperator | None = None
     follows_contact: bool = False
     recovers: bool = True
     factorizations: int = 1
-    solves: int = 1
 
     @classmethod
     def of(cls, geometry: Geometry, radius: float, numerics: Numerics, pressed: Pressing) -> FlatEnd:
@@ -54,7 +55,12 @@ class FlatEnd:
         still = pressed(indenter, np.array([radius]), numerics)
         depth = SHALLOW * radius
         force = still.press(depth, radius).force
-        return cls(force / depth, radius, still.degrees_of_freedom, still.mesh_order)
+        return cls(force / depth, radius, still.degrees_of_freedom, still.mesh_order, still.operator)
+
+    @property
+    def solves(self) -> int:
+        """One a node of the contact zone; one of a block, which is pressed as a whole."""
+        return 1 if self.operator is None else len(self.operator.stiffness)
 
     def stepper(self, strike: Strike, numerics: Numerics, expected: Sequence[float] | Array) -> Stepping:
         """Steps in closed form."""

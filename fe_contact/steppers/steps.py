@@ -25,7 +25,8 @@ from lumped.scene.scene import Scene
 class Strike:
     """Physics of an impact: profile height(r), m; mass, kg; velocity, m/s; gravity along the motion, m/s2;
     contact modulus E*(t); time at which to stop, s after touch; where it is not depth - height, overlap(arc, depth), m;
-    and the length over which forces and modulus are totals in plane strain, m, else 1.
+    the length over which forces and modulus are totals in plane strain, m, else 1; and the ``power`` of the depth that
+    an elastic force begins with.
 
     A later one of several begins with a touch at a time, s since the first one, and a depth, m, on a body with a
     ``memory``, None: at rest.
@@ -39,6 +40,7 @@ class Strike:
     end_time: float
     overlap: Callable[[Array, float], Array] | None = None
     total: float = 1.0
+    power: float = 1.5
     touched_at: float = 0.0
     depth: float = 0.0
     memory: Memory = None
@@ -69,6 +71,7 @@ class Strike:
             relaxation=scene.contact_modulus.scaled(scene.geometry.shape.total),
             end_time=scene.end_time,
             total=scene.geometry.shape.total,
+            power=1.0 if scene.geometry.shape.plane else scene.profile.exponent_of_force,
         )
 
 

@@ -15,6 +15,7 @@ from lumped.result.model_ledger import ENERGY_NAMES
 
 TITLE_WIDTH = 132  # characters
 PANEL = 2.7  # height, in
+COLUMNS, LINE = 2, 0.16  # of the names below the panels; height of a line of them, in
 DASHES = ("-", "--")  # look: by energy; on the right geometry and material
 LINES = [
     f"Left: local exponent over that of small strain, less one, {ENERGY_NAMES[ENERGIES[0]]} (full) and "
@@ -25,9 +26,10 @@ LINES = [
 
 def plot_finite(study: str, found: Sequence[Departures], where: Path) -> tuple[Path, Path]:
     """Write ``<study>_finite.svg`` and ``.png`` into the folder ``where``; their paths."""
-    with style.sheet(where, f"{study}_finite", "Exponents at large strains", LINES, PANEL, width=TITLE_WIDTH) as sheet:
+    shown = [one for one in found if one.small is not None]
+    title, below = "Exponents at large strains", 0.5 + LINE * -(-len(shown) // COLUMNS)
+    with style.sheet(where, f"{study}_finite", title, LINES, PANEL, width=TITLE_WIDTH, below=below) as sheet:
         left, right = sheet.panels(1, 2, 0.075, 0.985, wspace=0.22)
-        shown = [one for one in found if one.small is not None]
         for place, one in enumerate(shown):
             _row(left, right, one, (*style.CYCLE, style.GREY, style.BLACK)[place % 8])
         for axes, letter, title in ((left, "a", "departure of the exponent"), (right, "b", "geometry and material")):
@@ -36,8 +38,8 @@ def plot_finite(study: str, found: Sequence[Departures], where: Path) -> tuple[P
                     axes.axhline(100.0 * sign * limit, color=style.GREY, linewidth=0.6, linestyle=":")
             axes.set(xscale="log", xlabel="depth over R, or h", ylabel="%")
             style.label(axes, letter, title)
-        if shown:
-            left.legend(loc="best", fontsize=5.2, labelspacing=0.2)
+        handles, labels = left.get_legend_handles_labels()
+        sheet.figure.legend(handles, labels, loc="lower left", bbox_to_anchor=(0.06, 0.0), ncols=COLUMNS)
     return sheet.paths
 
 

@@ -34,7 +34,7 @@ def plot_identified(found: Identified, where: Path) -> tuple[Path, Path]:
     width = TITLE_WIDTH if columns > 1 else TITLE_WIDTH // 2
     law = "Ting's law" if found.by_reference is None else "Ting's law, corrected"
     with style.sheet(where, "identified", title, lines, rows * PANELS, width=width, size=size, above=0.34) as sheet:
-        left, right = (0.16, 0.965) if columns == 1 else (0.08, 0.985)
+        left, right = (0.19, 0.965) if columns == 1 else (0.095, 0.985)
         grid = sheet.grid(rows, columns, left, right, hspace=0.42, wspace=0.32)
         for i, curve in enumerate(curves):
             inner = grid[i].subgridspec(2, 1, height_ratios=(2.2, 1.0), hspace=0.12)

@@ -26,8 +26,8 @@ SHARE, FINEST, COARSEST = 3.0, 3e-3, 3e-2
 
 @dataclass(frozen=True)
 class MeasuredEffect:
-    """An effect that the ledger estimates, as two runs find it: ``change`` of the peak force with its ``error``, both
-    relative; None, and the ``reason``, where the larger model has no answer.
+    """An effect that the ledger estimates, or its ``spread``, as two runs find it: ``change`` of the peak force and
+    its ``error``, all relative; None, and the ``reason``, where the larger model has no answer.
     """
 
     effect: str
@@ -36,9 +36,13 @@ class MeasuredEffect:
     change: float | None = None
     error: float | None = None
     reason: str = ""
+    spread: tuple[float, float] | None = None
 
     def __str__(self) -> str:
-        estimate = "none" if self.estimate is None else f"{self.estimate:.2g}"
+        if self.spread is not None:
+            estimate = f"{self.spread[0]:+.2g} to {self.spread[1]:+.2g}"
+        else:
+            estimate = "none" if self.estimate is None else f"{self.estimate:.2g}"
         if self.change is None or self.error is None:
             return f"{self.effect}: estimate {estimate} | not measured: {self.reason}"
         return f"{self.effect} ({self.setting}): estimate {estimate} | measured {self.change:+.2g} +- {self.error:.1g}"
@@ -93,7 +97,7 @@ def _tolerance_of(entry: LedgerEntry) -> float:
 
 def _measured(scene: Scene, entry: LedgerEntry, own: Result) -> MeasuredEffect:
     """By the larger model, with settings of its own."""
-    without = MeasuredEffect(entry.effect, entry.setting, entry.estimate)
+    without = MeasuredEffect(entry.effect, entry.setting, entry.estimate, spread=entry.spread)
     try:
         larger = fe(scene.changed({entry.key: entry.value}), {"tolerance": _tolerance_of(entry)})
         change, error = change_of(own.quantities["peak_force"], larger.quantities["peak_force"])

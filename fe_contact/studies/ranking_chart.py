@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 from matplotlib.axes import Axes
 
 from fe_contact.studies import style
@@ -14,7 +15,8 @@ from lumped.result.score import Curve
 
 COLUMNS, HEIGHT = 4, 1.35  # panels beside each other; in, of one of them with what is below it
 TITLE_WIDTH = 128  # characters
-SCALE = 5.0  # look: what is left is drawn so many times as large
+SCALES = (100, 50, 20, 10, 5, 2, 1, 0.5)  # look: what is left is drawn so many times as large
+ROOM = 0.5  # of the peak, for what is left, to either side
 
 
 def plot_ranking(ranked: Sequence[RankedFit], curve: Curve, where: Path) -> tuple[Path, Path]:
@@ -22,7 +24,7 @@ def plot_ranking(ranked: Sequence[RankedFit], curve: Curve, where: Path) -> tupl
     shown = [one for one in ranked if one.fit is not None]
     rows = -(-len(shown) // COLUMNS)
     left_out = ", ".join(one.law for one in ranked if one.fit is None)
-    lines = [f"grey: the curve; red: the law; blue: {SCALE:g} times what is left. AICc over that of the best law"]
+    lines = ["grey: the curve; red: the law; blue: what is left, enlarged as told. AICc over that of the best law"]
     lines += [f"without a fit: {left_out}"] if left_out else []
     size = rows * HEIGHT
     with style.sheet(where, "fits", "every law, fitted", lines, size, width=TITLE_WIDTH, above=0.34) as sheet:
@@ -49,10 +51,12 @@ def _panel(axes: Axes, one: RankedFit, curve: Curve) -> None:
     newton, _ = prefixed(float(curve.force.max()), "N")
     fitted = one.fit.history.force_at(curve.time)
     axes.axhline(0.0, color="#4d4d4d", linewidth=0.4)
-    axes.plot(second * curve.time, newton * SCALE * (curve.force - fitted), color=style.BLUE, linewidth=0.5)
+    largest, rest = newton * float(curve.force.max()), newton * (curve.force - fitted)
+    scale = next((scale for scale in SCALES if scale * np.abs(rest).max() <= ROOM * largest), SCALES[-1])
+    axes.plot(second * curve.time, scale * rest, color=style.BLUE, linewidth=0.5)
+    axes.text(0.98, 0.96, f"× {scale:g}", transform=axes.transAxes, color=style.BLUE, ha="right", va="top")
     axes.plot(second * curve.time, newton * curve.force, color="#b0b0b0", linewidth=2.0)
     axes.plot(second * curve.time, newton * fitted, color=style.VERMILION, linewidth=0.9)
-    largest = newton * float(curve.force.max())
     axes.set_ylim(-0.6 * largest, 1.15 * largest)
     error = 100.0 * one.fit.normalized_error
     axes.set_title(f"{one.law}: {error:.2g} %, +{one.criterion:.0f}", pad=3.0, fontsize=7.0)

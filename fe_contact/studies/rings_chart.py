@@ -30,6 +30,7 @@ def plot_rings(curves: Sequence[RingCurve], where: Path) -> tuple[Path, Path]:
             left.errorbar(curve.strain, curve.factor, yerr=curve.factor_error, label=curve.case.name, **look)
             right.errorbar(curve.strain, curve.exponent, yerr=curve.exponent_error, **look)
         left.set(yscale="log", ylabel="F over the row's")
+        style.plain_numbers(left.yaxis)
         right.set(ylabel="d ln F/d ln depth")
         for axes, letter, title in ((left, "a", "force over (27)"), (right, "b", "local exponent")):
             _finished(axes)

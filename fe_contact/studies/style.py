@@ -13,10 +13,14 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.gridspec import GridSpec
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 COLUMN, PAGE = 3.5, 7.2  # widths of a paper's column and page, in
+TITLE_SIZE, TITLE_LETTERS = 9.5, 11.5  # pt; letters of that size in an inch
+LEAST_TITLE = 0.65  # of that size: a title of more letters is smaller, at most by so much, and then cut
 
 # Okabe and Ito's palette, https://jfly.uni-koeln.de/color/
 BLACK, GREY = "#1a1a1a", "#8c8c8c"
@@ -26,7 +30,7 @@ CYCLE = (VERMILION, BLUE, GREEN, PURPLE, ORANGE, SKY)
 # A law has one colour in every chart; laws of one kind have neighbouring ones.
 LAWS = {
     "linear_spring": "#7f7f7f", "kelvin": "#2f4b7c", "mahmoud": "#8a6d1f", "impact_bilinear": "#5b3a1e",
-    "hertz": ORANGE, "jankowski": "#f06eaa", "hunt_crossley": PURPLE, "hertzdamp": "#8e44ad",
+    "hertz": ORANGE, "jankowski": "#e0218a", "hunt_crossley": PURPLE, "hertzdamp": "#8e44ad",
     "khatiwada": "#5e2b80", "tsuji": "#b0003a", "kuwabara_kono": "#7a9a01",
     "correspondence": VERMILION, "ting": BLUE, "mdr": GREEN, "rod_waves": "#00a3b4",
     "bar_waves": "#0b5d57",
@@ -114,6 +118,15 @@ def with_error(value: float, error: float, unit: str = "") -> str:
     return f"{value * factor:.{digits}f} ± {error * factor:.{digits}f} {name}".rstrip()
 
 
+def plain_numbers(*axes: Axis) -> None:
+    """Where an axis is logarithmic: 1, 2 and 5 of each decade as they are written, and no other."""
+    for axis in axes:
+        if axis.get_scale() == "log":
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
+
+
 def label(axes: Axes, letter: str, text: str) -> None:
     """The panel's letter and what it shows, above its upper left corner."""
     axes.set_title(rf"$\bf{{{letter}}}$  {text}", pad=5.0)
@@ -123,8 +136,10 @@ def heading(figure: Figure, title: str, lines: list[str], width: int) -> None:
     """A bold title and lines below it, wrapped at ``width`` characters, at the figure's upper left."""
     height = figure.get_figheight()
     wrapped = [part for line in lines for part in textwrap.wrap(line, width, subsequent_indent="    ")]
-    left = 0.08 / figure.get_figwidth()
-    figure.text(left, 1 - 0.06 / height, title, fontsize=9.5, fontweight="bold", va="top", color=BLACK)
+    left, room = 0.08 / figure.get_figwidth(), TITLE_LETTERS * figure.get_figwidth()
+    size = TITLE_SIZE * max(LEAST_TITLE, min(1.0, room / max(len(title), 1)))
+    shown = title if len(title) <= room / LEAST_TITLE else f"{title[: int(room / LEAST_TITLE) - 1]}…"
+    figure.text(left, 1 - 0.06 / height, shown, fontsize=size, fontweight="bold", va="top", color=BLACK)
     figure.text(left, 1 - 0.27 / height, "\n".join(wrapped), va="top", linespacing=1.45, color="#333333")
 
 

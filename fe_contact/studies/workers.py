@@ -6,6 +6,7 @@ one that is killed; and one of them that dies would end all.
 
 from __future__ import annotations
 
+import logging
 import os
 import signal
 import sys
@@ -74,7 +75,8 @@ def workers(jobs: int, dask: str | None = None) -> Iterator[tuple[Executor, int]
     with ExitStack() as stack:
         try:
             local = {"n_workers": jobs, "threads_per_worker": 1, "dashboard_address": None}
-            cluster = stack.enter_context(distributed.LocalCluster(**local)) if dask == LOCAL else dask
+            quiet = {"silence_logs": logging.ERROR}  # it warns of a busy machine, in the midst of the progress bar
+            cluster = stack.enter_context(distributed.LocalCluster(**local, **quiet)) if dask == LOCAL else dask
             client = stack.enter_context(distributed.Client(cluster))
         except (OSError, ValueError) as failure:
             accepted = f"accepted: {LOCAL}, or the address of a scheduler that answers, as tcp://host:8786"

@@ -15,7 +15,7 @@ import meshes
 from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.far_field import on_boundary
 from fe_contact.assembly.forms import Array, Basis, Matrix, elastic, plane_stiffness, stiffness
-from fe_contact.assembly.operators import ElasticBody, SolidMesh, basis_on, made
+from fe_contact.assembly.operators import ElasticBody, SolidMesh, basis_on, boundary, made
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import (
     FINITE_REFINEMENT,
@@ -107,10 +107,7 @@ def matrix(basis: Basis, bonded: bool, plane: bool, bulk: float, shear: float) -
         return plane_stiffness(basis, law)
     if bonded:
         return stiffness(basis, law)
-    from skfem import FacetBasis
-
-    sides = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["side"])
-    return stiffness(basis, law) + robin(sides, shear)
+    return stiffness(basis, law) + robin(boundary(basis, ("side",)), shear)
 
 
 def robin(facets: Basis, shear: float) -> sparse.coo_matrix:

@@ -63,7 +63,7 @@ def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     zone, mean_radius = Zone.round(radii, target.section_radius), target.mean_radius / target.section_radius
     elements = FINITE_REFINEMENT * numerics.elements_per_contact
     body = _body(elements, numerics.order, zone.smallest, zone.reference, mean_radius)
-    return SolidMesh(body, target.section_radius, mean_radius=mean_radius, ends=True)
+    return SolidMesh(body, target.section_radius, mean_radius=mean_radius, ends=True, lead=target.lead)
 
 
 def struck(geometry: Geometry, numerics: Numerics) -> Stacked:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -12,11 +13,15 @@ import meshes
 from fe_contact.assembly.cache import cached
 from fe_contact.assembly.disk_cache import on_disk
 from fe_contact.assembly.forms import Array, isotropic, stiffness
-from fe_contact.assembly.operators import basis_on, made
-from fe_contact.bodies.pressing import Pressed, Still, held
+from fe_contact.assembly.operators import ElasticBody, SolidMesh, axisymmetric, basis_on, made
+from fe_contact.assembly.surface import face
+from fe_contact.bodies.pressing import FINITE_REFINEMENT, Pressed, Still, held
 from fe_contact.settings import Numerics
+from fe_contact.steppers.stacked import Stacked
 from fe_contact.targets import _round
 from fe_contact.targets.base import MeshedTarget
+from lumped.errors import BadInput, Fault
+from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.shapes._block import Block
 
@@ -35,6 +40,7 @@ class BlockStill:
     degrees_of_freedom: int
     mesh_order: ClassVar[float] = np.inf  # that of the elements: nothing moves over the mesh
     ends: ClassVar[bool] = True
+    operator: ClassVar[None] = None
 
     def press(self, depth: float, guess: float) -> Pressed:
         """Press to a depth, m."""
@@ -58,6 +64,16 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     return replace(unit, stiffness=radius * unit.stiffness, radius=radius)
 
 
+def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
+    """The upper half of a block for large strains; of one that is strained alike few elements are all."""
+    block = indenter.shape
+    assert isinstance(block, Block)
+    elements, radius = FINITE_REFINEMENT * FEWER * numerics.elements_per_contact, block.fixed_radius
+    half = 0.5 * block.thickness / radius
+    body = _solid_block(1.0 if block.uniform else elements, numerics.order, half, block.sides, block.faces)
+    return SolidMesh(body, radius, covered=True, ends=True, lead=0.5)
+
+
 @cached
 @on_disk
 def _unit_block(poisson: float, elements: float, order: int, half_height: float, sides: str, faces: str) -> BlockStill:
@@ -66,8 +82,7 @@ def _unit_block(poisson: float, elements: float, order: int, half_height: float,
     basis = basis_on(made(meshes.prism, elements, half_height, free and faces == "bonded"), order)
     young = 1.0 if free else (1.0 + poisson) * (1.0 - 2.0 * poisson) / (1.0 - poisson)
     matrix = stiffness(basis, isotropic(young, poisson)).tocsc()
-    still_radially = ["inside", *(["surface"] if faces == "bonded" else []), *([] if free else ["outside"])]
-    fixed = held(basis, along=tuple(still_radially), across=("surface", "base"))
+    fixed = held(basis, along=_still_radially(sides, faces), across=("surface", "base"))
     moved = 2 * basis.get_dofs("surface").flatten() + 1
     displacement = np.zeros(2 * basis.N)
     displacement[moved] = -0.5  # half of a unit depth
@@ -76,4 +91,25 @@ def _unit_block(poisson: float, elements: float, order: int, half_height: float,
     return BlockStill(2.0 * float(displacement @ (matrix @ displacement)), 1.0, displacement.size)
 
 
-MEMBER = MeshedTarget(still, struck=_round.struck, relaxing=_round.relaxing)
+def relaxing(geometry: Geometry, numerics: Numerics) -> Stacked:
+    """A ball of constant bulk modulus in an impact. Raises BadInput for a block that is not strained alike."""
+    if isinstance(geometry.shape, Block):
+        reason = '"bulk": no impact of a block bonded to both planes with it in this version; accepted: "poisson"'
+        raise BadInput(Fault("material", "constant", reason))
+    return _round.relaxing(geometry, numerics)
+
+
+@cached
+def _solid_block(elements: float, order: int, half_height: float, sides: str, faces: str) -> ElasticBody:
+    """Of unit radius, no finer at its corners, where stresses are infinite."""
+    basis = basis_on(made(meshes.prism, elements, half_height, False), order)
+    fixed = held(basis, along=_still_radially(sides, faces), across=("base",))
+    return ElasticBody(basis, partial(axisymmetric, basis), fixed, face(basis, 1.0))
+
+
+def _still_radially(sides: str, faces: str) -> tuple[str, ...]:
+    """Boundaries that do not move sideways."""
+    return ("inside", *(("surface",) if faces == "bonded" else ()), *(() if sides == "free" else ("outside",)))
+
+
+MEMBER = MeshedTarget(still, struck=_round.struck, relaxing=relaxing, solid=solid)

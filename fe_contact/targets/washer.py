@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from functools import partial
 
-import numpy as np
-
 import meshes
 from fe_contact.assembly.cache import Recipe, cached
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, SolidMesh, axisymmetric, basis_on, made
-from fe_contact.assembly.surface import Surface, ring_area
+from fe_contact.assembly.surface import face
 from fe_contact.bodies.bulk_memory import Moduli
 from fe_contact.bodies.pressing import FINITE_REFINEMENT, BodyStill, Still, held, thickness_over
 from fe_contact.settings import Numerics
@@ -80,18 +78,7 @@ def _body(
     """Of unit height, loaded up to the rim alone; ``graded`` to the corners of a bonded base."""
     basis = basis_on(made(meshes.washer, elements, inner, outer, rim, bonded and graded), order)
     fixed = held(basis, along=("base",) if bonded else (), across=("base",))
-    dofs = basis.get_dofs("surface").flatten()
-    dofs = dofs[np.argsort(basis.doflocs[0, dofs])]
-    surface = Surface(
-        dofs=dofs,
-        coordinate=basis.doflocs[0, dofs],
-        normal=np.tile([0.0, 1.0], (dofs.size, 1)),
-        measure=ring_area,
-        motion=np.ones_like,
-        zone=rim * (1.0 - 1e-12),
-        dimension=3,
-    )
-    return ElasticBody(basis, partial(axisymmetric, basis), fixed, surface)
+    return ElasticBody(basis, partial(axisymmetric, basis), fixed, face(basis, rim))
 
 
 MEMBER = MeshedTarget(still, relaxing=relaxing, solid=solid)

@@ -5,6 +5,10 @@ chatter which no order describes. The change between settings in the ratio 1 : 2
 by 1.25 times itself. The far field errs as the square of its distance, as without inertia: half as far, an echo comes
 back within the contact.
 
+A contact ends anywhere within a step, and a body that rings ends it sooner or later than its last forces say. Every
+length of step leaves another share of itself of that, in which no order shows: the finer of two durations then errs by
+less than twice their distance.
+
 A march with waves as a curve: through fewer rows than steps, between which the contact's chatter averages out.
 
 Points of a mesh that stays begin and end their contact one by one, and a dashpot in parallel differentiates that. The
@@ -33,14 +37,14 @@ from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, Growth, missing
 from fe_contact.budget.runs import AnyRuns
 from fe_contact.budget.several import Judged, Several
-from fe_contact.budget.variation import SAFETY, Variation, factor
+from fe_contact.budget.variation import SAFETY, UNORDERED, Variation, factor
 from fe_contact.march.impacts import Followed, follow
 from fe_contact.progress import Count, Counted, Progress, uncounted
 from fe_contact.settings import Numerics, WaveNumerics
 from fe_contact.steppers.steps import March, Strike
-from fe_contact.waves.impact import Flights, WaveBouncer
+from fe_contact.waves.impact import WaveBouncer
 from fe_contact.waves.moving import Moving
-from fe_contact.waves.plan import Cost, graded
+from fe_contact.waves.plan import Cost
 from lumped.result.result import LedgerEntry, meets
 from lumped.scene.scene import Scene
 
@@ -64,16 +68,17 @@ tells_of_mesh = partial(other_mesh, most=ORDER["mesh"], nodes=LEAST_NODES)
 
 
 class WaveRun(NamedTuple):
-    """The contacts of one run on a body of so many unknowns, and what its flights took."""
+    """The contacts of one run on a body of so many unknowns, steps ``flown`` between them, and ``factorizations``."""
 
     followed: Followed
     size: int
-    flights: Flights
+    flown: int
+    factorizations: int
 
     @property
     def steps(self) -> int:
         """Of contacts and flights."""
-        return self.flights.steps + sum(one.march.work.steps for one in self.followed.contacts)
+        return self.flown + sum(one.march.work.steps for one in self.followed.contacts)
 
 
 class WaveRuns(AnyRuns[WaveNumerics]):
@@ -101,7 +106,7 @@ class WaveRuns(AnyRuns[WaveNumerics]):
             body = self._moving(self._scene, settings)
             bouncer = WaveBouncer(body, self._scene, settings, partial(self._count, body.body.size))
             followed = follow(bouncer, self._strike, self._scene.motion.impacts)
-            self._runs[settings] = WaveRun(followed, body.body.size, bouncer.flights)
+            self._runs[settings] = WaveRun(followed, body.body.size, bouncer.flights.steps, bouncer.steppers.made)
             self._curves[settings] = tuple(curve_of(one.march, one.strike, settings) for one in followed.contacts)
         return self._runs[settings].followed
 
@@ -112,18 +117,15 @@ class WaveRuns(AnyRuns[WaveNumerics]):
 
     def work(self) -> TotalWork:
         """What all runs cost together: a factorisation for every length of step, one back-substitution a step."""
-        marches = [(one.march, settings) for settings, run in self._runs.items() for one in run.followed.contacts]
         runs = list(self._runs.values())
-        factorizations = sum(_lengths(*one) for one in marches) + sum(run.flights.factorizations for run in runs)
-        flown, solves = sum(run.flights.steps for run in runs), sum(run.steps for run in runs)
-        unknowns = max(run.size for run in runs)
-        return TotalWork.of([march.work for march, _ in marches], unknowns, factorizations, solves, flown)
-
-
-def _lengths(march: March, settings: WaveNumerics) -> int:
-    """How many lengths of step a march took."""
-    end = float(march.time[-1])
-    return 1 + sum(at < end for at in graded(settings)[1])
+        marches = [one.march.work for run in runs for one in run.followed.contacts]
+        return TotalWork.of(
+            marches,
+            degrees_of_freedom=max(run.size for run in runs),
+            factorizations=sum(run.factorizations for run in runs),
+            solves=sum(run.steps for run in runs),
+            flown=sum(run.flown for run in runs),
+        )
 
 
 def certify(runs: WaveRuns, numerics: WaveNumerics) -> Several:
@@ -147,7 +149,7 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
     changes: dict[str, Causes] = {
         "mesh": (changed(cheap, mesh, by_mesh), reading(contact.march, contact.strike, numerics)),
         "penalty": (changed(cheap, penalty, factor(ORDER["penalty"], stiffer)),),
-        "time_step": (changed(numerics, half, factor(ORDER["time_step"], False)),),
+        "time_step": (changed(numerics, half, factor(ORDER["time_step"], False), EndMoved),),
         "far_field": (changed(coarse, far, factor(ORDER["far_field"], farther)),),
     }
     return curve_of(contact.march, contact.strike, numerics), changes
@@ -156,14 +158,6 @@ def _judged(runs: WaveRuns, number: int, numerics: WaveNumerics) -> Judged:
 def _nodes(settings: WaveNumerics) -> float:
     """Along the contact radius."""
     return settings.elements_per_contact * settings.order
-
-
-def _changed(
-    curve: Callable[[WaveNumerics], Curve | None], first: WaveNumerics, second: WaveNumerics, trusted: float
-) -> Variation | None:
-    """Variation between settings, ``trusted`` so many times as the error of the first; None where either failed."""
-    one, other = curve(first), curve(second)
-    return None if one is None or other is None else Moved(one, other, trusted)
 
 
 class Moved(Variation):
@@ -187,6 +181,28 @@ class Moved(Variation):
         time = np.minimum(self.first.dense_time[self.late :], curve.duration)
         impulse = curve.read(time).impulse
         return impulse, curve.velocity(time, impulse)
+
+
+class EndMoved(Moved):
+    """The same by the length of the steps, of which the end of a contact knows no order; only where it is read."""
+
+    @cached_property
+    def errors(self) -> dict[str, float]:
+        """Error of every quantity, in its unit."""
+        errors = super().errors
+        return errors | {"duration": errors["duration"] * UNORDERED / self.factor}
+
+
+def _changed(
+    curve: Callable[[WaveNumerics], Curve | None],
+    first: WaveNumerics,
+    second: WaveNumerics,
+    trusted: float,
+    kind: type[Moved] = Moved,
+) -> Variation | None:
+    """Variation between settings, ``trusted`` so many times as the error of the first; None where either failed."""
+    one, other = curve(first), curve(second)
+    return None if one is None or other is None else kind(one, other, trusted)
 
 
 def curve_of(march: March, strike: Strike, numerics: Numerics, share: float = 1.0) -> Curve:

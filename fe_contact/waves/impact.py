@@ -16,17 +16,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from fe_contact.assembly.cache import Store
 from fe_contact.assembly.forms import Array
 from fe_contact.bodies.pressing import half_width
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
-from fe_contact.dynamics.body import BodyState, BodyWithMass, undeformed
+from fe_contact.dynamics.body import BodyState, undeformed
 from fe_contact.dynamics.march import (
     MOST_WORK,
     Choices,
     Moment,
     Motion,
     Sample,
+    Steppers,
     account_after,
     account_at_start,
     march,
@@ -35,7 +35,7 @@ from fe_contact.dynamics.march import (
 )
 from fe_contact.dynamics.schemes import generalised_alpha
 from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
-from fe_contact.dynamics.stepping import Enforced, ImplicitStepper
+from fe_contact.dynamics.stepping import Enforced, ExplicitStepper, ImplicitStepper
 from fe_contact.errors import MemoryTooSmall, TooManySteps
 from fe_contact.march.impacts import Grounded
 from fe_contact.progress import Counted, uncounted
@@ -176,7 +176,6 @@ def parting(time: Array, force: Array, exponent: float) -> tuple[float, float] |
 LONGEST = 12.0  # planned contact times after which one of several contacts counts as swinging on its weight
 PATIENCE = 0.1  # of the steps along a contact that a flight takes before they double
 DAMPED = generalised_alpha.of(0.5)  # waves that no step follows any more die away, by half a step
-KEPT = 8  # lengths of step whose factors are kept, some 10 MB each
 LOCATED = 1e-6  # of a step: a touch sooner than that is now
 
 
@@ -189,7 +188,9 @@ class WaveBouncer:
     def __init__(self, moving: Moving, scene: Scene, numerics: WaveNumerics, counted: Counted = uncounted) -> None:
         self._moving, self._scene, self._counted = moving, scene, counted
         self._choices, self._longest = choices_of(scene, numerics), LONGEST * numerics.contact_time
-        self.flights = Flights(moving.body, self._choices, max(round(PATIENCE * numerics.steps), 2), counted)
+        self.steppers = Steppers(moving.body, self._choices.enforced)
+        patience = max(round(PATIENCE * numerics.steps), 2)
+        self.flights = Flights(self.steppers, self._choices.step, patience, counted)
         still = undeformed(moving.body, moving.velocity)
         self._moment = Moment(still, account_at_start(moving.body, still))
         self._steps = 0
@@ -203,8 +204,7 @@ class WaveBouncer:
             self._counted(1.0)
             return left(sample)
 
-        body, watch = self._moving.body, self._moving.watch
-        found = onwards(body, self._moment, self._choices, until, watch, finished)
+        found = onwards(self.steppers, self._moment, self._choices, until, self._moving.watch, finished)
         if until < strike.end_time and not left(found.samples[-1]):
             raise TooManySteps(len(found.samples) - 1, found.final.time)
         clocked = tuple(sample._replace(time=sample.time - strike.touched_at) for sample in found.samples)
@@ -231,22 +231,20 @@ class WaveBouncer:
 
 
 class Flights:
-    """Flights of one body, their first steps as long as those of the contacts; every ``patience`` steps they double.
-
-    ``steps`` taken, ``factorizations`` made so far, of which the last ones used are kept; steps are ``counted``.
+    """Flights of one body, their first ``step``, s, as long as those of the contacts; every ``patience`` of them they
+    double. ``steps`` taken so far, which are ``counted``.
     """
 
-    def __init__(self, body: BodyWithMass, choices: Choices, patience: int, counted: Counted = uncounted) -> None:
-        self._counted, self._most = counted, MOST_WORK / body.size
-        self._body, self._choices, self._patience = body, choices, patience
-        self._steppers = Store(KEPT)
-        self.steps = self.factorizations = 0
+    def __init__(self, steppers: Steppers, step: float, patience: int, counted: Counted = uncounted) -> None:
+        self._steppers, self._step, self._patience, self._counted = steppers, step, patience, counted
+        self._body, self._most = steppers.body, MOST_WORK / steppers.body.size
+        self.steps = 0
 
     def landing(self, parted: Moment, until: float) -> Moment | None:
         """The touch that follows a separation; None where ``until``, s, comes before. Raises TooManySteps."""
         moment, level, highest, taken = parted, 0, np.inf, 0
         while moment.state.time < until:
-            state = self._flown(moment, self._stepper(level))
+            state = self._flown(moment, self._steppers.of(DAMPED, 2.0**level * self._step))
             if not _met(state):
                 moment, taken = self._entered(moment, state), taken + 1
                 if taken >= self._patience and level < highest:
@@ -260,17 +258,18 @@ class Flights:
 
     def _touched(self, moment: Moment) -> Moment:
         """The touch within the next of the shortest steps; nothing presses yet, though a rounding may overlap."""
-        state, pressing, step = moment.state, self._body.pressing, self._choices.step
+        state, pressing, step = moment.state, self._body.pressing, self._step
         overlap, closing = pressing.overlap(state.displacement), pressing.closing(state.velocity)
         left = touched(state.time, step, overlap, closing) - state.time
         if left <= LOCATED * step:
             return moment
-        touch = self._flown(moment, self._made(left))
+        touch = self._flown(moment, self._steppers.new(DAMPED, left))
         open_yet = np.minimum(touch.signed_pressure, 0.0)
         return self._entered(moment, touch._replace(signed_pressure=open_yet))
 
-    def _flown(self, moment: Moment, stepper: ImplicitStepper) -> BodyState:
+    def _flown(self, moment: Moment, stepper: ExplicitStepper | ImplicitStepper) -> BodyState:
         """A step later, whether or not anything meets in it. Raises TooManySteps."""
+        assert isinstance(stepper, ImplicitStepper)
         if self.steps >= self._most:
             raise TooManySteps(self.steps, moment.state.time)
         self.steps += 1
@@ -280,14 +279,6 @@ class Flights:
     def _entered(self, moment: Moment, state: BodyState) -> Moment:
         """A step further in the account of energy too."""
         return Moment(state, account_after(moment.energies, self._body, DAMPED, moment.state, state))
-
-    def _stepper(self, level: int) -> ImplicitStepper:
-        """Of steps 2^level as long as the first."""
-        return self._steppers.find((level,), lambda: self._made(2.0**level * self._choices.step))
-
-    def _made(self, step: float) -> ImplicitStepper:
-        self.factorizations += 1
-        return ImplicitStepper(self._body, DAMPED, self._choices.enforced, step)
 
 
 def _met(state: BodyState) -> bool:

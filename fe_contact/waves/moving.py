@@ -231,5 +231,5 @@ class Flying(Moving):
     def in_striker(self, state: BodyState) -> tuple[float, float]:
         """All its motion, and its springs."""
         own = np.where(np.arange(self.body.size) < self.yielding, state.velocity, 0.0)
-        strain = self.body.parts[0].stored(state.displacement, state.branches[0])
+        strain = self.body.parts[0].stored(state.displacement, state.branches[0], state.pulls[0])
         return 0.5 * float(own @ (self.body.mass @ own)), strain

@@ -23,7 +23,11 @@ ROUNDING = 1e-12
 ROUNDING_OF = {"peak_time": 1e-8}
 # Where two integrations are compared for the time of a peak: how the force bends there is told by so many places up to
 # so many rows on either side; what they differ by, within reaches of which each is this share of the one before.
-ROWS_AROUND, PLACES, SHRUNK = 2, 17, 0.8
+ROWS_AROUND, SHRUNK = 2, 0.8
+AROUND = np.linspace(0.0, 1.0, 17)
+# By these the values at AROUND give the square's coefficient of the parabola that fits them best.
+_EVEN = (AROUND - 0.5) ** 2 - np.mean((AROUND - 0.5) ** 2)
+BENDS = _EVEN / (_EVEN @ _EVEN)
 FINEST_ROWS = 1e-9  # work: a history is made no denser than this share of the peak force asks for
 # Two integrations may agree in one quantity by chance: its bar is at least this share of the history's (L2).
 LEAST_SHARE = 0.1
@@ -134,14 +138,14 @@ def _shift(fine: Answer, coarse: Answer, peak_time: float, least: float) -> floa
     low, high = times[max(i - ROWS_AROUND, 0)], times[min(i + ROWS_AROUND, times.size - 1)]
     if not low < peak_time < high:
         return least
-    places = np.linspace(low, high, PLACES)
-    fit = np.polynomial.polynomial.polyfit((places - peak_time) / whole, fine.columns.force(places), 2)
-    bent = -2.0 * float(fit[2]) / whole**2
-    if bent <= 0.0:
-        return max(whole, least)
     reaches = whole * SHRUNK ** np.arange(2.0 + max(math.log(least / whole, SHRUNK), 0.0))
     sides = np.clip(peak_time + np.outer([-1.0, 1.0], np.append(reaches, 0.0)), 0.0, whole)
-    apart = (fine.columns.force(sides.ravel()) - coarse.columns.force(sides.ravel())).reshape(sides.shape)[:, ::-1]
+    places = np.append(low + (high - low) * AROUND, sides)
+    force = fine.columns.force(places)
+    bent = -2.0 * float(BENDS @ force[: AROUND.size]) / (high - low) ** 2
+    if bent <= 0.0:
+        return max(whole, least)
+    apart = (force - coarse.columns.force(places))[AROUND.size :].reshape(sides.shape)[:, ::-1]
     spread = np.maximum.accumulate(apart.max(axis=0)) - np.minimum.accumulate(apart.min(axis=0))
     shifts = np.sqrt(2.0 * spread[:0:-1] / bent)  # the farthest that what they differ by within each reach allows
     last = np.append(shifts[:-1] > reaches[1:], True).argmax()  # the next reach would be too short for it

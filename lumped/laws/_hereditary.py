@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Protocol
 
@@ -106,8 +106,17 @@ class HereditaryLaw(ABC):
         """One integration, where one of :func:`once` says all; None where contacts follow one another in steps."""
 
 
-def simulate(name: str, scene: Scene, tolerance: float, solve: Solve) -> Result:
-    """Integrate tighter and tighter until every bar is within the tolerance. Raises NotReached."""
+class Inexact(Protocol):
+    """What a law itself leaves open of an integration: errors of quantities, and of the force, N; SI."""
+
+    def __call__(self, problem: Hereditary, course: Course) -> tuple[dict[str, float], float]: ...
+
+
+def simulate(name: str, scene: Scene, tolerance: float, solve: Solve, inexact: Inexact | None = None) -> Result:
+    """Integrate tighter and tighter until every bar is within the tolerance. Raises NotReached.
+
+    No integration mends what is `inexact`, which the bars have on top.
+    """
     clock, time = Clock(), scene.elastic_contact_time
     problem, last = problem_of(scene), scene.end_time / time
     rtol, evaluations = min(max(tolerance * LOCAL_SHARE, TIGHTEST), LOOSEST), 0
@@ -120,6 +129,12 @@ def simulate(name: str, scene: Scene, tolerance: float, solve: Solve) -> Result:
         if meets(quantities, tolerance) or rtol * NEXT < TIGHTEST:
             break
         rtol *= NEXT
+    errors, lost = inexact(problem, more) if inexact else ({}, 0.0)
+    quantities = {
+        name: one if one.error is None else replace(one, error=one.error + errors.get(name, 0.0))
+        for name, one in quantities.items()
+    }
+    force_error += lost
     numerics = {"integrator": "Radau", "rtol": rtol, "points": MORE}
     work = {"force_evaluations": evaluations}
     return assemble(name, scene, tolerance, fine, quantities, force_error, clock, numerics, work)

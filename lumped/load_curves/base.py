@@ -75,6 +75,13 @@ class LoadCurve(ABC):
         """F/E* and dF/d depth at a depth, for those who need both at every step."""
         return self.force(depth), self.dforce_ddepth(depth)
 
+    def bending(self, depth: float) -> float:
+        """F/E* over e^2/2 of a depth that goes on by e, m, for what the overlaps of a held contact bend: zero, 1/m.
+
+        A target whose overlaps do not all grow by the same in every stretch of the way says what they do.
+        """
+        return 0.0 * depth
+
     def force_at(self, contact_radius: ArrayLike) -> Real:
         """F/E* at a contact radius."""
         return self.force(self.depth(contact_radius))

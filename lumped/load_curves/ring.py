@@ -197,6 +197,16 @@ class RodInRing(RingContact, KnownTogether):
         here = self.pressed(depth, 1.0)
         return here.collocation.at(here.q, np.asarray(radius, dtype=float) / here.half_width)
 
+    def bending(self, depth: float) -> float:
+        """By d2 overlap/dD2 = -R^2 sin^2(theta) (R^2 - D^2 sin^2(theta))^(-3/2), 1/m per unit length."""
+        angle, distance = self._half_angle(depth, 1.0), self.clearance + depth
+        rule, matrix = self._equation(angle, 1.0)
+        theta = angle * rule.nodes
+        square = (self.radius * np.sin(theta)) ** 2
+        bend = -square * (self.radius**2 - (distance * np.sin(theta)) ** 2) ** -1.5
+        pressed = np.asarray(np.linalg.solve(matrix, bend), dtype=float)
+        return self.inner_radius * angle * float(rule.total(pressed * np.cos(theta)))
+
     def energy(self, depth: ArrayLike) -> Array:
         """Work of indentation int_0^depth F d depth."""
         d = np.maximum(np.asarray(depth, dtype=float), 0.0)

@@ -61,8 +61,8 @@ class SampledCurve(KnownTogether):
 
 
 def _line(x: Array, places: Array, values: Array) -> tuple[Array, Array]:
-    """Cubics through the values with the slopes of their neighbours, straight beyond; and their slope."""
-    slopes = np.gradient(values, places)
+    """Cubics through the values with the slopes of parabolas through three, straight beyond; and their slope."""
+    slopes = np.gradient(values, places, edge_order=2 if len(places) > 2 else 1)
     inside = np.clip(x, places[0], places[-1])
     i = np.clip(np.searchsorted(places, inside) - 1, 0, len(places) - 2)
     step = places[i + 1] - places[i]

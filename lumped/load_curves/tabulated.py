@@ -6,6 +6,7 @@ needed, from the smallest contact outwards.
 
 from __future__ import annotations
 
+import math
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from functools import lru_cache
@@ -184,7 +185,7 @@ class TabulatedCurve(KnownTogether):
 
     def _panels_down_to(self, depth: float) -> int:
         for panels in range(1, len(self.edges)):
-            if float(self._at(np.array([self.edges[panels]]), panels).depth[0]) >= depth:
+            if _start(self, panels)[0][-1] >= math.log(depth):
                 return panels
         reason = f"the contact grows beyond {self.edges[-1]:g} m; cure: a smaller depth, a lower velocity"
         raise NotReached(f"the load curve at a depth of {depth:g} m: {reason}")

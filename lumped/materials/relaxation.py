@@ -108,6 +108,23 @@ class Relaxation:
         """E(t) for t > 0 (without the pulse of the viscosity at t = 0), same shape as `time`, Pa."""
         return decaying(self.equilibrium, self.moduli, self.times, time)
 
+    def felt(self, time: ArrayLike, power: float) -> tuple[Array, Array]:
+        """Moduli, Pa, that a load ~ t^power and its mean have felt a time t > 0, s, after it began; scalars or arrays.
+
+        int E(t-s) d(s^p) / t^p and the same for p+1: of a branch M(1, p+1, -x) = 1 - x M(1, p+2, -x)/(p+1) with
+        x = t/tau, DLMF 13.4.1 and 13.3.
+        """
+        from scipy.special import hyp1f1
+
+        since = np.asarray(time, dtype=float)
+        now = self.equilibrium + self.viscosity * power / since
+        mean = self.equilibrium + self.viscosity * (power + 1.0) / since
+        for modulus, tau in zip(self.moduli, self.times, strict=True):
+            of_mean = hyp1f1(1.0, power + 2.0, -since / tau)
+            now = now + modulus * (1.0 - since / tau * of_mean / (power + 1.0))
+            mean = mean + modulus * of_mean
+        return np.asarray(now), np.asarray(mean)
+
     def operational(self, s: ArrayLike) -> NDArray[np.inexact]:
         """s times the Laplace transform of E, scalars or arrays, in Pa: Q(s)/P(s) of "(13)" to "(16)".
 

@@ -15,8 +15,9 @@ from lumped.paper.concrete_impacts import proposed
 from lumped.paper.given import Concrete, Examples, Steel
 from lumped.paper.ring_impacts import ROUNDING, measure, with_ring
 from lumped.paper.value import Value, Values, read
-from lumped.result.model_ledger import IN_AN_IMPACT, Peak, finite_strain, model_ledger
+from lumped.result.model_ledger import Peak, finite_strain, model_ledger
 from lumped.result.result import Result
+from lumped.scene.geometry import Geometry
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
 from lumped.shapes.cylinder import Cylinder
@@ -61,8 +62,14 @@ def at_lower_velocity(concrete: Concrete) -> list[Result]:
 
 def ring_strained(examples: Examples) -> Values:
     """At the deepest penetration, both masses displaced, over the assumed thickness of the lining."""
-    peak, nu = _ring_peak(examples), examples.ring.nu
-    return _rounded(finite_strain(nu, height, peak, IN_AN_IMPACT).size for height in examples.ring.thickness)
+    ring, peak, cylinder = (
+        examples.ring,
+        _ring_peak(examples),
+        Cylinder(0.5 * examples.ring.rod_diameter, examples.ring.width),
+    )
+    around = [Ring(cylinder.radius + examples.ptmd.gap, thickness) for thickness in ring.thickness]
+    material = Material(Relaxation(ring.E0), ring.nu)
+    return _rounded(finite_strain(Geometry(cylinder, one, material), peak, struck=True).size for one in around)
 
 
 def ring_moved(examples: Examples) -> Values:

@@ -149,6 +149,8 @@ def densified(times: ArrayLike, force: Callable[[Array], Array], tolerance: floa
         parts = np.ones(lengths.size)
         # The deviation falls with the square of the length.
         parts[rough] += long * np.minimum(np.ceil(np.sqrt(off / max(allowed, TINY)) - 1.0), MOST_PARTS - 1.0)
+        if parts.max() <= 1.0:
+            break
         t, f, rough = _refined(t, f, parts, force)
     return t
 

@@ -8,16 +8,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import overload
 
-from numpy.polynomial import Polynomial
-
 from lumped.errors import FeContactError
 from lumped.load_curves.base import LoadCurve
 from lumped.materials import Relaxation
-from lumped.materials.energies.base import energy_of
+from lumped.materials.energies.base import DEFAULT, energy_of
 from lumped.materials.radiation import Pulse
 from lumped.result.history import History
 from lumped.result.result import LedgerEntry, Quantity, percent
-from lumped.scene.geometry import finite_faults, plasticity_faults
+from lumped.scene.geometry import Geometry, finite_faults, plasticity_faults
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Scene
 from lumped.scene.tables import Model
@@ -27,16 +25,6 @@ from lumped.targets.rod import Rod
 
 GRAVITY = 9.81  # physics: m/s2
 LARGE = "model.kinematics"
-# c1 (1 - nu)^2, cubic in nu, of elastic energies with finite strains; tests/fe/test_finite_strain.py finds it again.
-FIRST_ORDER = {
-    "St Venant-Kirchhoff": Polynomial([-0.106722, -0.244066, 0.549732, -0.354504]),
-    "neo-Hooke": Polynomial([0.247781, -0.830110, 0.390577, 0.426889]),
-    "Hencky": Polynomial([0.425033, -1.477636, 1.302120, -0.093957]),
-    "neo-Hooke, split": Polynomial([0.201948, -0.856559, 1.277901, -0.875303]),
-    "Mooney-Rivlin": Polynomial([0.213044, -0.870573, 1.287585, -0.875314]),
-    "Yeoh": Polynomial([0.201948, -0.856559, 1.277901, -0.875303]),
-    "Ogden": Polynomial([0.212376, -0.869729, 1.287002, -0.875313]),
-}
 ENERGY_NAMES = {
     "st_venant_kirchhoff": "St Venant-Kirchhoff",
     "neo_hooke": "neo-Hooke",
@@ -49,7 +37,7 @@ ENERGY_NAMES = {
 # By how much less a rod's end comes in than a half-space, its uniform shortening apart, over F/(E* b), b the rod's
 # radius: 0.61 at nu = -0.5 to 0.66 at 0.5; tests/fe/test_rod_end.py finds it again.
 ROD_END = 0.65
-IN_AN_IMPACT = 0.5  # of the change at one depth: W = (2/5) k d^(5/2) + (1/3) k c1 d^3/sqrt(R) is what was brought
+IN_AN_IMPACT = 0.5  # of the change at one depth, since what was brought is given
 ROWS, NEWTON = 200, 8  # steps in an impact that tells of a modulus, and of Newton's method in each
 # Hertz: the first yield, below the surface, is where the peak pressure is 1.6 Y (Johnson, ISBN 978-0-521-34796-9).
 FIRST_YIELD = 1.6
@@ -86,11 +74,10 @@ def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[
     dented = isinstance(scene.target, Rod) and scene.profile.fixed_radius is None
     if dented:
         peak = of_dent(scene, peak)
-    height = scene.geometry.target.pressed_height(scene.geometry.shape)
     entries = [
         inertia(scene, resolved, peak),
         profile(scene.geometry.shape, resolved, peak),
-        strained_much(scene, resolved, height, peak, IN_AN_IMPACT),
+        strained_much(scene, resolved, peak),
         sideways(scene, peak),
         series(scene, peak),
         striker(scene),
@@ -136,7 +123,7 @@ class Ledger(Sequence[LedgerEntry]):
 def ledger_at_rest(indenter: Indenter, peak: Peak) -> tuple[LedgerEntry, ...]:
     """The same of a slow indentation at its deepest, which has neither inertia nor time."""
     shape, target, nu = indenter.shape, indenter.target, indenter.material.nu
-    entries = [strained_much(indenter, indenter.model, target.pressed_height(shape), peak)]
+    entries = [strained_much(indenter, indenter.model, peak)]
     if indenter.material.yield_strength is not None:
         entries.append(plasticity(indenter, indenter.model, peak))
     if target.fixed_radius(shape) is None:
@@ -186,40 +173,37 @@ def profile(shape: Shape, model: Model, peak: Peak) -> LedgerEntry:
     return LedgerEntry(effect, "parabola", abs(parabola / exact - 1.0), key="model.profile", value="exact")
 
 
-def strained_much(
-    scene: Scene | Indenter, model: Model, height: float | None, peak: Peak, share: float = 1.0
-) -> LedgerEntry:
+def strained_much(scene: Scene | Indenter, model: Model, peak: Peak) -> LedgerEntry:
     """Included, by the energy of the material, or what :func:`finite_strain` estimates of it; no key if not built."""
-    material, impacts = scene.geometry.material, scene.motion.impacts if isinstance(scene, Scene) else None
+    geometry, impacts = scene.geometry, scene.motion.impacts if isinstance(scene, Scene) else None
+    material = geometry.material
     if model.finite:
         return LedgerEntry("finite strain", f"included: W = {energy_of(material.hyperelastic).formula}", 0.0)
-    found = finite_strain(material.nu, height, peak, share, material.hyperelastic)
-    refused = finite_faults("", replace(model, kinematics="finite"), scene.geometry, impacts)
+    found = finite_strain(geometry, peak, impacts is not None)
+    refused = finite_faults("", replace(model, kinematics="finite"), geometry, impacts)
     return replace(found, key="", value=None, note=f"{found.note}; {refused[0]}") if refused else found
 
 
-def finite_strain(
-    nu: float, height: float | None, peak: Peak, share: float = 1.0, energy: str | None = None
-) -> LedgerEntry:
-    """From small displacements to large ones a sphere's force at a depth becomes F (1 + c1 depth/a) to first order.
-
-    c1 is the work of the cubic terms of an elastic energy, and of the profile met by a surface that moves inward, in
-    Hertz's field: energies with the same E and nu differ in it, in sign too. Other profiles count with their own
-    depth/a; what is flattened as a whole by the share of the depth in its `height`, m, where that is more. In an
-    impact the work is given and the depth gives way: a `share` of it. One `energy` alone, where it is known.
+def finite_strain(geometry: Geometry, peak: Peak, struck: bool) -> LedgerEntry:
+    """From small displacements to large ones, to first order, by the work of an elastic energy's cubic terms, and of
+    the profile met by a surface that moves along it, in the body's small strains: at a depth, or `struck` by what
+    brings the work. Energies with the same E and nu differ in it, in sign too. One energy alone, where it is known.
     """
-    effect, named = "finite strain", ENERGY_NAMES.get(energy or "")
-    known = {name: at for name, at in FIRST_ORDER.items() if named in (None, name)}
-    found = {name: share * peak.steepness * float(at(nu)) / (1.0 - nu) ** 2 for name, at in known.items()}
+    effect, treated, material = "finite strain", "small displacements", geometry.material
+    if peak.contact_radius == 0.0 or peak.depth == 0.0:
+        return LedgerEntry(effect, treated, 0.0, "nothing touches", key=LARGE, value="finite")
+    strains = geometry.target.strains(geometry.shape, material.nu, peak.depth, peak.contact_radius)
+    if material.hyperelastic is not None:
+        size, name = abs(strains.change(energy_of(material.hyperelastic), struck)), ENERGY_NAMES[material.hyperelastic]
+        return LedgerEntry(effect, treated, size, f"{name}, to first order in strain", key=LARGE, value="finite")
+    found = {name: strains.change(energy_of(key), struck) for key, name in ENERGY_NAMES.items()}
     lowest, highest = (of(found, key=lambda name: found[name]) for of in (min, max))
-    spread, note = (found[lowest], found[highest]), f"{lowest} to {highest}: the scene gives no law of large strains"
-    treated, sizes = "small displacements", [abs(change) for change in spread]
-    if height is not None and peak.depth > max(sizes) * height:
-        note = "order of magnitude: depth over what is pressed"
-        return LedgerEntry(effect, treated, peak.depth / height, note, key=LARGE, value="finite")
-    if named is not None:
-        return LedgerEntry(effect, treated, sizes[0], f"{named}, to first order in depth/a", key=LARGE, value="finite")
-    least = min(sizes) if spread[0] * spread[1] > 0.0 else None
+    spread, usual = (
+        (found[lowest], found[highest]),
+        f"{ENERGY_NAMES[DEFAULT]} {percent(abs(found[ENERGY_NAMES[DEFAULT]]))}",
+    )
+    note = f"{lowest} to {highest}, {usual}: the scene gives no law of large strains"
+    least = min(map(abs, spread)) if spread[0] * spread[1] > 0.0 else None
     return LedgerEntry(effect, treated, least, note, LARGE, spread, "finite")
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from lumped.errors import BadInput, Fault
 from lumped.load_curves import HertzImpact
 from lumped.materials import Creep, Material, Relaxation
+from lumped.materials.energies.base import DEFAULT, ENERGIES, energy_of
 from lumped.scene.tables import Model
 from lumped.schema import Table
 from lumped.shapes import Shape
@@ -14,10 +15,6 @@ from lumped.shapes._block import Block
 from lumped.targets import Target
 
 YIELDING_UNDER = ("sphere", "cone", "power", "punch")  # strikers under which a half-space may yield
-STRAINED = (
-    "rounded strikers, cones and powers on half_space and layer, cylinders on layer and ring, an o_ring, a "
-    "covered washer, sliding blocks"
-)
 SPARE_MASS = 0.01  # of a whole body with inertia, which its density gives way to
 
 
@@ -167,13 +164,14 @@ def finite_faults(source: str, model: Model, geometry: Geometry, impacts: int | 
     if not model.finite:
         return []
     shape, target, material = geometry.shape, geometry.target, geometry.material
+    instead = target.strained_instead(shape)
     relaxing, state = impacts is not None and not material.young.is_elastic, "with large strains in this version"
     part = "target" if target.deformable else "striker"
     wrong = [
         (
-            not target.strained_under(shape),
+            bool(instead),
             "striker.shape" if target.large_strains else "target.shape",
-            f"a {shape.name} on a {target.name} is not built {state}; accepted: {STRAINED}",
+            f"a {shape.name} on a {target.name} is not built {state}; accepted: {instead}",
         ),
         (geometry.striker_material is not None, "striker.material", f"the striker is rigid {state}; leave it out"),
         (model.inertia, "model.inertia", f"true: no waves {state}; accepted: false"),
@@ -184,14 +182,24 @@ def finite_faults(source: str, model: Model, geometry: Geometry, impacts: int | 
             f"no dashpot in parallel {state}; accepted: elastic, maxwell, sls, prony",
         ),
         (
-            relaxing and material.constant == "bulk",
+            relaxing and material.constant == "bulk" and target.endless,
             f"{part}.material.constant",
-            f'"bulk": the whole stress relaxes {state}; accepted: "poisson"',
+            f'"bulk": in a {target.name} the whole stress relaxes {state}; accepted: "poisson"',
         ),
-        (relaxing and isinstance(shape, Block), "striker.shape", f"a block does not relax {state}; accepted: elastic"),
+        (
+            relaxing and material.constant == "bulk" and not energy_of(material.hyperelastic).splits,
+            f"{part}.material.hyperelastic",
+            f"{material.hyperelastic or DEFAULT}: its volume does not stand apart and relaxes with all else; "
+            f'accepted: {", ".join(_split())}, or constant = "poisson"',
+        ),
         (impacts is not None and impacts > 1, "motion.impacts", f"{impacts}: one is followed {state}; accepted: 1"),
     ]
     return [Fault(source, key, f"{reason}; or model.kinematics = small") for refused, key, reason in wrong if refused]
+
+
+def _split() -> list[str]:
+    """Energies of the volume and of what changes none."""
+    return [name for name, energy in ENERGIES.members.items() if energy.splits]
 
 
 def places(shape: Shape, target: Target, deep: str) -> dict[str, str]:

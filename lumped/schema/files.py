@@ -86,9 +86,13 @@ class Packaged:
         return data_folder() / self.folder / f"{name}.toml"
 
     def resolved(self, source: str | Path) -> Path:
-        """The file that a path or one of the names stands for. Raises BadInput for an unknown name."""
+        """The file that a path or one of the names stands for. Raises BadInput for an unknown name.
+
+        A folder of one of the names, as of its results, hides no packaged file.
+        """
         path = Path(source)
-        if not exists(path) and path.suffix != ".toml" and path.name == str(source):
+        hidden = exists(path) and not (path.is_dir() and str(source) in self.names)
+        if not hidden and path.suffix != ".toml" and path.name == str(source):
             return self.path(str(source))
         return path
 

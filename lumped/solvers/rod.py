@@ -110,7 +110,20 @@ class RodPiece:
         return np.asarray(self.shift + np.exp(-np.asarray(s)) * self.factor(s))
 
 
-STILL = RodPiece(0.0, NOTHING)
+@dataclass(frozen=True)
+class RodTravel:
+    """The integral of what leaves, over the striker's velocity at touch and m/Z: two terms of s, exp(-s) ``factor``."""
+
+    constant: float
+    slope: float
+    factor: Polynomial
+
+    def __call__(self, s: Array) -> Array:
+        """f, shape of s."""
+        return np.asarray(self.constant + self.slope * s + np.exp(-s) * self.factor(s))
+
+
+STILL, UNMOVED = RodPiece(0.0, NOTHING), RodTravel(0.0, 0.0, NOTHING)
 
 
 @dataclass(frozen=True)
@@ -188,17 +201,26 @@ class FlatImpact:
                 came[here] = echo * pieces[index - 1](s)
         return leaves, came
 
+    @cached_property
+    def _travels(self) -> list[RodTravel]:
+        """How far what leaves has moved the rod's end, a piece an echo, see :meth:`_depth`."""
+        weight, echo = self.gravity * self.unit / self.velocity, self.waves.echo
+        found, before, earlier = list[RodTravel](), STILL, UNMOVED
+        for piece, start in zip(self.pieces[0], self.starts / self.unit, strict=True):
+            constant = 1.0 + weight * float(start) - piece.shift - echo * before.shift + echo * earlier.constant
+            factor = echo * earlier.factor - piece.factor - echo * before.factor
+            before, earlier = piece, RodTravel(constant, weight + echo * earlier.slope, factor)
+            found.append(earlier)
+        return found
+
     def _depth(self, times: Array) -> Array:
         """f + g by the impulse J = int F dt: f = J/Z + g, and g is echo f a delay before."""
-        depth = np.zeros_like(times)
-        for echoes in range(len(self.pieces[0])):
-            ago = times - echoes * self.waves.delay if echoes else times
-            struck = np.maximum(ago, 0.0)
-            speed = self.velocity * np.sum(self._waves(struck), axis=0)
-            impulse = self.mass * (self.velocity - speed + self.gravity * struck)
-            weight = 2.0 * self.waves.echo**echoes if echoes else 1.0
-            depth += np.where(ago > 0.0, weight * impulse / self.waves.impedance, 0.0)
-        return depth
+        depth, struck = np.empty_like(times), np.maximum(times, 0.0)
+        starts, travels, echo = self.starts, self._travels, self.waves.echo
+        for index, here in _by_piece(starts, struck):
+            s = (struck[here] - starts[index]) / self.unit
+            depth[here] = travels[index](s) + (echo * travels[index - 1](s) if index else 0.0)
+        return self.velocity * self.unit * depth
 
 
 def _by_piece(starts: Array, times: Array) -> Iterator[tuple[int, NDArray[np.bool_]]]:

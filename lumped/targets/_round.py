@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -15,6 +15,7 @@ from lumped.materials.radiation import Pulse
 from lumped.numbers import Array
 from lumped.schema.keys import Choice, Key
 from lumped.shapes.base import SIZE, Shape
+from lumped.targets._strains import Pressed
 from lumped.targets.base import MOVES, Target, vibrations
 
 SUPPORTS = ("free", "held")
@@ -49,6 +50,11 @@ class RoundTarget(Target):
     def round_radius(self, shape: Shape) -> float:
         """The smaller of both."""
         return min(self.radius, super().round_radius(shape))
+
+    def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
+        """Each by half of the depth, down to its middle, along a contact that stays flat."""
+        known = replace(super().pressed(shape, nu, depth, contact_radius), depth=0.5 * depth, moving=False)
+        return replace(known, thickness=self.radius, base="sliding")
 
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """A half-space's where it is taken as one; of a free body what :func:`vibrations` leave.

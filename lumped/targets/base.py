@@ -18,6 +18,7 @@ from lumped.schema import Table
 from lumped.schema.keys import Record, written
 from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
+from lumped.targets._strains import Pressed, StrainField
 
 NEEDS_DENSITY = "needs target.material.density"
 NO_SPEED = "a dashpot alone has no wave speed"
@@ -30,7 +31,7 @@ class Target(Record, ABC):
 
     `deformable`: whether it has a material; `yielding_strikers`: whether its striker may have one. `has_inertia`:
     whether its waves can be followed; `only_with_inertia`: whether nothing is left of it without them. `large_strains`:
-    whether they are built of it, or of what strikes it, at all.
+    whether they are built of it, or of what strikes it, at all. `endless`: whether it goes on beyond any mesh.
     """
 
     has_inertia: ClassVar[bool]
@@ -38,6 +39,7 @@ class Target(Record, ABC):
     deformable: ClassVar[bool] = True
     yielding_strikers: ClassVar[bool] = False
     large_strains: ClassVar[bool] = False
+    endless: ClassVar[bool] = False
     through: ClassVar[str] = ""  # what no depth may reach, where that is the height pressed
 
     @property
@@ -53,6 +55,22 @@ class Target(Record, ABC):
     def pressed_height(self, shape: Shape) -> float | None:
         """What is flattened as a whole, m, which a depth strains by its share; None where only the contact is."""
         return self.body_depth
+
+    def strains(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> StrainField:
+        """Small strains, about, at a `depth`, m, under a contact of `contact_radius`, m, as :meth:`pressed` has it."""
+        return self.pressed(shape, nu, depth, contact_radius).strains()
+
+    def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
+        """The body as a layer, pressed by `depth`, m, so that the contact ends at `contact_radius`, m.
+
+        Here its base holds it.
+        """
+
+        def fall(along: Array) -> Array:
+            place = np.abs(along) / self.length_of_place
+            return np.asarray(self.overlap(shape, 0.0, depth) - self.overlap(shape, place, depth))
+
+        return Pressed(nu, depth, contact_radius, fall, shape.plane, self.body_depth or math.inf)
 
     @property
     def length_of_place(self) -> float:
@@ -102,9 +120,11 @@ class Target(Record, ABC):
         """Whether `model.inertia` can be true under a striker of this shape."""
         return self.has_inertia and shape.flat_radius == 0.0
 
-    def strained_under(self, shape: Shape) -> bool:
-        """Whether `model.kinematics` can be "finite" under a striker of this shape."""
-        return self.large_strains and self.fixed_radius(shape) is None
+    def strained_instead(self, shape: Shape) -> str:
+        """What can have large strains in place of this body under a striker of this shape; empty where it can."""
+        if not self.large_strains:
+            return 'a rigid striker, not flat, on target.shape = "half_space" or "layer"'
+        return 'striker.shape = "rounded_punch"' if self.fixed_radius(shape) is not None else ""
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """What is wrong with a striker of this shape that has a material as the target has, with inertia or without."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import inf
 from typing import Annotated, ClassVar
 
 from lumped.errors import BadInput, Fault
@@ -10,6 +11,7 @@ from lumped.load_curves.base import LoadCurve
 from lumped.load_curves.half_plane import HalfPlane
 from lumped.schema.keys import Key, Number, Part
 from lumped.shapes.base import Shape
+from lumped.targets._strains import Pressed
 from lumped.targets.base import Target
 
 
@@ -25,6 +27,7 @@ class HalfSpace(Target):
     has_inertia: ClassVar[bool] = True
     yielding_strikers: ClassVar[bool] = True
     large_strains: ClassVar[bool] = True
+    endless: ClassVar[bool] = True
 
     @property
     def has_length(self) -> bool:
@@ -41,9 +44,13 @@ class HalfSpace(Target):
         """Not in plane strain."""
         return super().waves_under(shape) and not shape.plane
 
-    def strained_under(self, shape: Shape) -> bool:
-        """Not in plane strain."""
-        return super().strained_under(shape) and not shape.plane
+    def strained_instead(self, shape: Shape) -> str:
+        """A layer in plane strain."""
+        return 'target.shape = "layer"' if shape.plane else super().strained_instead(shape)
+
+    def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
+        """Down to the datum."""
+        return replace(super().pressed(shape, nu, depth, contact_radius), thickness=self.datum_depth or inf)
 
     def yielding_faults(self, source: str, shape: Shape, inertia: bool) -> list[Fault]:
         """Only a whole body with inertia: else one E* of both tells all, and a target of shape sphere knows it."""

@@ -9,7 +9,7 @@ m W'/(m + m_a) by Lagrange, is less by m_a/m.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 from scipy.special import ive
@@ -22,6 +22,7 @@ from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.schema.keys import Choice, Key, Number, Part
 from lumped.shapes.base import Shape
+from lumped.targets._strains import Pressed
 from lumped.targets.base import MOVES, Target
 
 # m_a/(density area thickness) of a thick layer: what nu = 0 has, and what a bonded and a sliding base add times s^2;
@@ -41,6 +42,7 @@ class Layer(Target):
     name: ClassVar[str] = "layer"
     has_inertia: ClassVar[bool] = True
     large_strains: ClassVar[bool] = True
+    endless: ClassVar[bool] = True
     through: ClassVar[str] = "the layer's thickness"
 
     @property
@@ -56,6 +58,10 @@ class Layer(Target):
         if shape.fixed_radius is not None:
             return LayerPunch(shape.fixed_radius, elastic)
         return LayerCurve(shape.load_curve, elastic)
+
+    def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
+        """On its own base."""
+        return replace(super().pressed(shape, nu, depth, contact_radius), base=self.base)
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput also for a face whose flat part alone is wider than the layer's curve reaches."""

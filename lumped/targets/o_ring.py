@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -16,6 +16,7 @@ from lumped.numbers import Array
 from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, Shape
 from lumped.shapes.sphere import Sphere
+from lumped.targets._strains import Pressed
 from lumped.targets.base import MOVES, NEEDS_DENSITY, Target
 
 
@@ -52,6 +53,11 @@ class ORing(Target):
     def pressed_height(self, shape: Shape) -> float:
         """The section's height, m."""
         return 2.0 * self.section_radius
+
+    def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
+        """Half of the section, in plane strain: a layer that slides on the plane of symmetry, under a flat end."""
+        known, half = super().pressed(shape, nu, depth, contact_radius), self.lead * depth
+        return replace(known, depth=half, plane=True, thickness=self.section_radius, base="sliding", moving=False)
 
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """The section's middle moves half as fast as the striker, and its sides out as fast where the volume stays."""

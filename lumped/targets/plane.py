@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from lumped.errors import BadInput, Fault
@@ -14,6 +14,7 @@ from lumped.schema.keys import Part
 from lumped.shapes._block import Block
 from lumped.shapes.base import Shape
 from lumped.shapes.sphere import RoundShape
+from lumped.targets._strains import StrainField, alike
 from lumped.targets.base import NEEDS_DENSITY, Target, vibrations
 
 
@@ -32,6 +33,13 @@ class Plane(Target):
         """A block's, m."""
         return shape.thickness if isinstance(shape, Block) else None
 
+    def strains(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> StrainField:
+        """A block's, alike everywhere; a ball's down to its middle, along a contact that stays flat."""
+        if isinstance(shape, Block):
+            return alike(nu, depth / shape.thickness, shape.sides == "free")
+        known = replace(self.pressed(shape, nu, depth, contact_radius), moving=False)
+        return replace(known, thickness=shape.tip_radius or math.inf, base="sliding").strains()
+
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """What a ball's :func:`vibrations` leave; a block's own waves add their density c v to its pressure.
 
@@ -49,9 +57,9 @@ class Plane(Target):
         """A block's too that is strained alike everywhere."""
         return not isinstance(shape, Block) or shape.uniform
 
-    def strained_under(self, shape: Shape) -> bool:
-        """A block that is strained alike everywhere."""
-        return isinstance(shape, Block) and shape.uniform
+    def strained_instead(self, shape: Shape) -> str:
+        """A block, or what is rigid on a half-space."""
+        return "" if isinstance(shape, Block) else f"a prism or a plate; or a rigid {shape.name} on a half_space"
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is neither a block nor a sphere."""

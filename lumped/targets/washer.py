@@ -11,6 +11,7 @@ from lumped.materials import Material
 from lumped.materials.radiation import Pulse
 from lumped.schema.keys import Key, Part
 from lumped.shapes.base import SIZE, Shape
+from lumped.targets._strains import StrainField, alike
 from lumped.targets.base import MOVES, NEEDS_DENSITY, Target
 from lumped.targets.layer import BASE, moving_share
 
@@ -49,13 +50,18 @@ class Washer(Target):
         added = share * material.density * 2.0 * half * around * self.height / pulse.mass
         return min(added, 1.0), MOVES.format(added)
 
+    def strains(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> StrainField:
+        """Alike everywhere, its sides free: a bonded base holds them less than it seems."""
+        return alike(nu, depth / self.height, free=True)
+
     def fixed_radius(self, shape: Shape) -> float | None:
         """Up to the rim of the punch, or to its own."""
         return None if shape.fixed_radius is None else min(shape.fixed_radius, self.outer_radius)
 
-    def strained_under(self, shape: Shape) -> bool:
-        """A punch that covers it: no rim of the punch cuts in."""
-        return self.fixed_radius(shape) == self.outer_radius
+    def strained_instead(self, shape: Shape) -> str:
+        """A punch that covers it, whose rim does not cut in."""
+        covered = self.fixed_radius(shape) == self.outer_radius
+        return "" if covered else f"a striker.radius from {self.outer_radius:g} m on, which covers the washer"
 
     def check_striker(self, source: str, shape: Shape) -> None:
         """Raise BadInput for a striker that is no punch, or passes through the hole."""

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import meshes
+from fe_contact import run
 from fe_contact.indentation import indent, press, settings
-from lumped import BadInput, Material, Relaxation
+from lumped import BadInput, Material, Relaxation, Scene
 from lumped.load_curves.layer import LayerPunch, PointLayer
 from lumped.scene.indenter import Indenter
 from lumped.shapes.plate import Plate
@@ -172,3 +173,10 @@ def test_impossible_geometry_is_refused_by_name(key: str, build: object) -> None
     assert callable(build)
     with pytest.raises(BadInput, match=key):
         build()
+
+
+def test_a_bonded_block_whose_bulk_modulus_stays_is_refused_by_its_key() -> None:
+    young = Relaxation(YOUNG, (YOUNG,), (0.02,))
+    block, material = Prism(AREA, RADIUS, "free", "bonded"), Material(young, 0.4, constant="bulk")
+    with pytest.raises(BadInput, match=r"striker\.material\.constant"):
+        run(Scene(block, 0.05, 0.1, material, target=Plane()))

@@ -175,6 +175,8 @@ def test_the_history_of_several_contacts_is_no_distance_from_itself(
     _, found = polymer
     assert found.quantities["history_l2"].value == 0.0
     assert found.quantities["history_l2"].error
+    for name in ("duration", "restitution", "peak_force", "peak_depth", "peak_time"):
+        assert found.quantities[name].error == found.contacts[0][f"{name}_error"], "of the first and hardest contact"
     assert found.contacts[0]["velocity_error"] == 0.0, "it is what the scene says"
     assert all(contact["velocity_error"] for contact in found.contacts[1:])
 

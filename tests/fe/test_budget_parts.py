@@ -13,11 +13,14 @@ import pytest
 from fe_contact.budget import several
 from fe_contact.budget.budget import CAUSES
 from fe_contact.budget.refine import Growth
+from fe_contact.budget.runs import AnyRuns
 from fe_contact.budget.several import Row
+from fe_contact.march.impacts import Followed
 from fe_contact.settings import WaveNumerics
 from fe_contact.waves import certify
 from fe_contact.waves.certify import Waves
 from fe_contact.waves.plan import DEFAULTS
+from lumped.errors import NotReached
 
 SETTINGS: dict[str, Any] = {"tolerance": 3e-3, "steps": 200, "contact_radius": 1e-3, "contact_time": 1e-3}
 
@@ -69,6 +72,33 @@ def test_rows_of_a_curve_with_waves_follow_the_tolerance(numerics: WaveNumerics)
     rows, more, of_half = (len(certify._rows(*one, 1.0)) for one in ((20_000, many), (20_000, tight), (10_000, many)))
     assert more - 1 == pytest.approx(2 * (rows - 1), abs=1)
     assert of_half == rows
+
+
+def test_the_deepest_of_several_contacts_is_what_may_be_too_deep(
+    numerics: WaveNumerics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    row = [SimpleNamespace(curve=SimpleNamespace(quantities={"peak_depth": depth})) for depth in (1.0, 2.0, None)]
+    cost = SimpleNamespace(check=lambda spent: None, unknowns=1, all_steps=1)
+    monkeypatch.setattr(certify, "certify", lambda runs, chosen: SimpleNamespace(row=row))
+    monkeypatch.setattr(certify, "cost_of", lambda *of: cost)
+    sunk = list[float]()
+    made_up: Any = SimpleNamespace(check_sunk=sunk.append, spent=0.0)
+    Waves(made_up, made_up, made_up, str, made_up).certified(numerics)
+    assert sunk == [2.0]
+
+
+def test_a_run_that_fails_tells_nothing_of_any_contact_and_is_not_run_again(numerics: WaveNumerics) -> None:
+    class Failing(AnyRuns[WaveNumerics]):
+        tried = 0
+
+        def follow(self, settings: WaveNumerics) -> Followed:
+            self.tried += 1
+            raise NotReached("made up")
+
+    runs = Failing()
+    assert runs.curve(0, numerics) is None
+    assert runs.curve(1, numerics) is None
+    assert runs.tried == 1
 
 
 def test_a_touch_is_as_uncertain_as_contact_and_flight_before_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from fe_contact.budget.curve import PLACES, Curve, LocalPolynomials, fitted_peak, peak, seen_from_both_sides
+from fe_contact.budget.curve import PEAK_SHARE, PLACES, Curve, LocalPolynomials, fitted_peak, peak, seen_from_both_sides
 from fe_contact.budget.variation import calmest
 from fe_contact.march.impact import STEPS_ALLOWED, share_of_rest, step_length, time_left
 from fe_contact.steppers.steps import Strike
-from lumped import Scene
+from lumped import Relaxation, Scene
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -40,6 +42,20 @@ def bump(steps: int, jitter: float) -> Curve:
     return Curve(strike, 1.0, True, x, mean, time, np.array([0.0, 1.0]), np.ones(2), 0.0, {})
 
 
+@pytest.mark.parametrize("within", [1e-4, 1e-2, 0.3])
+@pytest.mark.parametrize("power", [1.0, 1.5, 2.0])
+def test_a_branch_that_relaxes_within_the_first_step_is_read_as_its_law_says(power: float, within: float) -> None:
+    """A striker that nothing slows, a branch ``within`` the first of forty steps, ten thousand times as stiff."""
+    x = np.linspace(0.0, 1.0, 41)
+    relaxation = Relaxation(1.0, (1e4,), (within * x[1] ** 2,))
+    strike = Strike(lambda r: r**2, 1.0, 1.0, 0.0, relaxation, 10.0, power=power)
+    mean = np.concatenate([[0.0], x[1:] ** (2 * power) * relaxation.felt(x[1:] ** 2, power)[1] / (power + 1.0)])
+    curve = Curve(strike, 1.0, True, x, mean, x**2, np.array([0.0, 1.0]), np.array([0.0, 1.0]), 0.0, {})
+    time = x[1] ** 2 * np.geomspace(1e-6, 5.0, 100)
+    true = time**power * relaxation.felt(time, power)[0]
+    np.testing.assert_allclose(curve.force(time), true, rtol=1e-6, atol=1e-12 * true[-1])
+
+
 def test_a_force_that_jitters_from_step_to_step_is_read_through_fewer() -> None:
     """Every other step leaves out what is off by turns: the force is right again, to what rows so far apart tell."""
     calm, true = calmest(bump(256, 1e-6)), bump(256, 0.0)
@@ -52,6 +68,19 @@ def test_a_force_that_jitters_from_step_to_step_is_read_through_fewer() -> None:
 @pytest.mark.parametrize("steps", [40, 80, 256])
 def test_a_smooth_force_keeps_its_steps(steps: int) -> None:
     assert len(calmest(bump(steps, 0.0)).x) == steps + 1
+
+
+def test_a_spike_between_two_rows_is_a_peak_like_any_other() -> None:
+    """As a dashpot's at touch may be, narrower than the rows lie apart."""
+    smooth, x, alone = bump(64, 0.0), np.linspace(0.0, 1.0, 65), 0
+    for place in np.linspace(0.2, 0.4, 41):
+        impulse = 0.5 * (1.0 + np.tanh((x**2 - place) / 2e-3))
+        mean = np.concatenate([[0.0], impulse[1:] / x[1:] ** 2])
+        spike = replace(smooth, mean_force=mean, radius_squared=np.array([1.0, 2.0]))
+        alone += np.count_nonzero(spike.dense_force > PEAK_SHARE * spike.dense_force.max()) == 1
+        assert spike.quantities["peak_time"] == pytest.approx(place, abs=0.02)
+        assert spike.quantities["peak_force"] == pytest.approx(spike.dense_force.max(), rel=0.1)
+    assert alone > 0
 
 
 @pytest.mark.parametrize("place", [0.07, 0.31, 0.5, 0.64, 0.93])

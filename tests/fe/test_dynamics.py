@@ -17,8 +17,18 @@ from fe_contact.assembly.interior import factorized
 from fe_contact.bodies.bar import Bar, falling
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.dynamics import stepping
-from fe_contact.dynamics.body import BodyWithMass, Part, Pressing
-from fe_contact.dynamics.march import Choices, Motion, march, safe_step
+from fe_contact.dynamics.body import BodyState, BodyWithMass, Part, Pressing, state_of, undeformed
+from fe_contact.dynamics.march import (
+    Choices,
+    Moment,
+    Motion,
+    Steppers,
+    account_after,
+    account_at_start,
+    march,
+    onwards,
+    safe_step,
+)
 from fe_contact.dynamics.mass.base import MASSES
 from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.dynamics.stepping import Enforced
@@ -225,6 +235,35 @@ def ledger_closes(scheme: str, mass_name: str, seed: int) -> None:
         assert np.all(np.diff([getattr(e, lost) for e in ledgers]) >= 0.0)
     assert ledgers[-1].viscous > 0.0
     assert all(min(e.rigid, e.deformable, e.strain, e.contact) >= 0.0 for e in ledgers)
+    goes_on_with_what_the_matrices_make_of_it(body, motion.final)
+
+
+def goes_on_with_what_the_matrices_make_of_it(body: BodyWithMass, state: BodyState) -> None:
+    """Step after step only increments are multiplied, whose sum is what the whole would make."""
+    whole = state_of(body, state.time, state.motions[0], state.branches, state.signed_pressure)
+    for ours, known in zip((*state.motions, *state.pulls), (*whole.motions, *whole.pulls), strict=True):
+        np.testing.assert_allclose(ours, known, rtol=1e-10, atol=1e-11 * np.abs(known).max())
+
+
+@pytest.mark.parametrize("scheme", WAVE_SCHEMES.names)
+def test_the_account_of_a_step_multiplies_by_no_matrix(scheme: str) -> None:
+    body, velocity = chain(3, "consistent" if scheme in IMPLICIT else "lumped", viscous=scheme in IMPLICIT)
+    steppers, numbers = Steppers(body, Enforced(penalty, 50.0)), WAVE_SCHEMES.get(scheme).of(0.7)
+    before = undeformed(body, velocity)
+    after, _ = steppers.of(numbers, 0.02).advance(before)
+    known = account_after(account_at_start(body, before), body, numbers, before, after)
+    bare = replace(body, mass=None, parts=tuple(replace(part, stiffness=None) for part in body.parts))
+    vars(bare).update(weight=body.weight, damping=body.damping)
+    assert account_after(account_at_start(bare, before), bare, numbers, before, after) == known
+
+
+@pytest.mark.parametrize("rho", [0.0, 1.0])
+@pytest.mark.parametrize("name", IMPLICIT)
+def test_no_step_is_too_long_for_an_implicit_scheme(name: str, rho: float) -> None:
+    """Whatever spectral radius is asked for: a free oscillator, in steps of half a period and of many."""
+    for step in (3.0, 1e3):
+        found = moved(oscillator(Relaxation(1.0)), name, step, 100.0 * step, rho).final
+        assert np.hypot(found.displacement, found.velocity) < 2.0
 
 
 def test_the_trapezoidal_rule_loses_nothing_and_a_damped_scheme_only_what_oscillates_fast() -> None:
@@ -323,6 +362,21 @@ def test_one_factorisation_serves_a_whole_march(monkeypatch: pytest.MonkeyPatch)
         choices = Choices(WAVE_SCHEMES.get(name).of(1.0), Enforced(exact, 1.0), 0.05)
         march(body, -np.ones(11), choices, 5.0, np.eye(11))
         assert calls == wanted
+
+
+def test_a_march_goes_on_with_the_factors_that_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Contact after contact, and a flight in steps of the same length."""
+    calls = []
+    monkeypatch.setattr(stepping, "factorized", lambda matrix: calls.append(matrix.shape) or factorized(matrix))
+    body = falling(Bar(1.0, 1.0, 1.0, Relaxation(1.0)), 10, MASSES.get("consistent"), gravity=0.0)
+    choices = Choices(WAVE_SCHEMES.get("generalised_alpha").of(0.5), Enforced(exact, 1.0), 0.05)
+    steppers, state = Steppers(body, choices.enforced), undeformed(body, -np.ones(11))
+    moment = Moment(state, account_at_start(body, state))
+    for _ in range(3):
+        motion = onwards(steppers, moment, choices, 1.0, np.eye(11), lambda sample: False)
+        moment = Moment(motion.final, motion.samples[-1].energies)
+    assert calls == [(11, 11)]
+    assert steppers.made == 1
 
 
 def test_a_constraint_on_a_surface_with_mass_acts_from_the_first_instant() -> None:

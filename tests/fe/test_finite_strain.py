@@ -1,8 +1,10 @@
-"""What finite strains change of a sphere's force to first order: energies and the gap, worked out in Hertz's field."""
+"""What finite strains change of a force to first order: in Hertz's field by finite elements, and as it is measured."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,9 +21,26 @@ from skfem import (
 )
 
 import meshes
+from fe_contact.indentation import expected, press, settings
+from lumped.errors import NotReached
+from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import ENERGIES, energy_of, strained
 from lumped.numbers import Array
-from lumped.result.model_ledger import ENERGY_NAMES, FIRST_ORDER
+from lumped.result.model_ledger import Peak, ledger_at_rest
+from lumped.scene.indenter import Indenter
+from lumped.scene.tables import Model
+from lumped.shapes import Shape, Sphere
+from lumped.shapes.cone import Cone
+from lumped.shapes.cylinder import Cylinder
+from lumped.shapes.plate import Plate
+from lumped.shapes.prism import Prism
+from lumped.shapes.punch import Punch
+from lumped.targets import HalfSpace, Target
+from lumped.targets.layer import Layer
+from lumped.targets.o_ring import ORing
+from lumped.targets.plane import Plane
+from lumped.targets.ring import Ring
+from lumped.targets.washer import Washer
 
 RNG = np.random.default_rng(13)
 
@@ -100,15 +119,104 @@ def first_order(nu: float) -> dict[str, float]:
     gap = -np.sum(pressure(at) * np.asarray(surface.interpolate(u))[0] * at * depth * surface.dx * at)
     works = {"gap": gap}
     for name in ENERGIES.names:
-        works[ENERGY_NAMES[name]] = gap + kirchhoff + cubic(name, lame) @ cubes
+        works[name] = gap + kirchhoff + cubic(name, lame) @ cubes
     return {name: float(2.0 * math.pi * work / (4.0 / 9.0 * modulus * depth**3)) for name, work in works.items()}
+
+
+def told(pressed: Indenter, name: str | None, depth: float, force: float, radius: float) -> tuple[float, float]:
+    """What the ledger says of large strains with an energy: least and most."""
+    alike = replace(pressed, material=replace(pressed.material, hyperelastic=name))
+    (found, *_) = ledger_at_rest(alike, Peak(force, depth, radius, math.inf))
+    assert found.effect == "finite strain"
+    return found.spread or (found.size, found.size)
 
 
 @pytest.mark.family
 @pytest.mark.parametrize("nu", [-0.6, 0.0, 0.3, 0.49, *RNG.uniform(-0.5, 0.48, 2)])
-def test_the_ledgers_polynomials_are_what_finite_elements_find(nu: float) -> None:
+def test_the_ledger_has_a_spheres_first_order_as_finite_elements_find_it(nu: float) -> None:
     """Of every energy. Gap alone: (1-2nu)/((1-nu) pi) by Johnson's (3.41b), ISBN 978-0-521-34796-9."""
-    found = first_order(nu)
+    found, ball = first_order(nu), Indenter(Sphere(1.0), Material(Relaxation(1.0), nu))
     assert found.pop("gap") == pytest.approx((1.0 - 2.0 * nu) / (1.0 - nu) / math.pi, abs=2e-4)
+    strains = ball.target.strains(ball.shape, nu, 1e-6, 1e-3)
     for name, change in found.items():
-        assert change == pytest.approx(float(FIRST_ORDER[name](nu)) / (1.0 - nu) ** 2, abs=2e-4), name
+        assert 1e3 * strains.change(energy_of(name)) == pytest.approx(change, abs=2e-3), name
+        assert strains.change(energy_of(name), struck=True) == pytest.approx(
+            0.5 * strains.change(energy_of(name)), rel=5e-3
+        )
+
+
+SCENES = 40  # of a geometry
+FACTOR = 3.0
+CANCELLED = 0.1  # of the largest change by any energy, where cubic terms and gap cancel
+
+
+def drawn(random: np.random.Generator, name: str) -> tuple[Shape, Target, float]:
+    """Striker, target and depth of a geometry; a length of it is one."""
+
+    def between(low: float, high: float) -> float:
+        return float(np.exp(random.uniform(np.log(low), np.log(high))))
+
+    striker, _, base = name.partition(" ")
+    if base in ("bonded", "sliding"):
+        depth, width = between(0.004, 0.1), between(0.1, 6.0)
+        shape: Shape = {"sphere": Sphere(1.0), "line": Cylinder(1.0, 1.0), "cone": Cone(between(1.0, 12.0))}[striker]
+        a = float(shape.load_curve.contact_radius(depth)) if striker == "cone" else math.sqrt(depth)
+        return shape, Layer(max(a / width, depth / 0.25), base), depth
+    if striker == "ring":
+        thickness = between(0.05, 2.0)
+        return Cylinder(1.0 - between(0.005, 0.3), 1.0), Ring(1.0, thickness), thickness * between(0.01, 0.25)
+    if striker == "washer":
+        inner = between(0.2, 2.0)
+        washer = Washer(inner, inner + between(0.2, 4.0), 1.0, str(random.choice(["bonded", "sliding"])))
+        return Punch(9.0), washer, between(0.01, 0.25)
+    if striker == "o_ring":
+        section = between(0.1, 0.8)
+        return Punch(2.0), ORing(1.0, section), section * between(0.02, 0.5)
+    if striker == "block":
+        return (
+            [Prism(1.0, 1.0, "free", "sliding"), Plate(1.0, 1.0)][int(random.integers(2))],
+            Plane(),
+            between(0.01, 0.25),
+        )
+    return (Sphere(1.0) if striker == "sphere" else Cone(between(1.0, 12.0))), HalfSpace(), between(0.004, 0.2)
+
+
+def measured(pressed: Indenter, depth: float) -> tuple[float, float]:
+    """Force over E* and contact radius at one depth, with settings to about 1e-3."""
+    numerics = settings({"tolerance": 1e-3}, pressed.shape, pressed.model.finite)
+    depths = np.array([depth])
+    found = press(pressed, depths, expected(pressed, depths, numerics), numerics)
+    return float(found.force[0]), float(found.contact_radius[0])
+
+
+@pytest.mark.family
+@pytest.mark.parametrize(
+    "name",
+    ["sphere bonded", "sphere", "cone", "block", "ring", "o_ring", "washer", "sphere sliding", "line bonded",
+     "line sliding", "cone bonded", "cone sliding"],
+)  # fmt: skip
+def test_what_the_ledger_says_of_large_strains_is_within_a_factor_of_three(
+    name: str, campaign_size: Callable[..., int]
+) -> None:
+    """Of random scenes, energies and Poisson's ratios, each pressed with large strains and with small ones.
+
+    All scenes with --full, else the first of a geometry.
+    """
+    random, wrong = np.random.default_rng(31), list[str]()
+    for _ in range(SCENES if campaign_size(SCENES) == SCENES else 1):
+        (shape, target, depth), nu = drawn(random, name), float(random.uniform(0.0, 0.49))
+        energy = str(random.choice(ENERGIES.names))
+        small = Indenter(shape, Material(Relaxation(1.0), nu, hyperelastic=energy), target)
+        try:
+            larger = measured(replace(small, model=Model(kinematics="finite")), depth)[0]
+        except NotReached:
+            continue  # St Venant and Kirchhoff's law loses its ellipticity
+        force, radius = measured(small, depth)
+        change = larger / force - 1.0
+        (estimate, _), spread = (told(small, one, depth, force, radius) for one in (energy, None))
+        unsure = CANCELLED * max(map(abs, spread))
+        if not (1.0 / FACTOR < abs(change) / estimate < FACTOR or max(abs(change), estimate) < unsure):
+            wrong.append(f"{energy} {nu:.3f} {shape} {target} {depth:.3g}: {change:.4f}, told {estimate:.4f}")
+        if not FACTOR * min(spread[0], 0.0) - unsure < change < FACTOR * max(spread[1], 0.0) + unsure:
+            wrong.append(f"{energy} {nu:.3f} {shape} {target} {depth:.3g}: {change:.4f}, told {spread}")
+    assert not wrong

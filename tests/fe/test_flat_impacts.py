@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
+import scipy.sparse.linalg as linalg
 
 import fe_contact
 from fe_contact.march.impacts import SurfaceBouncer, follow
@@ -108,11 +111,21 @@ def test_a_punch_on_an_elastic_body_swings_for_half_a_period() -> None:
     assert sum(result.error_budget.values()) == pytest.approx(peak.error / peak.value), "shares of the peak by cause"
 
 
-def test_three_marches_tell_all() -> None:
-    """Mesh, penalty and far field change one stiffness: each is one more press, and no march."""
-    work = solve(random_scene(0), {"tolerance": TOLERANCE}).certified.work
+def test_three_marches_tell_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Mesh, penalty and far field change one stiffness: each is one more press, and no march; counted from outside."""
+    loads, factorise = list[list[int]](), linalg.splu
+
+    def counted(*args: Any, **options: Any) -> Any:
+        factors, solved = factorise(*args, **options), list[int]()
+        loads.append(solved)
+        return SimpleNamespace(solve=lambda load: solved.append(load.shape[1]) or factors.solve(load))
+
+    monkeypatch.setattr(linalg, "splu", counted)
+    work = solve(random_scene(4 * IMPACTS), {"tolerance": TOLERANCE}).certified.work
+    assert (work.factorizations, work.solves) == (len(loads), sum(map(sum, loads)))
+    assert work.factorizations == 3, "another penalty takes none"
     assert work.marches == 3
-    assert work.contact_problems == work.steps
+    assert work.contact_problems == work.iterations == work.steps
 
 
 def test_a_confined_plate_of_constant_bulk_modulus_relaxes_by_its_shear_alone(agree: Callable[..., None]) -> None:

@@ -10,9 +10,8 @@ import scipy.sparse as sparse
 from scipy.optimize import brentq
 
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
-from fe_contact.dynamics.body import BodyState, BodyWithMass, Part, Pressing, internal, undeformed
-from fe_contact.dynamics.march import Choices, Moment, account_at_start
-from fe_contact.dynamics.schemes import generalised_alpha
+from fe_contact.dynamics.body import BodyWithMass, Part, Pressing, state_of, undeformed
+from fe_contact.dynamics.march import Moment, Steppers, account_at_start
 from fe_contact.dynamics.stepping import Enforced
 from fe_contact.waves.impact import Flights
 from lumped.materials import Relaxation
@@ -50,10 +49,11 @@ class Case:
     def parted(self) -> Moment:
         body, at_rest = self.body, undeformed(self.body, np.zeros(2))
         displacement, branches = np.array([self.place, -self.place]), (np.array([[self.branch, 0.0]]),)
-        forces = internal(body, displacement, branches)
+        force = self.place + RELAXATION.moduli[0] * self.branch
         velocity = np.array([self.rising, -self.speed])
-        acceleration = np.array([-forces[0] - self.dashpot * self.rising, self.gravity])
-        state = BodyState(0.0, displacement, velocity, acceleration, branches, forces, at_rest.signed_pressure)
+        acceleration = np.array([-force - self.dashpot * self.rising, self.gravity])
+        motion = np.array([displacement, velocity, acceleration])
+        state = state_of(body, 0.0, motion, branches, at_rest.signed_pressure)
         return Moment(state, account_at_start(body, state))
 
     def touch(self) -> float:
@@ -73,7 +73,7 @@ class Case:
 
 
 def landed(case: Case, step: float, patience: int) -> tuple[Moment, Flights]:
-    flights = Flights(case.body, Choices(generalised_alpha.of(0.5), Enforced(penalty, 1.0), step), patience)
+    flights = Flights(Steppers(case.body, Enforced(penalty, 1.0)), step, patience)
     found = flights.landing(case.parted, math.inf)
     assert found is not None
     return found, flights
@@ -119,5 +119,5 @@ def test_the_ball_falls_freely_and_the_ledger_closes(cases: list[Case]) -> None:
 
 
 def test_a_touch_after_the_end_is_none(cases: list[Case]) -> None:
-    flights = Flights(cases[0].body, Choices(generalised_alpha.of(0.5), Enforced(penalty, 1.0), STEP), PATIENCE)
+    flights = Flights(Steppers(cases[0].body, Enforced(penalty, 1.0)), STEP, PATIENCE)
     assert flights.landing(cases[0].parted, 0.5 * cases[0].touch()) is None

@@ -343,3 +343,16 @@ def test_a_cone_with_a_material_strikes_no_half_space() -> None:
 def test_fields_of_two_bodies_are_refused_before_anything_is_computed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "steel-on-steel-waves", "--fields"]) == 2
     assert "rigid" in capsys.readouterr().err
+
+
+def test_a_ball_that_rings_as_it_leaves_ends_its_contact_within_the_bar() -> None:
+    """Its last forces fall faster than before, within the last step: steps of 1/64 and 1/32 err alike by chance."""
+    material = {"law": "prony", "E_inf": 1.61e6, "E": [4.64e4], "tau": [4.53e-3], "nu": 0.447, "density": 368.7}
+    striker = {"shape": "sphere", "radius": 0.02795, "mass": 0.03374, "velocity": 0.391, "material": material}
+    scene = Scene.from_dict({"striker": striker, "target": PLANE, "model": {"inertia": True}})
+    found = simulate(scene, "fe", {"tolerance": 0.1}).quantities["duration"]
+    body, numerics = begun(scene, tolerance=0.1, steps=512, elements_per_contact=5.0)
+    known = Curve.of(record(body, motion(body, scene, numerics), scene), Strike.of(scene)).duration
+    assert found.value is not None
+    assert found.error is not None
+    assert 0.002 * known < abs(found.value - known) < found.error

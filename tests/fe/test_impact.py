@@ -28,7 +28,7 @@ from fe_contact.schemes.base import SCHEMES
 from fe_contact.settings import Numerics
 from fe_contact.steppers import scaled_surface
 from fe_contact.steppers.scaled_surface import ScaledSurface
-from fe_contact.steppers.steps import March, State, Step, Strike
+from fe_contact.steppers.steps import Inertia, March, State, Step, Strike
 from fe_contact.targets import half_space
 from lumped import BadInput
 from lumped.laws import mdr
@@ -137,16 +137,27 @@ def test_scales_of_length_mass_and_modulus_change_nothing(
         np.testing.assert_allclose(found / unit, reference, atol=1e-9 * np.abs(reference).max())
 
 
-def test_a_scene_in_other_units_has_the_same_numbers_and_bars(scene_of: Scenes) -> None:
-    """Millimetres, tonnes and megapascals form a system of units of their own: so do these."""
+@pytest.mark.parametrize("gravity", [0.0, 9.81])
+def test_a_scene_in_other_units_has_the_same_numbers_and_bars(gravity: float, scene_of: Scenes) -> None:
+    """Millimetres, grams, milliseconds and megapascals form a system of units of their own; weight ends no contact."""
     table = {"law": "prony", "E_inf": 1e6, "E": [2e6], "tau": [3e-4], "nu": 0.4}
-    length, mass, modulus = 1e3, 1e-3, 1e-6
+    length, mass, modulus = 1e3, 1e3, 1e-6
     time = (mass / (modulus * length)) ** 0.5
     other = {"law": "prony", "E_inf": 1.0, "E": [2.0], "tau": [3e-4 * time], "nu": 0.4}
-    first = fe_contact.run(scene_of(table), 1e-3)
-    second = fe_contact.run(
-        scene_of(other, striker={"radius": 0.01 * length, "mass": 0.02 * mass, "velocity": 0.5 * length / time}), 1e-3
+    speed, end = (1e-3, 0.02) if gravity else (0.5, 1.0)
+    first, second = (
+        fe_contact.run(
+            scene_of(
+                made,
+                striker={"radius": 0.01 * m, "mass": 0.02 * kg, "velocity": speed * m / s},
+                model={"gravity": gravity * m / s**2},
+                motion={"end_time": end * s},
+            ),
+            1e-2 if gravity else 1e-3,
+        )
+        for made, m, kg, s in ((table, 1.0, 1.0, 1.0), (other, length, mass, time))
     )
+    assert first.separated == (not gravity)
     units = {
         "peak_force": modulus * length**2,
         "peak_time": time,
@@ -157,8 +168,13 @@ def test_a_scene_in_other_units_has_the_same_numbers_and_bars(scene_of: Scenes) 
         "history_l2": 1.0,
     }
     for name, unit in units.items():
+        if first.quantities[name].value is None:
+            continue
         assert second.quantities[name].value == pytest.approx(unit * first.quantities[name].value, rel=1e-9)
         assert second.quantities[name].error == pytest.approx(unit * first.quantities[name].error, rel=1e-3)
+    share = np.linspace(0.0, 1.0, 50)
+    one, other = (np.interp(share, h.time / h.time[-1], h.force_error) for h in (first.history, second.history))
+    np.testing.assert_allclose(other, units["peak_force"] * one, rtol=0.02)
 
 
 # ends
@@ -200,6 +216,14 @@ def test_an_end_time_before_separation_is_met_exactly(
     assert cut.time[-1] == pytest.approx(strike.end_time, rel=1e-12)
     same = cut.time < strike.end_time * (1 - 1e-9)
     np.testing.assert_array_equal(cut.depth[same], whole.depth[: same.sum()])
+
+
+def test_no_rounding_lies_between_the_last_step_and_the_end_time(hertz_strike: Strikes) -> None:
+    """Past its last row a history has no force."""
+    for time, end in np.sort(RNG.uniform(size=(100, 2)) ** 2):
+        strike = hertz_strike(end_time=end)
+        state = State(time, 0.0, 0.0, 0.0, np.zeros(1))
+        assert Inertia(strike, state, end - time, 0.5).moved(0.0, state.memory).time == end
 
 
 def test_what_does_not_converge_raises_and_returns_nothing(

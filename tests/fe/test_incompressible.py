@@ -36,7 +36,7 @@ def test_a_mesh_refuses_by_key_value_range_and_cure(
 ) -> None:
     code, out, err = told(capsys, command, name, "--set", f"target.material.nu={nu}")
     assert (code, out) == (2, "")
-    assert err.startswith(f"{name}.toml: target.material.nu: {nu}: finite elements take it above -1 and up to 0.4999;")
+    assert err.startswith(f"--set: target.material.nu: {nu}: finite elements take it above -1 and up to 0.4999;")
     assert "--method ting" in err
     assert len(err.splitlines()) == 1
     assert not list(empty.iterdir())
@@ -57,7 +57,7 @@ def test_a_bulk_modulus_that_takes_all_digits_is_refused(empty: Path, capsys: py
     """Of a fluid whose shear is nothing beside it, pressed at once."""
     fluid = [f"target.material={{law='maxwell', E=1e3, eta=1e3, nu=0.4, constant='bulk', bulk_modulus={bulk}}}"
              for bulk in ("1e16", "1e8")]  # fmt: skip
-    wanted = [(2, "polymer-layer.toml: target.material.bulk_modulus: as stiff"), (0, "")]
+    wanted = [(2, "--set: target.material.bulk_modulus: as stiff"), (0, "")]
     for material, (code, said) in zip(fluid, wanted, strict=True):
         command = "indent --depths=1e-5 --instant --quiet"
         found, _, err = told(capsys, command, "polymer-layer", "--set", material)

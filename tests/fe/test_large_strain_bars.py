@@ -17,8 +17,17 @@ from lumped.materials.energies.base import ENERGIES
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import Model
 from lumped.shapes import Sphere
+from lumped.shapes.cone import Cone
+from lumped.shapes.cylinder import Cylinder
+from lumped.shapes.power import PowerProfile
+from lumped.shapes.prism import Prism
+from lumped.shapes.punch import Punch
 from lumped.targets import HalfSpace
 from lumped.targets.layer import Layer
+from lumped.targets.o_ring import ORing
+from lumped.targets.plane import Plane
+from lumped.targets.ring import Ring
+from lumped.targets.washer import Washer
 
 SCENES, TOLERANCE = 60, 1e-2
 FINER = {"elements_per_contact": 3.0, "penalty": 2000.0}  # of the quarter: loose tolerances share the coarsest mesh
@@ -41,13 +50,41 @@ def struck(random: np.random.Generator, branches: int) -> Scene:
     """The same, struck so fast that it would go as deep if it were relaxed; so many branches of a Prony series."""
     pressed, (_, deepest) = scene(random)
     curve = pressed.target.load_curve(pressed.shape, pressed.material.nu)
-    brought = pressed.modulus(False) * float(curve.energy(deepest))
+    return struck_with(random, pressed, pressed.modulus(False) * float(curve.energy(deepest)), branches)
+
+
+def struck_with(random: np.random.Generator, pressed: Indenter, brought: float, branches: int) -> Scene:
+    """A mass that has ``brought`` as many J."""
     fast = Scene(pressed.shape, 1.0, float(np.sqrt(2.0 * brought)), pressed.material, target=pressed.target,
                  model=pressed.model)  # fmt: skip
     times = fast.elastic_contact_time * 10.0 ** random.uniform(-1.5, 0.5, branches)
     moduli = 1e6 * random.uniform(0.2, 2.0, branches)
     network = Relaxation(1e6, tuple(moduli.tolist()), tuple(sorted(times.tolist())))
     return replace(fast, material=replace(pressed.material, young=network))
+
+
+def pair(random: np.random.Generator, name: str) -> tuple[Indenter, float]:
+    """Another striker or target, lengths about one, and the largest depth."""
+    nu, deepest = float(random.uniform(0.2, 0.49)), float(random.uniform(0.03, 0.25))
+    base = str(random.choice(["bonded", "sliding"]))
+    layer = Layer(deepest / float(random.uniform(0.1, 0.3)), base)
+    inner, section = float(random.uniform(0.3, 2.0)), float(random.uniform(0.2, 0.7))
+    shape, target = {
+        "cone": (Cone(float(random.uniform(3.0, 15.0))), HalfSpace()),
+        "cone, layer": (Cone(float(random.uniform(3.0, 15.0))), layer),
+        "power": (PowerProfile(0.3, float(random.uniform(1.5, 4.0))), layer),
+        "line": (Cylinder(1.0, 1.0), layer),
+        "ring": (Cylinder(float(random.uniform(0.7, 0.95)), 1.0), Ring(1.0, deepest / 0.25)),
+        "o_ring": (Punch(2.0), ORing(1.0, section)),
+        "washer": (Punch(9.0), Washer(inner, inner + float(random.uniform(0.5, 2.0)), 1.0, base)),
+        "block": (Prism(np.pi, float(random.uniform(0.5, 2.0)), "free", base), Plane()),
+    }[name]
+    material = Material(Relaxation(1e6), nu, hyperelastic=str(random.choice(ENERGIES.names)))
+    deepest *= section if name == "o_ring" else 1.0
+    return Indenter(shape, material, target, model=Model(kinematics="finite")), deepest
+
+
+PAIRS = ("washer", "block", "o_ring", "ring", "line", "cone", "cone, layer", "power")
 
 
 def answer(pressed: Indenter, depths: tuple[float, ...], tolerance: float) -> Indentation | None:
@@ -81,6 +118,27 @@ def test_finer_runs_lie_within_both_bars(campaign_size: Callable[..., int]) -> N
         apart = np.abs(loose.force - tight.force) / (loose.force_error + tight.force_error)
         if apart.max() > 1.0:
             wrong.append(f"{pressed.material} {pressed.target} {depths}: {apart}")
+    assert not wrong
+    assert np.mean(converged) >= LEAST
+
+
+@pytest.mark.tenth
+def test_finer_impacts_of_other_pairs_lie_within_both_bars(
+    campaign_size: Callable[..., int], uncovered: Callable[..., dict[str, float]]
+) -> None:
+    """Three of every pair with --full, without a branch, with one, with two; else a washer without."""
+    random, whole = np.random.default_rng(23), 3 * len(PAIRS)
+    converged, wrong = list[bool](), list[str]()
+    for number in range(whole if campaign_size(whole) == whole else 1):
+        pressed, deepest = pair(random, PAIRS[number % len(PAIRS)])
+        force = indent(replace(pressed, model=Model()), (deepest,), {"tolerance": TOLERANCE}).force[0]
+        one = struck_with(random, pressed, 0.4 * float(force) * deepest, number // len(PAIRS))
+        loose = answer_to_impact(one, TOLERANCE)
+        tight = None if loose is None else answer_to_impact(one, 0.25 * TOLERANCE, FINER)
+        converged.append(loose is not None and loose.converged)
+        over = {} if loose is None or tight is None else uncovered(loose, tight)
+        if over:
+            wrong.append(f"{one.material} {one.geometry.shape} {one.target} {one.velocity:g}: {over}")
     assert not wrong
     assert np.mean(converged) >= LEAST
 

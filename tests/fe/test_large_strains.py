@@ -25,10 +25,10 @@ from lumped import BadInput, Scene, laws
 from lumped.indentation import Indentation
 from lumped.materials import Material, Relaxation
 from lumped.materials.energies.base import ENERGIES, energy_of, strained
-from lumped.result.model_ledger import ENERGY_NAMES, FIRST_ORDER
 from lumped.scene.indenter import Indenter
 from lumped.scene.tables import LawChoice, Model
 from lumped.shapes import Sphere
+from lumped.shapes.cone import Cone
 from lumped.shapes.prism import Prism
 from lumped.shapes.punch import Punch
 from lumped.targets.o_ring import ORing
@@ -177,6 +177,31 @@ def test_a_washer_that_slides_between_two_planes_is_a_block() -> None:
     assert 2.0 < found.contact_radius[0] < washer.contact_radius[1]
 
 
+def test_a_bonded_block_is_that_of_small_strains_where_it_is_lightly_pressed() -> None:
+    """Deep, the force is the slope of the energy of both halves."""
+    material, block = Material(Relaxation(1.0), 0.45), Prism(np.pi, 0.8, "free", "bonded")
+    depth = np.array([4e-4, 0.16])
+    large = Indenter(block, material, Plane(), model=Model(kinematics="finite"))
+    numerics, radii = settings(COARSE, block), np.array([1.0, 1.0])
+    found, known = (press_any(one, depth, radii, numerics) for one in (large, replace(large, model=Model())))
+    assert found.force[0] == pytest.approx(known.force[0], rel=5e-3)
+    assert found.force[1] > 1.1 * known.force[1]
+    assert found.contact_radius == pytest.approx(1.0, rel=5e-3)
+    body = Solid.of(large, radii, numerics)
+    below, middle, above = (advanced(body.encounter, None, share * 0.08, 500.0) for share in (0.9999, 1.0, 1.0001))
+    slope = (above.balance.energy - below.balance.energy) / (above.balance.depth - below.balance.depth)
+    assert slope == pytest.approx(middle.balance.force, rel=1e-6)
+
+
+def test_under_a_steep_cone_every_depth_answers_alike() -> None:
+    """F ~ depth^2 at any strain, since nothing but the depth has a length: shallow and deep, not lost at the tip."""
+    pressed = replace(sphere(0.3), shape=Cone(18.0))
+    depth = np.array([0.002, 0.03, 0.1])
+    numerics = settings(COARSE, pressed.shape, True)
+    found = press(pressed, depth, expected(pressed, depth, numerics), numerics)
+    assert found.force / depth**2 == pytest.approx(found.force[-1] / depth[-1] ** 2, rel=2e-3)
+
+
 def test_a_nearly_incompressible_body_is_pressed_deep_in_few_iterations() -> None:
     """Whole steps, by the stress that each foresaw: a line search on the energy alone takes ten times as many."""
     body = solid(sphere(0.4999), 0.2)
@@ -184,10 +209,11 @@ def test_a_nearly_incompressible_body_is_pressed_deep_in_few_iterations() -> Non
     found = advanced(body.encounter, first, 0.2 / body.unit, 500.0)
     assert found.iterations < 60
     assert found.error < 1e-6
+    assert advanced(body.encounter, first, first.balance.depth, 500.0).iterations == 1, "where it is already"
 
 
 @pytest.mark.family
-@pytest.mark.parametrize(("name", "nu"), [(name, (0.3, 0.45)[i % 2]) for i, name in enumerate(ENERGY_NAMES)])
+@pytest.mark.parametrize(("name", "nu"), [(name, (0.3, 0.45)[i % 2]) for i, name in enumerate(ENERGIES.names)])
 def test_small_depths_leave_small_strains_as_the_ledger_has_it(name: str, nu: float) -> None:
     """F/F_small = 1 + c1 depth/a + ..., both on one mesh, so that what it errs by cancels."""
     change = []
@@ -195,7 +221,9 @@ def test_small_depths_leave_small_strains_as_the_ledger_has_it(name: str, nu: fl
         forces = [reached(solid(sphere(nu, name), depth, linear), depth).rigid_force for linear in (False, True)]
         change.append((forces[0] / forces[1] - 1.0) / np.sqrt(depth))
     first = 2.0 * change[0] - change[1]  # without what is of the next order, in depth
-    assert first == pytest.approx(float(FIRST_ORDER[ENERGY_NAMES[name]](nu)) / (1.0 - nu) ** 2, abs=0.02)
+    pressed = sphere(nu)
+    told = pressed.target.strains(pressed.shape, nu, 1e-6, 1e-3).change(energy_of(name))
+    assert first == pytest.approx(1e3 * told, abs=0.02)
 
 
 @pytest.mark.tenth

@@ -349,6 +349,15 @@ def test_the_bar_of_a_history_is_the_norm_of_what_changes_over_the_norm_of_the_f
     assert Variation(fine, coarse, 0.5).errors["history_l2"] == pytest.approx(0.5 * norms[0] / norms[1], rel=1e-2)
 
 
+def test_a_viscous_force_is_trusted_no_more_than_the_velocity_that_carries_its_errors() -> None:
+    late, bands = np.linspace(0.6, 0.9, 7), []
+    for relaxation in (Relaxation(1.0), Relaxation(1.0, (1.0,), (0.3,))):
+        curves = (TRUTH, made_up(STEPS, lambda share: 1e-3 * share))
+        fine, coarse = (replace(one, strike=replace(STRIKE, relaxation=relaxation)) for one in curves)
+        bands.append(Variation(fine, coarse, 2.0, {"restitution": 4.0}).force(late))
+    assert bands[1] == pytest.approx(4.0 * bands[0])
+
+
 def test_a_run_that_does_not_part_tells_nothing_of_when_another_does() -> None:
     held = replace(TRUTH, separated=False)
     for change in (Variation(TRUTH, held, 1.0), Variation(held, TRUTH, 1.0)):

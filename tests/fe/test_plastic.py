@@ -12,11 +12,12 @@ import restitution_laws as published
 from scipy.special import beta
 
 import fe_contact
+from fe_contact.assembly.forms import Array
 from fe_contact.indentation import indent
 from fe_contact.plastic.course import Course, Varied, settings
 from fe_contact.plastic.fields import PressedAgain
-from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, _at_most
-from fe_contact.plastic.path import Presser
+from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, _at_most, _release
+from fe_contact.plastic.path import Presser, Station
 from fe_contact.steppers.steps import Work
 from fe_contact.studies.compare.study import compare
 from lumped import Result, Scene
@@ -234,6 +235,22 @@ def test_bars_hold_against_finer_runs(
             assert uncovered(one, finer) == {}, (tolerance, nu, hardening, speed)
             converged.append(one.converged)
     assert np.mean(converged) >= 0.95
+
+
+def test_a_release_whose_force_is_known_ends_where_it_is_none() -> None:
+    """Its power 2/3 a parabola of what is left, the radius a root of it, both down to a tenth of that."""
+    lasting, deepest, none = 0.37, 0.5, np.zeros(1)
+
+    def root(left: Array) -> Array:
+        return np.asarray(left * (1.0 + 0.1 * left))
+
+    left = np.linspace(1.0, 0.1, 9)
+    rows = zip(lasting + (deepest - lasting) * left, root(left) ** 1.5, left**0.5, strict=True)
+    places = [Station(float(depth), none, (), float(force), none, float(radius)) for depth, force, radius in rows]
+    springs, roots, shrunk = _release(places, 1.5)
+    assert springs == pytest.approx((deepest - lasting) / deepest)
+    assert roots == pytest.approx(root(SPRUNG) / 1.1, abs=1e-9)
+    assert shrunk[SPRUNG >= 0.1] == pytest.approx(SPRUNG[SPRUNG >= 0.1] ** 0.5, rel=0.02)
 
 
 def test_two_meshes_that_agree_by_chance_do_not_close_the_bar() -> None:

@@ -8,13 +8,16 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+import lumped
 import meshes
 from fe_contact.assembly.far_field import boussinesq
 from fe_contact.assembly.operators import surface_operator
 from fe_contact.bodies.pressing import EDGE_WINDOW
+from fe_contact.budget.plan import plan
 from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.contact.problem import ContactSolution
 from fe_contact.steppers.scaled_surface import ScaledSurface
+from fe_contact.targets import half_space
 from lumped.shapes import Parabola, Shape, Sphere
 
 corrected, penalty = ENFORCEMENTS.get("corrected"), ENFORCEMENTS.get("penalty")
@@ -175,3 +178,19 @@ def test_scaling_the_mesh_scales_force_and_pressure_as_the_half_space_does(body:
     large = indent(body, Sphere(1000.0), 200.0, 1.01)
     assert large.error == pytest.approx(small.error, abs=1e-12)
     np.testing.assert_allclose(large.pressure, small.pressure, atol=1e-9 * small.pressure.max())
+
+
+def test_a_contact_of_a_few_points_on_a_half_plane_is_found_from_any_guess() -> None:
+    """Where a strongly damped contact begins: dents of the step before, and a datum that comes up by more than these.
+
+    Newton's steps alone may go round between three points and four.
+    """
+    scene = lumped.Scene.load("polymer-half-plane")
+    body = half_space.struck(scene.geometry, plan(scene, {"elements_per_contact": 2.0}).numerics)
+    points, yielding, rng = body.operator.points, body.operator.yielding, np.random.default_rng(1126)
+    for _ in range(40):
+        few = int(rng.integers(2, 15))
+        overlap = 1.0 - 10 ** rng.uniform(-3, -1) * (points / points[few]) ** 2
+        overlap[:few] -= 10 ** rng.uniform(-5, -2) * rng.random(few)
+        problem = body.problem(overlap, 1e3 / points[few], yielding)
+        assert corrected.enforce(problem, points < points[int(rng.integers(1, 40))]).converged

@@ -44,3 +44,20 @@ def test_every_bar_covers(
         found, exact = fe_contact.run(scene, tolerance), simulate(laws.mdr.of(scene), scene, 1e-7)
         assert found.converged
         assert not uncovered(found, exact), seed
+
+
+def test_two_meshes_that_agree_by_chance_where_the_path_turns_are_not_believed(
+    uncovered: Callable[..., dict[str, float]],
+) -> None:
+    """Met in a random ring: its mesh stays, and the contact's edge lies alike in both just then, and only then."""
+    material = {
+        "law": "prony",
+        "E_inf": 6e5,
+        "E": [4875885.629412529, 491365.8112641897, 17871929.819718085],
+        "tau": [0.0020756135801780332, 638.6671733837, 2.1389954488725405e-08],
+        "nu": 0.22287745290490546,
+    }
+    striker = {"shape": "cylinder", "radius": 0.006, "length": 0.03, "mass": 0.05, "velocity": 0.04634558232397682}
+    ring = {"shape": "ring", "inner_radius": 0.0077783553263812725, "thickness": 0.002635512347519187}
+    scene = Scene.from_dict({"name": "by-chance", "striker": striker, "target": ring | {"material": material}})
+    assert not uncovered(fe_contact.run(scene, 1e-2), simulate(laws.ting.of(scene), scene, 1e-6))

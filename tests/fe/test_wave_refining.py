@@ -167,7 +167,7 @@ def test_a_finer_surface_leaves_the_body_as_coarse(kind: str) -> None:
 
 
 def test_counted_factorisations_are_those_of_every_length_of_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Counted from outside, where one more in every march is that of the mass, which tells how it begins to move."""
+    """Counted from outside; a body that nothing moves yet needs none of its mass."""
     made, factorise = [0], linalg.splu
 
     def counted(*args: Any, **options: Any) -> Any:
@@ -183,5 +183,5 @@ def test_counted_factorisations_are_those_of_every_length_of_step(monkeypatch: p
     certify(runs, numerics)
     work = runs.work()
     assert work.marches == 5
-    assert made[0] == work.factorizations + work.marches > 3 * work.marches
+    assert made[0] == work.factorizations > 3 * work.marches
     assert runs.curve(1, numerics) is None, "there is no second contact"

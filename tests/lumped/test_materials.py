@@ -186,3 +186,17 @@ def test_a_temperature_is_written_with_the_network_at_its_reference() -> None:
 def test_half_a_shift_is_refused(keys: dict[str, Any], message: str) -> None:
     with pytest.raises(BadInput, match=message):
         Scene.load("polymer-sphere", {f"target.material.{key}": value for key, value in keys.items()})
+
+
+@pytest.mark.parametrize("power", [1.0, 1.5, 2.0, 2.2])
+def test_the_modulus_that_a_growing_load_feels_is_its_convolution(power: float) -> None:
+    """int E(t-s) d(s^p) / t^p by Gauss's rule over v = (s/t)^p; at last a branch is a dashpot, p E tau/t."""
+    relaxation, times = Relaxation(1.0, (5.0, 2.0), (0.3, 40.0), 0.7), np.array([1e-3, 0.1, 1.0, 7.0])
+    nodes, weights = np.polynomial.legendre.leggauss(400)
+    shares = (0.5 * (nodes + 1.0)) ** 4  # crowded at touch, where s is a root of v
+    rule = 0.5 * weights * 4.0 * (0.5 * (nodes + 1.0)) ** 3
+    for found, p in zip(relaxation.felt(times, power), (power, power + 1.0), strict=True):
+        expected = relaxation(times[:, None] * (1.0 - shares ** (1.0 / p))) @ rule + 0.7 * p / times
+        np.testing.assert_allclose(found, expected, rtol=1e-9)
+        late = Relaxation(0.0, (5.0,), (0.3,)).felt(1e5, p)
+        assert float(late[0]) == pytest.approx(p * 5.0 * 0.3 / 1e5, rel=1e-5)

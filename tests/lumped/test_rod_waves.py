@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import cumulative_trapezoid
 
 from lumped import BadInput, Result, Scene, laws, simulate
-from lumped.solvers.rod import FlatImpact, RodScales, TippedImpact, Waves
+from lumped.solvers.rod import FlatImpact, RodPiece, RodScales, RodTravel, TippedImpact, Waves
 
 # Mass over that of the rod, contact time over the transit of a wave: Timoshenko and Goodier, Theory of Elasticity,
 # art. 169, after St Venant.
@@ -59,6 +60,23 @@ def test_forces_between_echoes_are_the_textbook_ones() -> None:
     times = np.array([0.0, 0.7, 1.9999999, 2.0])
     expected = [1.0, math.exp(-0.7), math.exp(-1.9999999), math.exp(-2.0) + 2.0]
     assert impact.columns(times)[2] == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_heavy_mass_finds_a_spring_and_every_echo_is_evaluated_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """k = Z/T, a third of the rod moves along; its depth by the impulse is that by the velocity; work as the echoes."""
+    impact, mass, read = flat(-1.0, 3000.0, until=1e3), 3000.0 + 1.0 / 3.0, list[object]()
+    pieces, end, separated = impact.pieces
+    times = np.linspace(0.0, end, 40 * len(pieces) + 1)
+    for kind in (RodPiece, RodTravel):
+        called = kind.__call__
+        monkeypatch.setattr(kind, "__call__", lambda self, s, called=called: read.append(self) or called(self, s))
+    depth, velocity, _, _ = impact.columns(times)
+    assert separated
+    assert len(pieces) > 80
+    assert len(read) <= 4 * len(pieces)
+    assert end == pytest.approx(math.pi * math.sqrt(mass), rel=0.01)
+    assert depth.max() == pytest.approx(math.sqrt(mass), rel=1e-3)
+    assert np.abs(depth - np.append(0.0, cumulative_trapezoid(velocity, times))).max() < 1e-3 * depth.max()
 
 
 def test_a_free_rod_throws_no_mass_back_before_its_echo() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from time import perf_counter, process_time
 
 import numpy as np
 import pytest
@@ -93,6 +94,19 @@ def test_an_early_end_time_ends_the_history(law: str, end: float, impact: Build,
     between_rows = 1e-5 * value(whole, "peak_force")  # what straight lines may err by
     assert abs(result.history.force[-1] - whole.history.force_at(end * unit_time)) <= bars + between_rows
     assert bars <= 3e-5 * value(whole, "peak_force")
+    assert max(result.work.values()) < max(whole.work.values())
+
+
+def test_springs_that_leave_at_one_time_leave_one_row() -> None:
+    """Polynomials run through rows, which divide by the times between them."""
+    assert laws.mdr._ascending(np.array([[0.0, 1.0, 1.0, 2.0, 2.0]])).tolist() == [[0.0, 1.0, 2.0]]
+
+
+def test_the_time_told_is_what_was_taken(impact: Build) -> None:
+    cpu, wall = process_time(), perf_counter()
+    told = run("hertz", impact()).timing
+    assert 0.0 < told["cpu_s"] <= process_time() - cpu
+    assert 0.0 < told["wall_s"] <= perf_counter() - wall
 
 
 def test_a_dashpot_alone_stops_the_striker_where_it_should(impact: Build) -> None:

@@ -51,7 +51,7 @@ def _columns(found: Sequence[ImpactExponents]) -> Mapping[str, list[ImpactExpone
 
 
 def _column(profile: Profile, on_layer: bool) -> str:
-    return f"{profile.label}, {'layer' if on_layer else f'row {profile.row:g}'}"
+    return f"{profile.label}, {'layer' if on_layer else f'exponent {profile.row:g}'}"
 
 
 def _biases(axes: Axes, found: Sequence[ImpactExponents], reader: str) -> None:
@@ -72,6 +72,7 @@ def _biases(axes: Axes, found: Sequence[ImpactExponents], reader: str) -> None:
             axes.errorbar([one.tau_over_T], [one.bias(reader)], yerr=[one.read[reader].error],
                           markerfacecolor="white", linewidth=0.9, **spot)  # fmt: skip
     axes.set(xscale="log")
+    style.plain_numbers(axes.xaxis)
 
 
 def _label(one: ImpactExponents) -> str:

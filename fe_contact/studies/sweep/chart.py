@@ -7,8 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis as PlotAxis
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import MaxNLocator
 
 from fe_contact.studies import style
 from fe_contact.studies.style import Look
@@ -78,15 +77,6 @@ def _scaled(key: str, values: Array, to_scale: Callable[[str], object], to_label
         to_scale("log")
 
 
-def _plain_numbers(*axes: PlotAxis) -> None:
-    """Where an axis is logarithmic: 1, 2 and 5 of each decade as they are written, and no other."""
-    for axis in axes:
-        if axis.get_scale() == "log":
-            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axis.set_minor_formatter(NullFormatter())
-
-
 def _colour(method: int) -> str:
     return style.CYCLE[method % len(style.CYCLE)]
 
@@ -95,6 +85,8 @@ def _curves(table: SweepTable, numbers: list[str], where: Path) -> tuple[Path, .
     """Quantities over the one key, a colour a method, with the bands of their bars."""
     sweep, (key,) = table.sweep, numbers
     text = ["Bands: error bars. Answers that did not converge, or were refused, are left out. SI units."]
+    unknown = [name for name, converged in zip(sweep.methods, table.converged.T, strict=True) if not converged.any()]
+    text += [f"Without an answer: {', '.join(unknown)}."] if unknown else []
     with style.sheet(where, NAME, _title(sweep), text, 3.9, width=WIDTH) as sheet:
         for place, axes in enumerate(sheet.panels(2, 2, 0.075, 0.985, wspace=0.24, hspace=0.34)):
             _panel(axes, table, key, QUANTITIES[place])
@@ -110,6 +102,8 @@ def _panel(axes: Axes, table: SweepTable, key: str, quantity: str) -> None:
     values = [_column(table, quantity, method, table.values)[order] for method in range(len(table.sweep.methods))]
     factor, name = _scale(quantity, np.array(values))
     for method, column in enumerate(values):
+        if not table.converged[:, method].any():
+            continue
         bars = _column(table, quantity, method, table.errors)[order]
         width = WIDE + (THIN - WIDE) * method / max(len(values) - 1, 1)
         look: Look = {"color": _colour(method), "marker": "o", "markersize": 1.8 * width, "linewidth": width}
@@ -121,7 +115,7 @@ def _panel(axes: Axes, table: SweepTable, key: str, quantity: str) -> None:
     axes.set_ylabel(name)
     if _decades(np.array(values)):
         axes.set_yscale("log")
-    _plain_numbers(axes.xaxis, axes.yaxis)
+    style.plain_numbers(axes.xaxis, axes.yaxis)
 
 
 def _maps(table: SweepTable, numbers: list[str], where: Path) -> tuple[Path, ...]:
@@ -144,7 +138,7 @@ def _map(axes: Axes, table: SweepTable, numbers: list[str], quantity: str) -> No
     known = values[np.isfinite(values)]
     _scaled(numbers[1], x, axes.set_xscale, axes.set_xlabel)
     _scaled(numbers[0], y, axes.set_yscale, axes.set_ylabel)
-    _plain_numbers(axes.xaxis, axes.yaxis)
+    style.plain_numbers(axes.xaxis, axes.yaxis)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     if known.size and np.ptp(known) > EVEN * np.abs(known).max():
         shown = np.ma.masked_invalid(values)

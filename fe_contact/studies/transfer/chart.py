@@ -5,6 +5,7 @@ Curves that are one, to what a reader sees, share a name.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -25,6 +26,7 @@ MOST = 300.0  # %, what lies beyond is drawn at the end of the axis
 TICKS = (-100.0, -10.0, -1.0, 0.0, 1.0, 10.0, 100.0)  # look: %
 ALIKE = 0.012  # look: of the axis, by which curves may differ that share a name
 LINE = 0.072  # look: of the axis, between two names
+APART = 0.13  # look: of the axis, between two ticks
 NAMES, WIDE = 5.3, 25  # look: size of a name; characters beside a panel
 BROAD = {0.1: 0.22, 0.05: 0.5, 0.01: 1.0}  # look: how strong the bar of each level is
 
@@ -59,10 +61,14 @@ def _plot(study: TransferStudy, key: str, where: Path, name: str) -> tuple[Path,
 
 
 def _states(axes: Axes, study: TransferStudy, key: str, rows: Sequence[TransferRow]) -> None:
-    """The axis of the states, logarithmic, a tick a state, and the one of calibration."""
+    """The axis of the states, logarithmic, with a tick at that of calibration and at others as far as there is room."""
     values = sorted({state.value for state in study.states if state.key == key})
     axes.set(xscale="log", xlabel=key)
-    axes.xaxis.set_major_locator(FixedLocator(values))
+    ticks = list[float]()
+    for value in (study.start[key], *values):
+        if all(abs(math.log(value / tick)) >= APART * math.log(values[-1] / values[0]) for tick in ticks):
+            ticks.append(value)
+    axes.xaxis.set_major_locator(FixedLocator(ticks))
     axes.xaxis.set_minor_locator(NullLocator())
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.3g}"))
     axes.axvline(study.start[key], color=style.GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)

@@ -11,12 +11,11 @@ from functools import lru_cache, partial
 from pathlib import Path
 
 import numpy as np
-from skfem import FacetBasis
 
 import meshes
 from fe_contact.assembly.far_field import dashpots, wave_speeds
 from fe_contact.assembly.forms import Array, check_compressible, isotropic, mass
-from fe_contact.assembly.operators import basis_on, made, system_matrix
+from fe_contact.assembly.operators import basis_on, boundary, made, system_matrix
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import held
 from fe_contact.budget.plan import Plan
@@ -124,9 +123,9 @@ def unit_body(poisson: float, size: tuple[float, float, float], order: int, mass
     """
     elements, finer, far_radius = size
     basis = basis_on(made(meshes.half_space_for_waves, elements, SMALLEST, far_radius, finer), order)
-    far = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["far"], intorder=2 * order + 4)
     springs, fixed = system_matrix(basis, poisson), held(basis, along=("axis",), across=())
-    return UnitBody.of(basis, flat(basis), fixed, mass(basis), masses, [springs], [dashpots(far, poisson)])
+    absorbing = dashpots(boundary(basis, ("far",)), poisson)
+    return UnitBody.of(basis, flat(basis), fixed, mass(basis), masses, [springs], [absorbing])
 
 
 def write_fields(scene: Scene, result: Result, where: Path) -> Path:

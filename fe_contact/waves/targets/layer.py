@@ -6,12 +6,11 @@ import math
 from functools import lru_cache
 
 import numpy as np
-from skfem import FacetBasis
 
 import meshes
 from fe_contact.assembly.far_field import on_boundary
 from fe_contact.assembly.forms import Basis, Matrix, check_compressible, mass, plane_mass
-from fe_contact.assembly.operators import basis_on, made, moduli
+from fe_contact.assembly.operators import basis_on, boundary, made, moduli
 from fe_contact.assembly.surface import flat
 from fe_contact.bodies.pressing import held, thickness_over
 from fe_contact.budget.plan import Plan, scales
@@ -131,7 +130,7 @@ def unit_layer(
 
 def _side(basis: Basis, plane: bool, component: int) -> Matrix:
     """Unit impedance of one component of the motion on the side, sparse (2 N, 2 N)."""
-    facets = FacetBasis(basis.mesh, basis.elem, facets=basis.mesh.boundaries["side"])
+    facets = boundary(basis, ("side",))
     radius = np.asarray(facets.global_coordinates())[0]
     tensor = np.zeros((2, 2, *radius.shape))
     tensor[component, component] = 1.0

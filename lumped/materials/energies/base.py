@@ -125,10 +125,14 @@ def compression(invariants: Invariants, shear: float, lame: float) -> Jet:
 
 @dataclass(frozen=True)
 class StrainEnergy:
-    """A member of this folder: its ``formula``, as a record spells it; ``density`` W(invariants, mu, lambda), Pa."""
+    """A member of this folder: its ``formula``, as a record spells it; ``density`` W(invariants, mu, lambda), Pa.
+
+    ``splits``: whether it is one of the volume and one of what changes none.
+    """
 
     formula: str
     density: Callable[[Invariants, float, float], Jet]
+    splits: bool = True
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,4 +12,4 @@ def density(invariants: Invariants, shear: float, lame: float) -> Jet:
     return (0.5 * invariants.shape + flat + out) * shear + invariants.log_volume**2.0 * (0.5 * lame)
 
 
-MEMBER = StrainEnergy("mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2", density)
+MEMBER = StrainEnergy("mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2", density, splits=False)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumped.errors import NotReached, TooManySteps
+from lumped.errors import BadInput, NotReached, TooManySteps
 from lumped.numbers import Array
 from lumped.solvers.hereditary.approach import DEPTH, FORCE, VELOCITY, Approach, PieceMotion, follow
 from lumped.solvers.hereditary.march import SHORTEST, Settings, tail
@@ -142,6 +142,12 @@ class Guess(NamedTuple):
         places = -(duration**0.5) * (1.0 - settings.table.points)
         return cls(duration, problem.gravity - over.value(FORCE, places), steep)
 
+    @classmethod
+    def within(cls, problem: Hereditary, duration: float, over: Path, steep: float, settings: Settings) -> Guess:
+        """From a piece over q of the same motion, and begun at the same time, but followed for another duration."""
+        left = float(over.breaks[0]) ** 2 - duration + duration * (1.0 - settings.table.points) ** 2
+        return cls(duration, problem.gravity - over.value(FORCE, -np.sqrt(np.maximum(left, 0.0))), steep)
+
 
 class Shut(NamedTuple):
     """A last piece over q, its duration, dF/dy there, all Newton steps, and whether it errs by no more than allowed."""
@@ -156,8 +162,9 @@ class Shut(NamedTuple):
 def shut(
     problem: Hereditary, state: Array, start: Guess, settings: Settings, close: float, allowed: float
 ) -> Shut | None:
-    """The piece from a state that ends with F = 0: the duration by secants, to the relative change `close`.
+    """The piece from a state that ends with F = 0, its duration found to the relative change `close`.
 
+    That ends where the force of a first, longer one falls to zero; from there on, or where it does not, by secants.
     One that will err by more than `allowed` is not sought any closer, and is None where its end is not near yet, as it
     is where Newton's steps fail.
     """
@@ -165,24 +172,26 @@ def shut(
     power, unit = _power(problem, state)
     steep, before = steep or unit * _mean_modulus(problem, duration), None
     for _ in range(TRIES):
-        piece = PieceMotion.to_end(problem, settings.table, duration).piece(state, a)
+        try:
+            piece = PieceMotion.to_end(problem, settings.table, duration).piece(state, a)
+        except (BadInput, NotReached):  # depths beyond the load curve, which the motion may never see
+            return None
         if piece is None:
             return None
         steps += piece.steps
+        path = Path.of([-(duration**0.5), 0.0], [piece.values])
         now, error = _Fallen.of(piece.values[:, -1], power), tail(piece.values[FORCE])
-        if before:
-            steep = now.steep(before) or steep
-        change = now.lasts(steep, power)
+        steep, zero = (now.steep(before) or steep, None) if before else (steep, path.fall(FORCE))
+        change = now.lasts(steep, power) if zero is None else -(zero**2)
         longer = min(max(1.0 + change / duration, 0.5), 2.0)
         fits = error * longer**settings.points <= allowed  # a tail falls with the length
         rounded = max(abs(change), missed) <= ROUNDED * duration and abs(change) > 0.5 * missed
         if not fits and abs(change) > NEAR * duration:
             return None
         if abs(change) <= close * duration or rounded or not fits:
-            path = Path.of([-(duration**0.5), 0.0], [piece.values])
             return Shut(path, duration if fits else longer * duration, steep, steps, fits)
         before, missed = now, abs(change) if before else math.inf
-        duration, a = longer * duration, problem.gravity - piece.values[FORCE, 1:]
+        duration, a, _ = Guess.within(problem, longer * duration, path, steep, settings)
     return None
 
 
