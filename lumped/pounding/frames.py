@@ -2,7 +2,7 @@
 
 M q'' + C q' + K q = -M 1 a(t) - R^T F: q are the displacements of the storeys relative to the ground, to the right; a
 row of R is +1 at the left and -1 at the right storey of a gap, so that R q - distance is its depth, and F >= 0 pushes
-both back. A wall moves with the ground. Waves of slabs follow the storeys in q, and every gap at a storey presses on
+both back. A wall moves with the ground. SlabModes of slabs follow the storeys in q, and every gap at a storey presses on
 those of its slab too.
 """
 
@@ -18,7 +18,7 @@ import numpy as np
 from lumped.errors import BadInput, Fault
 from lumped.numbers import Array
 from lumped.pounding.flow import LinearBodies
-from lumped.pounding.slabs import MOST_MODES, MOST_STOREYS, NO_WAVES, SIDES, STOREY, Slab
+from lumped.pounding.slabs import MOST_MODES, MOST_STOREYS, NO_MODES, SIDES, STOREY, Slab
 from lumped.schema.keys import Key, Number, Numbers, Record
 
 ANY_LENGTH, ANY_SPEED = Number(-1e4, 1e4, "m"), Number(-1e4, 1e4, "m/s")
@@ -206,7 +206,7 @@ class PoundingFrames:
         """The numbers that move: the storeys, then the waves of their slabs."""
         n, at = self.mass.size, [self.storeys.index(slab.at) for slab in self.slabs.values()]
         waves = [slab.waves(self.mass[i], self.halvings) for i, slab in zip(at, self.slabs.values(), strict=True)]
-        mass, stiffness, damping = (np.concatenate(part) for part in zip(NO_WAVES, *waves, strict=True))
+        mass, stiffness, damping = (np.concatenate(part) for part in zip(NO_MODES, *waves, strict=True))
         still, ends = np.zeros(mass.size), np.repeat(np.array(at, dtype=int), [one.mass.size for one in waves])
         return LinearBodies(
             np.append(self.mass, mass),

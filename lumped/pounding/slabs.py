@@ -22,7 +22,7 @@ SIDES = ("left", "right")
 STOREY = Count(1, MOST_STOREYS)
 
 
-class Waves(NamedTuple):
+class SlabModes(NamedTuple):
     """Of shapes of a rod that are 1 at its struck end: mass, kg, stiffness, N/m, and damping, N s/m, each (n,)."""
 
     mass: Array
@@ -30,7 +30,7 @@ class Waves(NamedTuple):
     damping: Array
 
 
-NO_WAVES = Waves(np.zeros(0), np.zeros(0), np.zeros(0))
+NO_MODES = SlabModes(np.zeros(0), np.zeros(0), np.zeros(0))
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Slab(Record):
         """How long a wave takes along it, s."""
         return self.length * sqrt(self.density / self.modulus)
 
-    def waves(self, mass: float, halvings: int = 0) -> Waves:
+    def waves(self, mass: float, halvings: int = 0) -> SlabModes:
         """Its modes, and all higher ones as one shape more: what each yields at the struck end under a steady force.
 
         Of higher modes that is the sum of 1/(m_k w_k^2), and of 1/(m_k w_k^4) the kinetic energy that goes with it
@@ -66,4 +66,4 @@ class Slab(Record):
         yields, carries = (2.0 / (mass * first**power) * float(zeta(power, count + 1)) for power in (2, 4))
         masses = np.append(np.full(count, 0.5 * mass), carries / yields**2)
         stiffness = np.append(0.5 * mass * (first * np.arange(1.0, count + 1.0)) ** 2, 1.0 / yields)
-        return Waves(masses, stiffness, 2.0 * self.damping_ratio * np.sqrt(masses * stiffness))
+        return SlabModes(masses, stiffness, 2.0 * self.damping_ratio * np.sqrt(masses * stiffness))
