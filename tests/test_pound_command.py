@@ -38,6 +38,7 @@ CASE: dict[str, Any] = {
     "motion": {"end_time": 1.0},
 }
 
+SLAB = {"structure": "left", "storey": 1, "length": 20.0, "modulus": 3e10, "density": 2500.0}
 FLOORS = """
 striker = {shape = "sphere", radius = 2.0, mass = 1.0, velocity = 1.0}
 target = {shape = "half_space", material = {law = "sls", E0 = 3e10, R1 = 0.5, R2 = 0.005, nu = 0.2}}
@@ -239,8 +240,11 @@ def test_a_packaged_case_is_read_and_its_record_is_the_formula_in_its_file(name:
 
 def test_the_file_of_the_manual_is_accepted() -> None:
     text = Path(fe_contact.__file__).with_name("manual").joinpath("pounding.md").read_text(encoding="utf-8")
-    table = tomllib.loads(text.partition("```toml")[2].partition("```")[0])
-    assert read(table, folder=CASES.path("two-frames").parent).laws()
+    whole, slab, calibrated = (part.partition("```")[0] for part in text.split("```toml")[1:])
+    case = read(tomllib.loads(whole + slab), folder=CASES.path("two-frames").parent)
+    assert case.laws()
+    assert case.to_dict()["slab"]["stiffer"]["modes"] == 4
+    assert tomllib.loads(calibrated)
 
 
 BAD: list[tuple[str, object, str]] = [
@@ -260,6 +264,14 @@ BAD: list[tuple[str, object, str]] = [
     ("gap.floor", 0.1, "gap.floor: not a table"),
     ("gap.$a$", {"left": 1, "right": 1}, r"gap.\$a\$: accepted: a name"),
     ("gap", [], "gap: not a table"),
+    ("slab.floor", SLAB | {"storey": 2}, "slab.floor.storey: left_2; accepted: storeys of a gap, .*: left_1, right_1"),
+    ("slab", {"one": SLAB, "other": SLAB}, "slab.other.storey: left_1; accepted"),
+    ("slab", {"one": SLAB | {"modes": 150}, "b": SLAB | {"structure": "right", "modes": 51}}, "slab: 201 modes of all"),
+    ("slab.floor", SLAB | {"structure": "middle"}, "slab.floor.structure"),
+    ("slab.floor", SLAB | {"length": 0.0}, "slab.floor.length"),
+    ("slab.floor", SLAB | {"modes": 1}, "slab.floor.modes"),
+    ("slab.floor", SLAB | {"speed": 3e3}, "slab.floor.speed: unknown key"),
+    ("slab.floor.length", 10.0, "slab.floor.modulus: missing"),
     ("law", None, "law: missing"),
     ("law.name", "kelvn", "did you mean kelvin"),
     ("law", {"name": "correspondence", "scene": "polymer-sphere"}, "law.scene: two storeys meet there: .* sinks in"),

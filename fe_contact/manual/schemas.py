@@ -18,6 +18,7 @@ from lumped.materials.networks import NETWORKS
 from lumped.pounding import case_file as pounding
 from lumped.pounding.frames import Gap, ShearFrame
 from lumped.pounding.gap_laws import GapLaw
+from lumped.pounding.slabs import Slab
 from lumped.ptmd import case_file as damper
 from lumped.ptmd.free_vibration import TIME_KEYS
 from lumped.ptmd.system import Oscillator
@@ -148,7 +149,8 @@ def ptmd() -> Table:
 
 def pound() -> Table:
     """A file of pounding frames."""
-    frame, gap = of_keys(keys_of(ShearFrame)), of_keys(keys_of(Gap))
+    frame = of_keys(keys_of(ShearFrame))
+    named: Table = {"type": "object", "maxProperties": pounding.MOST_GAPS}
     shared = {"velocity": keys_of(GapLaw)["velocity"], "scene": pounding.SCENE_KEY}
     laws = {
         name: [of_keys({key: one for key, one in keys.items() if key != "gap"} | shared) for keys in member.sets]
@@ -157,7 +159,8 @@ def pound() -> Table:
     frames: Table = {"type": "object", "properties": {"left": frame, "right": frame}, "required": ["left"]}
     tables: dict[str, Table] = {
         "structure": frames | {"additionalProperties": False},
-        "gap": {"type": "object", "additionalProperties": gap, "maxProperties": pounding.MOST_GAPS},
+        "gap": named | {"additionalProperties": of_keys(keys_of(Gap))},
+        "slab": named | {"additionalProperties": of_keys(keys_of(Slab))},
         "law": one_of("name", laws),
         "ground": one_of("kind", {kind: [of_keys(keys)] for kind, keys in pounding.GROUNDS.items()}),
         "motion": of_keys(pounding.MOTION_KEYS),

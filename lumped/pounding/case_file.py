@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from lumped.laws._force_law import ForceLaw
 from lumped.pounding.frames import Gap, PoundingFrames, ShearFrame
 from lumped.pounding.gap_laws import GapLaw
 from lumped.pounding.ground import STILL, GroundMotion, GroundRecord, Sine
+from lumped.pounding.slabs import Slab
 from lumped.scene.tables import LAWS, TableReader
 from lumped.schema import Table
 from lumped.schema.csv_file import read_columns, read_header
@@ -24,7 +26,7 @@ from lumped.schema.members import Anything, Member, alternatives
 CASES = Packaged("pound", "case")
 GRAVITY = 9.80665  # physics: m/s2, what an acceleration_g counts in
 COLUMNS = {"acceleration_m_per_s2": 1.0, "acceleration_g": GRAVITY}  # by the header of a record: in m/s2
-MOST_GAPS = 50  # work: of one file
+MOST_GAPS = 50  # work: of one file; and so many slabs
 GAP_NAME = re.compile(r"[\w -]{1,40}")  # it heads a column and a panel of the chart
 TIME, ACCELERATION = Number(1e-9, 1e9, "s"), Key(Number(0.0, 1e6, "m/s2"), "the largest")
 GROUNDS: Mapping[str, Mapping[str, Key]] = {
@@ -41,6 +43,9 @@ GROUNDS: Mapping[str, Mapping[str, Key]] = {
 }
 SCENE_KEY = Key(File(), "scene file, or packaged scene: shapes and materials where storeys meet", required=False)
 MOTION_KEYS: Mapping[str, Key] = {"end_time": Key(TIME, "when to stop")}
+
+
+Named = TypeVar("Named", Gap, Slab)
 
 
 @dataclass(frozen=True)
@@ -92,6 +97,7 @@ class PoundingCase:
         return {
             "structure": {name: written(frame) for name, frame in self.frames.frames.items()},
             "gap": {name: written(gap) for name, gap in self.frames.gaps.items()},
+            "slab": {name: written(slab) for name, slab in self.frames.slabs.items()},
             "law": None
             if self.law is None
             else {"name": self.law.name, "velocity": self.law.velocity, **self.law.values},
@@ -123,17 +129,17 @@ def read(table: Mapping[str, object], source: str = "pound", folder: Path = Path
 class PoundingReader(TableReader):
     """Makes a case of the tables of its file."""
 
-    TABLES = ("structure", "gap", "law", "ground", "motion")
+    TABLES = ("structure", "gap", "slab", "law", "ground", "motion")
 
     def case(self) -> PoundingCase:
         """The case; raises BadInput when anything is wrong."""
         name, frames = self.name(), self.frames()
-        gaps, law = self.gaps(), self.law()
+        gaps, slabs, law = self.named(Gap), self.named(Slab), self.law()
         shaking, ground = self.ground()
         motion = self.checked("motion", self.table("motion") or {}, MOTION_KEYS) if "motion" in self.raw else {}
         if "motion" not in self.raw:
             self.faults.append(Fault(self.source, "motion", "missing; accepted: a table with end_time, s"))
-        pounding = None if frames is None else self.made("gap", lambda: PoundingFrames(*frames, gaps), {}, "gap")
+        pounding = None if frames is None else self.made("gap", lambda: PoundingFrames(*frames, gaps, slabs), {}, "gap")
         if gaps and law is None and "law" not in self.raw:
             self.faults.append(
                 Fault(self.source, "law", "missing; accepted: a table with the law that acts in the gaps")
@@ -166,27 +172,26 @@ class PoundingReader(TableReader):
         values = self.checked(path, dict(table), keys_of(ShearFrame))
         return None if len(self.faults) > known else self.made(path, ShearFrame, values, "structure")
 
-    def gaps(self) -> dict[str, Gap]:
-        """All that are accepted, by their names."""
-        if "gap" not in self.raw:
+    def named(self, kind: type[Named]) -> dict[str, Named]:
+        """All gaps, or slabs, that are accepted, by their names."""
+        what = kind.name
+        if what not in self.raw:
             return {}
-        tables, found = self.table("gap") or {}, dict[str, Gap]()
+        tables, found = self.table(what) or {}, dict[str, Named]()
         if len(tables) > MOST_GAPS:
-            self.faults.append(Fault(self.source, "gap", f"{len(tables)} of them; accepted: at most {MOST_GAPS}"))
+            self.faults.append(Fault(self.source, what, f"{len(tables)} of them; accepted: at most {MOST_GAPS}"))
             return {}
         for name, table in tables.items():
-            known = len(self.faults)
+            known, path = len(self.faults), f"{what}.{name}"
             if not GAP_NAME.fullmatch(name):
                 reason = "accepted: a name of 1 to 40 letters, digits, spaces, - and _"
-                self.faults.append(Fault(self.source, f"gap.{name}", reason))
+                self.faults.append(Fault(self.source, path, reason))
             elif isinstance(table, Mapping):
-                values = self.checked(f"gap.{name}", dict(table), keys_of(Gap))
+                values = self.checked(path, dict(table), keys_of(kind))
             else:
-                self.faults.append(
-                    Fault(self.source, f"gap.{name}", f"not a table; accepted: {', '.join(keys_of(Gap))}")
-                )
+                self.faults.append(Fault(self.source, path, f"not a table; accepted: {', '.join(keys_of(kind))}"))
             if len(self.faults) == known:
-                found[name] = Gap(**values)
+                found[name] = kind(**values)
         return found
 
     def law(self) -> GapLaw | None:

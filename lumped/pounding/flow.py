@@ -30,7 +30,8 @@ class LinearBodies:
     """M q'' + C q' + K q = -M 1 a(t) - R^T F, and F >= 0 acts where the depth R q - distance is above zero.
 
     `mass` (n,), kg; `stiffness` and `damping` (n, n), N/m and N s/m; `rows` R (m, n) and `distances` (m,), m, of the
-    gaps; `start`: displacements, m, then velocities, m/s, (2 n,).
+    gaps; `start`: displacements, m, then velocities, m/s, (2 n,). The last of q, as many as `waves`, are of waves
+    within bodies: the ground does not push them, there 1 is zero.
     """
 
     mass: Array
@@ -39,6 +40,7 @@ class LinearBodies:
     rows: Array
     distances: Array
     start: Array
+    waves: int = 0
 
     @cached_property
     def reduced_masses(self) -> Array:
@@ -100,7 +102,7 @@ class FrameFlow:
         shaken = np.zeros((TERMS + 1, 2 * self.size, TERMS))
         for k in range(TERMS):
             shaken[k + 1] = self.matrix @ shaken[k]
-            shaken[k + 1, self.size :, k] -= self.unit
+            shaken[k + 1, self.size : 2 * self.size - self.frames.waves, k] -= self.unit
             shaken[k + 1] /= k + 1
         return shaken
 

@@ -2,7 +2,8 @@
 
 M q'' + C q' + K q = -M 1 a(t) - R^T F: q are the displacements of the storeys relative to the ground, to the right; a
 row of R is +1 at the left and -1 at the right storey of a gap, so that R q - distance is its depth, and F >= 0 pushes
-both back. A wall moves with the ground.
+both back. A wall moves with the ground. SlabModes of slabs follow the storeys in q, and every gap at a storey presses on
+those of its slab too.
 """
 
 from __future__ import annotations
@@ -17,11 +18,10 @@ import numpy as np
 from lumped.errors import BadInput, Fault
 from lumped.numbers import Array
 from lumped.pounding.flow import LinearBodies
-from lumped.schema.keys import Count, Key, Number, Numbers, Record
+from lumped.pounding.slabs import MOST_MODES, MOST_STOREYS, NO_MODES, SIDES, STOREY, Slab
+from lumped.schema.keys import Key, Number, Numbers, Record
 
-MOST_STOREYS = 50  # work: of one frame
 ANY_LENGTH, ANY_SPEED = Number(-1e4, 1e4, "m"), Number(-1e4, 1e4, "m/s")
-STOREY = Count(1, MOST_STOREYS)
 DAMPINGS = ("damping_ratio", "rayleigh", "dashpot")
 
 
@@ -114,14 +114,20 @@ class Gap(Record):
 
 @dataclass(frozen=True)
 class PoundingFrames:
-    """One or two frames and their gaps by names. Raises BadInput for a gap at a storey that is not there."""
+    """One or two frames, their gaps and the slabs that have waves, by names; how often to halve the modes of these.
+
+    Raises BadInput for a gap at a storey that is not there, and for a slab at a storey without a gap.
+    """
 
     left: ShearFrame
     right: ShearFrame | None = None
     gaps: Mapping[str, Gap] = field(default_factory=dict)
+    slabs: Mapping[str, Slab] = field(default_factory=dict)
+    halvings: int = 0
 
     def __post_init__(self) -> None:
         faults = [fault for name, gap in self.gaps.items() for fault in self._faults(f"gap.{name}", gap)]
+        faults += self._slab_faults()
         if faults:
             raise BadInput(faults)
 
@@ -139,6 +145,18 @@ class PoundingFrames:
         if not faults and self._overlap(gap) > 0.0:
             reason = f"closed by {self._overlap(gap):.3g} m at t = 0; accepted: a start that leaves it open"
             faults.append(Fault("gap", f"{where}.distance", reason))
+        return faults
+
+    def _slab_faults(self) -> list[Fault]:
+        at = {f"{side}_{getattr(gap, side)}" for gap in self.gaps.values() for side in SIDES}
+        struck, taken, faults = [name for name in self.storeys if name in at], set[str](), list[Fault]()
+        for name, slab in self.slabs.items():
+            if slab.at not in struck or slab.at in taken:
+                accepted = f"accepted: storeys of a gap, one slab each: {', '.join(struck) or 'none here'}"
+                faults.append(Fault("slab", f"slab.{name}.storey", f"{slab.at}; {accepted}"))
+            taken.add(slab.at)
+        if (modes := sum(slab.modes for slab in self.slabs.values())) > MOST_MODES:
+            faults.append(Fault("slab", "slab", f"{modes} modes of all together; accepted: at most {MOST_MODES}"))
         return faults
 
     def _overlap(self, gap: Gap) -> float:
@@ -185,8 +203,20 @@ class PoundingFrames:
 
     @cached_property
     def bodies(self) -> LinearBodies:
-        """The numbers that move."""
-        return LinearBodies(self.mass, self.stiffness, self.damping, self.rows, self.distances, self.start)
+        """The numbers that move: the storeys, then the waves of their slabs."""
+        n, at = self.mass.size, [self.storeys.index(slab.at) for slab in self.slabs.values()]
+        waves = [slab.waves(self.mass[i], self.halvings) for i, slab in zip(at, self.slabs.values(), strict=True)]
+        mass, stiffness, damping = (np.concatenate(part) for part in zip(NO_MODES, *waves, strict=True))
+        still, ends = np.zeros(mass.size), np.repeat(np.array(at, dtype=int), [one.mass.size for one in waves])
+        return LinearBodies(
+            np.append(self.mass, mass),
+            _blocks([self.stiffness, np.diag(stiffness)]),
+            _blocks([self.damping, np.diag(damping)]),
+            np.hstack([self.rows, self.rows[:, ends]]),
+            self.distances,
+            np.concatenate([self.start[:n], still, self.start[n:], still]),
+            mass.size,
+        )
 
     @cached_property
     def rows(self) -> Array:

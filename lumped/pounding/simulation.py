@@ -118,9 +118,9 @@ class Account:
     def __init__(self, frames: PoundingFrames, march: FrameMarch) -> None:
         self.march, self.flow, self.frames = march, march.rules.flow, frames
         self.names = tuple(frames.gaps)
-        self.times, self.states = [0.0], [frames.start]
+        self.times, self.states = [0.0], [frames.bodies.start]
         self.forces = [np.zeros(len(frames.gaps))]
-        self.peaks = Peaks.of(4 * self.flow.size)
+        self.peaks = Peaks.of(4 * frames.mass.size)
         self.open: dict[int, OpenContact] = {}
         self.contacts: list[FrameContact] = []
         self.input = self.damping = self.lost = 0.0
@@ -179,17 +179,25 @@ class Account:
             return
         weights, states, forces, ground = map(np.concatenate, zip(*self.waiting, strict=True))
         self.waiting.clear()
-        speeds = states[..., self.flow.size :]
-        self.input -= float((weights * ground * (speeds @ self.frames.mass)).sum())
-        self.damping += float((weights * ((speeds @ self.frames.damping) * speeds).sum(axis=-1)).sum())
+        speeds, n = states[..., self.flow.size :], self.frames.mass.size
+        self.input -= float((weights * ground * (speeds[..., :n] @ self.frames.mass)).sum())
+        self.damping += float((weights * ((speeds @ self.frames.bodies.damping) * speeds).sum(axis=-1)).sum())
         self.peaks.see(self._values(states, forces), NODES)
 
     def _values(self, states: Array, forces: Array) -> Array:
         """Displacement, drift, total acceleration and speed of every storey, (..., 4 n)."""
-        n = self.flow.size
-        places, speeds = states[..., :n], states[..., n:]
-        drifts, accelerations = places @ self.frames.to_drift.T, self.frames.bodies.accelerations(states, forces)
+        places, speeds = self._of_storeys(states)
+        drifts, accelerations = places @ self.frames.to_drift.T, self._accelerations(states, forces)
         return np.concatenate([places, drifts, accelerations, speeds], axis=-1)
+
+    def _of_storeys(self, states: Array) -> tuple[Array, Array]:
+        """Displacements, m, and velocities, m/s, of the storeys, both (..., n)."""
+        n, first = self.frames.mass.size, self.flow.size
+        return states[..., :n], states[..., first : first + n]
+
+    def _accelerations(self, states: Array, forces: Array) -> Array:
+        """Total ones of the storeys, m/s2, (..., n)."""
+        return self.frames.bodies.accelerations(states, forces)[..., : self.frames.mass.size]
 
     def _stored(self, i: int, gap: GapState, depth: float) -> float:
         return float(self.march.rules.laws[i].stored(max(depth, 0.0), gap.stage))
@@ -198,13 +206,13 @@ class Account:
         """All of it."""
         self._close()
         time, states, forces = np.array(self.times), np.array(self.states), np.array(self.forces)
-        n, frames = self.flow.size, self.frames
+        (places, speeds), frames = self._of_storeys(states), self.frames
         motion = FramesMotion(
             time,
-            states[:, :n],
-            states[:, :n] @ frames.to_drift.T,
-            states[:, n:],
-            frames.bodies.accelerations(states, forces),
+            places,
+            places @ frames.to_drift.T,
+            speeds,
+            self._accelerations(states, forces),
             self.march.ground.acceleration(time),
             forces,
         )

@@ -131,6 +131,8 @@ def told(study: PoundStudy) -> list[str]:
         said = f"{name:17s} peak drift {1e3 * m['peak_drift']:.4g} mm, acceleration {m['peak_acceleration']:.4g} m/s2"
         if name != NO_CONTACT:
             said += f", {m['contacts']} contacts, peak force {1e-3 * m['peak_force']:.4g} kN"
+            if result.frames.slabs:
+                said += f" +- {study.motions[name].relative:.1%}"
             said += f", impulse {1e-3 * m['impulse']:.4g} kN s"
         lines.append(said)
     energy = study.main.energy
