@@ -2,7 +2,7 @@
 
 M q'' + C q' + K q = -M 1 a(t) - R^T F: q are the displacements of the storeys relative to the ground, to the right; a
 row of R is +1 at the left and -1 at the right storey of a gap, so that R q - distance is its depth, and F >= 0 pushes
-both back. A wall moves with the ground. SlabModes of slabs follow the storeys in q, and every gap at a storey presses on
+both back. A wall moves with the ground. Waves of slabs follow the storeys in q, and every gap at a storey presses on
 those of its slab too.
 """
 
