@@ -33,7 +33,7 @@ class Constant(NamedTuple):
     weaker: Any = None
 
 
-CERTIFY = "fe_contact.budget.certify"
+CERTIFY, COMPARE = "fe_contact.budget.certify", "fe_contact.studies.compare.study"
 VARIATION, CURVE, IMPACT = "fe_contact.budget.variation", "fe_contact.budget.curve", "fe_contact.march.impact"
 TABLE = (
     Constant(VARIATION, "SAFETY", DERIVED, "Roache's for three grids, doi:10.1115/1.2910291"),
@@ -85,6 +85,8 @@ TABLE = (
         "step over relaxation time; outside, the branch's weight is within 1/8 of a power of the step",
         (1e300, 1e301),
     ),
+    Constant(CURVE, "FIRST", DERIVED, "steps: polynomials through six nodes tell what relaxes later"),
+    Constant(COMPARE, "CURVE_ORDER", DERIVED, "slopes of parabolas through three depths of a slow curve"),
     Constant(CURVE, "PEAK_SHARE", MEASURED, "a peak is judged by all forces above this share", 1.0),
     Constant(CURVE, "HALF_AS_HIGH", DERIVED, "a quartic places a peak to the fourth order of the width that it fits"),
     Constant(VARIATION, "LATE", MEASURED, "path and speed from here on count for those at the end", 1.0),

@@ -51,7 +51,10 @@ class Washer(Target):
         return min(added, 1.0), MOVES.format(added)
 
     def strains(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> StrainField:
-        """Alike everywhere, its sides free: a bonded base holds them less than it seems."""
+        """Alike everywhere, its sides free: a bonded base holds them less than it seems.
+
+        A bonded wall thinner than half of its height leans outwards, softer, which this does not see.
+        """
         return alike(nu, depth / self.height, free=True)
 
     def fixed_radius(self, shape: Shape) -> float | None:

@@ -167,7 +167,7 @@ def drawn(random: np.random.Generator, name: str) -> tuple[Shape, Target, float]
         return Cylinder(1.0 - between(0.005, 0.3), 1.0), Ring(1.0, thickness), thickness * between(0.01, 0.25)
     if striker == "washer":
         inner = between(0.2, 2.0)
-        washer = Washer(inner, inner + between(0.2, 4.0), 1.0, str(random.choice(["bonded", "sliding"])))
+        washer = Washer(inner, inner + between(0.5, 4.0), 1.0, str(random.choice(["bonded", "sliding"])))
         return Punch(9.0), washer, between(0.01, 0.25)
     if striker == "o_ring":
         section = between(0.1, 0.8)
