@@ -1,4 +1,4 @@
-"""Numbers that know no physics: local polynomials, peaks between rows, Gauss' points, zeros, clocks."""
+"""Numbers that know no physics: local polynomials, peaks between rows, integrals, Gauss' points, zeros, clocks."""
 
 from __future__ import annotations
 
@@ -92,6 +92,11 @@ def highest(curve: Callable[[Array], Array], places: Array) -> tuple[float, floa
     heights = fit(candidates)
     best = int(np.argmax(heights))
     return float(0.5 * (low + high) + 0.5 * (high - low) * candidates[best]), float(heights[best])
+
+
+def running_integral(values: Array, places: Array) -> Array:
+    """Integral of values (n,) from the first of the places (n,) to each of them, by the trapezoidal rule."""
+    return np.append(0.0, np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(places)))
 
 
 @cache

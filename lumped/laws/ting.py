@@ -18,7 +18,7 @@ import numpy as np
 from lumped.laws._hereditary import SAFETY, Course, HereditaryLaw, Solve, simulate
 from lumped.laws.base import LawKind, check_load_curve, waves
 from lumped.materials import Relaxation
-from lumped.numbers import Array
+from lumped.numbers import Array, running_integral
 from lumped.result.history import End
 from lumped.result.result import Result
 from lumped.scene.scene import Scene
@@ -76,8 +76,8 @@ def bent(problem: Hereditary, course: Course) -> tuple[dict[str, float], float]:
     time, edge = back.times[rows], back.edge[rows]
     left = np.array([back.felt(0.5 * (back.depth - back.edge[i]) ** 2, i) for i in rows])
     pressed = np.abs(left * _bending(problem, edge, deepest))
-    speed = _summed(pressed, time)
-    moved = np.interp(back.times, time, _summed(speed, time))
+    speed = running_integral(pressed, time)
+    moved = np.interp(back.times, time, running_integral(speed, time))
     felt = np.array([back.felt(moved, i) for i in rows])
     force = pressed + problem.loads(edge)[1] * felt
     closing = (back.felt(back.depth, rows[-1], 0.0) - back.felt(back.depth, rows[-2], 0.0)) / (time[-1] - time[-2])
@@ -96,11 +96,6 @@ def _bending(problem: Hereditary, edge: Array, deepest: float) -> Array:
     depths, unit = deepest * np.linspace(0.0, 1.0, LOOKS)[1:], problem.scales.depth**2 / problem.scales.load
     known = [unit * problem.curve.bending(problem.scales.depth * float(depth)) for depth in depths]
     return np.asarray(np.interp(edge, np.append(0.0, depths), np.append(0.0, known)))
-
-
-def _summed(values: Array, times: Array) -> Array:
-    """Integral over times (n,) from the first to each, by the trapezoidal rule."""
-    return np.append(0.0, np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(times)))
 
 
 @dataclass(frozen=True, eq=False)

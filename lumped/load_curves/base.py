@@ -80,7 +80,7 @@ class LoadCurve(ABC):
 
         A target whose overlaps do not all grow by the same in every stretch of the way says what they do.
         """
-        return 0.0 * depth
+        return 0.0
 
     def force_at(self, contact_radius: ArrayLike) -> Real:
         """F/E* at a contact radius."""

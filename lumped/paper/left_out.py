@@ -61,14 +61,10 @@ def at_lower_velocity(concrete: Concrete) -> list[Result]:
 
 
 def ring_strained(examples: Examples) -> Values:
-    """At the deepest penetration, both masses displaced, over the assumed thickness of the lining."""
-    ring, peak, cylinder = (
-        examples.ring,
-        _ring_peak(examples),
-        Cylinder(0.5 * examples.ring.rod_diameter, examples.ring.width),
-    )
+    """At the deepest penetration, both masses displaced, by every assumed thickness of the lining."""
+    ring, peak = examples.ring, _ring_peak(examples)
+    cylinder, material = Cylinder(0.5 * ring.rod_diameter, ring.width), Material(Relaxation(ring.E0), ring.nu)
     around = [Ring(cylinder.radius + examples.ptmd.gap, thickness) for thickness in ring.thickness]
-    material = Material(Relaxation(ring.E0), ring.nu)
     return _rounded(finite_strain(Geometry(cylinder, one, material), peak, struck=True).size for one in around)
 
 

@@ -12,7 +12,6 @@ from math import pi, sqrt
 from typing import Annotated, ClassVar, NamedTuple
 
 import numpy as np
-from scipy.special import zeta
 
 from lumped.numbers import Array
 from lumped.schema.keys import Choice, Count, Key, Number, Record
@@ -62,6 +61,8 @@ class Slab(Record):
         Of higher modes that is the sum of 1/(m_k w_k^2), and of 1/(m_k w_k^4) the kinetic energy that goes with it
         (Rubin 1975, doi 10.2514/3.60497). `mass`: the storey's, kg; `halvings`: of the modes followed, two at most.
         """
+        from scipy.special import zeta  # late: only slabs need it
+
         first, count = pi / self.passage, self.modes >> halvings
         yields, carries = (2.0 / (mass * first**power) * float(zeta(power, count + 1)) for power in (2, 4))
         masses = np.append(np.full(count, 0.5 * mass), carries / yields**2)

@@ -60,11 +60,6 @@ class Peak:
         duration = number["duration"] or 2.0 * number["peak_time"]
         return cls(number["peak_force"], number["peak_depth"], float(history.contact_radius.max()), duration)
 
-    @property
-    def steepness(self) -> float:
-        """depth/a: for a sphere a/R."""
-        return self.depth / self.contact_radius if self.contact_radius > 0.0 else 0.0
-
 
 def model_ledger(scene: Scene, peak: Peak, model: Model | None = None) -> tuple[LedgerEntry, ...]:
     """The ledger of a scene under `model` (default: the scene's own), with the scales of its impact."""
@@ -198,11 +193,9 @@ def finite_strain(geometry: Geometry, peak: Peak, struck: bool) -> LedgerEntry:
         return LedgerEntry(effect, treated, size, f"{name}, to first order in strain", key=LARGE, value="finite")
     found = {name: strains.change(energy_of(key), struck) for key, name in ENERGY_NAMES.items()}
     lowest, highest = (of(found, key=lambda name: found[name]) for of in (min, max))
-    spread, usual = (
-        (found[lowest], found[highest]),
-        f"{ENERGY_NAMES[DEFAULT]} {percent(abs(found[ENERGY_NAMES[DEFAULT]]))}",
-    )
-    note = f"{lowest} to {highest}, {usual}: the scene gives no law of large strains"
+    spread, usual = (found[lowest], found[highest]), ENERGY_NAMES[DEFAULT]
+    told = f"{lowest} to {highest}, {usual} {percent(abs(found[usual]))}"
+    note = f"{told}: the scene gives no law of large strains"
     least = min(map(abs, spread)) if spread[0] * spread[1] > 0.0 else None
     return LedgerEntry(effect, treated, least, note, LARGE, spread, "finite")
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lumped.errors import BadInput, Fault
-from lumped.numbers import Array, peak
+from lumped.numbers import Array, peak, running_integral
 from lumped.result.history import ForceOverTime, History
 from lumped.schema.shown import html_table
 
@@ -113,7 +113,7 @@ def _features(curve: History | Curve) -> dict[str, float | None]:
 
 def _motion_of(history: History, duration: float | None) -> dict[str, float | None]:
     """What needs the depth: None where the bodies do not part."""
-    work = np.concatenate([[0.0], np.cumsum(0.5 * (history.force[1:] + history.force[:-1]) * np.diff(history.depth))])
+    work = running_integral(history.force, history.depth)
     given, ended = float(work[int(np.argmax(history.depth))]), duration is not None
     return {
         "peak_depth": peak(history.time, history.depth)[1],

@@ -53,8 +53,8 @@ class RoundTarget(Target):
 
     def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
         """Each by half of the depth, down to its middle, along a contact that stays flat."""
-        known = replace(super().pressed(shape, nu, depth, contact_radius), depth=0.5 * depth, moving=False)
-        return replace(known, thickness=self.radius, base="sliding")
+        known = super().pressed(shape, nu, depth, contact_radius)
+        return replace(known, depth=0.5 * depth, thickness=self.radius, base="sliding", moving=False)
 
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:
         """A half-space's where it is taken as one; of a free body what :func:`vibrations` leave.

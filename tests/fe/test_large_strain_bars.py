@@ -103,6 +103,18 @@ def answer_to_impact(scene: Scene, tolerance: float, settings: Mapping[str, floa
         return None
 
 
+def compare_with_finer(
+    one: Scene, uncovered: Callable[..., dict[str, float]], converged: list[bool], wrong: list[str]
+) -> None:
+    """Note whether an impact converged, and what lies outside its bars and those of a finer run."""
+    loose = answer_to_impact(one, TOLERANCE)
+    tight = None if loose is None else answer_to_impact(one, 0.25 * TOLERANCE, FINER)
+    converged.append(loose is not None and loose.converged)
+    over = {} if loose is None or tight is None else uncovered(loose, tight)
+    if over:
+        wrong.append(f"{one.material} {one.geometry.shape} {one.target} {one.velocity:g}: {over}")
+
+
 @pytest.mark.tenth
 def test_finer_runs_lie_within_both_bars(campaign_size: Callable[..., int]) -> None:
     """All scenes with --full, else the first: each takes seconds."""
@@ -133,12 +145,7 @@ def test_finer_impacts_of_other_pairs_lie_within_both_bars(
         pressed, deepest = pair(random, PAIRS[number % len(PAIRS)])
         force = indent(replace(pressed, model=Model()), (deepest,), {"tolerance": TOLERANCE}).force[0]
         one = struck_with(random, pressed, 0.4 * float(force) * deepest, number // len(PAIRS))
-        loose = answer_to_impact(one, TOLERANCE)
-        tight = None if loose is None else answer_to_impact(one, 0.25 * TOLERANCE, FINER)
-        converged.append(loose is not None and loose.converged)
-        over = {} if loose is None or tight is None else uncovered(loose, tight)
-        if over:
-            wrong.append(f"{one.material} {one.geometry.shape} {one.target} {one.velocity:g}: {over}")
+        compare_with_finer(one, uncovered, converged, wrong)
     assert not wrong
     assert np.mean(converged) >= LEAST
 
@@ -151,11 +158,6 @@ def test_finer_impacts_lie_within_both_bars(
     converged, wrong = list[bool](), list[str]()
     for number in range(count if count == SCENES else 1):
         one = struck(random, number % 3)
-        loose = answer_to_impact(one, TOLERANCE)
-        tight = None if loose is None else answer_to_impact(one, 0.25 * TOLERANCE, FINER)
-        converged.append(loose is not None and loose.converged)
-        over = {} if loose is None or tight is None else uncovered(loose, tight)
-        if over:
-            wrong.append(f"{one.material} {one.target} {one.velocity:g}: {over}")
+        compare_with_finer(one, uncovered, converged, wrong)
     assert not wrong
     assert np.mean(converged) >= LEAST

@@ -119,18 +119,23 @@ def test_a_turn_does_not_relax() -> None:
     assert doubled(moved.state[0], green(ends[1])) == pytest.approx(doubled(still.state[0], green(ends[0])))
 
 
+def is_that_of_small_strains(scene: Scene, coarse: Numerics, tolerance: float, close: float, residual: float) -> None:
+    """As a run to the tolerance, quantities as ``close`` and the energy balanced to a ``residual``, both relative."""
+    few, many = (Marcher.of(scene, coarse.varied(steps=steps)).march() for steps in (12, 24))
+    found = extrapolated(Curve.of(many, Strike.of(scene)), Curve.of(few, Strike.of(scene)), 2)
+    small = run(scene, tolerance=tolerance)
+    for name in ("restitution", "peak_depth", "peak_force", "duration"):
+        assert found.quantities[name] == pytest.approx(small.quantities[name].value, rel=close)
+    assert abs(found.energy["residual"]) < residual * found.energy["in"]
+    assert found.energy["viscous"] == pytest.approx(small.energy["viscous"], rel=0.02)
+
+
 @pytest.mark.tenth
 def test_a_light_impact_is_that_of_small_strains() -> None:
     """At a thousandth of the speed, the material as much faster as the contact is shorter; the energy balances."""
     scene = Scene.load("polymer-sphere", {"striker.velocity": 2e-5, "target.material.C1": 7.2e4})
     coarse = plan(scene, {"elements_per_contact": 1.5, "order": 3, "penalty": 300.0, "far_radius": 10.0}).numerics
-    few, many = (Marcher.of(scene, coarse.varied(steps=steps)).march() for steps in (12, 24))
-    found = extrapolated(Curve.of(many, Strike.of(scene)), Curve.of(few, Strike.of(scene)), 2)
-    small = run(scene, tolerance=1e-3)
-    for name in ("restitution", "peak_depth", "peak_force", "duration"):
-        assert found.quantities[name] == pytest.approx(small.quantities[name].value, rel=4e-3)
-    assert abs(found.energy["residual"]) < 1e-3 * found.energy["in"]
-    assert found.energy["viscous"] == pytest.approx(small.energy["viscous"], rel=0.02)
+    is_that_of_small_strains(scene, coarse, tolerance=1e-3, close=4e-3, residual=1e-3)
 
 
 def block_impact(scene: Scene) -> tuple[float, float]:
@@ -185,13 +190,7 @@ def test_a_light_block_of_constant_bulk_modulus_is_that_of_small_strains() -> No
          "striker.material.hyperelastic": "yeoh"},
     )  # fmt: skip
     coarse = plan(scene, {"elements_per_contact": 2.0, "order": 2}).numerics
-    few, many = (Marcher.of(scene, coarse.varied(steps=steps)).march() for steps in (12, 24))
-    found = extrapolated(Curve.of(many, Strike.of(scene)), Curve.of(few, Strike.of(scene)), 2)
-    small = run(scene, tolerance=1e-4)
-    for name in ("restitution", "peak_depth", "peak_force", "duration"):
-        assert found.quantities[name] == pytest.approx(small.quantities[name].value, rel=2e-3)
-    assert abs(found.energy["residual"]) < 5e-3 * found.energy["in"]
-    assert found.energy["viscous"] == pytest.approx(small.energy["viscous"], rel=0.02)
+    is_that_of_small_strains(scene, coarse, tolerance=1e-4, close=2e-3, residual=5e-3)
 
 
 @dataclass(frozen=True, eq=False)
