@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.linalg  # noqa: F401 - brings its own BLAS
-from hypothesis import settings
+from hypothesis import is_hypothesis_test, settings
 from threadpoolctl import threadpool_limits
 
 from fe_contact.assembly.disk_cache import without_disk
@@ -25,6 +25,7 @@ settings.register_profile("full", derandomize=True, deadline=None, max_examples=
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--tenth", action="store_true", help="run every test, the random campaigns by a seeded tenth")
     parser.addoption("--full", action="store_true", help="run every test, the random campaigns whole")
+    parser.addoption("--after-plain", action="store_true", help="leave out what a plain run has just run to the letter")
     parser.addoption("--opensees", action="store_true", help="compare with openseespy too, which has to be installed")
 
 
@@ -43,19 +44,34 @@ def pytest_report_header(config: pytest.Config) -> str:
     return f"size: {size_of(config)}"
 
 
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """A plain run: every family once, nothing that takes long."""
-    if size_of(config) != "plain":
-        return
-    kept, families = list[pytest.Item](), set[str]()
+def in_plain_run(items: Iterable[pytest.Item]) -> set[pytest.Item]:
+    """Every family once, nothing that takes long."""
+    chosen, families = set[pytest.Item](), set[str]()
     for item in items:
         family = item.nodeid.partition("[")[0] if item.get_closest_marker("family") else ""
         if not item.get_closest_marker("tenth") and family not in families:
-            kept.append(item)
+            chosen.add(item)
             families |= {family} - {""}
-    chosen = set(kept)
+    return chosen
+
+
+def grows_with_size(item: pytest.Item) -> bool:
+    """Whether a larger size draws more cases within the test: by hypothesis or by `campaign_size`."""
+    drawn = isinstance(item, pytest.Function) and is_hypothesis_test(item.obj)
+    return drawn or "campaign_size" in getattr(item, "fixturenames", ())
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """The part of this size, less what a plain run has run where the same is said of it."""
+    plain = in_plain_run(items)
+    if size_of(config) == "plain":
+        chosen = plain
+    elif config.getoption("--after-plain"):
+        chosen = {item for item in items if item not in plain or grows_with_size(item)}
+    else:
+        return
     config.hook.pytest_deselected(items=[item for item in items if item not in chosen])
-    items[:] = kept
+    items[:] = [item for item in items if item in chosen]
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
