@@ -53,11 +53,11 @@ class SampledCurve(KnownTogether):
         raise BadInput(Fault("load curve", "pressure", "sampled: only its forces are known"))
 
     def _power(self, depth: ArrayLike, values: tuple[float, ...]) -> tuple[Real, Real]:
-        """A positive quantity and its slope over the depth."""
+        """A positive quantity and its slope over the depth, which at touch is the limit: a flat end has a stiffness."""
         known = np.maximum(np.asarray(depth, dtype=float), TINY)
         logarithm, exponent = _line(np.log(known), np.log(self.depths), np.log(values))
-        value = np.where(np.asarray(depth) > 0.0, np.exp(logarithm), 0.0)
-        return value, value / known * exponent
+        value = np.exp(logarithm)
+        return np.where(np.asarray(depth) > 0.0, value, 0.0), value / known * exponent
 
 
 def _line(x: Array, places: Array, values: Array) -> tuple[Array, Array]:

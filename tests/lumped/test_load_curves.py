@@ -5,9 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from lumped import Material, Relaxation, Scene, laws, simulate
 from lumped.load_curves import ConeCurve, Hertz, LoadCurve, Power, SneddonSphere
 from lumped.load_curves.sampled import SampledCurve
+from lumped.scene.scene import Answered
 from lumped.shapes import Parabola, Shape, Sphere
+from lumped.shapes.punch import Punch
 from lumped.targets import HalfSpace
 
 RADIUS = 0.006
@@ -117,6 +120,20 @@ def test_what_lies_between_sampled_depths_has_order_three_to_the_last_of_them() 
         errors.append(np.abs(np.asarray(curve.force(between)) / stiffening(between) - 1.0).max())
     assert errors[1] < errors[0] / 6.0
     assert errors[2] < errors[1] / 6.0
+
+
+def test_a_flat_end_known_by_samples_is_struck_like_the_flat_end_itself() -> None:
+    """A dashpot answers at once with its damping times the stiffness at touch, which no sample holds."""
+    damped = Material(Relaxation(1e6, viscosity=500.0), 0.3)
+    scene = Scene(Punch(2e-3), 0.05, 0.05, damped)
+    depths = np.geomspace(1e-7, 1e-5, 5)
+    exact = scene.load_curve
+    sampled = SampledCurve(
+        *(tuple(np.asarray(values)) for values in (depths, exact.force(depths), 2e-3 + 0.0 * depths))
+    )
+    ours, known = (simulate(laws.ting.of(one), one).quantities for one in (Answered.by(scene, sampled), scene))
+    for name in ("peak_force", "peak_time", "duration", "restitution"):
+        assert ours[name].value == pytest.approx(known[name].value, rel=1e-6)
 
 
 def stiffening(depth: np.ndarray) -> np.ndarray:
