@@ -221,7 +221,8 @@ class Surroundings:
         if width <= STRAIGHT:
             half = width * self.coordinates.size(name, value)
             return Estimate(value, max(value - half, key.low), min(value + half, key.high), key.unit)
-        low, high = (self._end(i, name, side) for side in (-1.0, 1.0))
+        ends = self._ends.of((i,))[i]
+        low, high = (None if end.value is None else self.coordinates.value(name, end.value) for end in ends)
         if high is None and low is not None and low - key.low <= AT_BOUND * value:
             low = None  # from the least that it can have to nowhere
         return Estimate(value, low, high, key.unit)
@@ -230,14 +231,6 @@ class Surroundings:
         """Whether what changes no residual changes the i-th free parameter."""
         row = self.slopes[i]
         return bool(np.abs(row[~self.felt]).max(initial=0.0) > MIXED * np.linalg.norm(row))
-
-    def _end(self, i: int, name: str, side: float) -> float | None:
-        """An end of the profile; None where it has none, or no law is there."""
-        try:
-            end = self._ends.end(i, side)
-        except (BadInput, NotReached):
-            return None
-        return None if end is None else self.coordinates.value(name, end)
 
     @cached_property
     def _ends(self) -> Ends:

@@ -11,10 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-from lumped.errors import NotReached
-from lumped.fit.profile import Ends
+from lumped.fit.profile import Ends, WalkEnd
 from lumped.identify.histories import Histories
-from lumped.identify.keys import FreeKey
 from lumped.identify.record import LEVEL, Interval
 from lumped.numbers import Array
 
@@ -54,26 +52,14 @@ class LikelihoodProfile:
 
     def intervals(self) -> dict[str, Interval]:
         """Of every key, around its value in the valley."""
-        return {one.name: self._interval(i, one) for i, one in enumerate(self.histories.keys)}
+        keys = self.histories.keys
+        return {keys[i].name: self._interval(i, *ends) for i, ends in self._ends.of(range(len(keys))).items()}
 
-    def _interval(self, i: int, key: FreeKey) -> Interval:
-        ends, unfound = list[float | None](), list[str]()
-        for name, side in (("low", -1.0), ("high", 1.0)):
-            try:
-                end = self.end(i, side)
-            except NotReached:
-                end = None
-                unfound.append(name)
-            ends.append(None if end is None else key.at(end))
-        low, high = ends
-        return Interval(key.at(float(self.valley.sought[i])), low, high, LEVEL, key.kind.unit, tuple(unfound))
-
-    def end(self, i: int, side: float) -> float | None:
-        """The farthest place of parameter i on a side, -1 or 1, see :class:`lumped.fit.profile.Ends`; None: none.
-
-        Raises NotReached.
-        """
-        return self._ends.end(i, side)
+    def _interval(self, i: int, *ends: WalkEnd) -> Interval:
+        key = self.histories.keys[i]
+        low, high = (None if end.value is None else key.at(end.value) for end in ends)
+        unfound = tuple(name for name, end in zip(("low", "high"), ends, strict=True) if not end.reached)
+        return Interval(key.at(float(self.valley.sought[i])), low, high, LEVEL, key.kind.unit, unfound)
 
     @cached_property
     def _ends(self) -> Ends:

@@ -138,7 +138,7 @@ def test_work_grows_gently_with_the_tolerance(impact: Callable[..., Scene]) -> N
     steps = [simulate(laws.mdr.of(scene), scene, tol).work["steps"] for tol in (1e-4, 1e-6)]
     assert steps[0] < 1200
     assert steps[1] < 3000
-    for law, most in ((laws.ting, 320), (laws.correspondence, 320)):
+    for law, most in ((laws.ting, 260), (laws.correspondence, 220)):
         calls = [simulate(law.of(scene), scene, tol).work["force_evaluations"] for tol in (1e-4, 1e-6)]
         assert max(calls) < most
 

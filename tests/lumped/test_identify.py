@@ -21,7 +21,6 @@ from lumped import BadInput, Scene, identify, laws, simulate
 from lumped.fit.noise import colour_of, memory, whitened, whiteness
 from lumped.identify.ensemble import draws_of
 from lumped.identify.histories import Impact
-from lumped.identify.record import ToldValley
 from lumped.numbers import Array
 from lumped.result.history import History
 from lumped.result.score import Curve
@@ -277,8 +276,8 @@ def test_both_valleys_of_one_history_are_in_the_interval() -> None:
     assert fast.high < slow.low
     assert any("tell the curves about as well" in warning for warning in found.warnings)
 
-    def least(held: float, valley: ToldValley) -> float:
-        values = [valley.parameters[f"target.material.{name}"].value for name in ("E0", "R1")]
+    def least(held: float, ratio: float) -> float:
+        values = (found.valleys[1].parameters["target.material.E0"].value, ratio)
 
         def left(x: Array) -> Array:
             material = {"law": "sls", "E0": np.exp(x[0]), "R1": np.exp(x[1]), "R2": held}
@@ -291,8 +290,12 @@ def test_both_valleys_of_one_history_are_in_the_interval() -> None:
 
     bound, slowly = stdtrit(ROWS - 4, 0.95) ** 2, float(np.sum((first.force - found.curves[0].fitted) ** 2))
     assert 0.0 < found.valleys[1].growth < bound
-    between = least(float(np.sqrt(fast.high * slow.low)), found.valleys[1])
+    ratio = found.valleys[1].parameters["target.material.R1"]
+    assert ratio.low is not None
+    between = least(float(np.sqrt(fast.high * slow.low)), ratio.value)
     assert between / slowly > 1.0 + bound / (ROWS - 4)
+    growth = (least(fast.high, ratio.low) / slowly - 1.0) * (ROWS - 4)
+    assert growth == pytest.approx(bound, rel=0.05), "a stiff spring in series gives way before the end"
 
 
 def test_walkers_draw_from_a_gaussian_of_any_scale() -> None:

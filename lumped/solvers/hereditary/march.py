@@ -100,7 +100,9 @@ class Stretch:
                     over = self.over(piece.values)
                     if over or breaks[-1] >= span[1]:
                         return HereditaryMarch(Path.of(breaks, values), steps, largest, over)
-                    length = _ahead(plan, span, breaks[-1], length * factor)
+                    # where a force begins, as a power of the time, its polynomial tells little of the next piece
+                    longer = factor if len(values) > 1 else min(factor, 1.0)
+                    length = _ahead(plan, span, breaks[-1], length * longer)
                     continue
             length *= factor
             if length <= SHORTEST * (span[1] - span[0]):
