@@ -310,7 +310,8 @@ def transfer(
     start : dotted keys of the scene file and their values at the state of calibration; what it leaves out is the
         scene's.
     over : keys and the values that each takes, alone; None: the velocity from a third to three times.
-    calibrate : ``least_squares`` on the whole history, or ``restitution``: that and the peak force alone.
+    calibrate : ``least_squares`` on the whole history, ``restitution``: that and the peak force alone, or ``modulus``:
+        the restitution beside E*.
     tolerance, method : of the references, as for :func:`run`.
     within : tolerance of the verdict ``within``, relative, of the restitution absolute.
 

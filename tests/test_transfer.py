@@ -56,6 +56,17 @@ def test_a_law_calibrated_on_itself_holds_everywhere(calibrate: str, campaign_si
         assert "within the error bars" in study.sentences[0]
 
 
+def test_a_law_of_modulus_and_restitution_holds_over_lengths_and_velocities() -> None:
+    """Its stiffness is that of E* and the geometry, its damping that of e, at every state."""
+    scene = Scene.load("steel-ball", {"law.name": "hunt_crossley", "law.e": 0.6})
+    over = {VELOCITY: (0.3, 3.0), "striker.radius": (0.001, 0.004)}
+    study = fe_contact.transfer(scene, ("hunt_crossley", "hertz"), over=over, calibrate="modulus")
+    ours = [row for row in study.rows if row.law == "hunt_crossley"]
+    assert {row.verdict for row in ours} == {TransferVerdict.INSIDE}
+    assert len(ours) > 20
+    assert any(row.verdict == TransferVerdict.OUTSIDE for row in study.rows if row.law == "hertz")
+
+
 def own_numbers(scene: Scene) -> Scene:
     """The scene with the damping's own number in the place of e, by the law's formula for its force."""
     assert scene.law is not None

@@ -72,7 +72,7 @@ class Command:
         """The same parser with all that it says and takes."""
         for option_of in self.options:
             option_of(parser)
-        parser.description = self.summary.replace("%", "%%")
+        parser.description = self.summary
         parser.epilog = f"example: {self.example or parser.prog}"
         return parser
 

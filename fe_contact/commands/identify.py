@@ -50,7 +50,12 @@ def execute(args: argparse.Namespace) -> int:
     progress = base.progress_of(args)
     progress(f"identifies {len(free)} keys from {len(curves)} curves")
     reference = _reference(args, progress)
-    found = identify(curves, args.scene, free, own, overrides, corner, args.each, sample, reference)
+    try:
+        found = identify(curves, args.scene, free, own, overrides, corner, args.each, sample, reference)
+    except NotReached:
+        for warning in warnings:  # of curves that look odd: they may be why
+            base.complain(warning)
+        raise
 
     def write(folder: Path) -> None:
         found.write_files(folder)

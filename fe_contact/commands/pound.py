@@ -46,7 +46,9 @@ MEMBER = base.Command(
         base.option("file", help="file (TOML) or packaged name, as two-frames; see the page pounding of the manual"),
         base.option("--laws", default="", metavar="A,B", help="other laws to compare, given by e and the same peak"),
         base.option(
-            "--calibrate", metavar="HOW", help="each law on one reference of two storeys: least_squares, restitution"
+            "--calibrate",
+            metavar="HOW",
+            help="each law on one reference of two storeys, as transfer calibrates",
         ),
         base.override("override a key of the file"),
         *base.OUTPUT,

@@ -84,7 +84,7 @@ MEMBER = base.Command(
         base.option("--laws", default="all", metavar="all|a,b,...", help="lumped laws; default: all"),
         _several("--from", dest="start", metavar="KEY=VALUE", help="state of calibration; default: the scene's"),
         _several("--over", metavar="KEY=low..high:n", help="states; default: velocity, a third to three times"),
-        base.option("--calibrate", default="least_squares", metavar="HOW", help="least_squares or restitution"),
+        base.option("--calibrate", default="least_squares", metavar="HOW", help="least_squares, restitution, modulus"),
         base.option("--within", default="0.05", metavar="T", help="tolerance of the verdict `within`; default 0.05"),
         base.option("--method", metavar="M", help="of the reference; default: fe, or the law that the scene names"),
     ),

@@ -33,6 +33,7 @@ PEAK_TOLERANCE, MOST_SOLVES = 1e-11, 40
 LARGEST_STEP = 3.0  # safety: of the logarithm of a stiffness, in one step of that search
 # Below what the differences of a Jacobian see.
 STEP_TOLERANCE, INTEGRATOR_TOLERANCE, RESULT_TOLERANCE = 1e-8, 1e-9, 1e-6
+NOTHING = 1e-12  # rounding: of what is added before a logarithm
 PLACES = 801  # times of the contact at which depth and force are read
 # In the coordinates of a 3-parameter solid of which all is sought.
 SOLID = ("E0", "R1", "R2")
@@ -225,7 +226,9 @@ class Coordinates:
         """The value of one parameter that is counted so."""
         if name == TOUCH:
             return counted * self.problem.measured.duration
-        return max(math.exp(counted) - self.beside.get(name, 0.0), self.problem.space.free[name].low)
+        beside, low = self.beside.get(name, 0.0), self.problem.space.free[name].low
+        value = math.exp(counted) - beside
+        return value if value > low + NOTHING * beside else low
 
     def size(self, name: str, value: float) -> float:
         """How fast the value of a parameter grows as it is counted."""

@@ -79,6 +79,8 @@ def search(
 ) -> Fit:
     """See :func:`lumped.fit`."""
     check_mass(scene)
+    if laws.get(law).elastic:
+        laws.get(law).of(scene)  # says what it is for, before its modulus is sought
     space = space_of(law, scene, free, fixed or {}, bounds or {})
     measured = Measured.of(curve)
     if measured.points <= len(space.free):

@@ -50,7 +50,7 @@ def identify(
 
     if not curves:
         raise BadInput(Fault("curves", "", "none; accepted: at least one measured history"))
-    file, theirs = SceneFile.of(scene, overrides or {}), own or {}
+    file, theirs = SceneFile.of(scene, overrides or {}).named_by(free), own or {}
 
     def found(some: Mapping[str, Curve]) -> Identified:
         histories, valleys = search(some, file, free, theirs, corner)

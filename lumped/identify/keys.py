@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from lumped.errors import BadInput, Fault, nearest
+from lumped.fit.space import own_values
 from lumped.materials import Material
 from lumped.materials.networks import NETWORKS
 from lumped.numbers import Array
@@ -101,6 +102,22 @@ class SceneFile:
         table = overridden(parsed(path), overrides, path.name)
         return cls(overridden(table, dict(_whole_paths(table, path.parent)), path.name), path.name)
 
+    def named_by(self, names: Sequence[str]) -> SceneFile:
+        """The same with each network by that of its sets of keys whose names are asked for, as E0, R1, R2 of a solid
+        that stands by E1, E2, C1.
+        """
+        table = self.table
+        for part in BODIES:
+            material = table.get(part, {}).get("material", {})
+            own, others = _sets(material)
+            asked = {name.rpartition(".")[2] for name in names if name.startswith((f"{part}.", *own, *others))}
+            if own and asked & (others - own) and not asked & (own - others):
+                values = own_values(NETWORKS.get(material["law"]).of(**{name: material[name] for name in own}))
+                rest = {name: value for name, value in material.items() if name not in own}
+                new = {**rest, **{name: value for name, value in values.items() if name in others}}
+                table = {**table, part: {**table[part], "material": new}}
+        return replace(self, table=table)
+
     def scene(self, keys: Sequence[FreeKey], places: Array, own: Mapping[str, object]) -> Scene:
         """The scene with the free keys at these places, (p,), and what a curve has of its own. Raises BadInput."""
         return read(Scene, self.with_values(keys, places), self.source, own)[0]
@@ -131,6 +148,14 @@ def _network_keys(material: Table) -> Mapping[str, Key]:
     """The keys of a material's own set, and those of all materials."""
     own = max(alternatives(NETWORKS, material.get("law")), key=lambda keys: len(keys.keys() & material.keys()))
     return {**own, **keys_of(Material)}
+
+
+def _sets(material: Table) -> tuple[set[str], set[str]]:
+    """The names that a network stands by, and those that it could; both empty where it has one set alone."""
+    sets = [set(keys) for keys in NETWORKS.get(material["law"]).sets] if material.get("law") in NETWORKS.names else []
+    own = next((keys for keys in sets if keys <= material.keys()), set[str]())
+    others = next((keys for keys in sets if keys != own), set[str]())
+    return (own, others) if own and others else (set(), set())
 
 
 def free_keys(file: SceneFile, names: Sequence[str]) -> tuple[FreeKey, ...]:

@@ -158,7 +158,10 @@ def sound(rng: np.random.Generator) -> Iterator[tuple[Scene, Curve]]:
             continue
         last = float(history.time[-1])
         time = np.linspace(-before * last, (1.0 + after) * last, rows)
-        force = history.force_at(time) + noise * history.force.max() * rng.normal(size=rows)
+        told = history.force_at(time)
+        if told.max() < 0.5 * history.force.max():  # between two rows lies the whole pulse
+            continue
+        force = told + noise * history.force.max() * rng.normal(size=rows)
         yield scene, Curve(time, force)
 
 

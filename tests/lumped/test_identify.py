@@ -21,6 +21,7 @@ from lumped import BadInput, Scene, identify, laws, simulate
 from lumped.fit.noise import colour_of, memory, whitened, whiteness
 from lumped.identify.ensemble import draws_of
 from lumped.identify.histories import Impact
+from lumped.identify.keys import SceneFile
 from lumped.numbers import Array
 from lumped.result.history import History
 from lumped.result.score import Curve
@@ -444,3 +445,14 @@ def test_free_keys_are_those_of_the_scene() -> None:
         identify(curves, table, [])
     with pytest.raises(BadInput, match="at least one measured history"):
         identify({}, table, ["target.material.E"])
+
+
+def test_a_solid_is_sought_by_either_set_of_its_names() -> None:
+    """E0, R1 and R2 of a scene that has E1, E2 and C1, "(25)"; the scene that comes back has them too."""
+    E1, E2, C1 = 1.5e6, 1e6, 1e4
+    table = scene(STRIKERS[0], {"law": "sls", "E1": E1, "E2": E2, "C1": C1})
+    file = SceneFile.of(table, {}).named_by(["E0", "target.material.R2"])
+    material = dict(file.table["target"]["material"])
+    assert [material.pop(name) for name in SLS] == pytest.approx([E1 * E2 / (E1 + E2), E2 / E1, C1 / E1])
+    assert material == {"law": "sls", "nu": 0.4}
+    assert SceneFile.of(table, {}).named_by(["E1", "nu"]).table == table

@@ -1,9 +1,9 @@
 """Every law is calibrated at one state of a scene, carried to others, and judged there by a reference with bars.
 
 A state is the scene with one key changed: its velocity, its mass, a length. A law is calibrated on the reference's
-history by least squares, or as the field does it: by the restitution and the peak force that were measured. What is
-carried are the law's own numbers, as `[law]` names them; a law that follows from the material carries what was fitted
-of the material, and takes the rest from the scene at every state.
+history by least squares, or as the field does it: by the restitution and the peak force that were measured, or by the
+restitution beside E*. What is carried are the law's own numbers, as `[law]` names them; a law that follows from the
+material carries what was fitted of the material, and takes the rest from the scene at every state.
 """
 
 from __future__ import annotations
@@ -234,15 +234,28 @@ def _restitution(name: str, scene: Scene, reference: Result) -> Calibration:
 
     A law without a stiffness of its own takes the material as the scene has it.
     """
-    own, e = own_keys(name), reference.quantities["restitution"].value
-    if "k" not in own:
+    if "k" not in own_keys(name):
         return Calibration(name, {})
-    if "e" in own and e is None:
-        raise BadInput(Fault("--calibrate", "restitution", f"nothing separates at the start; accepted: {LEAST}"))
-    damped = {"e": min(max(e or 0.0, own["e"].low), 1.0)} if "e" in own else {}
-    found = fit(reference.history, name, scene, ("k",), damped, peak=True)
+    found = fit(reference.history, name, scene, ("k",), _damped(name, reference), peak=True)
     law = between_masses(name, found.scene)
     return Calibration(name, _own_numbers(law, found.scene, found.values), found.normalized_error)
+
+
+def _modulus(name: str, scene: Scene, reference: Result) -> Calibration:
+    """The measured restitution alone: at every state E* and the geometry give the stiffness. Raises BadInput."""
+    found = Calibration(name, _damped(name, reference))
+    laws.get(name).of(found.scene_at(scene))
+    return found
+
+
+def _damped(name: str, reference: Result) -> dict[str, float]:
+    """The measured restitution, where a law asks for one. Raises BadInput."""
+    own, e = own_keys(name), reference.quantities["restitution"].value
+    if "e" not in own:
+        return {}
+    if e is None:
+        raise BadInput(Fault("--calibrate", "", f"nothing separates at the start; accepted: {LEAST}"))
+    return {"e": min(max(e, own["e"].low), 1.0)}
 
 
 def _own_numbers(law: ForceLaw, scene: Scene, known: Mapping[str, float]) -> dict[str, float]:
@@ -264,6 +277,7 @@ LEAST = "least_squares"
 CALIBRATIONS: Mapping[str, Callable[[str, Scene, Result], Calibration]] = {
     LEAST: _least_squares,
     "restitution": _restitution,
+    "modulus": _modulus,
 }
 
 
