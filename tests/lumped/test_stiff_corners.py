@@ -11,7 +11,7 @@ import pytest
 
 from lumped import Material, Model, Motion, Relaxation, Scene, laws
 from lumped.errors import BadInput, TooManySteps
-from lumped.laws import correspondence
+from lumped.laws import correspondence, ting
 from lumped.scene.tables import LawChoice
 from lumped.shapes.power import PowerProfile
 from lumped.targets.layer import Layer
@@ -100,3 +100,16 @@ def test_a_weight_that_breaks_through_its_layer_is_named() -> None:
     scene = Scene(PowerProfile(2316.7, 2.615), 0.18423, 1.0, Material(Relaxation(1e5), 0.49), target=layer)
     with pytest.raises(BadInput, match="below the layer's thickness"):
         correspondence.estimate(scene)
+
+
+@pytest.mark.parametrize("stiff", [1.46615438830300e14, 3e15])
+def test_a_branch_without_time_is_a_dashpot_at_its_cost(stiff: float) -> None:
+    """A pace that is balanced by forces of 1e8 times its own is known to their rounding, no better."""
+    block, spring, viscosity = Scene.load("polymer-prism-waves"), 1.8e6, 1.8e4
+    fast, none = Relaxation(spring, (stiff,), (viscosity / stiff,)), Relaxation(spring, viscosity=viscosity)
+    scenes = [replace(block, material=Material(young, 0.45), model=Model()) for young in (fast, none)]
+    branch, dashpot = (ting.of(scene).simulate(scene, 1e-3) for scene in scenes)
+    assert branch.work["force_evaluations"] < 3 * dashpot.work["force_evaluations"]
+    for name in ("duration", "restitution", "impulse"):
+        found, expected = branch.quantities[name].value, dashpot.quantities[name].value
+        assert found == pytest.approx(expected, rel=1e-5), name
