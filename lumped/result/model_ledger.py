@@ -157,14 +157,14 @@ def gravity(scene: Scene, model: Model, force: float, mass: float) -> LedgerEntr
 def profile(shape: Shape, model: Model, peak: Peak) -> LedgerEntry:
     """The load curves of sphere and parabola at the peak depth; in plane strain their heights at its edge."""
     effect = "parabola against true profile"
-    if model.profile == "exact":
+    true, parabolic = shape.resolved("exact"), shape.resolved("parabola")
+    if model.profile == "exact" or true == parabolic:
         return LedgerEntry(effect, "true profile", 0.0)
     if shape.plane:
-        heights = [float(shape.resolved(name).height(peak.contact_radius)) for name in ("exact", "parabola")]
+        heights = [float(one.height(peak.contact_radius)) for one in (true, parabolic)]
         estimate = abs(heights[1] / heights[0] - 1.0) if heights[0] > 0.0 else 0.0
         return LedgerEntry(effect, "parabola", estimate, key="model.profile", value="exact")
-    exact = float(shape.resolved("exact").load_curve.force(peak.depth))
-    parabola = float(shape.resolved("parabola").load_curve.force(peak.depth))
+    exact, parabola = (float(one.load_curve.force(peak.depth)) for one in (true, parabolic))
     return LedgerEntry(effect, "parabola", abs(parabola / exact - 1.0), key="model.profile", value="exact")
 
 
