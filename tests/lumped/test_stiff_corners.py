@@ -113,3 +113,13 @@ def test_a_branch_without_time_is_a_dashpot_at_its_cost(stiff: float) -> None:
     for name in ("duration", "restitution", "impulse"):
         found, expected = branch.quantities[name].value, dashpot.quantities[name].value
         assert found == pytest.approx(expected, rel=1e-5), name
+
+
+def test_a_pull_far_above_the_force_leaves_it_all_its_digits() -> None:
+    """The load at the depth to which gravity lets it come, times the modulus of an instant."""
+    scene = Scene.load("polymer-sphere", {"model.gravity": -1e5, "target.material.E2": 5e8})
+    result = ting.of(scene).simulate(scene, 1e-3)
+    depth = result.quantities["peak_depth"].value
+    assert depth == pytest.approx(0.5 * scene.velocity**2 / 1e5, rel=1e-6)
+    elastic = scene.contact_modulus.glassy * float(scene.load_curve.force(depth))
+    assert result.quantities["peak_force"].value == pytest.approx(elastic, rel=0.01)
