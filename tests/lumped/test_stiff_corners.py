@@ -123,3 +123,13 @@ def test_a_pull_far_above_the_force_leaves_it_all_its_digits() -> None:
     assert depth == pytest.approx(0.5 * scene.velocity**2 / 1e5, rel=1e-6)
     elastic = scene.contact_modulus.glassy * float(scene.load_curve.force(depth))
     assert result.quantities["peak_force"].value == pytest.approx(elastic, rel=0.01)
+
+
+@pytest.mark.parametrize(("name", "damping"), [("hertz", {}), ("tsuji", {"e": 0.5})])
+def test_a_force_below_the_rounding_of_gravity_is_its_springs_at_the_turn(name: str, damping: Any) -> None:
+    law = LawChoice(name, {"k": 1e5, **damping})
+    scene = Scene(None, 0.05, 1e-5, law=law, model=Model(gravity=-1e5), motion=Motion(end_time=1e-3))
+    history = laws.get(name).of(scene).simulate(scene, 1e-3).history
+    turn = history.depth.argmax()
+    assert history.depth[turn] == pytest.approx(0.5 * scene.velocity**2 / 1e5, rel=1e-9)
+    assert history.force[turn] == pytest.approx(1e5 * history.depth[turn] ** 1.5, rel=1e-6)
