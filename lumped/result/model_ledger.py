@@ -174,6 +174,8 @@ def strained_much(scene: Scene | Indenter, model: Model, peak: Peak) -> LedgerEn
     material = geometry.material
     if model.finite:
         return LedgerEntry("finite strain", f"included: W = {energy_of(material.hyperelastic).formula}", 0.0)
+    if too_deep := geometry.target.check_depth(geometry.shape, peak.depth):
+        return LedgerEntry("finite strain", "small displacements", None, f"a depth of {peak.depth:.3g} m: {too_deep}")
     found = finite_strain(geometry, peak, impacts is not None)
     refused = finite_faults("", replace(model, kinematics="finite"), geometry, impacts)
     return replace(found, key="", value=None, note=f"{found.note}; {refused[0]}") if refused else found

@@ -117,6 +117,13 @@ def test_what_has_no_parabola_is_not_charged_with_one() -> None:
     assert (found.treated, found.estimate) == ("true profile", 0.0)
 
 
+def test_strains_of_what_is_pressed_through_are_not_told() -> None:
+    scene, through = Scene.load("polymer-o-ring"), Peak(1.0, 0.5, 0.1, 1.0)
+    (found,) = [one for one in model_ledger(scene, through) if one.effect == "finite strain"]
+    assert found.estimate is None
+    assert "the ring's thickness 0.005 m" in found.note
+
+
 def test_yielding_starts_at_its_threshold() -> None:
     # audit 2.2: p0 = 3.30 GPa at 66.2 N, elastic only if Y > 2.06 GPa
     for strength, yields in ((2.1e9, False), (2.0e9, True), (5e8, True)):
