@@ -16,6 +16,8 @@ import fe_contact
 import lumped
 from lumped import BadInput, Result, Scene
 from lumped.errors import PackageMissing
+from lumped.pounding.case_file import CASES as POUND
+from lumped.ptmd.case_file import CASES as PTMD
 from lumped.result.history import COLUMNS
 from lumped.schema.files import SCENES
 from lumped.schema.shown import curves, ticks
@@ -28,7 +30,8 @@ def result() -> Result:
 
 
 def test_what_is_printed_is_short_and_holds_the_numbers(result: Result) -> None:
-    for thing in (result, result.history, result.scene, lumped.score(result.history, result.history)):
+    score = lumped.score(result.history, result.history)
+    for thing in (result, result.history, result.scene, score, result.plot()):
         assert 1 <= len(repr(thing).splitlines()) <= 12
         assert "array(" not in repr(thing)
         assert max(map(len, repr(thing).splitlines())) < 240
@@ -107,6 +110,15 @@ def test_names_of_packaged_scenes_and_settings_of_files_are_taken(tmp_path: Path
     assert fe_contact.run(tmp_path / "mine.toml", method="ting", numerics={"tolerance": 0.01}).tolerance == 0.01
     with pytest.raises(BadInput, match="did you mean polymer-sphere"):
         fe_contact.run("polymer-spere")
+
+
+def test_a_folder_with_the_name_of_a_scene_does_not_hide_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Results may stand in one: `--out steel-ball`."""
+    monkeypatch.chdir(tmp_path)
+    for files, name in ((SCENES, "steel-ball"), (PTMD, "paper"), (POUND, "two-frames")):
+        (tmp_path / name).mkdir()
+        assert files.resolved(name).is_file()
+    assert fe_contact.run("steel-ball", method="hertz").scene.name == "steel-ball"
 
 
 def test_a_law_is_fitted_from_what_has_a_force(result: Result, tmp_path: Path) -> None:
