@@ -20,7 +20,7 @@ import tempfile
 import textwrap
 import threading
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from functools import partial
 from pathlib import Path
@@ -70,17 +70,22 @@ class Versions(argparse.Action):
         parser.exit()
 
 
+class Overview(argparse.RawTextHelpFormatter):
+    """Leaves out the list of commands, which stand below in their groups; completions take it from the parser."""
+
+    def _iter_indented_subactions(self, action: argparse.Action) -> Generator[argparse.Action, None, None]:
+        yield from ()
+
+
 def parser() -> OneLine:
     """The parser of all commands."""
     from fe_contact.commands import COMMANDS
 
-    top = OneLine(
-        prog="fe-contact", description=DESCRIPTION, epilog=_overview(), formatter_class=argparse.RawTextHelpFormatter
-    )
+    top = OneLine(prog="fe-contact", description=DESCRIPTION, epilog=_overview(), formatter_class=Overview)
     top.add_argument("--version", action=Versions, nargs=0, help="versions of this suite and what it computes with")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", help="one of those below")
     for name, command in COMMANDS.members.items():
-        command.fill(commands.add_parser(name))
+        command.fill(commands.add_parser(name, help=command.summary.replace("%", "%%")))
     return top
 
 

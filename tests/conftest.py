@@ -8,10 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.linalg  # noqa: F401 - brings its own BLAS
+from crowded import crowded
 from hypothesis import is_hypothesis_test, settings
+from matplotlib.figure import Figure
 from threadpoolctl import threadpool_limits
 
 from fe_contact.assembly.disk_cache import without_disk
+from fe_contact.studies import style
 from lumped import Result
 
 TENTH = 10
@@ -101,6 +104,22 @@ def one_blas_thread() -> Iterator[None]:
 def cold() -> Iterator[None]:
     """Every test and every process that it starts computes for itself; those of the disk cache name a folder."""
     with without_disk():
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def charts_that_can_be_read(request: pytest.FixtureRequest) -> Iterator[None]:
+    """No chart that a test draws has texts over each other or beyond its page; of a plain run the first of each."""
+    saved, seen, plain = style.save, set[str](), size_of(request.config) == "plain"
+
+    def looked_at(figure: Figure, where: Path, name: str) -> tuple[Path, Path]:
+        if not (plain and name in seen):
+            seen.add(name)
+            assert not (found := crowded(figure)), (name, found)
+        return saved(figure, where, name)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(style, "save", looked_at)
         yield
 
 

@@ -170,7 +170,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/waves/certify.py", "GROWTH", ""): WORK,
     ("fe_contact/plastic/course.py", "GROWTH", ""): WORK,
     ("fe_contact/steppers/struck.py", "SECANTS, PRECISE", "20 ->"): WORK,
-    ("fe_contact/contact/problem.py", "_answer", "8.0"): WORK,
     ("fe_contact/budget/runs.py", "operations", ""): WORK,
     ("fe_contact/contact/problem.py", "ROOM", ""): WORK,
     ("fe_contact/steppers/struck.py", "FixedContact._by_secants", "solves +"): WORK,

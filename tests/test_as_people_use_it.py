@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import re
 import sys
 import types
@@ -14,8 +15,12 @@ import pytest
 
 import fe_contact
 import lumped
+from fe_contact.cli import parser
+from fe_contact.commands import COMMANDS
 from lumped import BadInput, Result, Scene
 from lumped.errors import PackageMissing
+from lumped.pounding.case_file import CASES as POUND
+from lumped.ptmd.case_file import CASES as PTMD
 from lumped.result.history import COLUMNS
 from lumped.schema.files import SCENES
 from lumped.schema.shown import curves, ticks
@@ -28,7 +33,8 @@ def result() -> Result:
 
 
 def test_what_is_printed_is_short_and_holds_the_numbers(result: Result) -> None:
-    for thing in (result, result.history, result.scene, lumped.score(result.history, result.history)):
+    score = lumped.score(result.history, result.history)
+    for thing in (result, result.history, result.scene, score, result.plot()):
         assert 1 <= len(repr(thing).splitlines()) <= 12
         assert "array(" not in repr(thing)
         assert max(map(len, repr(thing).splitlines())) < 240
@@ -109,9 +115,27 @@ def test_names_of_packaged_scenes_and_settings_of_files_are_taken(tmp_path: Path
         fe_contact.run("polymer-spere")
 
 
+def test_a_folder_with_the_name_of_a_scene_does_not_hide_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Results may stand in one: `--out steel-ball`."""
+    monkeypatch.chdir(tmp_path)
+    for files, name in ((SCENES, "steel-ball"), (PTMD, "paper"), (POUND, "two-frames")):
+        (tmp_path / name).mkdir()
+        assert files.resolved(name).is_file()
+    assert fe_contact.run("steel-ball", method="hertz").scene.name == "steel-ball"
+
+
+def test_completions_are_told_of_every_command_and_help_lists_each_once() -> None:
+    """What shtab and argcomplete read; a command without help would complete no option."""
+    top = parser()
+    (commands,) = (one for one in top._actions if isinstance(one, argparse._SubParsersAction))
+    assert {one.dest for one in commands._get_subactions() if one.help} == set(COMMANDS.members)
+    assert all(len(re.findall(rf"^  {name} ", top.format_help(), re.MULTILINE)) == 1 for name in COMMANDS.members)
+
+
 def test_a_law_is_fitted_from_what_has_a_force(result: Result, tmp_path: Path) -> None:
     result.history.write_csv(tmp_path / "curve.csv")
     found = [fe_contact.fit(curve, "hertz", "polymer-sphere") for curve in (result.history, tmp_path / "curve.csv")]
+    assert len(repr(found[0]).splitlines()) <= 4
     assert found[0].parameters["k"].value == pytest.approx(found[1].parameters["k"].value, rel=1e-4)
 
 

@@ -10,13 +10,18 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from functools import update_wrapper
 from threading import Lock
-from typing import Any, ClassVar, Generic, ParamSpec, TypeVar
+from typing import Any, Generic, ParamSpec, Protocol, TypeVar
 
 BODIES = 12  # some 7 MB each; an impact on two bodies varies nine
 SURFACE = 0.25  # of that takes what a surface knows of a body: a sweep asks for those of some dozen meshes by turns
+UNKNOWNS = 20_000  # of a body that waves go through: one of more takes the room of several
 
 _Arguments = ParamSpec("_Arguments")
 _Answer = TypeVar("_Answer")
+
+
+def _alike(answer: Any) -> float:
+    return 1.0
 
 
 class Store:
@@ -26,7 +31,9 @@ class Store:
         self._room, self._taken, self._lock = room, 0.0, Lock()
         self._held: dict[tuple[Hashable, ...], tuple[float, Any]] = {}
 
-    def find(self, key: tuple[Hashable, ...], make: Callable[[], _Answer], size: float = 1.0) -> _Answer:
+    def find(
+        self, key: tuple[Hashable, ...], make: Callable[[], _Answer], size: Callable[[_Answer], float] = _alike
+    ) -> _Answer:
         """What is at hand, or made now, and takes the place of what was not asked for longest."""
         with self._lock:
             known = self._held.pop(key, None)
@@ -36,8 +43,8 @@ class Store:
                 return found
         answer = make()
         with self._lock:
-            self._taken += size - self._held.pop(key, (0.0, None))[0]
-            self._held[key] = (size, answer)
+            self._taken += size(answer) - self._held.pop(key, (0.0, None))[0]
+            self._held[key] = (size(answer), answer)
             while self._taken > self._room and len(self._held) > 1:
                 self._taken -= self._held.pop(next(iter(self._held)))[0]
         return answer
@@ -72,8 +79,6 @@ class Recipe(Generic[_Answer]):
 class cached(Generic[_Arguments, _Answer]):  # noqa: N801 - a decorator, written like functools.cache
     """A function of hashable arguments that answers anew only what it was not asked lately."""
 
-    size: ClassVar[float] = 1.0
-
     def __init__(self, make: Callable[_Arguments, _Answer]) -> None:
         update_wrapper(self, make)  # takes over what a decorator below has, so it comes first
         self._make = make
@@ -88,6 +93,10 @@ class cached(Generic[_Arguments, _Answer]):  # noqa: N801 - a decorator, written
         assert not named
         return Recipe(self, arguments)
 
+    def size(self, answer: _Answer) -> float:
+        """Of an answer, in bodies."""
+        return 1.0
+
     def cache_clear(self) -> None:
         """Forget the answers of this function."""
         _BODIES.forget(self._make)
@@ -96,4 +105,24 @@ class cached(Generic[_Arguments, _Answer]):  # noqa: N801 - a decorator, written
 class cached_surface(cached[_Arguments, _Answer]):  # noqa: N801 - a decorator too
     """The same of an answer without its inside, which takes little room."""
 
-    size = SURFACE
+    def size(self, answer: _Answer) -> float:
+        """The same of all."""
+        return SURFACE
+
+
+class HasUnknowns(Protocol):
+    """Tells how large it is."""
+
+    @property
+    def unknowns(self) -> int: ...
+
+
+_Sized = TypeVar("_Sized", bound=HasUnknowns)
+
+
+class cached_by_unknowns(cached[_Arguments, _Sized]):  # noqa: N801 - a decorator too
+    """The same of a body that may be large: a few of those would be a gigabyte."""
+
+    def size(self, answer: _Sized) -> float:
+        """Of a large one as of so many others."""
+        return max(answer.unknowns / UNKNOWNS, 1.0)

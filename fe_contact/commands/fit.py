@@ -16,12 +16,11 @@ from lumped.result.folder import publish
 from lumped.schema import Table
 
 if TYPE_CHECKING:
-    from lumped.fit import Estimate, Fit
+    from lumped.fit import Fit
     from lumped.fit.ranking import RankedFit
     from lumped.result.score import Curve
     from lumped.scene.scene import Scene
 
-WIDTH = 12  # of a parameter's name
 EVERY = "all"
 OPTIONS = {"free": "--free", "fixed": "--fix", "bounds": "--bounds", "law": "--law", "curve": "force_N"}
 
@@ -108,7 +107,7 @@ def _ranking_line(rank: int, one: RankedFit) -> str:
     if one.fit is None or one.whiteness is None:
         return f" -  {one.law:16s} {one.reason}"
     left = "noise is left" if one.whiteness.noise else "more than noise is left"
-    values = ", ".join(f"{name} {_shown(estimate)}" for name, estimate in one.fit.parameters.items())
+    values = ", ".join(f"{name} {estimate}" for name, estimate in one.fit.parameters.items())
     known = f"{100.0 * one.fit.normalized_error:7.3g} %, AICc +{one.criterion:.4g}, {left}"
     return f"{rank:2d}  {one.law:16s} {known}: {values}"
 
@@ -118,7 +117,7 @@ def _report(args: argparse.Namespace, scene: Scene, found: Fit, content: Table, 
     from lumped import laws
     from lumped.fit import opensees
 
-    text = summary(found, where).splitlines()
+    text = [*found.summary().splitlines(), f"  written to {where}"]
     if args.opensees:
         law = laws.get(found.law).of(found.scene)
         # what is fitted of a material stands in the fit's scene, the gap in that given
@@ -128,23 +127,6 @@ def _report(args: argparse.Namespace, scene: Scene, found: Fit, content: Table, 
     base.say(args, content, text)
     for warning in found.warnings:
         base.complain(warning)
-
-
-def summary(found: Fit, where: Path) -> str:
-    """Every parameter with its interval, one a line."""
-    held = ", peak held" if found.peak_held else ""
-    lines = [f"{found.law}: normalized error {100.0 * found.normalized_error:.3g} % on {found.points} points{held}"]
-    lines += [f"{name:{WIDTH}s} {_shown(estimate)}" for name, estimate in found.parameters.items()]
-    lines += [f"{name:{WIDTH}s} {value:.6g} held" for name, value in found.held.items()]
-    lines.append(f"force at {found.depth:.4g} m {_shown(found.force_at_depth)}")
-    return "\n  ".join([*lines, f"written to {where}"])
-
-
-def _shown(estimate: Estimate) -> str:
-    if estimate.low is None and estimate.high is None:
-        return f"{estimate.value:.6g} {estimate.unit}, interval unknown".replace(" ,", ",")
-    low, high = ("open" if end is None else f"{end:.6g}" for end in (estimate.low, estimate.high))
-    return f"{estimate.value:.6g} ({low} to {high}) {estimate.unit}".rstrip()
 
 
 def _check_opensees(args: argparse.Namespace) -> None:

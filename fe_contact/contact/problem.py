@@ -312,7 +312,7 @@ def _pressed(surface: PressedSurface, penalty: float, touching: bytes) -> tuple[
 def _answer(surface: PressedSurface, penalty: float, touching: bytes) -> _Answer:
     """The one at hand, or a new one."""
     return _ANSWERS.find(
-        (surface, penalty, touching), lambda: _answered(surface, penalty, touching), 8.0 * surface.weights.size**2
+        (surface, penalty, touching), lambda: _answered(surface, penalty, touching), lambda answer: answer.left.nbytes
     )
 
 

@@ -101,6 +101,16 @@ class Balance:
         blocks = [loaded.matrices(), self.touch.matrices(convex), self.encounter.body.rest[None]]
         return self.encounter.pattern.matrix(blocks)
 
+    def factors(
+        self, convex: bool = False, unstrained: bool = False, pulls: Array | None = None
+    ) -> Callable[[Array], Array]:
+        """Back-substitution for that. Raises EquilibriumLost where a point is to touch a striker that ends before."""
+        with np.errstate(invalid="ignore"):
+            tangent = self.tangent(convex, unstrained, pulls)
+        if not np.isfinite(tangent.data).all():
+            raise EquilibriumLost(f"the contact is as wide as the striker at depth {self.depth:.3g}")
+        return factorized(tangent, ordered=True)
+
     @property
     def _at_rest(self) -> Loaded:
         body = self.encounter.body
@@ -166,7 +176,7 @@ def balanced(
         raise EquilibriumLost(f"an element is inverted at depth {depth:.3g}")
     if touching is not None:
         guess = encounter.at(start, depth, stiffness, state, touching)
-        change = _whole(guess, factorized(guess.tangent(convex=False, pulls=foreseen), ordered=True)(-guess.residual))
+        change = _whole(guess, guess.factors(pulls=foreseen)(-guess.residual))
         guided = at(start + change)
         if np.isfinite(guided.energy):
             here, foreseen = guided, guess.loaded.foreseen(change)
@@ -190,7 +200,7 @@ def _hastened(
     for iteration in range(1, HASTY + 1):
         step = None if known is None else known(-here.residual)
         if known is None or step is None or abs(here.residual @ step) > settled * abs(here.energy):
-            known = factorized(here.tangent(convex=False, pulls=foreseen), ordered=True)
+            known = here.factors(pulls=foreseen)
             step = known(-here.residual)
         change = _whole(here, step)
         there = at(here.displacement + change)
@@ -225,7 +235,7 @@ def _equilibrium(there: Balance, solve: Callable[[Array], Array], iterations: in
 def _step(here: Balance) -> tuple[Callable[[Array], Array], Array]:
     """Factors and Newton's step (free,); where the energy would climb by a convex model, then of a body at rest."""
     for convex, unstrained in ((False, False), (True, False), (True, True)):
-        solve = factorized(here.tangent(convex, unstrained), ordered=True)
+        solve = here.factors(convex, unstrained)
         step = solve(-here.residual)
         if here.residual @ step <= 0.0:
             return solve, step

@@ -73,10 +73,11 @@ def caption(scene: Scene) -> str:
     pairs = zip(young.moduli, young.times, strict=True)
     terms += [f"{readable(modulus, 'Pa')} exp(−t/{readable(tau, 's')})" for modulus, tau in pairs]
     terms += [f"{readable(young.viscosity, 'Pa s')} δ(t)"] if young.viscosity else []
-    bulk = ", bulk modulus constant" if material.constant == "bulk" else ""
+    more = ", bulk modulus constant" if material.constant == "bulk" else ""
+    more += f", yields at {readable(material.yield_strength or 0.0, 'Pa')}" if scene.model.plasticity else ""
     lines = (
         f"{shape.name}, {lengths}, {readable(1e3 * scene.mass, 'g')}, {readable(scene.velocity, 'm/s')}",
-        f"on {scene.target.name.replace('_', '-')}: E(t) = {' + '.join(terms)}, ν = {material.nu:g}{bulk}",
+        f"on {scene.target.name.replace('_', '-')}: E(t) = {' + '.join(terms)}, ν = {material.nu:g}{more}",
     )
     return "\n".join(part for line in lines for part in textwrap.wrap(line, CAPTION_WIDTH))
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import meshes
-from fe_contact.assembly.cache import cached
+from fe_contact.assembly.cache import cached_by_unknowns
 from fe_contact.assembly.forms import Array, check_compressible, isotropic, mass, stiffness
 from fe_contact.assembly.operators import basis_on, made
 from fe_contact.assembly.surface import crown, hats, trace_between
@@ -42,33 +42,40 @@ class Ball:
 
     def points(self, numerics: WaveNumerics) -> tuple[Array, Array]:
         """Where it may be touched, m from the axis, and the areas seen along it, m2, each (q,)."""
-        angles, areas, _ = self._unit(numerics).zone
+        angles, areas, _ = self.unit(numerics).zone
         return self.radius * np.sin(angles), self.radius**2 * areas
 
     def side(self, numerics: WaveNumerics, places: Array) -> WaveSide:
         """In SI units, under points, m from the axis."""
-        unit, modulus = self._unit(numerics), self.material.contact_modulus()
+        unit, modulus = self.unit(numerics), self.material.contact_modulus()
         angles = np.arcsin(np.minimum(places / self.radius, 1.0))
         trace = trace_between(unit.surface.corners(numerics.order, float(angles.max())), angles, numerics.order)
         volume, axial = float(unit.axial @ (unit.mass @ unit.axial)), unit.axial
         part = Part(self.radius * unit.stiffness[0], modulus)
         return WaveSide(self.mass / volume * unit.mass, (part,), None, unit.pushed(trace.shape[1]), trace, axial)
 
-    def _unit(self, numerics: WaveNumerics) -> UnitBody:
+    def unit(self, numerics: WaveNumerics) -> UnitBody:
+        """The ball of radius and contact modulus one that this is scaled from."""
         contact = min(float(np.arcsin(min(numerics.contact_radius / self.radius, 1.0))), WIDEST)
         elements = numerics.elements_per_contact * numerics.finer
         return unit_ball(self.material.nu, elements, numerics.order, contact, numerics.mass)
 
 
-@cached
+@cached_by_unknowns
 def unit_ball(poisson: float, elements: float, order: int, contact: float, masses: str) -> UnitBody:
-    """Mesh and assemble for radius and contact modulus one; points by their angles from the pole.
+    """The mesh, to be assembled for radius and contact modulus one; points by their angles from the pole.
 
     Made once for all steps and penalties.
     """
     basis = basis_on(made(meshes.sphere, elements, SMALLEST, contact, order), order)
-    fixed, springs = held(basis, along=("axis",), across=()), stiffness(basis, isotropic(1 - poisson**2, poisson))
-    return UnitBody.of(basis, crown(basis, contact, 0.0), fixed, mass(basis), masses, [springs])
+    return UnitBody(
+        basis,
+        crown(basis, contact, 0.0),
+        held(basis, along=("axis",), across=()),
+        masses,
+        local=lambda: mass(basis),
+        springs=lambda: [stiffness(basis, isotropic(1 - poisson**2, poisson))],
+    )
 
 
 def flying(

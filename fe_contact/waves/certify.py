@@ -43,7 +43,7 @@ from fe_contact.progress import Count, Counted, Progress, uncounted
 from fe_contact.settings import Numerics, WaveNumerics
 from fe_contact.steppers.steps import March, Strike
 from fe_contact.waves.impact import WaveBouncer
-from fe_contact.waves.moving import Moving
+from fe_contact.waves.moving import Moving, UnitBody
 from fe_contact.waves.plan import Cost
 from lumped.result.result import LedgerEntry, meets
 from lumped.scene.scene import Scene
@@ -64,6 +64,8 @@ GROWTH = {
 }
 
 Body = Callable[[Scene, WaveNumerics], Moving]
+Units = Callable[[Scene, WaveNumerics], Sequence[UnitBody]]
+Costs = Callable[[Scene, WaveNumerics], Cost]
 tells_of_mesh = partial(other_mesh, most=ORDER["mesh"], nodes=LEAST_NODES)
 
 
@@ -239,21 +241,20 @@ def _smoothed(places: Array, values: Array, rows: npt.NDArray[np.intp]) -> Array
 
 @dataclass(frozen=True, eq=False)
 class Waves:
-    """A scene whose body ``moving`` makes; its runs are kept, as a finer budget asks for some of them again."""
+    """A scene and the ``cost`` of its budgets; its runs are kept, as a finer budget asks for some of them again."""
 
     scene: Scene
     chosen: Plan
-    moving: Body
+    cost: Costs
     progress: Progress
     runs: WaveRuns
     rounds: ClassVar[int] = ROUNDS
 
     @classmethod
-    def of(cls, scene: Scene, chosen: Plan, progress: Progress, moving: Body) -> Waves:
-        """Nothing is run yet."""
-        return cls(
-            scene, chosen, moving, progress, WaveRuns(scene, Strike.of(scene), moving, chosen.numerics.steps // 2)
-        )
+    def of(cls, scene: Scene, chosen: Plan, progress: Progress, cost: Costs, moving: Body) -> Waves:
+        """Nothing is run yet; the bodies are those that ``moving`` makes."""
+        runs = WaveRuns(scene, Strike.of(scene), moving, chosen.numerics.steps // 2)
+        return cls(scene, chosen, cost, progress, runs)
 
     def certified(self, numerics: Numerics) -> Several:
         """A contact, or several, and the bars.
@@ -262,7 +263,7 @@ class Waves:
         its bodies.
         """
         assert isinstance(numerics, WaveNumerics)
-        cost = cost_of(self.scene, numerics, self.moving)
+        cost = self.cost(self.scene, numerics)
         cost.check(self.runs.spent)
         self.progress(f"waves, {cost}")
         self.runs.counted = Count(self.progress, f"waves, {cost.unknowns} unknowns", cost.all_steps)
@@ -283,7 +284,7 @@ class Waves:
         return self.chosen.ledger
 
 
-def cost_of(scene: Scene, numerics: WaveNumerics, moving: Body) -> Cost:
+def cost_of(scene: Scene, numerics: WaveNumerics, units: Units) -> Cost:
     """What one error budget costs with these settings. Raises BodyTooFine."""
-    own, judging = (moving(scene, one).body.size for one in (numerics, tells_of_mesh(numerics)[0]))
+    own, judging = (sum(unit.unknowns for unit in units(scene, one)) for one in (numerics, tells_of_mesh(numerics)[0]))
     return Cost.of(own, numerics, scene.motion.impacts, judging if judging > own else 0)

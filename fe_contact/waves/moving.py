@@ -6,7 +6,7 @@ A body is meshed once, in units of its mesh (:class:`UnitBody`). In SI units it 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -27,40 +27,48 @@ BEYOND = 1e3  # height, in contact radii, given to radii past the striker's rim
 class UnitBody:
     """Matrices for moduli, impedances and density one, in units of the mesh, sparse (n, n), without what is held.
 
-    ``stiffness`` of each of its moduli, ``dashpots`` of each of its impedances; ``free``: which of two degrees of
-    freedom a node of the scalar scikit-fem ``basis`` the matrices have; ``surface`` where it may be touched.
+    The scalar scikit-fem ``basis``, of whose degrees of freedom, two a node, some are ``held``; ``surface`` where it
+    may be touched. ``local`` makes the consistent mass of every element, (e, k, k), put on the nodes as ``masses``
+    says; ``springs`` the stiffness of each of its moduli and ``absorbing`` the dashpots of each of its impedances, of
+    all degrees of freedom, (2 N, 2 N): assembled when a march asks for them, not where the work is only counted.
     """
 
     basis: Basis
-    free: Indices
     surface: Surface
-    mass: Matrix
-    stiffness: tuple[Matrix, ...]
-    dashpots: tuple[Matrix, ...]
+    held: Indices
+    masses: str
+    local: Callable[[], Array]
+    springs: Callable[[], Sequence[Matrix]]
+    absorbing: Callable[[], Sequence[Matrix]] = tuple
 
-    @classmethod
-    def of(
-        cls,
-        basis: Basis,
-        surface: Surface,
-        held: Indices,
-        local: Array,
-        masses: str,
-        stiffness: Sequence[Matrix],
-        dashpots: Sequence[Matrix] = (),
-    ) -> UnitBody:
-        """From matrices of all degrees of freedom, (2 N, 2 N), of which some are ``held``.
+    @cached_property
+    def free(self) -> Indices:
+        """Which degrees of freedom the matrices have, (n,)."""
+        return np.setdiff1d(np.arange(2 * self.basis.N), self.held)
 
-        ``local``: consistent mass of every element, (e, k, k), put on the nodes as ``masses`` says.
-        """
-        size = 2 * basis.N
-        free = np.setdiff1d(np.arange(size), held)
-        mass = MASSES.get(masses).of(local, vector_dofs(basis.element_dofs), size, 2 * surface.dofs + 1)
+    @property
+    def unknowns(self) -> int:
+        """n."""
+        return int(self.free.size)
 
-        def inside(*matrices: Matrix) -> tuple[Matrix, ...]:
-            return tuple(matrix.tocsc()[free][:, free] for matrix in matrices)
+    @cached_property
+    def mass(self) -> Matrix:
+        """For density one."""
+        dofs, pressed = vector_dofs(self.basis.element_dofs), 2 * self.surface.dofs + 1
+        return self._inside(MASSES.get(self.masses).of(self.local(), dofs, 2 * self.basis.N, pressed))
 
-        return cls(basis, free, surface, inside(mass)[0], inside(*stiffness), inside(*dashpots))
+    @cached_property
+    def stiffness(self) -> tuple[Matrix, ...]:
+        """For each of its moduli."""
+        return tuple(self._inside(matrix) for matrix in self.springs())
+
+    @cached_property
+    def dashpots(self) -> tuple[Matrix, ...]:
+        """For each of its impedances."""
+        return tuple(self._inside(matrix) for matrix in self.absorbing())
+
+    def _inside(self, matrix: Matrix) -> Matrix:
+        return matrix.tocsc()[self.free][:, self.free]
 
     @cached_property
     def zone(self) -> tuple[Array, Array, Array]:

@@ -19,6 +19,7 @@ from lumped.schema.json_file import plain, write_json
 
 Array = NDArray[np.float64]
 SCHEMA, RECORD = "fe-contact/fit/1", "fit.json"
+WIDTH = 12  # look: of a parameter's name
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,12 @@ class Estimate:
     low: float | None
     high: float | None
     unit: str
+
+    def __str__(self) -> str:
+        if self.low is None and self.high is None:
+            return f"{self.value:.6g} {self.unit}, interval unknown".replace(" ,", ",")
+        low, high = ("open" if end is None else f"{end:.6g}" for end in (self.low, self.high))
+        return f"{self.value:.6g} ({low} to {high}) {self.unit}".rstrip()
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +62,17 @@ class Fit:
     peak_held: bool
     points: int
     warnings: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return self.summary()
+
+    def summary(self) -> str:
+        """Every parameter with its interval, one a line."""
+        held = ", peak held" if self.peak_held else ""
+        lines = [f"{self.law}: normalized error {100.0 * self.normalized_error:.3g} % on {self.points} points{held}"]
+        lines += [f"{name:{WIDTH}s} {estimate}" for name, estimate in self.parameters.items()]
+        lines += [f"{name:{WIDTH}s} {value:.6g} held" for name, value in self.held.items()]
+        return "\n  ".join([*lines, f"force at {self.depth:.4g} m {self.force_at_depth}"])
 
     @property
     def values(self) -> dict[str, float]:

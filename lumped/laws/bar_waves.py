@@ -38,8 +38,9 @@ class BarWaves:
     def simulate(self, scene: Scene, tolerance: float) -> Result:
         """The impacts of a scene, exact but for rounding, whatever the tolerance. Raises NotReached."""
         clock = Clock()
-        motion = bounces(self.bar, scene.velocity, scene.gravity, 0.0, scene.end_time)
-        answer = _answer(scene, _Fall(motion, scene.motion.impacts, scene.profile.fixed_radius or 0.0))
+        impacts = scene.motion.impacts
+        motion = bounces(self.bar, scene.velocity, scene.gravity, 0.0, scene.end_time, impacts)
+        answer = _answer(scene, _Fall(motion, impacts, scene.profile.fixed_radius or 0.0))
         quantities, force_error = bars(answer, answer, SAFETY)
         work = {"waves": len(motion.pieces)}
         numerics = {"series": "exact"}

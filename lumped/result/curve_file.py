@@ -6,6 +6,7 @@ units may stand in a line of their own below. What had to be guessed is said in 
 
 from __future__ import annotations
 
+import codecs
 import csv
 import math
 import re
@@ -105,11 +106,12 @@ def read_curve(path: Path) -> Curve:
     """A measured curve: a CSV file with a time and a force at least. Raises BadInput."""
     source = str(path)
     try:
-        lines = content(path, MOST_BYTES, FILE).decode("utf-8-sig").splitlines()
+        lines = _text(content(path, MOST_BYTES, FILE)).splitlines()
         header = _header(source, lines)
         time, force, commas = _numbers(source, lines, header)
     except (UnicodeDecodeError, csv.Error) as error:
-        raise BadInput(Fault(source, "", f"cannot be read: no CSV text in UTF-8; accepted: {FILE}")) from error
+        reason = f"cannot be read: no CSV text; accepted: {FILE}; cure: export it as CSV in UTF-8"
+        raise BadInput(Fault(source, "", reason)) from error
     if time.size < 2:
         raise BadInput(Fault(source, header.force.header, "accepted: at least two rows of numbers"))
     if np.any(back := np.diff(time) < 0.0):
@@ -125,10 +127,22 @@ def read_curve(path: Path) -> Curve:
     return Curve(time, force, tuple(filter(None, told)))
 
 
+def _text(content: bytes) -> str:
+    """UTF-8, or UTF-16 where a mark says so, or what Windows writes in the west. Raises UnicodeDecodeError."""
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return content.decode("utf-16")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode("cp1252")
+
+
 def _header(source: str, lines: Sequence[str]) -> CurveHeader:
     """The first line that names a time and a force, the units perhaps in the next. Raises BadInput."""
     first, lacking = "", [TIME.plain, FORCE.plain]
     for number, line in enumerate(lines[:PREAMBLE]):
+        if line.startswith("sep="):  # of Excel, for itself
+            continue
         first = first or line.strip()
         for separator in SEPARATORS:
             cells = _cells(line, separator)

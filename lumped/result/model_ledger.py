@@ -157,14 +157,14 @@ def gravity(scene: Scene, model: Model, force: float, mass: float) -> LedgerEntr
 def profile(shape: Shape, model: Model, peak: Peak) -> LedgerEntry:
     """The load curves of sphere and parabola at the peak depth; in plane strain their heights at its edge."""
     effect = "parabola against true profile"
-    if model.profile == "exact":
+    true, parabolic = shape.resolved("exact"), shape.resolved("parabola")
+    if model.profile == "exact" or true == parabolic:
         return LedgerEntry(effect, "true profile", 0.0)
     if shape.plane:
-        heights = [float(shape.resolved(name).height(peak.contact_radius)) for name in ("exact", "parabola")]
+        heights = [float(one.height(peak.contact_radius)) for one in (true, parabolic)]
         estimate = abs(heights[1] / heights[0] - 1.0) if heights[0] > 0.0 else 0.0
         return LedgerEntry(effect, "parabola", estimate, key="model.profile", value="exact")
-    exact = float(shape.resolved("exact").load_curve.force(peak.depth))
-    parabola = float(shape.resolved("parabola").load_curve.force(peak.depth))
+    exact, parabola = (float(one.load_curve.force(peak.depth)) for one in (true, parabolic))
     return LedgerEntry(effect, "parabola", abs(parabola / exact - 1.0), key="model.profile", value="exact")
 
 
@@ -174,6 +174,8 @@ def strained_much(scene: Scene | Indenter, model: Model, peak: Peak) -> LedgerEn
     material = geometry.material
     if model.finite:
         return LedgerEntry("finite strain", f"included: W = {energy_of(material.hyperelastic).formula}", 0.0)
+    if too_deep := geometry.target.check_depth(geometry.shape, peak.depth):
+        return LedgerEntry("finite strain", "small displacements", None, f"a depth of {peak.depth:.3g} m: {too_deep}")
     found = finite_strain(geometry, peak, impacts is not None)
     refused = finite_faults("", replace(model, kinematics="finite"), geometry, impacts)
     return replace(found, key="", value=None, note=f"{found.note}; {refused[0]}") if refused else found

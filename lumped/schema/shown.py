@@ -25,6 +25,9 @@ class Picture:
 
     svg: str
 
+    def __repr__(self) -> str:
+        return f'Picture of {WIDTH:g} x {HEIGHT:g}; .write("name.svg") keeps it, a notebook shows it'
+
     def _repr_svg_(self) -> str:
         return self.svg
 

@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -71,10 +72,16 @@ class Bounces:
         """V(t), m/s."""
         return self.velocity + self.gravity * np.asarray(time, dtype=float)
 
+    @cached_property
+    def columns(self) -> tuple[Array, Array, Array]:
+        """Start, value and slope of every piece, each (n,)."""
+        starts, values, slopes, *_ = zip(*self.pieces, strict=True)
+        return np.array(starts), np.array(values), np.array(slopes)
+
     def wave(self, time: ArrayLike) -> Array:
         """a(t), m/s; zero before the start."""
         t = np.asarray(time, dtype=float)
-        starts, values, slopes = (np.array(column) for column in list(zip(*self.pieces, strict=True))[:3])
+        starts, values, slopes = self.columns
         index = np.maximum(np.searchsorted(starts, t, side="right") - 1, 0)
         return np.where(t < 0.0, 0.0, values[index] + slopes[index] * (t - starts[index]))
 
@@ -82,7 +89,7 @@ class Bounces:
         """Contact force, N; at a jump what follows it."""
         t = np.asarray(time, dtype=float)
         closed = np.array([piece.closed for piece in self.pieces])
-        index = np.maximum(np.searchsorted([piece.start for piece in self.pieces], t, side="right") - 1, 0)
+        index = np.maximum(np.searchsorted(self.columns[0], t, side="right") - 1, 0)
         pressed = self.bar.impedance * (self.fall(t) - 2.0 * self.wave(t - self.bar.echo))
         return np.where(closed[index] & (t >= 0.0), pressed, 0.0)
 
@@ -128,8 +135,7 @@ class Bounces:
 
     def _travelled(self, time: Array) -> Array:
         """Integral of the wave from the start, m."""
-        starts = np.array([piece.start for piece in self.pieces])
-        values, slopes = np.array([p.value for p in self.pieces]), np.array([p.slope for p in self.pieces])
+        starts, values, slopes = self.columns
         spans = np.diff(starts)
         sums = np.append(0.0, np.cumsum(values[:-1] * spans + 0.5 * slopes[:-1] * spans**2))
         index = np.maximum(np.searchsorted(starts, time, side="right") - 1, 0)
@@ -137,20 +143,24 @@ class Bounces:
         return np.asarray(sums[index] + values[index] * since + 0.5 * slopes[index] * since**2)
 
 
-def bounces(bar: StraightBar, velocity: float, gravity: float, gap: float, end: float) -> Bounces:
-    """Follow an unstrained bar that falls towards the plane, ``gap`` m away, until ``end``, s.
+def bounces(
+    bar: StraightBar, velocity: float, gravity: float, gap: float, end: float, contacts: float = math.inf
+) -> Bounces:
+    """Follow an unstrained bar that falls towards the plane, ``gap`` m away, until ``end``, s, or so many contacts.
 
     Raises NotReached where contacts grow too many to be followed.
     """
     pieces = list[BarPiece]()
-    time, closed = 0.0, False
-    while time < end:
+    time, closed, parted = 0.0, False, 0
+    while time < end and parted < contacts:
         if len(pieces) > MOST_PIECES:
             raise NotReached(f"bar: more than {MOST_PIECES} waves before t = {time:.6g} s; cure: an earlier end")
         value, slope, until = _echo(pieces, time - bar.echo, time)
         until += bar.echo
         pressing, rate = velocity + gravity * time - 2.0 * value, gravity - 2.0 * slope  # F/Z and its slope
+        touched = closed
         gap, closed = _decided(gap, closed, pressing, rate, velocity + abs(gravity) * bar.echo, bar.echo)
+        parted += touched and not closed
         if closed:
             pieces.append(BarPiece(time, velocity + gravity * time - value, gravity - slope, 0.0, True))
             until = min(until, time + _falls(pressing, rate))
@@ -159,7 +169,7 @@ def bounces(bar: StraightBar, velocity: float, gravity: float, gap: float, end: 
             until = min(until, time + _closes(gap, pressing, rate))
             gap += -pressing * (until - time) - 0.5 * rate * (until - time) ** 2
         time = until
-    return Bounces(bar, velocity, gravity, end, tuple(pieces))
+    return Bounces(bar, velocity, gravity, min(time, end), tuple(pieces))
 
 
 def _echo(pieces: list[BarPiece], time: float, known: float) -> tuple[float, float, float]:

@@ -29,6 +29,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import count
 from typing import Protocol
 
 import numpy as np
@@ -45,7 +46,7 @@ MOST_PIECES = 400  # work: echoes of the exact series, each a polynomial
 PLACES = 65  # in a piece, where its greatest force and its zeros are looked for
 FADING = np.linspace(0.0, 30.0, 601)[1:]  # m/Z until what is left of a front is rounding, and so many places in it
 NOTHING = Polynomial([0.0])
-MOST_ECHOES = 100  # work: echoes that are integrated, each through all before it
+MOST_ECHOES, MOST_STEPS = 100, 20_000  # work: echoes that are integrated, each through all before it; steps of all
 LONGEST, FIRST = 0.25, 4e-3  # steps, as `longest` says, and the first one over that
 ABSOLUTE = 1e-2  # over the relative tolerance, in units of the elastic impact
 STRIKER, SPEED, END = range(3)  # of the state that is integrated
@@ -285,8 +286,11 @@ class TippedImpact:
         longest = self.longest * min(self.scales.time, self.waves.delay)
         state, found, begin = np.array([0.0, self.velocity, 0.0]), list[_BetweenEchoes](), 0.0
         tolerances = self.rtol * ABSOLUTE * np.array([self.scales.depth, self.velocity, self.scales.depth])
+        cure, steps = "accepted: a heavier rod, an earlier motion.end_time", count()
 
         def parted(_: float, y: Array) -> float:
+            if next(steps) > MOST_STEPS:
+                raise NotReached(f"rod: more than {MOST_STEPS} steps; {cure}")
             return float(y[STRIKER] - y[END])
 
         parted.terminal, parted.direction = True, -1.0  # type: ignore[attr-defined]  # how solve_ivp is told
@@ -304,7 +308,7 @@ class TippedImpact:
             if solved.status == 1 or end >= self.until:
                 return tuple(found), float(solved.t[-1]), solved.status == 1
             state, begin = solved.y[:, -1], end
-        raise NotReached(f"rod: more than {MOST_ECHOES} echoes; accepted: a heavier rod, an earlier motion.end_time")
+        raise NotReached(f"rod: more than {MOST_ECHOES} echoes; {cure}")
 
     def _rates(self, before: list[_BetweenEchoes], begin: float) -> Callable[[float, Array], list[float]]:
         """Rates between two echoes, ``before`` what was found of the time until ``begin``."""
@@ -314,8 +318,8 @@ class TippedImpact:
         def came(time: float) -> float:
             """g': what pressed at every delay before now, the echo's sign to its power."""
             total, weight = 0.0, 1.0
-            for count, answer in enumerate(chain, 1):
-                y = answer(time - count * delay)
+            for echoes, answer in enumerate(chain, 1):
+                y = answer(time - echoes * delay)
                 weight *= self.waves.echo
                 total += weight * self.force(max(float(y[STRIKER] - y[END]), 0.0))
             return float(total / impedance)

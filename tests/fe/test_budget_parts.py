@@ -80,10 +80,9 @@ def test_the_deepest_of_several_contacts_is_what_may_be_too_deep(
     row = [SimpleNamespace(curve=SimpleNamespace(quantities={"peak_depth": depth})) for depth in (1.0, 2.0, None)]
     cost = SimpleNamespace(check=lambda spent: None, unknowns=1, all_steps=1)
     monkeypatch.setattr(certify, "certify", lambda runs, chosen: SimpleNamespace(row=row))
-    monkeypatch.setattr(certify, "cost_of", lambda *of: cost)
     sunk = list[float]()
     made_up: Any = SimpleNamespace(check_sunk=sunk.append, spent=0.0)
-    Waves(made_up, made_up, made_up, str, made_up).certified(numerics)
+    Waves(made_up, made_up, lambda *of: cost, str, made_up).certified(numerics)
     assert sunk == [2.0]
 
 

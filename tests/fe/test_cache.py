@@ -5,10 +5,11 @@ from __future__ import annotations
 import gc
 import weakref
 from collections.abc import Callable
+from types import SimpleNamespace
 
 import numpy as np
 
-from fe_contact.assembly.cache import BODIES, Store, cached
+from fe_contact.assembly.cache import BODIES, UNKNOWNS, Store, cached, cached_by_unknowns
 
 
 class Thing:
@@ -23,7 +24,7 @@ def counted(store: Store, size: float = 1.0) -> tuple[Callable[[int], Thing], li
         made.append(key)
         return Thing()
 
-    return lambda key: store.find((key,), lambda: new(key), size), made
+    return lambda key: store.find((key,), lambda: new(key), lambda _: size), made
 
 
 def test_the_last_ones_asked_for_are_made_once() -> None:
@@ -53,6 +54,15 @@ def test_an_answer_larger_than_the_room_is_kept_alone() -> None:
     assert find(0) is find(0)
     assert find(1) is not find(0)
     assert made == [0, 1, 0]
+
+
+def test_large_bodies_are_few() -> None:
+    @cached_by_unknowns
+    def body(number: int) -> SimpleNamespace:
+        return SimpleNamespace(unknowns=UNKNOWNS * BODIES // 2, number=number)
+
+    alive = [body(number) for number in range(3)]
+    assert [body(number) is alive[number] for number in (2, 1, 0)] == [True, True, False]
 
 
 def test_functions_share_one_store_and_forget_their_own() -> None:

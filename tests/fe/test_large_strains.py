@@ -16,9 +16,9 @@ from fe_contact.indentation import press as press_any
 from fe_contact.solids.base import PointAnswer, State
 from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
-from fe_contact.solids.contact import OnRound, OnUndeformed
+from fe_contact.solids.contact import OnDeformed, OnRound, OnUndeformed
 from fe_contact.solids.finite import Hyperelastic
-from fe_contact.solids.newton import Equilibrium
+from fe_contact.solids.newton import Equilibrium, EquilibriumLost, balanced
 from fe_contact.solids.pressing import Solid, advanced, press
 from fe_contact.solids.rolled import Rolled
 from lumped import BadInput, Scene, laws
@@ -138,6 +138,15 @@ def test_the_force_is_the_slope_of_the_energy() -> None:
     slope = (above.balance.energy - below.balance.energy) / (above.balance.depth - below.balance.depth)
     assert slope == pytest.approx(middle.balance.force, rel=1e-6)
     assert middle.error < 1e-6
+
+
+def test_a_contact_guessed_wider_than_the_striker_is_named() -> None:
+    """A course that is planned deep guesses so, and then takes a shorter step."""
+    encounter = solid(sphere(0.4), 0.1).encounter
+    small = replace(encounter, obstacle=OnDeformed(Sphere(0.5), float(encounter.skin.place[0].max())))
+    everywhere = np.ones(small.skin.weights.shape, bool)
+    with pytest.raises(EquilibriumLost, match="as wide as the striker"):
+        balanced(small, np.zeros(small.body.core.size), 0.01, 500.0, touching=everywhere)
 
 
 def o_ring(kinematics: str) -> Indenter:

@@ -21,6 +21,7 @@ from fe_contact.methods import simulate
 from fe_contact.targets.base import struck
 from fe_contact.waves import line, plan
 from fe_contact.waves.certify import WaveRuns
+from fe_contact.waves.moving import UnitBody
 from fe_contact.waves.targets.base import WAVES
 from lumped import Scene
 from lumped.result.result import meets
@@ -157,6 +158,16 @@ def test_the_foretold_work_grows_with_unknowns_but_a_step_has_its_own() -> None:
     judged = plan.Cost.of(200, numerics, 1, 300)
     assert (judged.unknowns, judged.work > few.work) == (300, True)
     assert plan.Cost.of(200, numerics.varied(peak_share=1e-3), 1).steps > numerics.steps
+
+
+@pytest.mark.parametrize("name", ["ball-bouncing-waves", "polymer-layer-waves", "two-finite-spheres-waves"])
+def test_nothing_is_assembled_to_know_the_cost_of_waves(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A body that is refused for its size takes no memory."""
+    for part in ("mass", "stiffness", "dashpots"):
+        monkeypatch.setattr(UnitBody, part, property(lambda unit: pytest.fail("assembled")))
+    scene = Scene.load(name)
+    target = WAVES.get(scene.target.name)
+    assert target.cost(scene, target.plan(scene, COARSE).numerics).unknowns > 100
 
 
 def test_waves_that_cost_too_much_are_refused_before_the_first_step(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 import numpy as np
@@ -103,6 +104,14 @@ def test_pressure_only_where_the_gap_is_closed_and_never_tension(seed: int) -> N
     assert np.all(found.force(times) >= -1e-9 * found.bar.impedance * found.fall(found.end))
     assert all(piece.gap >= 0.0 and (piece.gap == 0.0 or not piece.closed) for piece in found.pieces)
     assert found.contacts
+
+
+def test_no_more_contacts_are_followed_than_are_asked_for() -> None:
+    """A bar that does not fall back in step with its waves meets the plane ever more often."""
+    whole, two = (bounces(BAR, 8.9, 10.0, 0.0, 60 * TRANSIT, contacts) for contacts in (math.inf, 2))
+    assert two.contacts == whole.contacts[:2]
+    assert two.pieces == whole.pieces[: len(two.pieces)]
+    assert two.contacts[-1][1] < two.end <= whole.contacts[2][0]
 
 
 def test_the_law_of_a_bar_is_the_rectangle_of_one_echo() -> None:

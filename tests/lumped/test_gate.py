@@ -145,6 +145,21 @@ def test_a_header_is_read_as_it_is_meant(
     assert len(curve.remarks) == remarks
 
 
+@pytest.mark.parametrize(
+    ("encoding", "mark"), [("cp1252", ""), ("utf-8-sig", ""), ("utf-16", ""), ("utf-8-sig", "sep=;\r\n")]
+)
+def test_a_curve_is_read_as_windows_writes_it(encoding: str, mark: str, tmp_path: Path) -> None:
+    """Semicolons, decimal commas, carriage returns, a micro sign: in any of the encodings that Excel exports."""
+    time, force = made("steel-ball-sls")
+    rows = [f"{1e6 * t:.12g};{f:.12g};".replace(".", ",") for t, f in zip(time, force, strict=True)]
+    text = f"{mark}Zeit [µs];Kraft [N];Größe\r\n" + "\r\n".join(rows) + "\r\n;;\r\n"
+    (tmp_path / "curve.csv").write_bytes(text.encode(encoding))
+    curve = read_curve(tmp_path / "curve.csv")
+    assert curve.time == pytest.approx(time, rel=1e-9, abs=1e-15)
+    assert curve.force == pytest.approx(force, rel=1e-9)
+    assert curve.remarks[0] == "Zeit [µs] is read as the time, in µs"
+
+
 def sound(rng: np.random.Generator) -> Iterator[tuple[Scene, Curve]]:
     """Random packaged scenes by any law they have, at any rate that tells a pulse, with noise up to 5 %."""
     while True:

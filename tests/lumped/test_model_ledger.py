@@ -108,6 +108,22 @@ def test_parabola_is_charged_only_when_it_is_used() -> None:
     assert entry(parabola, effect).estimate == pytest.approx(0.0025, rel=0.2)
 
 
+def test_what_has_no_parabola_is_not_charged_with_one() -> None:
+    """Not even where it has no load curve to charge by: its faces are bonded, its sides free."""
+    block = Plate(4e-4, 0.004, "free", "bonded")
+    scene = Scene(block, 0.05, 0.1, Material(Relaxation(6e5), 0.49), target=Plane(), model=Model(profile="parabola"))
+    ledger = model_ledger(scene, Peak(1.0, 1e-5, block.fixed_radius, 1e-3))
+    (found,) = [one for one in ledger if one.effect == "parabola against true profile"]
+    assert (found.treated, found.estimate) == ("true profile", 0.0)
+
+
+def test_strains_of_what_is_pressed_through_are_not_told() -> None:
+    scene, through = Scene.load("polymer-o-ring"), Peak(1.0, 0.5, 0.1, 1.0)
+    (found,) = [one for one in model_ledger(scene, through) if one.effect == "finite strain"]
+    assert found.estimate is None
+    assert "the ring's thickness 0.005 m" in found.note
+
+
 def test_yielding_starts_at_its_threshold() -> None:
     # audit 2.2: p0 = 3.30 GPa at 66.2 N, elastic only if Y > 2.06 GPa
     for strength, yields in ((2.1e9, False), (2.0e9, True), (5e8, True)):

@@ -12,6 +12,8 @@ import pytest
 from scipy.integrate import cumulative_trapezoid
 
 from lumped import BadInput, Result, Scene, laws, simulate
+from lumped.errors import NotReached
+from lumped.solvers import rod
 from lumped.solvers.rod import FlatImpact, RodPiece, RodScales, RodTravel, TippedImpact, Waves
 
 # Mass over that of the rod, contact time over the transit of a wave: Timoshenko and Goodier, Theory of Elasticity,
@@ -227,3 +229,11 @@ def test_the_bars_of_a_pointed_rod_are_no_accident_of_equal_steps(uncovered: Cal
     target = rod | {"material": material}
     scene = Scene.from_dict({"name": "cone", "striker": striker, "target": target, "model": model})
     assert not uncovered(run(scene, 3e-2), run(scene, 1e-9))
+
+
+def test_a_rod_so_thin_that_it_hardly_slows_the_striker_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps are no longer than the dent's own time: a contact that lasts m/Z has a bound of them."""
+    scene = Scene.load("concrete-pole", {"target.area": 2.4e-10, "model.profile": "parabola"})
+    monkeypatch.setattr(rod, "MOST_STEPS", 200)
+    with pytest.raises(NotReached, match="more than 200 steps; accepted: a heavier rod"):
+        laws.rod_waves.of(scene).simulate(scene, 1e-3)

@@ -11,7 +11,7 @@ import pytest
 
 from lumped import Material, Model, Motion, Relaxation, Scene, laws
 from lumped.errors import BadInput, TooManySteps
-from lumped.laws import correspondence
+from lumped.laws import correspondence, ting
 from lumped.scene.tables import LawChoice
 from lumped.shapes.power import PowerProfile
 from lumped.targets.layer import Layer
@@ -100,3 +100,36 @@ def test_a_weight_that_breaks_through_its_layer_is_named() -> None:
     scene = Scene(PowerProfile(2316.7, 2.615), 0.18423, 1.0, Material(Relaxation(1e5), 0.49), target=layer)
     with pytest.raises(BadInput, match="below the layer's thickness"):
         correspondence.estimate(scene)
+
+
+@pytest.mark.parametrize("stiff", [1.46615438830300e14, 3e15])
+def test_a_branch_without_time_is_a_dashpot_at_its_cost(stiff: float) -> None:
+    """A pace that is balanced by forces of 1e8 times its own is known to their rounding, no better."""
+    block, spring, viscosity = Scene.load("polymer-prism-waves"), 1.8e6, 1.8e4
+    fast, none = Relaxation(spring, (stiff,), (viscosity / stiff,)), Relaxation(spring, viscosity=viscosity)
+    scenes = [replace(block, material=Material(young, 0.45), model=Model()) for young in (fast, none)]
+    branch, dashpot = (ting.of(scene).simulate(scene, 1e-3) for scene in scenes)
+    assert branch.work["force_evaluations"] < 3 * dashpot.work["force_evaluations"]
+    for name in ("duration", "restitution", "impulse"):
+        found, expected = branch.quantities[name].value, dashpot.quantities[name].value
+        assert found == pytest.approx(expected, rel=1e-5), name
+
+
+def test_a_pull_far_above_the_force_leaves_it_all_its_digits() -> None:
+    """The load at the depth to which gravity lets it come, times the modulus of an instant."""
+    scene = Scene.load("polymer-sphere", {"model.gravity": -1e5, "target.material.E2": 5e8})
+    result = ting.of(scene).simulate(scene, 1e-3)
+    depth = result.quantities["peak_depth"].value
+    assert depth == pytest.approx(0.5 * scene.velocity**2 / 1e5, rel=1e-6)
+    elastic = scene.contact_modulus.glassy * float(scene.load_curve.force(depth))
+    assert result.quantities["peak_force"].value == pytest.approx(elastic, rel=0.01)
+
+
+@pytest.mark.parametrize(("name", "damping"), [("hertz", {}), ("tsuji", {"e": 0.5})])
+def test_a_force_below_the_rounding_of_gravity_is_its_springs_at_the_turn(name: str, damping: Any) -> None:
+    law = LawChoice(name, {"k": 1e5, **damping})
+    scene = Scene(None, 0.05, 1e-5, law=law, model=Model(gravity=-1e5), motion=Motion(end_time=1e-3))
+    history = laws.get(name).of(scene).simulate(scene, 1e-3).history
+    turn = history.depth.argmax()
+    assert history.depth[turn] == pytest.approx(0.5 * scene.velocity**2 / 1e5, rel=1e-9)
+    assert history.force[turn] == pytest.approx(1e5 * history.depth[turn] ** 1.5, rel=1e-6)

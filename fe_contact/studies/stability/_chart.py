@@ -23,7 +23,7 @@ UPRIGHT = 0.085  # width of a column's name that stands upright, in
 TALLEST = 9.0  # panels that are taller together stand beside each other, in
 BESIDE, LINE = 0.12, 0.13  # between them; height of a line of their titles, in
 DECADES = 2.0  # either side of the limit that the colours span
-TITLE_WIDTH = 132  # look: characters
+TITLE_WIDTH, INDENT = 132, 3  # look: characters; of a panel's letter before its title
 FEW = 4  # columns, in whose cells there is room for numbers
 NOT_ASKED = "0.9"
 LINES = [
@@ -92,7 +92,7 @@ def _map(rows: Sequence[Row], title: str, chart: Chart) -> Figure:
     for place, (name, measure) in enumerate(chart.measures.items()):
         axes = figure.add_axes(layout.box(place))
         _panel(axes, _table(rows, chart, names, columns, name), measure)
-        style.label(axes, "abcdefgh"[place], "\n".join(_wrapped(measure, layout.wide)))
+        style.label(axes, "abcdefgh"[place], "\n".join(_wrapped(measure, layout.wide)).lstrip())
         axes.set_yticks(range(len(names)), [""] * len(names) if place % layout.across else names, fontsize=5.6)
         last = place + layout.across >= layout.count
         rotation = 0 if len(columns) <= FEW else 90
@@ -104,8 +104,8 @@ def _map(rows: Sequence[Row], title: str, chart: Chart) -> Figure:
 
 
 def _wrapped(measure: Measure, width: float) -> list[str]:
-    """A panel's title in lines of this width, in."""
-    return textwrap.wrap(f"{measure.label}, limit {measure.limit:g}", int(width / LETTER))
+    """A panel's title in lines of this width, in, with room for the panel's letter."""
+    return textwrap.wrap(f"{measure.label}, limit {measure.limit:g}", int(width / LETTER), initial_indent=" " * INDENT)
 
 
 def _panel(axes: Axes, table: Mapping[tuple[int, int], float | None], measure: Measure) -> None:

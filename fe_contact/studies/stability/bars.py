@@ -96,7 +96,7 @@ def measured(case: Case) -> Table:
         "overshoot": float(force[time < 4 * TRANSIT].max() / pressed.max() - 1.0),
         "penetration": max(float(sample.overlap.max()) for sample in motion.samples) / (VELOCITY * TRANSIT),
         "duration_steps": (contact.first - 2 * TRANSIT) / step,
-        "start": (begun[known] - due[known]) / PERIOD if known >= 0 else math.nan,
+        "start": (begun[known] - due[known]) / PERIOD if known > 0 else math.nan,  # the first is where all begin
         "restitution": (impulse - 800.0 / 3.0) / (BAR.length * VELOCITY),
         "contacts": len(motion.contacts) / len(due),
         "steps": len(motion.samples) - 1,

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import NullFormatter
 
 from fe_contact.studies import style
 from fe_contact.studies.table1.limits import DEPTH, LIMIT
@@ -106,6 +107,7 @@ def _datum(left: Axes, right: Axes, trials: Sequence[Trial]) -> None:
     for axes, printed, name in ((left, 0.25 * np.pi, "printed, π/4"), (right, TABLE_ALPHA, "printed, 1")):
         axes.axhline(printed, color=style.BLACK, linewidth=0.8, linestyle=DASHED, label=name)
         axes.set(xscale="log", xlabel="datum, thickness or the struck radius over R")
+        axes.xaxis.set_minor_formatter(NullFormatter())
         axes.legend(loc="upper right", fontsize=6.0, labelspacing=0.25)
     left.set(ylabel="D/l = F/(E* l depth)")
     right.set(ylabel="d ln F/d ln depth")

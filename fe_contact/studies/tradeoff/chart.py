@@ -33,6 +33,7 @@ COLUMNS, ROW_HEIGHT = 4, 0.185  # of the legend; height of a row, in
 FEW_DECADES = 1.5  # of an axis below which powers of ten are too few ticks
 COLOURS = (style.BLUE, style.GREEN, style.ORANGE, style.SKY, style.BLACK, style.VERMILION)
 MARKERS = ("o", "s", "^", "v")
+ERROR = "error (the largest of peak, duration, restitution, history)"
 ALL_METHODS = "front of all methods"
 STAR: Look = {"color": "#F0E442", "markeredgecolor": style.BLACK, "markeredgewidth": 0.7}
 EXACT: tuple[Look, ...] = (
@@ -84,6 +85,7 @@ def plot_work(found: Tradeoff, lines: list[str], where: Path) -> tuple[Path, Pat
     ) as sheet:
         (axes,) = sheet.panels(1, 1, 0.082, 0.68)
         _counted(axes, found.points, signs)
+        axes.set_ylabel(ERROR)
         legend = [sign for sign in signs.legend(found.points) if sign.get_label() != ALL_METHODS]
         axes.legend(handles=legend, loc="upper left", bbox_to_anchor=(1.03, 1.0), labelspacing=0.8)
     return sheet.paths
@@ -110,7 +112,7 @@ def _every_method(axes: Axes, points: Sequence[Point], signs: Signs, laws: Mappi
         cost, error = [point.cpu for point in own], [_drawn(point.error) for point in own]
         axes.plot(cost, error, linestyle="-", linewidth=0.7, **{"markersize": 4.0, "markeredgewidth": 0.0, **look})
     _front(axes, judged(points), _processor_time, color=style.BLACK, linestyle="--")
-    axes.set(xlabel="processor time, s", ylabel="error (the largest of peak, duration, restitution, history)")
+    axes.set(xlabel="processor time, s", ylabel=ERROR)
     ticks(axes)
     style.label(axes, "a", "every method: error over processor time")
 
@@ -155,20 +157,22 @@ def _finite_elements(axes: Axes, points: Sequence[Point], signs: Signs, cost: Me
         axes.plot([cost(point)], [error], linestyle="", markersize=3.6, markeredgewidth=0.8, zorder=3, **look)
     _front(axes, tried, cost, color=style.GREY)
     axes.axhline(_drawn(known_to(points)), color=style.BLACK, linewidth=0.7, linestyle=":", zorder=1)
-    for point in tried:
-        if point.default_for is not None:
-            _default(axes, cost(point), _drawn(point.error), point.default_for)
+    defaults = [point for point in tried if point.default_for is not None]
+    for error in {point.error for point in defaults}:
+        _default(axes, [point for point in defaults if point.error == error], cost)
     axes.set(xscale="log", yscale="log")
     axes.margins(y=0.12)
     axes.grid(which="major", color="#e6e6e6", linewidth=0.5)
     axes.set_axisbelow(True)
 
 
-def _default(axes: Axes, cost: float, error: float, tolerance: float) -> None:
-    """A star, and away from it the tolerance it is for."""
-    axes.plot([cost], [error], "*", markersize=10.0, zorder=4, **STAR)
+def _default(axes: Axes, alike: Sequence[Point], cost: Measure) -> None:
+    """Stars of one choice of settings, and away from them the tolerances it is for."""
+    error, costs = _drawn(alike[0].error), [cost(point) for point in alike]
+    axes.plot(costs, [error] * len(costs), "*", markersize=10.0, zorder=4, **STAR)
     leader = {"arrowstyle": "-", "linewidth": 0.6, "color": style.BLACK, "shrinkA": 0.0, "shrinkB": 4.0}
-    axes.annotate(_power(tolerance), (cost, error), (-46.0, -16.0), ha="right", textcoords="offset points",
+    tolerances = ", ".join(_power(point.default_for or 0.0) for point in alike)
+    axes.annotate(tolerances, (min(costs), error), (-46.0, -16.0), ha="right", textcoords="offset points",
                   arrowprops=leader, zorder=5)  # fmt: skip
 
 

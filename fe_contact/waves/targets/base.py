@@ -13,7 +13,7 @@ from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import ImpactWay
 from fe_contact.progress import Progress
 from fe_contact.settings import Given, WaveNumerics
-from fe_contact.waves.certify import Body, Waves, cost_of
+from fe_contact.waves.certify import Body, Units, Waves, cost_of
 from fe_contact.waves.plan import Cost
 from lumped.errors import BadInput, Fault
 from lumped.materials.radiation import shear_speed
@@ -42,11 +42,13 @@ class WaveTarget:
         cls,
         check: Callable[[Scene], None],
         plan: Callable[[Scene, Given], Plan],
+        units: Units,
         moving: Body,
         write_fields: Callable[[Scene, Result, Path], Path] | None = None,
     ) -> WaveTarget:
-        """One whose bodies ``moving`` makes: marched with waves, refined by what is missing."""
-        return cls(check, plan, partial(cost_of, moving=moving), partial(Waves.of, moving=moving), write_fields)
+        """One whose bodies ``moving`` makes, scaled from ``units``: marched with waves, refined by what is missing."""
+        cost = partial(cost_of, units=units)
+        return cls(check, plan, cost, partial(Waves.of, cost=cost, moving=moving), write_fields)
 
 
 WAVES = Folder[WaveTarget]("fe_contact.waves.targets", "numerics", "target")

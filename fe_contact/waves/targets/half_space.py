@@ -7,12 +7,13 @@ velocity and stress, are those of the march again, up to that instant.
 from __future__ import annotations
 
 import math
-from functools import lru_cache, partial
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 import meshes
+from fe_contact.assembly.cache import cached_by_unknowns
 from fe_contact.assembly.far_field import dashpots, wave_speeds
 from fe_contact.assembly.forms import Array, check_compressible, isotropic, mass
 from fe_contact.assembly.operators import basis_on, boundary, made, system_matrix
@@ -77,6 +78,12 @@ def _far_radius(scene: Scene, contact_radius: float, duration: float) -> float:
     return min(max(travel / contact_radius, NEAREST), RANGES["far_radius"][1])
 
 
+def units(scene: Scene, numerics: WaveNumerics) -> list[UnitBody]:
+    """The half-space of a scene, and a ball that strikes it."""
+    balls = [] if scene.striker_material is None else [Ball.striking(scene).unit(numerics)]
+    return [*balls, unit_of(scene, numerics)]
+
+
 def moving(scene: Scene, numerics: WaveNumerics) -> Moving:
     """The half-space of a scene and its striker, rigid or a ball, at first touch, in SI units."""
     if scene.striker_material is not None:
@@ -115,17 +122,23 @@ def unit_of(scene: Scene, numerics: WaveNumerics) -> UnitBody:
     return unit_body(nu, size, numerics.order, numerics.mass)
 
 
-@lru_cache(maxsize=8)
+@cached_by_unknowns
 def unit_body(poisson: float, size: tuple[float, float, float], order: int, masses: str) -> UnitBody:
-    """Mesh and assemble for contact radius and E* one; made once for all steps and penalties.
+    """The mesh, to be assembled for contact radius and E* one; made once for all steps and penalties.
 
     ``size``: elements, how much finer they are at the surface, far radius.
     """
     elements, finer, far_radius = size
     basis = basis_on(made(meshes.half_space_for_waves, elements, SMALLEST, far_radius, finer), order)
-    springs, fixed = system_matrix(basis, poisson), held(basis, along=("axis",), across=())
-    absorbing = dashpots(boundary(basis, ("far",)), poisson)
-    return UnitBody.of(basis, flat(basis), fixed, mass(basis), masses, [springs], [absorbing])
+    return UnitBody(
+        basis,
+        flat(basis),
+        held(basis, along=("axis",), across=()),
+        masses,
+        local=lambda: mass(basis),
+        springs=lambda: [system_matrix(basis, poisson)],
+        absorbing=lambda: [dashpots(boundary(basis, ("far",)), poisson)],
+    )
 
 
 def write_fields(scene: Scene, result: Result, where: Path) -> Path:
@@ -168,4 +181,4 @@ def _stressed(moving: Moving, state: BodyState) -> Array:
     return part.stressed(state.displacement, branches) + part.relaxation.viscosity * state.velocity
 
 
-MEMBER = WaveTarget.meshed(check, plan, moving, write_fields)
+MEMBER = WaveTarget.meshed(check, plan, units, moving, write_fields)

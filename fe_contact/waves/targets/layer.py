@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from functools import lru_cache
 
 import numpy as np
 
 import meshes
+from fe_contact.assembly.cache import cached_by_unknowns
 from fe_contact.assembly.far_field import on_boundary
 from fe_contact.assembly.forms import Basis, Matrix, check_compressible, mass, plane_mass
 from fe_contact.assembly.operators import basis_on, boundary, made, moduli
@@ -110,11 +110,11 @@ def unit_of(scene: Scene, numerics: WaveNumerics) -> UnitBody:
     return unit_layer(sizes, numerics.order, target.base == "bonded", scene.geometry.shape.plane, numerics.mass)
 
 
-@lru_cache(maxsize=8)
+@cached_by_unknowns
 def unit_layer(
     sizes: tuple[float, float, float, float], order: int, bonded: bool, plane: bool, masses: str
 ) -> UnitBody:
-    """Mesh and assemble; made once for all steps and penalties.
+    """The mesh, to be assembled; made once for all steps and penalties.
 
     ``sizes``: elements, how much finer they are at the surface, thickness, far radius. Stiffness of unit bulk and of
     unit shear modulus, dashpots on the side against motion through it and along it.
@@ -122,10 +122,15 @@ def unit_layer(
     elements, finer, thickness, far_radius = sizes
     basis = basis_on(made(meshes.layer_for_waves, elements, SMALLEST, thickness, far_radius - 1.0, finer), order)
     fixed = held(basis, along=("axis", "base") if bonded else ("axis",), across=("base",))
-    local = plane_mass(basis) if plane else mass(basis)
-    springs = [matrix(basis, bonded, plane, *one) for one in ((1.0, 0.0), (0.0, 1.0))]
-    sides = [_side(basis, plane, component) for component in (0, 1)]
-    return UnitBody.of(basis, flat(basis, 2 if plane else 3), fixed, local, masses, springs, sides)
+    return UnitBody(
+        basis,
+        flat(basis, 2 if plane else 3),
+        fixed,
+        masses,
+        local=lambda: plane_mass(basis) if plane else mass(basis),
+        springs=lambda: [matrix(basis, bonded, plane, *one) for one in ((1.0, 0.0), (0.0, 1.0))],
+        absorbing=lambda: [_side(basis, plane, component) for component in (0, 1)],
+    )
 
 
 def _side(basis: Basis, plane: bool, component: int) -> Matrix:
@@ -167,4 +172,4 @@ def _impedance(material: Material, modulus: float) -> float:
     return math.sqrt(modulus * (material.density or 0.0))
 
 
-MEMBER = WaveTarget.meshed(check, plan, moving)
+MEMBER = WaveTarget.meshed(check, plan, lambda scene, numerics: [unit_of(scene, numerics)], moving)

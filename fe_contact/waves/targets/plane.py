@@ -32,7 +32,7 @@ def moving(scene: Scene, numerics: WaveNumerics) -> Flying:
     return flying(scene, numerics, [ball.side(numerics, points[0])], points, (1.0,))
 
 
-BALL = WaveTarget.meshed(check_balls, plan, moving)
+BALL = WaveTarget.meshed(check_balls, plan, lambda scene, numerics: [Ball.striking(scene).unit(numerics)], moving)
 
 
 def _of(scene: Scene) -> WaveTarget:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from fe_contact.budget.plan import Plan
 from fe_contact.settings import Given, WaveNumerics
 from fe_contact.waves.balls import Ball, flying, plan_in_flight
-from fe_contact.waves.moving import Flying
+from fe_contact.waves.moving import Flying, UnitBody
 from fe_contact.waves.targets.base import WaveTarget, check_balls
 from lumped.laws import correspondence
 from lumped.scene.scene import Scene
@@ -27,13 +27,22 @@ def plan(scene: Scene, given: Given) -> Plan:
 
 def moving(scene: Scene, numerics: WaveNumerics) -> Flying:
     """Two balls about their common centre of mass; the smaller one, whose surface ends first, has the points."""
-    target, mass = scene.target, scene.target_mass
-    assert isinstance(target, SphereTarget)
-    assert mass is not None
-    balls = [Ball.striking(scene), Ball(target.radius, scene.geometry.material, mass)]
+    balls = _balls(scene)
     points = min(balls, key=lambda ball: ball.radius).points(numerics)
     sides = [ball.side(numerics, points[0]) for ball in balls]
     return flying(scene, numerics, sides, points, [scene.reduced_mass / ball.mass for ball in balls])
 
 
-MEMBER = WaveTarget.meshed(check_balls, plan, moving)
+def _balls(scene: Scene) -> list[Ball]:
+    target, mass = scene.target, scene.target_mass
+    assert isinstance(target, SphereTarget)
+    assert mass is not None
+    return [Ball.striking(scene), Ball(target.radius, scene.geometry.material, mass)]
+
+
+def units(scene: Scene, numerics: WaveNumerics) -> list[UnitBody]:
+    """Both balls."""
+    return [ball.unit(numerics) for ball in _balls(scene)]
+
+
+MEMBER = WaveTarget.meshed(check_balls, plan, units, moving)

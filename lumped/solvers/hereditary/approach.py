@@ -91,14 +91,16 @@ class PieceMotion:
                 np.abs(twice @ change) <= CONVERGED**2 * np.abs(depth)
             )
             if rests or size * CONVERGED <= allowed or size**3 <= allowed * before**2:
-                return HereditaryPiece(self._values(state, a, rise + slope * (twice @ change), answers), step)
+                # Not gravity less the acceleration: under much of it a faint force would be its rounding.
+                force, rise = force + matrix @ change, rise + slope * (twice @ change)
+                return HereditaryPiece(self._values(state, a, force, rise, answers), step)
             before = size
         return None
 
-    def _values(self, state: Array, a: Array, rise: Array, answers: Array) -> Array:
+    def _values(self, state: Array, a: Array, force: Array, rise: Array, answers: Array) -> Array:
         """The fields at the first place and the nodes; `rise` is by how much the load has grown."""
         weights = self.weights
-        velocity, force = state[1] + weights @ a, self.problem.gravity - a
+        velocity = state[1] + weights @ a
         depth = state[0] + weights @ velocity
         values = np.empty((state.size, a.size + 1))
         values[:, 0] = state

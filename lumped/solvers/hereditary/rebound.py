@@ -40,6 +40,8 @@ TIME, DEPTH, VELOCITY, WORK, FORCE, EDGE, MEMORIES = range(7)  # rows of the sta
 NEWTON_STEPS = 16  # work: of one piece of the rebound, more is no convergence
 CONVERGED, ROUNDING = 1e-8, 1e-14  # rounding: last change over the largest pace; change of a time over the time
 FIRST = 0.5  # work: first piece over the length of the way back
+# Rounding: a change as small, over the largest pace, that does not halve the one before: Newton's steps square theirs.
+NOISE, HALVED = 1e-4, 0.5
 # Safety: a change of the pace as large has no solution; in place of a stiffness of zero, in a quotient.
 DIVERGED, TINY = 1e100, 1e-200
 # A turn with a force above the weight by less than this share of it is none: the striker has crept to rest.
@@ -87,6 +89,7 @@ class ReboundPieces:
 
     def _solved(self, weights: Array, state: Array, then: Then, pace: Array) -> HereditaryPiece | None:
         """Newton's steps for the pace p = dt/ds at the nodes, which lets nothing lack."""
+        last = math.inf
         for step in range(1, NEWTON_STEPS + 1):
             now = Trial(self.problem, self.past.turn, weights, state, then, pace)
             change = np.linalg.solve(now.change_of_lack(), now.lack)
@@ -94,7 +97,9 @@ class ReboundPieces:
             size, scale = float(np.abs(change).max()), float(np.abs(pace).max())
             if not size < DIVERGED:
                 return None
-            if size <= CONVERGED * scale or float(np.abs(weights @ change).max()) <= ROUNDING * now.time[-1]:
+            rounded = HALVED * last < size <= NOISE * scale
+            last = size
+            if size <= CONVERGED * scale or rounded or float(np.abs(weights @ change).max()) <= ROUNDING * now.time[-1]:
                 values = Trial(self.problem, self.past.turn, weights, state, then, pace).values()
                 ascends = bool(np.all(np.diff(values[TIME]) >= -ROUNDING * values[TIME, -1]))
                 return HereditaryPiece(values, step) if ascends else None

@@ -79,7 +79,9 @@ def _finished(
     acceleration = gain
     if nodes.power > 1:
         acceleration = np.divide(gain, nodes.pace, out=np.full(STAGES, bodies.gravity), where=nodes.pace > 0.0)
-    return Step(start, length, nodes, gain, rate, depth, bodies.mass * (bodies.gravity - acceleration), end, count)
+    # Gravity less the acceleration would leave of a faint force its rounding alone.
+    force = law.force(pressed, rate, stage) if bodies.gravity else -bodies.mass * acceleration
+    return Step(start, length, nodes, gain, rate, depth, force, end, count)
 
 
 def roughness(step: Step) -> float:
