@@ -15,6 +15,7 @@ from numpy.polynomial import Chebyshev
 
 from fe_contact.assembly.forms import Array, check_compressible
 from fe_contact.budget import plan as statics
+from fe_contact.budget.refine import AIM
 from fe_contact.indentation import COARSEST, indent, settings
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, check_kind
@@ -26,7 +27,7 @@ from lumped.laws import ting
 from lumped.load_curves.sampled import SampledCurve
 from lumped.numbers import Clock
 from lumped.result.model_ledger import Peak, model_ledger
-from lumped.result.result import UNITS, Result, provenance, unmet
+from lumped.result.result import UNITS, Result, largest_bar, provenance, unmet
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Answered, Scene
 from lumped.shapes._block import Block
@@ -39,7 +40,6 @@ NEAR = 2e-3  # of that energy: what the coarse mesh has taken up
 ROUNDS = 12  # work: of depths tried for it
 BEGUN = 0.7  # first of them over the depth that small strains would have
 SAMPLES = 160  # work: depths at which the polynomials are handed on
-SHARE = 1.0  # of the tolerance that the curve may err by: the bars of an impact are about as wide
 SECONDS = 3.0  # processor time of an impact to 1e-3, about: it ranks methods, no more
 FINE_INTEGRATION = 1e-2  # of the tolerance
 
@@ -60,14 +60,26 @@ def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
     check_compressible(scene)
     check_impact(scene, given)
     clock, tolerance = Clock(), float(given.get("tolerance", DEFAULT_TOLERANCE))
-    deepest = depth_reached(scene)
+    deepest, asked, best = SPARE * depth_reached(scene), tolerance, None
     for _ in range(ROUNDS):
-        deepest *= SPARE
-        known = _known(scene, deepest, {**given, "tolerance": SHARE * tolerance}, progress)
+        try:
+            known = _known(scene, deepest, {**given, "tolerance": asked}, progress)
+        except NotReached:
+            if best is None:
+                raise
+            break
         found = known.impact(scene, tolerance)
-        if (found.quantities["peak_depth"].value or 0.0) <= deepest:
-            return _result(scene, known, found, tolerance, clock)
-    raise NotReached(f"the striker goes deeper than {deepest:.3g} m; cure: a lower striker.velocity or striker.mass")
+        if (found.quantities["peak_depth"].value or 0.0) > deepest:
+            deepest *= SPARE
+            continue
+        best = _result(scene, known, found, tolerance, clock)
+        excess = largest_bar(best.quantities) / tolerance
+        if excess <= 1.0 or known.relative > asked:  # the last: no setting is left that the depths could have finer
+            break
+        asked *= AIM / excess
+    if best is None:
+        raise NotReached(f"the striker goes deeper than {deepest:.3g} m; cure: a lower striker.velocity or .mass")
+    return best
 
 
 def depth_reached(scene: Scene) -> float:
@@ -117,6 +129,11 @@ class KnownCurve:
         place = np.linspace(0.0, 1.0, 2 * SAMPLES)
         between = float(np.abs(self.force(place) - lower(place)).max())
         return {cause: float(error.max()) for cause, error in self.pressed.budget.items()} | {"curve": between}
+
+    @property
+    def relative(self) -> float:
+        """The largest relative bar of the depths."""
+        return float((self.pressed.force_error / self.pressed.force).max())
 
     def impact(self, scene: Scene, tolerance: float, uniform: float = 0.0, tilted: float = 0.0) -> Result:
         """On the curve, or one that errs by these relative changes, of all alike and of shallow against deep."""

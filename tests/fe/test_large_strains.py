@@ -13,6 +13,7 @@ from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import basis_on
 from fe_contact.indentation import expected, indent, settings
 from fe_contact.indentation import press as press_any
+from fe_contact.settings import Given
 from fe_contact.solids.base import PointAnswer, State, elliptic
 from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
@@ -292,6 +293,27 @@ def test_a_curve_that_errs_by_its_bars_leaves_the_impact_within_its_own(
     off = np.abs(found.history.force - exact.history.force_at(found.history.time))
     assert np.all(off <= found.history.force_error + 1e-6 * found.history.force.max())
     assert np.median(found.history.force_error) < 5.0 * np.median(off)
+
+
+@pytest.mark.parametrize(("lessened", "converged"), [(True, True), (False, False)])
+def test_depths_are_pressed_finer_until_the_impact_meets_its_tolerance(
+    lessened: bool, converged: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a spring whose depths err by as much as they may, or by some more whatever is asked of them."""
+    scene, asked = Scene.load("polymer-sphere-finite"), list[float]()
+    k = 4.0 / 3.0 * scene.contact_modulus.relaxed * np.sqrt(scene.profile.tip_radius)
+
+    def indented(indenter: Indenter, depths: tuple[float, ...], given: Given, progress: object) -> Indentation:
+        asked.append(float(given["tolerance"]))
+        depth = np.array(depths)
+        force, radius = k * depth**1.5, np.sqrt(depth * scene.profile.tip_radius)
+        bar = np.full(len(depths), asked[-1] if lessened else 1.1e-2)
+        return Indentation(indenter, "fe", k, 1e-2, depth, force, radius, bar * force, {"mesh": bar})
+
+    monkeypatch.setattr(large_strains, "indent", indented)
+    monkeypatch.setattr(large_strains, "depth_reached", lambda scene: 0.4 * scene.profile.tip_radius)
+    assert run(scene, tolerance=1e-2).converged == converged
+    assert len(asked) == (2 if lessened else 1)
 
 
 def press_once(scene: Scene, depth: float) -> float:
