@@ -15,10 +15,11 @@ from numpy.polynomial import Chebyshev
 
 from fe_contact.assembly.forms import Array, check_compressible
 from fe_contact.budget import plan as statics
-from fe_contact.indentation import indent
+from fe_contact.budget.refine import AIM
+from fe_contact.indentation import COARSEST, indent, settings
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, check_kind
-from fe_contact.solids.pressing import CORRECTED, check_large
+from fe_contact.solids.pressing import CORRECTED, Solid, advanced, check_large
 from fe_contact.threads import one_thread
 from lumped.errors import NotReached
 from lumped.indentation import Indentation
@@ -26,18 +27,19 @@ from lumped.laws import ting
 from lumped.load_curves.sampled import SampledCurve
 from lumped.numbers import Clock
 from lumped.result.model_ledger import Peak, model_ledger
-from lumped.result.result import UNITS, Result, provenance, unmet
+from lumped.result.result import UNITS, Result, largest_bar, provenance, unmet
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Answered, Scene
+from lumped.shapes._block import Block
 
 DEPTHS = 10  # that tell the curve
 SHALLOWEST = 0.0144  # the least of them over the largest; below it lies a share of 2e-5 of a sphere's work
 DEGREE = 7  # of the polynomials through them
-SPARE = 1.12  # largest depth over the one that small strains would have
-MORE = 1.2  # the same over the one reached, where that was too little
-ROUNDS = 4  # work: of such enlargements
+SPARE = 1.02  # largest depth over the one at which a coarse mesh has taken up the striker's energy
+NEAR = 2e-3  # of that energy: what the coarse mesh has taken up
+ROUNDS = 12  # work: of depths tried for it
+BEGUN = 0.7  # first of them over the depth that small strains would have
 SAMPLES = 160  # work: depths at which the polynomials are handed on
-SHARE = 1.0  # of the tolerance that the curve may err by: the bars of an impact are about as wide
 SECONDS = 3.0  # processor time of an impact to 1e-3, about: it ranks methods, no more
 FINE_INTEGRATION = 1e-2  # of the tolerance
 
@@ -58,15 +60,57 @@ def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
     check_compressible(scene)
     check_impact(scene, given)
     clock, tolerance = Clock(), float(given.get("tolerance", DEFAULT_TOLERANCE))
-    deepest = SPARE * statics.scales(scene, statics.plan(scene, {}).numerics).peak_depth
+    deepest, asked, best = SPARE * depth_reached(scene), tolerance, None
     for _ in range(ROUNDS):
-        known = _known(scene, deepest, {**given, "tolerance": SHARE * tolerance}, progress)
+        try:
+            known = _known(scene, deepest, {**given, "tolerance": asked}, progress)
+        except NotReached:
+            if best is None:
+                raise
+            break
         found = known.impact(scene, tolerance)
-        reached = found.quantities["peak_depth"].value or 0.0
-        if reached <= deepest:
-            return _result(scene, known, found, tolerance, clock)
-        deepest = MORE * reached
-    raise NotReached(f"the striker goes deeper than {deepest:.3g} m; cure: a lower striker.velocity or striker.mass")
+        if (found.quantities["peak_depth"].value or 0.0) > deepest:
+            deepest *= SPARE
+            continue
+        best = _result(scene, known, found, tolerance, clock)
+        excess = largest_bar(best.quantities) / tolerance
+        if excess <= 1.0 or known.relative > asked:  # the last: no setting is left that the depths could have finer
+            break
+        asked *= AIM / excess
+    if best is None:
+        raise NotReached(f"the striker goes deeper than {deepest:.3g} m; cure: a lower striker.velocity or .mass")
+    return best
+
+
+def depth_reached(scene: Scene) -> float:
+    """Depth, m, at which the body on a coarse mesh has taken up what the striker brings. Raises EquilibriumLost.
+
+    The energy grows as a power of the depth, force x depth / energy.
+    """
+    indenter, small = _slowly(scene), statics.scales(scene, statics.plan(scene, {}).numerics)
+    if isinstance(indenter.shape, Block) and indenter.shape.uniform:
+        return small.peak_depth
+    numerics, radius = settings({"elements_per_contact": COARSEST}, indenter.shape, large=True), small.contact_radius
+    solid = Solid.of(indenter.elastic(False), np.array([radius]), numerics)
+    joule = scene.contact_modulus.relaxed * indenter.shape.total * solid.unit ** (solid.dimension + 1) / solid.lead
+    depth, reached = BEGUN * small.peak_depth, None
+    for _ in range(ROUNDS):
+        stiffness = numerics.penalty * solid.unit / radius
+        reached = advanced(solid.encounter, reached, solid.lead * depth / solid.unit, stiffness)
+        balance = reached.balance
+        brought = 0.5 * scene.reduced_mass * scene.velocity**2 + scene.reduced_mass * scene.gravity * depth
+        more = brought / (joule * balance.energy)
+        if abs(more - 1.0) < NEAR:
+            break
+        depth *= more ** (balance.energy / (balance.force * balance.depth))
+    return depth
+
+
+def _slowly(scene: Scene) -> Indenter:
+    """The same without its motion."""
+    geometry = scene.geometry
+    return Indenter(geometry.shape, geometry.material, geometry.target, geometry.striker_material, scene.model,
+                    scene.name, scene.source)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +130,11 @@ class KnownCurve:
         between = float(np.abs(self.force(place) - lower(place)).max())
         return {cause: float(error.max()) for cause, error in self.pressed.budget.items()} | {"curve": between}
 
+    @property
+    def relative(self) -> float:
+        """The largest relative bar of the depths."""
+        return float((self.pressed.force_error / self.pressed.force).max())
+
     def impact(self, scene: Scene, tolerance: float, uniform: float = 0.0, tilted: float = 0.0) -> Result:
         """On the curve, or one that errs by these relative changes, of all alike and of shallow against deep."""
         place = np.linspace(0.0, 1.0, SAMPLES)
@@ -101,12 +150,9 @@ class KnownCurve:
 
 def _known(scene: Scene, deepest: float, given: Given, progress: Progress) -> KnownCurve:
     """The curve up to a depth, m. Raises NotReached."""
-    geometry = scene.geometry
-    indenter = Indenter(geometry.shape, geometry.material, geometry.target, geometry.striker_material, scene.model,
-                        scene.name, scene.source)  # fmt: skip
     place = 0.5 - 0.5 * np.cos(np.pi * np.arange(DEPTHS) / (DEPTHS - 1))
     depths = deepest * SHALLOWEST ** (1.0 - place)
-    pressed = indent(indenter, tuple(depths.tolist()), given, progress=progress)
+    pressed = indent(_slowly(scene), tuple(depths.tolist()), given, progress=progress)
     return KnownCurve(pressed, deepest, *_fitted(pressed, deepest, DEGREE))
 
 

@@ -114,7 +114,7 @@ class Marcher:
                 separated = True
                 break
             there = self._next(instants, left)
-            if there.force <= 0.0:
+            if there.force <= 0.0 and there.velocity < 0.0:  # before, a first touch between the mesh's points
                 separated = True
                 break
             instants.append(there)

@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array, Matrix
 from fe_contact.assembly.interior import elimination_order, factorized
-from fe_contact.solids.base import State
+from fe_contact.solids.base import State, elliptic
 from fe_contact.solids.bulk import CoredBody, Loaded, Pattern
 from fe_contact.solids.contact import Obstacle, Points, Skin, Touch
 from lumped.errors import NotReached
@@ -173,7 +173,7 @@ def balanced(
 
     here = at(start)
     if not np.isfinite(here.energy):
-        raise EquilibriumLost(f"an element is inverted at depth {depth:.3g}")
+        raise EquilibriumLost("an element is inverted")
     if touching is not None:
         guess = encounter.at(start, depth, stiffness, state, touching)
         change = _whole(guess, guess.factors(pulls=foreseen)(-guess.residual))
@@ -184,7 +184,7 @@ def balanced(
     if found is not None:
         return found
     if hasty:
-        raise EquilibriumLost(f"no equilibrium in {HASTY} whole steps at depth {depth:.3g}")
+        raise EquilibriumLost(f"no equilibrium in {HASTY} whole steps")
     return _descending(here, at, settled)
 
 
@@ -223,7 +223,7 @@ def _descending(here: Balance, at: Callable[[Array], Balance], settled: float) -
         if -slope <= settled * abs(here.energy):
             return _equilibrium(at(here.displacement + _whole(here, step)), solve, iteration)
         here = _descended(here, step, slope, at)
-    raise EquilibriumLost(f"no equilibrium in {MOST_ITERATIONS} iterations at depth {here.depth:.3g}")
+    raise _lost(here, f"no equilibrium in {MOST_ITERATIONS} iterations")
 
 
 def _equilibrium(there: Balance, solve: Callable[[Array], Array], iterations: int) -> Equilibrium:
@@ -239,7 +239,7 @@ def _step(here: Balance) -> tuple[Callable[[Array], Array], Array]:
         step = solve(-here.residual)
         if here.residual @ step <= 0.0:
             return solve, step
-    raise EquilibriumLost("the body is not stable")
+    raise _lost(here, "the body is not stable")
 
 
 def _whole(here: Balance, free: Array) -> Array:
@@ -257,4 +257,10 @@ def _descended(here: Balance, step: Array, slope: float, at: Callable[[Array], B
         if there.energy <= here.energy + ENOUGH * share * slope + ROUNDING * abs(here.energy):
             return there
         share *= 0.5
-    raise EquilibriumLost("the energy has no descent")
+    raise _lost(here, "the energy has no descent")
+
+
+def _lost(here: Balance, reason: str) -> EquilibriumLost:
+    """For this reason, or for the one that lies in the material."""
+    bands = "the material softens under these strains, which gather in bands"
+    return EquilibriumLost(reason if elliptic(here.loaded.answer.tangent) else bands)

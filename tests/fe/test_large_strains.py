@@ -13,7 +13,8 @@ from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import basis_on
 from fe_contact.indentation import expected, indent, settings
 from fe_contact.indentation import press as press_any
-from fe_contact.solids.base import PointAnswer, State
+from fe_contact.settings import Given
+from fe_contact.solids.base import PointAnswer, State, elliptic
 from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
 from fe_contact.solids.contact import OnDeformed, OnRound, OnUndeformed
@@ -235,6 +236,14 @@ def test_small_depths_leave_small_strains_as_the_ledger_has_it(name: str, nu: fl
     assert first == pytest.approx(1e3 * told, abs=0.02)
 
 
+@pytest.mark.parametrize("stretch", [0.57, 0.59, 0.9])
+def test_st_venants_material_bears_waves_along_the_stress_down_to_a_stretch(stretch: float) -> None:
+    """Uniaxial strain, nu = 0: the stress mu (s^3 - s) has its minimum where 3 s^2 = 1, s = 0.577."""
+    gradient = np.array([0.0, 0.0, 0.0, stretch - 1.0, 0.0])[:, None]
+    tangent = Hyperelastic(energy_of("st_venant_kirchhoff"), 1.0, 0.0).respond(gradient, ()).tangent
+    assert elliptic(tangent) == (3.0 * stretch**2 > 1.0)
+
+
 @pytest.mark.tenth
 def test_a_finer_run_lies_within_both_bars() -> None:
     """Of a deep indentation, where strains are large."""
@@ -259,6 +268,7 @@ def test_an_elastic_impact_gives_back_all_of_it() -> None:
     assert found.model_sufficient
     assert "ln J" in str(found.to_json()["model"]["energy"])
     peak, depth = (quantities[name].value or 0.0 for name in ("peak_force", "peak_depth"))
+    assert large_strains.depth_reached(scene) == pytest.approx(depth, rel=5e-3)
     pressed = press_once(scene, depth)
     assert abs(pressed - peak) < 2.0 * (quantities["peak_force"].error or 0.0)
 
@@ -280,10 +290,11 @@ def test_a_curve_that_errs_by_its_bars_leaves_the_impact_within_its_own(
         budget = {"mesh": 0.75 * bar, "penalty": 0.25 * bar}
         return Indentation(indenter, "fe", k, 1e-2, depth, force, radius, bar * force, budget)
 
-    monkeypatch.setattr(large_strains, "indent", indented)
-    found = run(scene, tolerance=1e-2)
     spring = Scene(None, scene.mass, scene.velocity, law=LawChoice("hertz", {"k": k, "alpha": 1.5}))
     exact = laws.hertz.of(spring).simulate(spring, 1e-6)
+    monkeypatch.setattr(large_strains, "indent", indented)
+    monkeypatch.setattr(large_strains, "depth_reached", lambda scene: exact.quantities["peak_depth"].value)
+    found = run(scene, tolerance=1e-2)
     assert found.converged
     for name in ("peak_force", "peak_time", "peak_depth", "duration"):
         one, other = found.quantities[name], exact.quantities[name].value
@@ -291,6 +302,27 @@ def test_a_curve_that_errs_by_its_bars_leaves_the_impact_within_its_own(
     off = np.abs(found.history.force - exact.history.force_at(found.history.time))
     assert np.all(off <= found.history.force_error + 1e-6 * found.history.force.max())
     assert np.median(found.history.force_error) < 5.0 * np.median(off)
+
+
+@pytest.mark.parametrize(("lessened", "converged"), [(True, True), (False, False)])
+def test_depths_are_pressed_finer_until_the_impact_meets_its_tolerance(
+    lessened: bool, converged: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a spring whose depths err by as much as they may, or by some more whatever is asked of them."""
+    scene, asked = Scene.load("polymer-sphere-finite"), list[float]()
+    k = 4.0 / 3.0 * scene.contact_modulus.relaxed * np.sqrt(scene.profile.tip_radius)
+
+    def indented(indenter: Indenter, depths: tuple[float, ...], given: Given, progress: object) -> Indentation:
+        asked.append(float(given["tolerance"]))
+        depth = np.array(depths)
+        force, radius = k * depth**1.5, np.sqrt(depth * scene.profile.tip_radius)
+        bar = np.full(len(depths), asked[-1] if lessened else 1.1e-2)
+        return Indentation(indenter, "fe", k, 1e-2, depth, force, radius, bar * force, {"mesh": bar})
+
+    monkeypatch.setattr(large_strains, "indent", indented)
+    monkeypatch.setattr(large_strains, "depth_reached", lambda scene: 0.4 * scene.profile.tip_radius)
+    assert run(scene, tolerance=1e-2).converged == converged
+    assert len(asked) == (2 if lessened else 1)
 
 
 def press_once(scene: Scene, depth: float) -> float:
