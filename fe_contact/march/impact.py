@@ -126,9 +126,17 @@ class _Marcher:
             try:
                 return self.stepper.step(state, steps, length)
             except FAILURES as failure:
+                if self._unseen(failure, steps, length):
+                    length *= 2
+                    continue
                 length /= 2
                 if length < self.shortest or not _ends(failure, steps):
                     raise
+
+    def _unseen(self, failure: Exception, steps: Sequence[Step], length: float) -> bool:
+        """Whether a first step leads to less depth than a mesh that stays can see, and may be longer."""
+        longest = self.numerics.contact_time / self.numerics.steps
+        return not steps and isinstance(failure, ContactLost) and length < longest
 
     def _longest(self, last: Step) -> float:
         """What does not separate swings about its weight, which no long step would see, until it has settled."""

@@ -117,3 +117,17 @@ def test_what_falls_with_the_steps_asks_for_no_finer_mesh(campaign_size: Callabl
         for name in RULED:
             quantity, wanted = found.quantities[name], exact.quantities[name].value
             assert abs(quantity.value - wanted) <= quantity.error, f"{scene.name}: {name} is not covered"
+
+
+@pytest.mark.tenth
+def test_a_first_step_that_ends_above_the_first_point_of_a_mesh_that_stays_is_made_longer() -> None:
+    """A cone of 4.4 degrees on a thin layer: 184 steps begin with 2e-10 m of depth, which its points do not see."""
+    striker = {"shape": "cone", "angle": 4.357, "mass": 0.02, "velocity": 0.00534}
+    material = {"law": "kelvin_voigt", "E": 1e6, "eta": 3.65e4, "nu": 0.192}
+    target = {"shape": "layer", "thickness": 1e-4, "base": "sliding", "material": material}
+    scene = lumped.Scene.from_dict({"name": "damped-thin", "striker": striker, "target": target})
+    exact = lumped.simulate(ting.of(scene), scene, REFERENCE_TOLERANCE).quantities
+    found = fe_contact.run(scene, 1e-2)
+    assert found.converged
+    for name in RULED:
+        assert abs(found.quantities[name].value - exact[name].value) <= found.quantities[name].error, name
