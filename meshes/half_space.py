@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 EDGE_REFINEMENT = 24.0  # element size inside the contact over element size at its edge
 GROWTH = 2.0  # growth of the element size per unit distance, for one element per contact radius
 ZONE = 1.1  # where contacts may end anywhere the surface is fine up to this radius
-WAVE_GROWTH, LARGEST_WAVE_GROWTH = 2.0, 0.3  # of the element size per unit distance, for one element along the radius
+WAVE_GROWTH, LARGEST_WAVE_GROWTH = 3.0, 0.45  # of the element size per unit distance, for one element along the radius
 INWARD_GROWTH = 0.6  # the same without waves: plastic forces differ by less than 1e-3 from those at 0.3
 LARGEST_GROWTH = 1.5  # steeper gradings leave gmsh too little room for well-shaped triangles
 

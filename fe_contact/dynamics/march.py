@@ -26,7 +26,7 @@ import scipy.sparse as sparse
 
 from fe_contact.assembly.cache import Store
 from fe_contact.assembly.forms import Array, Matrix
-from fe_contact.dynamics.body import BodyState, BodyWithMass, internal, undeformed
+from fe_contact.dynamics.body import BodyState, BodyWithMass, undeformed
 from fe_contact.dynamics.schemes.base import Scheme
 from fe_contact.dynamics.stepping import Enforced, ExplicitStepper, ImplicitStepper
 from fe_contact.errors import ContactLost, MotionUnbounded, TooManySteps
@@ -353,15 +353,17 @@ def _of_stress(
 ) -> float:
     """Loss by stress and damping that are not averages over the step."""
     late, early = 1 - scheme.alpha_f, scheme.alpha_f
-    forces = late * internal(body, after.pulls) + early * internal(body, before.pulls)
+    lost = 0.0
     for part, (start, end) in zip(body.parts, _pulls(before, after), strict=True):
-        forces = forces - part.averaged(step, start[0], end[0] - start[0], start[1:])
+        start, end = start @ change, end @ change  # all of it is linear in them
+        held = late * part.stressed(end[0], end[1:]) + early * part.stressed(start[0], start[1:])
+        lost += float(held - part.averaged(step, start[0], end[0] - start[0], start[1:]))
         if not scheme.explicit:
-            forces = forces + part.law(step).late @ (end[1:] - start[1:])
+            lost += float(part.law(step).late @ (end[1:] - start[1:]))
     if body.damping is not None:
-        damped = after.damped[0] - before.damped[0]
-        forces = forces + late * after.damped[1] + early * before.damped[1] - damped / step
-    return float(change @ forces)
+        begun, ended = before.damped[:2] @ change, after.damped[:2] @ change
+        lost += float(late * ended[1] + early * begun[1] - (ended[0] - begun[0]) / step)
+    return lost
 
 
 def _contact_work(body: BodyWithMass, scheme: Scheme, before: BodyState, after: BodyState, change: Array) -> float:

@@ -47,7 +47,7 @@ def predicted(scene: Scene, curve: Curve) -> float:
 
 
 def test_a_body_weighs_what_its_volume_does_and_waves_have_their_speeds() -> None:
-    mesh = meshes.half_space_for_waves(4.0, 0.1, 10.0)
+    mesh = meshes.half_space_for_waves(12.0, 0.1, 10.0)
     basis = Basis(mesh, ElementTriP2(), intorder=4)
     corners = mesh.p[:, mesh.t]
     (r, z) = corners[:, 1:] - corners[:, :1]
