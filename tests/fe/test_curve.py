@@ -108,13 +108,18 @@ def test_what_is_seen_from_both_sides_is_a_parabola_where_the_samples_are_one() 
     np.testing.assert_allclose(values[inner], (3.0 + places - 0.05 * places**2)[inner], rtol=1e-13)
 
 
+@pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("corner", [5.1, 5.5, 5.8])
 @pytest.mark.parametrize("apart", [1.0, 0.01])
-def test_a_corner_between_two_samples_is_found_where_a_line_would_cut_it(corner: float, apart: float) -> None:
-    x = np.arange(12.0)
+def test_a_corner_between_two_samples_is_found_where_a_line_would_cut_it(
+    corner: float, apart: float, mirrored: bool
+) -> None:
+    """Between two parabolas."""
+    x, side = np.arange(12.0), -1.0 if mirrored else 1.0
 
     def bent(x: np.ndarray) -> np.ndarray:
-        return np.where(x < corner, 4.0 - 0.01 * x**2, 4.0 - 0.01 * corner**2 - 0.8 * (x - corner))
+        away = side * (x - corner)
+        return np.asarray(4.0 - 0.2 * away - 0.02 * away**2 - 0.8 * np.maximum(away, 0.0))
 
     places, values = seen_from_both_sides(apart * x, bent(x))
     places = places / apart
