@@ -83,6 +83,17 @@ def test_a_spike_between_two_rows_is_a_peak_like_any_other() -> None:
     assert alone > 0
 
 
+@pytest.mark.parametrize("place", [1e-8, 1e-6, 1e-4])
+def test_a_peak_soon_after_the_touch_is_seen_where_the_steps_are_crowded_there(place: float) -> None:
+    """A force t exp(1 - t) in units of its own, over in the first of six hundred shares of the contact."""
+    x = np.append(0.0, np.geomspace(1e-2 * place**0.5, 1.0, 120))
+    time = x[1:] ** 2 / place
+    mean = np.append(0.0, np.e * (1.0 - (1.0 + time) * np.exp(-time)) / time)
+    early = replace(bump(120, 0.0), x=x, mean_force=mean, depth=x**2, radius_squared=np.array([1.0, 2.0]))
+    assert early.quantities["peak_force"] == pytest.approx(1.0, rel=1e-3)
+    assert early.quantities["peak_time"] == pytest.approx(place, rel=2e-2)
+
+
 @pytest.mark.parametrize("place", [0.07, 0.31, 0.5, 0.64, 0.93])
 def test_the_peak_of_a_quartic_is_found_by_interpolation_and_by_fit(place: float) -> None:
     def quartic(x: np.ndarray) -> np.ndarray:
