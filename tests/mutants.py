@@ -228,7 +228,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/waves/line.py", "_largest", "1 ->"): "the place beside, well within AWAY",
     ("fe_contact/budget/certify.py", "_time_steps", "FALLS *"): "under which cause a jitter stands in the same bar",
     ("fe_contact/waves/certify.py", "_smoothed", "rows[min(number + REACH"): "another smoothing, about as wide",
-    ("fe_contact/steppers/stacked.py", "stacked", "if shares"): "the same forces, found at nodes instead of points",
     ("fe_contact/steppers/stacked.py", "_together", "1.0 ->"): "the unit of moduli that are divided again",
     (
         "fe_contact/budget/variation.py",

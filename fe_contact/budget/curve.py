@@ -178,7 +178,7 @@ class Curve:
     def polynomials(self) -> LocalPolynomials:
         """Mean force but for how it began, and depth, between the steps, over x; at touch it has only begun."""
         rest = self.mean_force - self._begun(self.x)[0]
-        rest[0] = self.mean_force[0] if self.flat else 0.0
+        rest[0] = self.mean_force[0]
         return LocalPolynomials.through(self.x, np.stack([rest, self.depth]))
 
     def resolved(self, x: Array) -> tuple[Array, Array, Array]:

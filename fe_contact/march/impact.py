@@ -154,9 +154,9 @@ class _Marcher:
         return [state._replace(time=state.time + left, depth=depth, velocity=state.velocity + pull)]
 
     def _rest(self, state: State, resting: float) -> list[State]:
-        """A striker that a fluid has stopped, up to the end time; raises where it is no fluid or still moves."""
+        """A striker that a fluid has stopped, up to the end time; raises where it still moves, as on any other body."""
         strike = self.strike
-        if resting == 0.0 or state.velocity > resting:
+        if state.velocity > resting:
             raise ContactNotSettled(state.time)
         roots = np.linspace(np.sqrt(state.time), np.sqrt(strike.end_time), REST_ROWS)[1:]
         return [state._replace(time=float(root) ** 2) for root in roots]

@@ -106,14 +106,13 @@ def stacked(operator: SurfaceOperator, sides: tuple[BodySide, ...], weights: tup
     """The sides under one pressure at the operator's points; ``weights``: modulus of each over the common one."""
     blocks = (weight * side.stiffness for side, weight in zip(sides, weights, strict=True))
     trace = np.hstack([side.trace for side in sides])
-    shares = [side.at_points / weight for side, weight in zip(sides, weights, strict=True)] if len(sides) > 1 else []
-    compliance = np.sum(shares, axis=0) if shares else None
+    shares = [side.at_points / weight for side, weight in zip(sides, weights, strict=True)]
     return PressedSurface(
         block_diag(*blocks),
         trace,
         operator.weights,
         recurring=False,
-        compliance=compliance,
+        compliance=np.sum(shares, axis=0),
         carriers=carriers(operator, sides),
     )
 

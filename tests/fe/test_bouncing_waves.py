@@ -189,10 +189,10 @@ def test_bars_hold_the_answer_of_finer_settings(campaign_size: Callable[[int], i
 @pytest.mark.parametrize(
     ("changes", "count", "grounded"),
     [
+        ({"model.gravity": 60.0, "motion.impacts": 20, "motion.end_time": 3.0}, None, Grounded.SWINGS),
         ({"model.gravity": 0.0}, 1, Grounded.NO_GRAVITY),
         ({"motion.end_time": 0.02}, 1, Grounded.LATE),
         ({"motion.end_time": 0.036}, 2, None),
-        ({"model.gravity": 60.0, "motion.impacts": 20, "motion.end_time": 3.0}, None, Grounded.SWINGS),
     ],
 )
 def test_fewer_contacts_than_asked_for_have_a_reason(

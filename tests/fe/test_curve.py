@@ -83,6 +83,17 @@ def test_a_spike_between_two_rows_is_a_peak_like_any_other() -> None:
     assert alone > 0
 
 
+@pytest.mark.parametrize("place", [1e-8, 1e-6, 1e-4])
+def test_a_peak_soon_after_the_touch_is_seen_where_the_steps_are_crowded_there(place: float) -> None:
+    """A force t exp(1 - t) in units of its own, over in the first of six hundred shares of the contact."""
+    x = np.append(0.0, np.geomspace(1e-2 * place**0.5, 1.0, 120))
+    time = x[1:] ** 2 / place
+    mean = np.append(0.0, np.e * (1.0 - (1.0 + time) * np.exp(-time)) / time)
+    early = replace(bump(120, 0.0), x=x, mean_force=mean, depth=x**2, radius_squared=np.array([1.0, 2.0]))
+    assert early.quantities["peak_force"] == pytest.approx(1.0, rel=1e-3)
+    assert early.quantities["peak_time"] == pytest.approx(place, rel=2e-2)
+
+
 @pytest.mark.parametrize("place", [0.07, 0.31, 0.5, 0.64, 0.93])
 def test_the_peak_of_a_quartic_is_found_by_interpolation_and_by_fit(place: float) -> None:
     def quartic(x: np.ndarray) -> np.ndarray:
@@ -108,13 +119,18 @@ def test_what_is_seen_from_both_sides_is_a_parabola_where_the_samples_are_one() 
     np.testing.assert_allclose(values[inner], (3.0 + places - 0.05 * places**2)[inner], rtol=1e-13)
 
 
+@pytest.mark.parametrize("mirrored", [False, True])
 @pytest.mark.parametrize("corner", [5.1, 5.5, 5.8])
 @pytest.mark.parametrize("apart", [1.0, 0.01])
-def test_a_corner_between_two_samples_is_found_where_a_line_would_cut_it(corner: float, apart: float) -> None:
-    x = np.arange(12.0)
+def test_a_corner_between_two_samples_is_found_where_a_line_would_cut_it(
+    corner: float, apart: float, mirrored: bool
+) -> None:
+    """Between two parabolas."""
+    x, side = np.arange(12.0), -1.0 if mirrored else 1.0
 
     def bent(x: np.ndarray) -> np.ndarray:
-        return np.where(x < corner, 4.0 - 0.01 * x**2, 4.0 - 0.01 * corner**2 - 0.8 * (x - corner))
+        away = side * (x - corner)
+        return np.asarray(4.0 - 0.2 * away - 0.02 * away**2 - 0.8 * np.maximum(away, 0.0))
 
     places, values = seen_from_both_sides(apart * x, bent(x))
     places = places / apart

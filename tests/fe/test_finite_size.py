@@ -9,7 +9,7 @@ import pytest
 
 from fe_contact.indentation import indent, press, settings
 from lumped import Material, Relaxation, Sphere
-from lumped.indentation import FiniteSize
+from lumped.indentation import FiniteSize, finite_size
 from lumped.result.result import Quantity
 from lumped.scene.indenter import Indenter
 from lumped.scene.scene import Model
@@ -73,6 +73,21 @@ def test_the_deviation_knows_no_units() -> None:
     one, other = deviation(balls(0.3), depth), deviation(balls(0.3, length, modulus), length * depth)
     for first, second in zip((one.slope, *one.terms.values()), (other.slope, *other.terms.values()), strict=True):
         assert value(second) == pytest.approx(value(first), rel=1e-6)
+
+
+def test_a_deviation_is_what_a_force_has_more_than_hertz() -> None:
+    """Two per cent of F/E* = 4/3 sqrt(Rg) depth^3/2, to half a per cent."""
+    scene, depth, gap = (
+        replace(balls(0.2), model=Model(profile="parabola")),
+        depths(3, 2),
+        1.0 / (1.0 / 0.01 + 1.0 / 0.02),
+    )
+    hertz = 4.0 / 3.0 * np.sqrt(gap) * depth**1.5
+    found = finite_size(scene, depth, 1.02 * hertz, 0.005 * hertz)
+    assert found is not None
+    assert found.deviation == pytest.approx(0.02)
+    assert found.error == pytest.approx(0.005)
+    assert found.share == pytest.approx(np.sqrt(gap * depth) / 0.02)
 
 
 def test_half_spaces_and_two_depths_tell_no_deviation() -> None:
