@@ -237,7 +237,7 @@ class Curve:
         peak, or where gravity may have swung it for long.
         """
         swings = not self.separated and self.strike.gravity > 0.0
-        if not swings and self.x[EARLIEST] ** 2 > DENSE[EARLIEST]:
+        if not swings and self.x[min(EARLIEST, self.x.size - 1)] ** 2 > DENSE[EARLIEST]:
             return DENSE
         count = len(self.x)
         places = np.linspace(0.0, count - 1.0, max(len(DENSE), 2 * count - 1))

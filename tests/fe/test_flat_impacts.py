@@ -18,7 +18,7 @@ from fe_contact.reference import solve
 from fe_contact.settings import Numerics
 from fe_contact.steppers.flat_end import FlatEnd, FlatStepper
 from fe_contact.steppers.steps import Strike
-from lumped import BadInput, Material, Model, Relaxation, Result, Scene, laws, simulate
+from lumped import BadInput, Material, Model, NotReached, Relaxation, Result, Scene, laws, simulate
 from lumped.scene.scene import Motion
 from lumped.shapes.plate import Plate
 from lumped.shapes.prism import Prism
@@ -224,3 +224,13 @@ def test_the_share_of_the_penalty_is_safety_times_what_half_of_it_changes() -> N
     whole, half = (solve(scene, given | {"penalty": penalty}).certified for penalty in (400.0, 200.0))
     forces = [one.curve.quantities["peak_force"] or 0.0 for one in (whole, half)]
     assert whole.error("peak_force", "penalty") == pytest.approx(2.5 * (forces[0] - forces[1]), rel=0.1)
+
+
+def test_a_punch_that_a_dashpot_stops_within_few_steps_ends_by_name() -> None:
+    """Damped eighty-eight times: the first contact has two steps, fewer than tell where a curve is crowded."""
+    radius, nu = 2e-3, 0.3
+    period = math.sqrt(0.05 * (1.0 - nu**2) / (2.0 * radius * YOUNG))
+    solid = Material(Relaxation(YOUNG, viscosity=87.7 * YOUNG * period), nu)
+    scene = Scene(Punch(radius), 0.05, 0.05, solid, model=Model(gravity=1.9))
+    with pytest.raises(NotReached, match="steps reached only"):
+        fe_contact.run(scene, 1e-2, numerics={"steps": 40})
