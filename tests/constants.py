@@ -49,6 +49,7 @@ TABLE = (
     Constant(CERTIFY, "MESH_ORDER_ANYWHERE", DERIVED, "pressure's root at an edge within an element"),
     Constant(CERTIFY, "NEAR_ANYWHERE", MEASURED, "TOP of what such a mesh changes of the path", 0.998),
     Constant(CERTIFY, "DAMPED_ANYWHERE", MEASURED, "weights of a mesh that stays under a dashpot, which jitters", {}),
+    Constant(CERTIFY, "NODEWISE_ANYWHERE", MEASURED, "the same of exact enforcement, by whole nodes", {}),
     Constant(CERTIFY, "DAMPED_SINCE", MEASURED, "LATE of what such a mesh changes, by chance little at the end", 0.75),
     Constant(CERTIFY, "LEAST_HALVED", MEASURED, "fewer steps are doubled instead of halved", 10),
     Constant(CERTIFY, "LEAST_HALVED_SETTING", MEASURED, "coarser settings are doubled instead of halved"),

@@ -33,7 +33,7 @@ with a coefficient of its own for every length of step. What a scheme of order o
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, TypeVar
@@ -64,6 +64,8 @@ MESH_ORDER_ANYWHERE = 1.5  # where the edge falls anywhere in an element: the pr
 NEAR_ANYWHERE = 0.6  # of the largest depth: down to it the edge passes half an element, and a chance agreement shows
 # what a mesh that stays changes weighs so much by a dashpot: its force jitters, which hides in what adds up
 DAMPED_ANYWHERE = {"duration": 8.0, "restitution": 3.0, "impulse": 3.0}
+# the same of exact enforcement, whose contact grows and shrinks by whole nodes
+NODEWISE_ANYWHERE = {**DAMPED_ANYWHERE, "peak_depth": 2.0}
 DAMPED_SINCE = 0.5  # share of the contact from which path and speed count there: the end alone may agree by chance
 # of the steps' change in the share that branches about as fast as a step carry, by quantity, and of the force
 KEPT = {"peak_depth": 0.4, "duration": 0.4, "impulse": 1.5, "restitution": 1.5}
@@ -120,9 +122,9 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
         held = _by_stiffness(runs, steps.value, surface, numerics)
         return steps.value, held | {"time_step": (*steps.changes, *steps.jitter)}
     cheap = numerics.varied(steps=steps.cheap)
-    mesh, by_mesh = _by_mesh(
-        curve, numerics, cheap, surface.follows_contact, steps.value.strike.relaxation.viscosity > 0.0
-    )
+    damped = DAMPED_ANYWHERE if steps.value.strike.relaxation.viscosity > 0.0 else {}
+    weights = NODEWISE_ANYWHERE if numerics.enforcement == "exact" else damped
+    mesh, by_mesh = _by_mesh(curve, numerics, cheap, surface.follows_contact, weights)
     pressed = _judging(numerics, cheap, "penalty")
     penalty, stiffer = other_setting(pressed, "penalty")
     swings = not steps.value.separated and steps.value.strike.gravity > 0.0  # between few steps, if it does so for long
@@ -137,16 +139,20 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
 
 
 def _by_mesh(
-    curve: Callable[[Numerics], Curve | None], numerics: Numerics, cheap: Numerics, follows_contact: bool, viscous: bool
+    curve: Callable[[Numerics], Curve | None],
+    numerics: Numerics,
+    cheap: Numerics,
+    follows_contact: bool,
+    weights: Mapping[str, float],
 ) -> tuple[Numerics, Variation | None]:
-    """Settings of another mesh, and what it changes; ``viscous``: by a dashpot's force too, which jitters."""
+    """Settings of another mesh, and what it changes; ``weights`` of one that stays, where the force jitters."""
     meshed = _judging(numerics, cheap, "mesh", not follows_contact)
     mesh, trusted = other_mesh(meshed) if follows_contact else other_mesh(meshed, MESH_ORDER_ANYWHERE)
     change = partial(_variation, curve(meshed), curve(mesh), trusted)
     if follows_contact:
         return mesh, change()
-    damped = {"weights": DAMPED_ANYWHERE, "since": DAMPED_SINCE} if viscous else {}
-    return mesh, change(unresolved=np.inf, near=NEAR_ANYWHERE, **damped)
+    jittery = {"weights": weights, "since": DAMPED_SINCE} if weights else {}
+    return mesh, change(unresolved=np.inf, near=NEAR_ANYWHERE, **jittery)
 
 
 def _judging(numerics: Numerics, cheap: Numerics, cause: str, stays: bool = False) -> Numerics:

@@ -176,14 +176,16 @@ def test_the_pressure_between_meshes_that_do_not_match_is_smooth() -> None:
 
 
 @pytest.mark.family
-@pytest.mark.parametrize("name", ["two-cylinders", "two-finite-spheres"])
+@pytest.mark.parametrize("name", ["two-finite-spheres", "two-cylinders"])
 def test_bodies_kept_apart_exactly_press_alike(name: str) -> None:
     """Where moduli differ fivefold, what is solved at the nodes of both is what springs at the points find.
 
-    So it is of one cylinder under a rigid one, whose pressure is made of all its shape functions.
+    So it is of one body under a rigid one, whose pressure is made of all its shape functions. Of a sphere two meshes
+    agree there by chance in the duration.
     """
     two = Scene.load(name, {"striker.material.E": 5e6})
-    for scene in (two, replace(two, striker_material=None)) if name == "two-cylinders" else (two,):
+    under_rigid = replace(two, striker_material=None)
+    for scene in (two, under_rigid) if name == "two-cylinders" else (under_rigid,):
         one, other = (fe_contact.run(scene, 1e-2, numerics={"enforcement": kind}) for kind in ("corrected", "exact"))
         for quantity in ("peak_force", "peak_depth", "duration"):
             first, second = one.quantities[quantity], other.quantities[quantity]
