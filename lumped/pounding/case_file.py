@@ -139,7 +139,11 @@ class PoundingReader(TableReader):
         motion = self.checked("motion", self.table("motion") or {}, MOTION_KEYS) if "motion" in self.raw else {}
         if "motion" not in self.raw:
             self.faults.append(Fault(self.source, "motion", "missing; accepted: a table with end_time, s"))
-        pounding = None if frames is None else self.made("gap", lambda: PoundingFrames(*frames, gaps, slabs), {}, "gap")
+        pounding = (
+            None
+            if frames is None
+            else self.made("gap", lambda: PoundingFrames(*frames, gaps, slabs), {}, "gap", "slab")
+        )
         if gaps and law is None and "law" not in self.raw:
             self.faults.append(
                 Fault(self.source, "law", "missing; accepted: a table with the law that acts in the gaps")

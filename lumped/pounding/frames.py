@@ -156,7 +156,7 @@ class PoundingFrames:
                 faults.append(Fault("slab", f"slab.{name}.storey", f"{slab.at}; {accepted}"))
             taken.add(slab.at)
         if (modes := sum(slab.modes for slab in self.slabs.values())) > MOST_MODES:
-            faults.append(Fault("slab", "slab", f"{modes} modes of all together; accepted: at most {MOST_MODES}"))
+            faults.append(Fault("slab", "slab.modes", f"{modes} of all together; accepted: at most {MOST_MODES}"))
         return faults
 
     def _overlap(self, gap: Gap) -> float:

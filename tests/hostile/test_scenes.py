@@ -237,7 +237,7 @@ SHORT_PTMD["motion"] |= {"end_time": 1.0, "window": 0.2}
 STUDIES: dict[str, tuple[Sequence[Table], str]] = {
     "sweep": (SWEEPS, "name|scene|methods|tolerance|axes|zipped|draws|striker|target"),
     "ptmd": ([SHORT_PTMD], "name|structure|damper|ring|motion"),
-    "pound": ([table_of(POUND.path(name)) for name in POUND.names], "name|structure|gap|law|ground|motion"),
+    "pound": ([table_of(POUND.path(name)) for name in POUND.names], "name|structure|gap|slab|law|ground|motion"),
 }
 
 
