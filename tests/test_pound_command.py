@@ -266,7 +266,7 @@ BAD: list[tuple[str, object, str]] = [
     ("gap", [], "gap: not a table"),
     ("slab.floor", SLAB | {"storey": 2}, "slab.floor.storey: left_2; accepted: storeys of a gap, .*: left_1, right_1"),
     ("slab", {"one": SLAB, "other": SLAB}, "slab.other.storey: left_1; accepted"),
-    ("slab", {"one": SLAB | {"modes": 150}, "b": SLAB | {"structure": "right", "modes": 51}}, "slab: 201 modes of all"),
+    ("slab", {"one": SLAB | {"modes": 150}, "b": SLAB | {"structure": "right", "modes": 51}}, "slab.modes: 201 of all"),
     ("slab.floor", SLAB | {"structure": "middle"}, "slab.floor.structure"),
     ("slab.floor", SLAB | {"length": 0.0}, "slab.floor.length"),
     ("slab.floor", SLAB | {"modes": 1}, "slab.floor.modes"),
