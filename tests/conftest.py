@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scipy.linalg  # noqa: F401 - brings its own BLAS
 from crowded import crowded
-from hypothesis import is_hypothesis_test, settings
+from hypothesis import settings
 from matplotlib.figure import Figure
 from threadpoolctl import threadpool_limits
 
@@ -60,7 +60,7 @@ def in_plain_run(items: Iterable[pytest.Item]) -> set[pytest.Item]:
 
 def grows_with_size(item: pytest.Item) -> bool:
     """Whether a larger size draws more cases within the test: by hypothesis or by `campaign_size`."""
-    drawn = isinstance(item, pytest.Function) and is_hypothesis_test(item.obj)
+    drawn = isinstance(item, pytest.Function) and getattr(item.obj, "is_hypothesis_test", False)
     return drawn or "campaign_size" in getattr(item, "fixturenames", ())
 
 
