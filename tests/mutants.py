@@ -266,11 +266,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/steppers/flat_end.py", "FlatStepper.clearance", "a tenth"): "zero where the one place lands",
     ("lumped/solvers/mdr/nest.py", "Prescribed.propose", "1 -> 0"): "a guard for a march of one step",
     ("lumped/solvers/mdr/nest.py", "Prescribed.propose", "if len"): "a guard for a march of one step",
-    (
-        "fe_contact/steppers/flat_end.py",
-        "FlatStepper.step",
-        "if response <= 0.0 -> False",
-    ): "an end within a step, which the bar holds",
     ("fe_contact/budget/curve.py", "BEGUN", ""): "a guard against dividing by zero itself",
     ("fe_contact/budget/plan.py", "_settings", "1.0 ->"): BEGINS,
     ("fe_contact/steppers/struck.py", "FixedContact._by_secants", "0 ->"): WORK,

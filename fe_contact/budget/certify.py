@@ -46,6 +46,7 @@ from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.runs import Runs
 from fe_contact.budget.several import Judged, Several
 from fe_contact.budget.variation import SAFETY, UNORDERED, Softening, Variation, compliance_change, factor
+from fe_contact.contact.enforcement.base import ENFORCEMENTS
 from fe_contact.progress import Count, Progress, silent
 from fe_contact.schemes.base import SCHEMES
 from fe_contact.settings import Numerics
@@ -123,7 +124,7 @@ def _judged(runs: Runs, number: int, numerics: Numerics, alone: bool) -> Judged:
         return steps.value, held | {"time_step": (*steps.changes, *steps.jitter)}
     cheap = numerics.varied(steps=steps.cheap)
     damped = DAMPED_ANYWHERE if steps.value.strike.relaxation.viscosity > 0.0 else {}
-    weights = NODEWISE_ANYWHERE if numerics.enforcement == "exact" else damped
+    weights = NODEWISE_ANYWHERE if ENFORCEMENTS.get(numerics.enforcement).nodewise else damped
     mesh, by_mesh = _by_mesh(curve, numerics, cheap, surface.follows_contact, weights)
     pressed = _judging(numerics, cheap, "penalty")
     penalty, stiffer = other_setting(pressed, "penalty")

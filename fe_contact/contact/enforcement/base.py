@@ -20,7 +20,8 @@ class Enforce(Protocol):
 
 @dataclass(frozen=True)
 class Enforcement:
-    """``solves``: contact problems that it costs at most; ``soft``: whether its answer depends on the penalty.
+    """``solves``: contact problems that it costs at most; ``soft``: whether its answer depends on the penalty;
+    ``nodewise``: whether its contact grows by whole nodes.
 
     ``law(overlap, penalty)``: signed pressure (q,), Pa, where it follows from the overlap (q,), m, alone; else None.
     """
@@ -28,6 +29,7 @@ class Enforcement:
     enforce: Enforce
     solves: int = 1
     soft: bool = False
+    nodewise: bool = False
     law: Callable[[Array, float], Array] | None = None
 
 

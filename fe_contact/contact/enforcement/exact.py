@@ -58,4 +58,4 @@ def _solution(signed_pressure: Array, iterations: int, converged: bool) -> Conta
     return ContactSolution(signed_pressure, iterations, converged, (signed_pressure > 0.0,))
 
 
-MEMBER = Enforcement(enforce)
+MEMBER = Enforcement(enforce, nodewise=True)
