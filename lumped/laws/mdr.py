@@ -73,7 +73,7 @@ class SpringRow:
             if len(limits) > 1:
                 answer = _answer(scene, limit(limits[-2], limits[-1], 4))
                 quantities, force_error = bars(answer, _answer(scene, limits[-2]), SAFETY)
-                # Steps cut by an end that no whole step follows err by no even power: the limits may gain nothing on the
+                # Steps cut by an end that no whole step follows err by no even power: limits may gain nothing on the
                 # finest march. The one before it errs about four times as much.
                 if any(level.within_step for level in levels[-3:]):
                     others, least = bars(answer, _answer(scene, levels[-2]), 1.0)
