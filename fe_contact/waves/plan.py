@@ -30,10 +30,8 @@ FINER = 2.0  # times as many at the surface where dashpots carry much: pressure 
 PENALTY = 120.0  # default: the contact penalty, before stiffness and dashpots raise it
 STIFF = 16.0  # times as much there
 MUCH = 0.5  # share of dashpots in the stiffness until the force peaks, below which FINER and STIFF count in part
-STEPS = 320  # along a contact, shorter ones about an early peak
-# Beyond the default tolerance elements go as it to this power, as `fe-contact tradeoff` has it, and steps as it itself:
-# their error, of order two, is a tenth of the bar there, so that it may grow first; meshes err by more at once.
-LOOSER = 0.75
+STEPS = 256  # along a contact, shorter ones about an early peak
+LOOSER = 0.75  # beyond the default tolerance elements and steps go as it to this power, as `fe-contact tradeoff` has it
 FEWEST = {"elements": 2.5, "steps": 64}  # safety: halved, they still show an order
 TRAVEL = 0.5  # of the contact time: an echo from the far radius returns after the contact
 SPREAD = 3.0  # lengths over which a dashpot in parallel, which has no wave speed, spreads a motion in a contact
@@ -74,7 +72,7 @@ def placed(
     tolerance, duration = float(given.get("tolerance", DEFAULT_TOLERANCE)), contact_time(scene, scales)
     finer, looser = max(1.0, DEFAULT_TOLERANCE / tolerance), min(1.0, DEFAULT_TOLERANCE / tolerance)
     elements = max(ELEMENTS * looser**LOOSER, FEWEST["elements"])
-    steps = max(STEPS * looser, FEWEST["steps"])
+    steps = max(STEPS * looser**LOOSER, FEWEST["steps"])
     peak_share = min(max(scales.peak_time / duration, SOONEST_PEAK), 1.0)
     viscous = min(viscous_share(scene.contact_modulus, peak_share * duration) / MUCH, 1.0)
     chosen = {
