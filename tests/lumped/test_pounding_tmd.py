@@ -618,5 +618,5 @@ def test_bad_input_is_named(bad: Any, named: str) -> None:
 
 def test_a_motion_of_too_many_rows_is_refused_before_it_begins(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(FrameMarch, "run", lambda *_: pytest.fail("marched"))
-    with pytest.raises(BadInput, match=r"more than 300000 rows of .* s; accepted: at most "):
+    with pytest.raises(BadInput, match=r"more than 100000 rows of .* s; accepted: at most "):
         simulate(PLAIN, Start(0.05), 1e6)
