@@ -601,6 +601,7 @@ def test_a_start_inside_the_ring_finds_it_relaxed() -> None:
         (lambda: PtmdRing(0.01, SOLID, 1.0, 0.5), "exponent"),
         (lambda: PoundingDamper(POLE, None, lining()), "ring"),
         (lambda: Start(0.0), "x1"),
+        (lambda: Start(5e-324), "x1"),
         (lambda: Start(float("inf")), "x1"),
         (lambda: simulate(ALONE, BOTH, -1.0), "end_time"),
         (lambda: simulate(ALONE, Start(0.0, 0.05)), "x1"),
