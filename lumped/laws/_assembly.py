@@ -127,6 +127,11 @@ def bars(fine: Answer, coarse: Answer, safety: float) -> tuple[dict[str, Quantit
     return {name: quantities[name] for name in UNITS}, safety * (worst + fine.rounding * peak)
 
 
+def wider(one: Mapping[str, Quantity], other: Mapping[str, Quantity]) -> dict[str, Quantity]:
+    """The same quantities, each with the wider of its two bars."""
+    return {name: max(quantity, other[name], key=lambda known: known.error or 0.0) for name, quantity in one.items()}
+
+
 def _shift(fine: Answer, coarse: Answer, peak_time: float, least: float) -> float:
     """By how much the peak may lie elsewhere, s: where the force falls short of it by less than what the two differ by
     changes between here and there.

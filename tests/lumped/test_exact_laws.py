@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from itertools import pairwise
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -16,6 +17,7 @@ from lumped import Result, Scene, laws, simulate
 from lumped.laws import _hereditary
 from lumped.laws._assembly import Answer
 from lumped.result.history import End
+from lumped.scene.tables import Motion
 from lumped.shapes.cone import Cone
 from lumped.shapes.power import PowerProfile
 from lumped.solvers.mdr.nest import Grid, Nest, coarse, limit, predicted_turn, problem_of
@@ -131,6 +133,20 @@ def test_bars_cover_the_error_at_every_tolerance(
     for tolerance in (1e-3, 1e-5):
         result = simulate(model, scene, tolerance)
         assert not uncovered(result, truth)
+
+
+def test_bars_of_the_spring_row_cover_an_end_just_before_a_second_approach(
+    impact: Callable[..., Scene], uncovered: Callable[..., dict[str, float]]
+) -> None:
+    """The edge hardly moves there: the last step is long, and cut."""
+    scene = impact(0.2, (0.8,), (0.1,), gravity=9.81, velocity=0.03)
+    history = simulate(laws.ting.of(scene), scene, 1e-6).history
+    turn, second = float(history.time[history.depth.argmax()]), float(history.time[-1])
+    for share in (0.95, 0.98, 0.99):
+        ended = replace(scene, motion=Motion(end_time=turn + share * (second - turn)))
+        truth = simulate(laws.ting.of(ended), ended, 1e-8)
+        for tolerance in (1e-3, 1e-4):
+            assert not uncovered(simulate(laws.mdr.of(ended), ended, tolerance), truth)
 
 
 def test_work_grows_gently_with_the_tolerance(impact: Callable[..., Scene]) -> None:

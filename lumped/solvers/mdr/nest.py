@@ -170,6 +170,11 @@ class Level:
         """When the striker turns, s."""
         return float(self.approach[0, -1])
 
+    @property
+    def within_step(self) -> bool:
+        """Whether it ends by time in a step of the rebound, and no whole step leads on from there."""
+        return self.end is End.TIME and self.rebound.size > 0 and bool(self.rebound[0, -1] <= self.last)
+
 
 @dataclass(frozen=True)
 class Nest:
