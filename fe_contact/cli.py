@@ -40,6 +40,7 @@ DONE, DEFECT, BAD_INPUT, NOT_REACHED = 0, 1, 2, 3  # exit codes of the program
 LEAST_MEMORY = 640 * 2**20  # bytes of address space: below, the libraries of gmsh and scipy crash while they load
 SIGNALLED = 128  # plus the signal's number, as shells count: 130 after Ctrl-C, 143 after SIGTERM
 GRACE = 1.0  # s for a library to come back and let Python raise the interruption
+OURS = ("", "lumped", "meshes", "fe_contact")  # a module that is missing there is a defect
 DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EROFS, errno.EBADF)
 
 
@@ -203,6 +204,8 @@ def _failed(failure: Exception, args: argparse.Namespace) -> int:
         return _said(str(failure.told_of("--set", keys)), failure.exit_code, "")
     if isinstance(failure, FeContactError | MeshError):
         return _said(str(failure), failure.exit_code, "")
+    if isinstance(failure, ModuleNotFoundError) and (failure.name or "").partition(".")[0] not in OURS:
+        return _said(f"{failure.name} is not installed; cure: pip install fe-contact, with all it needs", BAD_INPUT)
     if isinstance(failure, MemoryError):
         cure = "cure: a larger --tolerance, fewer numerics.elements_per_contact, or more memory"
         return _said(f"out of memory; {cure}", NOT_REACHED)

@@ -45,7 +45,8 @@ FINE_INTEGRATION = 1e-2  # of the tolerance
 
 
 def check_impact(scene: Scene, given: Given) -> None:
-    """Raise BadInput for an impact with large strains that is not built."""
+    """Raise BadInput for an impact with large strains that is not built, and for settings of waves."""
+    check_kind(given, False, scene.source)
     enforcement = given.get("enforcement", CORRECTED)
     check_large(scene.source, scene.geometry, scene.model, enforcement, scene.motion.impacts)
 
@@ -56,7 +57,6 @@ def fe(scene: Scene, given: Given, progress: Progress = silent) -> Result:
 
     Raises BadInput for what is not built, NotReached where an equilibrium is lost.
     """
-    check_kind(given, False, scene.source)
     check_compressible(scene)
     check_impact(scene, given)
     clock, tolerance = Clock(), float(given.get("tolerance", DEFAULT_TOLERANCE))

@@ -23,7 +23,8 @@ from hypothesis import strategies as st
 from fe_contact.errors import ContactNotSettled, WorkerLost
 from fe_contact.studies import journal
 from fe_contact.studies.journal import measured, rows
-from lumped.errors import BadInput, Fault
+from fe_contact.studies.sweep.study import Rows
+from lumped.errors import BadInput, CannotWrite, Fault
 from lumped.paper.table1 import Elastic, contact_modulus
 from meshes.errors import GmshMissing
 
@@ -58,6 +59,15 @@ def calls_measured(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
     monkeypatch.setattr(journal, "measured", told)
     return names
+
+
+def test_rows_that_cannot_be_kept_name_their_folder(tmp_path: Path) -> None:
+    (tmp_path / "rows").write_text("a file")
+    with pytest.raises(CannotWrite, match="rows: File exists"):
+        rows(tmp_path / "rows" / "moduli.jsonl", moduli(1.0), silent)
+    kept = Rows(tmp_path / "none", known=False)
+    with pytest.raises(CannotWrite, match="none: No such file"):
+        kept.keep({"digest": {}})
 
 
 def test_what_is_kept_is_not_measured_again(tmp_path: Path, calls_measured: list[str]) -> None:

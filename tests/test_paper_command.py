@@ -15,7 +15,7 @@ from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNKNOWN, VERDICTS
 from lumped.result import model_ledger as yielding
 
 TABLES = {"paper", "assumptions", "misprints", "grid"}
-FIGURES = {f"fig{number}.{kind}" for number in (6, 7, 8, 10, 15) for kind in ("svg", "png")}
+FIGURES = {f"fig{number}.{kind}" for number in (6, 7, 8, 9, 10, 15) for kind in ("svg", "png")}
 
 
 @pytest.fixture(scope="module")

@@ -20,7 +20,7 @@ def execute(args: argparse.Namespace) -> int:
     run = base.StudyRun.of(args, "ring", "paper")
     curves = rings(cases(), run.where, run.progress)
     impacts = struck(cases(), run.where, run.progress)
-    write, plot = partial(write_rings, curves, impacts=impacts), partial(plot_rings, curves)
+    write, plot = partial(write_rings, curves, impacts=impacts), partial(plot_rings, curves, impacts=impacts)
     return run.finish("ring.json", told(curves, impacts), write, plot, missed=missed(curves, impacts))
 
 

@@ -18,6 +18,7 @@ from typing import Any, TypeVar, get_type_hints
 
 from fe_contact.progress import Progress
 from fe_contact.studies.workers import answers, workers
+from lumped.errors import CannotWrite
 from lumped.result.result import provenance
 from lumped.schema import Table
 from lumped.schema.files import data_folder
@@ -33,7 +34,7 @@ def rows(file: Path, calls: Mapping[str, partial[R]], progress: Progress, jobs: 
 
     `calls` are of functions of a module, annotated with what they return. A positional argument is what the row depends
     on, and its `repr` says all of it; a keyword only saves work. `progress` hears the name of every row once. Raises
-    WorkerLost, and what a call raises; the rows until then are kept.
+    WorkerLost, CannotWrite, and what a call raises; the rows until then are kept.
     """
     known = _kept(file)
     for name in (name for name, call in calls.items() if _said(call) in known):
@@ -85,10 +86,13 @@ def _kept(file: Path) -> Table:
 
 
 def _keep(file: Path, line: str) -> None:
-    """A line more, at once; a line's end before it parts it from one that was cut short."""
-    file.parent.mkdir(parents=True, exist_ok=True)
-    with file.open("ab", buffering=0) as lines:  # in one call: no line of another run comes between
-        lines.write(f"\n{line}".encode())
+    """A line more, at once; a line's end before it parts it from one that was cut short. Raises CannotWrite."""
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with file.open("ab", buffering=0) as lines:  # in one call: no line of another run comes between
+            lines.write(f"\n{line}".encode())
+    except OSError as failure:
+        raise CannotWrite(file.parent, failure.strerror or str(failure)) from failure
 
 
 def measured(calls: Mapping[str, partial[R]], jobs: int) -> Generator[tuple[str, R], None, None]:

@@ -1,6 +1,7 @@
-"""The paper's figures again: Fig. 6, 7 and 8 with the exact law beside the clipped, Fig. 10's cut.
+"""The paper's figures again: Fig. 6, 7 and 8 with the exact law beside the clipped, Fig. 9, Fig. 10 and its cut.
 
-Fig. 15 as numbers: the dent that is left when the ball parts, and what a second impact finds of it.
+Fig. 15 as numbers: the dent that is left when the ball parts, by the law and by finite elements, and what a second
+impact finds of it. Fig. 12 is drawn with the rings, Fig. 14 with the pounding damper.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from fe_contact.reference import fe
 from fe_contact.studies import style
 from fe_contact.studies.style import Look
 from lumped.paper.claims import GridRow, PaperStudy
@@ -21,38 +23,42 @@ from lumped.paper.concrete_impacts import cut_at_measured_peak, proposed
 from lumped.paper.given import Examples, Steel
 from lumped.paper.steel_impacts import DentedSurface, R1_of_peak, damped_of_peak, elastic_of_peak, hertz, solid
 from lumped.paper.value import MICRO
+from lumped.result.history import History
 from lumped.result.result import Result
 
 TITLE_WIDTH = 130  # characters
 POINTS = 401  # of a curve
-HEIGHT_6, HEIGHT_GRID, HEIGHT_10, HEIGHT_15 = 3.7, 5.4, 2.9, 3.3  # in
+HEIGHT_6, HEIGHT_GRID, HEIGHT_9, HEIGHT_10, HEIGHT_15 = 3.7, 5.4, 3.5, 3.3, 3.3  # in
 THIN: Look = {"linewidth": 0.6, "alpha": 0.75}  # look
 BROAD: Look = {"linewidth": 3.2, "alpha": 0.6}  # look
 DASHED: Look = {"linestyle": (0, (3, 1.6)), "linewidth": 0.8}  # look
-DAMPED = {"kelvin": (style.ORANGE, 0.2), "jankowski": (style.GREEN, 0.42)}  # look: colour, labels over the peak force
+DAMPED = {"kelvin": (style.ORANGE, 0.2), "jankowski": (style.GREEN, 0.55)}  # look: colour, labels over the peak force
 ON_CURVE: Look = {
     "fontsize": 4.6, "rotation": -74.0, "ha": "center", "va": "center",
     "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.2},
 }  # fmt: skip
+DOTS: Look = {"linestyle": "none", "marker": "o", "markersize": 2.2}  # look
 TIMES, PAUSES = 241, 16  # of the curves of Fig. 15
 # Times in units of R2: how long the surface is shown, and the shortest and longest pause.
 SHOWN, SHORTEST, LONGEST = 4.0, 1e-2, 1e1
+FE_TOLERANCE = 1e-2  # of the impacts whose surface is drawn: less than a line is wide
 LAW_KEY = (
     Line2D([], [], color=style.GREY, label="correspondence, cut at zero force"),
     Line2D([], [], color=style.GREY, label="exact (Ting)", **DASHED),
 )
 MEMORY_KEY = (
-    Line2D([], [], color=style.GREY, label="surface"),
+    Line2D([], [], color=style.GREY, label="surface, by the law"),
     Line2D([], [], color=style.GREY, label="ball after parting", **DASHED),
+    Line2D([], [], color=style.GREY, label="surface, by finite elements", **DOTS),
 )
 
 
 def plot_paper(study: PaperStudy, where: Path) -> tuple[Path, ...]:
-    """Write ``fig6``, ``fig7``, ``fig8``, ``fig10`` and ``fig15`` as SVG and PNG into ``where``; their paths."""
+    """Write ``fig6`` to ``fig10`` and ``fig15`` as SVG and PNG into ``where``; their paths. Raises NotReached."""
     with style.look():
-        grids = (*_grid(study, 7, where), *_grid(study, 8, where))
-        rest = (*_fig10(study, where), *_fig15(study.examples, where))
-        return (*_fig6(study, where), *grids, *rest)
+        steel = (*_fig6(study, where), *_grid(study, 7, where), *_grid(study, 8, where))
+        concrete = (*_fig9(study.examples, where), *_fig10(study.examples, where))
+        return (*steel, *concrete, *_fig15(study.examples, where))
 
 
 def _fig6(study: PaperStudy, where: Path) -> tuple[Path, Path]:
@@ -61,12 +67,14 @@ def _fig6(study: PaperStudy, where: Path) -> tuple[Path, Path]:
     axes = figure.add_axes((0.075, 0.13, 0.6, 0.68))
     for name, result, look in _curves_6(steel):
         _plot(axes, result, label=name, **look)
-    _label_restitutions(axes, steel)
+    for law in DAMPED:
+        _damped(axes, steel, law, MICRO, 1.0)
     axes.axhline(steel.measured_peak, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 1.5)))
     axes.set(xlabel="time, µs", ylabel="force, N", xlim=(0.0, None), ylim=(0.0, 1.08 * steel.measured_peak))
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), labelspacing=0.7)
     lines = [
-        f"Dotted: the measured peak, {steel.measured_peak:g} N. Along the curves: e, which the paper does not print."
+        f"Dotted: the measured peak, {steel.measured_peak:g} N, which damped curves have too. Along them: e, which the "
+        "paper does not print."
     ]
     style.heading(figure, "Fig. 6 drawn again: the steel ball", lines, TITLE_WIDTH)
     return style.save(figure, where, "fig6")
@@ -82,23 +90,21 @@ def _curves_6(steel: Steel) -> list[tuple[str, Result, Look]]:
         (f"proposed, R1 = {R1:.3f}, equal peak", solid(steel, R1, steel.R2), {"color": style.VERMILION, **DASHED}),
         ("linear spring, equal peak", elastic_of_peak(steel, "linear_spring", peak), {"color": style.GREY}),
     ]
-    for law, (colour, _) in DAMPED.items():
-        ends = f"e = {steel.restitutions[0]:g} to {steel.restitutions[-1]:g}"
-        for i, e in enumerate(steel.restitutions):
-            name = "_" if i else f"{law.capitalize()}, equal peak, {ends}"
-            curves.append((name, damped_of_peak(steel, law, e), {"color": colour, **THIN}))
     return curves
 
 
-def _label_restitutions(axes: Axes, steel: Steel) -> None:
-    """The e of every damped curve on its falling side, those of a law at one force."""
-    for law, (colour, share) in DAMPED.items():
-        for e in steel.restitutions:
-            history = damped_of_peak(steel, law, e).history
-            falling = history.force.argmax() + np.flatnonzero(np.diff(history.force[history.force.argmax() :]) < 0.0)
-            level = share * steel.measured_peak
-            place = np.interp(-level, -history.force[falling], history.time[falling])
-            axes.text(MICRO * place, level, f"{e:g}", color=colour, **ON_CURVE)
+def _damped(axes: Axes, steel: Steel, law: str, time: float, force: float) -> None:
+    """The curves of a damped law, times and forces of the ball's in other units; along their falling sides their e."""
+    colour, share = DAMPED[law]
+    level, es = share * steel.measured_peak, steel.restitutions
+    for e in es:
+        history = damped_of_peak(steel, law, e).history
+        name = f"{law.capitalize()}, e = {es[0]:g} to {es[-1]:g}" if e == es[0] else None
+        drawn = history.resampled(np.linspace(0.0, history.time[-1], POINTS))
+        axes.plot(time * drawn.time, force * drawn.force, color=colour, label=name, **THIN)
+        falling = history.force.argmax() + np.flatnonzero(np.diff(history.force[history.force.argmax() :]) < 0.0)
+        place = np.interp(-level, -history.force[falling], history.time[falling])
+        axes.text(time * place, force * level, f"{e:g}", color=colour, **ON_CURVE)
 
 
 def _grid(study: PaperStudy, number: int, where: Path) -> tuple[Path, Path]:
@@ -142,29 +148,67 @@ def _value(row: GridRow, name: str) -> str:
     return f"{row.R1:g}" if name == "R1" else style.readable(row.R2, "s", 3)
 
 
-def _fig10(study: PaperStudy, where: Path) -> tuple[Path, Path]:
-    """Forces and times over those of the uncut impact at the higher velocity: the assumed radius drops out."""
-    concrete = study.examples.concrete
-    slow, fast = min(concrete.velocities), max(concrete.velocities)
-    whole, cut = proposed(concrete, min(concrete.radii), fast).history, cut_at_measured_peak(concrete)
-    first = proposed(concrete, min(concrete.radii), slow).history
-    figure = Figure(figsize=(style.COLUMN, HEIGHT_10))
-    axes = figure.add_axes((0.13, 0.15, 0.83, 0.6))
-    for curve, name, look in (
-        (whole, f"proposed, {fast:g} m/s", {"color": style.VERMILION}),
-        (first, f"proposed, {slow:g} m/s", {"color": style.BLUE}),
-        (cut.curve, f"{fast:g} m/s, cut", {"color": style.BLACK, **DASHED}),
-    ):
-        axes.plot(curve.time / whole.time[-1], curve.force / whole.force.max(), label=name, **look)
+def _fig9(examples: Examples, where: Path) -> tuple[Path, Path]:
+    """Over peak and contact time of the proposed model the assumed radius drops out."""
+    concrete, steel = examples.concrete, examples.steel
+    velocity = min(concrete.velocities)
+    whole = proposed(concrete, min(concrete.radii), velocity).history
+    figure = Figure(figsize=(style.PAGE, HEIGHT_9))
+    axes = figure.add_axes((0.075, 0.14, 0.6, 0.63))
+    axes.plot(whole.time / whole.time[-1], whole.force / whole.force.max(), color=style.VERMILION, label="proposed")
+    for law in DAMPED:
+        _damped(axes, steel, law, *_over(steel, whole, concrete.mass * velocity, 1.0))
+    _shares(axes)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), labelspacing=0.7)
+    lines = [
+        "Over peak and time of the proposed model; damped curves have its peak. Along them: e, which the paper does "
+        "not print, nor does its text hold the measured curve."
+    ]
+    style.heading(figure, f"Fig. 9 drawn again: concrete at {velocity:g} m/s", lines, TITLE_WIDTH)
+    return style.save(figure, where, "fig9")
+
+
+def _over(steel: Steel, whole: History, momentum: float, share: float) -> tuple[float, float]:
+    """What makes times and forces of the ball's damped curves those at another momentum, kg m/s, over those of `whole`;
+    their peak is this share of its own. A power law of one e has one shape, F/peak over peak t/(m v).
+    """
+    longer = momentum / (share * whole.force.max()) * steel.measured_peak / (steel.mass * steel.velocity)
+    return longer / whole.time[-1], share / steel.measured_peak
+
+
+def _shares(axes: Axes) -> None:
     axes.set(xlabel="time / contact time", ylabel="force / peak", xlim=(0.0, None), ylim=(0.0, 1.05))
-    axes.legend(loc="upper right")
-    lines = ["Cut at the measured peak until the impulse is the uncut one:", "the striker then loses no velocity."]
-    style.heading(figure, "Fig. 10 drawn again: concrete", lines, TITLE_WIDTH // 2)
+
+
+def _fig10(examples: Examples, where: Path) -> tuple[Path, Path]:
+    """Forces and times over those of the uncut impact at the higher velocity: the assumed radius drops out."""
+    concrete = examples.concrete
+    radius, fast = min(concrete.radii), max(concrete.velocities)
+    whole, cut = proposed(concrete, radius, fast).history, cut_at_measured_peak(concrete).curve
+    share, measured = (1.0 + concrete.jankowski_peak_error, 1.0) / np.array(1.0 + concrete.peak_error)
+    figure = Figure(figsize=(style.PAGE, HEIGHT_10))
+    left, right = figure.subplots(1, 2, sharex=True, sharey=True, width_ratios=(1.4, 1.0))
+    figure.subplots_adjust(0.07, 0.14, 0.985, 0.74, wspace=0.1)
+    for axes in (left, right):
+        axes.plot(whole.time / whole.time[-1], whole.force / whole.force.max(), color=style.VERMILION, label="proposed")
+    right.plot(cut.time / whole.time[-1], cut.force / whole.force.max(), color=style.BLACK, label="cut", **DASHED)
+    _damped(left, examples.steel, "jankowski", *_over(examples.steel, whole, concrete.mass * fast, share))
+    for axes, letter, title in ((left, "a", "as computed"), (right, "b", "cut until the impulse is the uncut one's")):
+        axes.axhline(measured, color=style.GREY, linewidth=0.6, linestyle=(0, (1, 1.5)))
+        _shares(axes)
+        axes.legend(loc="upper right")
+        style.label(axes, letter, title)
+    right.set_ylabel("")
+    lines = [
+        f"Dotted: the measured peak, by the printed errors of {100 * concrete.peak_error:g} and "
+        f"{100 * concrete.jankowski_peak_error:g} %. Cut, the striker leaves as fast as uncut."
+    ]
+    style.heading(figure, f"Fig. 10 drawn again: concrete at {fast:g} m/s", lines, TITLE_WIDTH)
     return style.save(figure, where, "fig10")
 
 
 def _fig15(examples: Examples, where: Path) -> tuple[Path, Path]:
-    """Raises TooManySteps."""
+    """Raises TooManySteps and NotReached."""
     dents = _dented(examples)
     figure = Figure(figsize=(style.PAGE, HEIGHT_15))
     left, right = figure.subplots(1, 2)
@@ -179,7 +223,10 @@ def _fig15(examples: Examples, where: Path) -> tuple[Path, Path]:
     right.legend(loc="upper right")
     style.label(left, "a", "the surface comes back after the ball has gone")
     style.label(right, "b", "an equal impact on what is left of the dent")
-    lines = [f"Steel ball, R2 = {R2}: out of contact the load depth^1.5 of the surface falls as exp(-t/R2)."]
+    lines = [
+        f"Steel ball, R2 = {R2}. Out of contact the law lets the load depth^1.5 of the surface fall as exp(-t/R2); by "
+        "finite elements the depth of its tip falls so, from less."
+    ]
     style.heading(figure, "Fig. 15 as numbers: memory between contacts", lines, TITLE_WIDTH)
     return style.save(figure, where, "fig15")
 
@@ -198,6 +245,11 @@ def _recovery(axes: Axes, dent: DentedSurface, colour: str) -> None:
     deepest, ball = dent.first.peak_depth, dent.ball(away)
     axes.plot(MICRO * times, dent.surface(times) / deepest, color=colour)
     axes.plot(MICRO * away[ball > 0.0], ball[ball > 0.0] / deepest, color=colour, **DASHED)
+    found = fe(dent.scene, {"tolerance": FE_TOLERANCE})
+    assert found.recovery is not None  # of a half-space that remembers
+    since, deepest = float(found.history.time[-1]) + found.recovery.time, float(found.history.depth.max())
+    shown = since <= times[-1]
+    axes.plot(MICRO * since[shown], found.recovery.depth[shown] / deepest, color=colour, **DOTS)
 
 
 def _second(axes: Axes, dent: DentedSurface, colour: str) -> None:

@@ -1,4 +1,7 @@
-"""The chart of a pounding tuned mass damper: the structure with and without it, its stroke in the ring, the force."""
+"""The chart of a pounding tuned mass damper: the structure with and without it, its stroke in the ring, the force.
+
+Of the paper's case the first two panels are its Fig. 14.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,7 @@ LINES: dict[str, Look] = {
 
 def plot_study(study: PtmdStudy, where: Path) -> tuple[Path, Path]:
     """Write ``ptmd.svg`` and ``ptmd.png`` into the folder ``where``; their paths."""
-    drawings = [_displacement]
+    drawings = [_acceleration, _displacement]
     if study.case.system.damper is not None:
         drawings.append(_stroke)
     if study.case.system.ring is not None:
@@ -33,7 +36,7 @@ def plot_study(study: PtmdStudy, where: Path) -> tuple[Path, Path]:
     with style.sheet(where, "ptmd", title, lines, height, width=TITLE_WIDTH, above=0.38) as sheet:
         panels = sheet.figure.subplots(len(drawings), 1, sharex=True, squeeze=False)[:, 0]
         sheet.figure.subplots_adjust(0.085, sheet.bottom, 0.975, sheet.top, hspace=0.5 / PANEL)
-        for draw, axes, letter in zip(drawings, panels, "abc", strict=False):
+        for draw, axes, letter in zip(drawings, panels, "abcd", strict=False):
             draw(axes, study, letter)
         panels[-1].set(xlabel="time, s", xlim=(0.0, study.main.motion.time[-1]))
     return sheet.paths
@@ -54,16 +57,24 @@ def _lines(study: PtmdStudy) -> list[str]:
     return lines
 
 
-def _displacement(axes: Axes, study: PtmdStudy, letter: str) -> None:
-    largest = max(float(np.abs(result.motion.x1).max()) for result in study.results.values())
-    metre, unit = prefixed(largest, "m")
-    for name in (BARE, PLAIN, FULL):
-        if name in study.results:
-            motion = study.results[name].motion
-            axes.plot(motion.time, metre * motion.x1, label=name, **LINES[name])
-    axes.set(ylabel=f"x1, {unit}")
+def _acceleration(axes: Axes, study: PtmdStudy, letter: str) -> None:
+    _structure(axes, study, "a1", "m/s2")
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.1, columnspacing=1.2)
+    style.label(axes, letter, "acceleration of the structure")
+
+
+def _displacement(axes: Axes, study: PtmdStudy, letter: str) -> None:
+    _structure(axes, study, "x1", "m")
     style.label(axes, letter, "displacement of the structure")
+
+
+def _structure(axes: Axes, study: PtmdStudy, column: str, unit: str) -> None:
+    """A column of every variant."""
+    motions = {name: study.results[name].motion for name in (BARE, PLAIN, FULL) if name in study.results}
+    factor, shown = prefixed(max(float(np.abs(getattr(one, column)).max()) for one in motions.values()), unit)
+    for name, motion in motions.items():
+        axes.plot(motion.time, factor * getattr(motion, column), label=name, **LINES[name])
+    axes.set(ylabel=f"{column}, {shown}")
 
 
 def _stroke(axes: Axes, study: PtmdStudy, letter: str) -> None:

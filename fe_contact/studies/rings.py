@@ -24,7 +24,7 @@ from fe_contact.studies import journal
 from fe_contact.studies.files import Line, lines_of, write_study
 from fe_contact.studies.finite_exponents import SHARES, StrainedRow, local_exponent
 from lumped.indentation import Indentation
-from lumped.materials import Material
+from lumped.materials import Material, Relaxation
 from lumped.materials.networks import sls
 from lumped.paper.given import Examples
 from lumped.paper.ring_impacts import RingImpact, impact, stiffness
@@ -197,13 +197,14 @@ def _crossing(curve: RingCurve) -> float | None:
 class RingStruck:
     """One impact of a mass, kg, at a velocity, m/s, that by the row reaches a strain: the law's and the ring's answer.
 
-    ``bulk``: of the ring whose bulk modulus is constant instead of its Poisson's ratio.
+    ``spring``: the law's K(t), N/m. ``bulk``: of the ring whose bulk modulus, not its Poisson's ratio, is constant.
     """
 
     ring: str
     strain: float
     mass: float
     velocity: float
+    spring: Relaxation
     row: RingImpact
     found: Result
     bulk: Result
@@ -252,7 +253,8 @@ def _struck(case: RingCase, strain: float, where: Path, progress: Progress = sil
     """At the speed that by the row reaches a strain."""
     paper, indenter = Examples.load(), case.indenter
     mass = paper.ptmd.m1 * paper.ptmd.m2 / (paper.ptmd.m1 + paper.ptmd.m2)
-    row = impact(stiffness(paper.ring, indenter.material.nu), mass)
+    spring = stiffness(paper.ring, indenter.material.nu)
+    row = impact(spring, mass)
     velocity = strain * case.height / row.depth_per_velocity
     scene = Scene(indenter.shape, mass, velocity, indenter.material, target=indenter.target, name=case.name)
     other = replace(scene, material=replace(indenter.material, constant="bulk"))
@@ -261,7 +263,8 @@ def _struck(case: RingCase, strain: float, where: Path, progress: Progress = sil
         told: partial(fe, scene, STRUCK_SETTINGS),
         f"{told}, constant bulk modulus": partial(fe, other, STRUCK_SETTINGS),
     }
-    return RingStruck(case.name, strain, mass, velocity, row, *journal.rows(where / KEPT, calls, progress).values())
+    known = journal.rows(where / KEPT, calls, progress)
+    return RingStruck(case.name, strain, mass, velocity, spring, row, *known.values())
 
 
 def _known(quantity: Quantity) -> tuple[float, float]:

@@ -1,15 +1,20 @@
-"""The chart of the rings: force and local exponent over depth, finite elements against the paper's row."""
+"""The charts of the rings, finite elements against the paper's row: force and exponent over depth; struck, Fig. 12."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 from matplotlib.axes import Axes
 
 from fe_contact.studies import style
-from fe_contact.studies.rings import SMALL_STRAIN, RingCurve
+from fe_contact.studies.rings import SMALL_STRAIN, RingCurve, RingStruck
 from fe_contact.studies.style import Look
+from lumped.fit import fit
+from lumped.paper.ring_impacts import force
+from lumped.scene.scene import Scene
+from lumped.scene.tables import LawChoice
 
 TITLE_WIDTH = 132  # characters
 PANEL = 2.7  # height, in
@@ -20,8 +25,52 @@ LINES = [
 ]
 
 
-def plot_rings(curves: Sequence[RingCurve], where: Path) -> tuple[Path, Path]:
-    """Write ``ring.svg`` and ``ring.png`` into the folder ``where``; their paths."""
+POINTS = 201  # of a curve
+STRUCK_LINES = [
+    "The reduced mass of the damper's two bodies strikes the paper's ring at the speed that by (30)-(32) strains it by "
+    f"{100 * SMALL_STRAIN:g} %; thickness and speed are not printed, nor does the text hold the measured curve. "
+    "Jankowski's law is fitted to the finite elements by least error, (20), its k and xi free.",
+]
+
+
+def plot_rings(curves: Sequence[RingCurve], where: Path, impacts: Sequence[RingStruck] = ()) -> tuple[Path, ...]:
+    """Write ``ring.svg`` and ``ring.png`` into the folder ``where``, of impacts ``fig12`` too; their paths.
+
+    Raises NotReached.
+    """
+    return (*_pressed(curves, where), *(_fig12(impacts, where) if impacts else ()))
+
+
+def _fig12(impacts: Sequence[RingStruck], where: Path) -> tuple[Path, Path]:
+    fastest = {one.ring: one for one in sorted(impacts, key=lambda one: one.velocity)}
+    title = "Fig. 12 drawn again on the ring"
+    with style.sheet(where, "fig12", title, STRUCK_LINES, PANEL, width=TITLE_WIDTH) as sheet:
+        panels = sheet.panels(1, len(fastest), 0.075, 0.985, wspace=0.22)
+        for axes, letter, one in zip(panels, "ab", fastest.values(), strict=False):
+            _struck(axes, one)
+            style.label(axes, letter, f"{one.ring} at {style.readable(one.velocity, 'm/s', 3)}")
+    return sheet.paths
+
+
+def _struck(axes: Axes, one: RingStruck) -> None:
+    found = one.found.history
+    newton, unit = style.prefixed(float(found.force.max()), "N")
+    second, seconds = style.prefixed(float(found.time[-1]), "s")
+    times = np.linspace(0.0, one.row.duration, POINTS)
+    fitted = fit(found, "jankowski", Scene(None, one.mass, one.velocity, law=LawChoice("jankowski", {})))
+    drawn: tuple[tuple[str, np.ndarray, np.ndarray, Look], ...] = (
+        ("finite elements", found.time, found.force, {"color": style.GREY, "linewidth": 3.2, "alpha": 0.6}),
+        ("(30)-(32)", times, one.velocity * force(one.spring, one.mass, times), {"color": style.VERMILION}),
+        (f"Jankowski, {100 * fitted.normalized_error:.2g} %", fitted.history.time, fitted.history.force,
+         {"color": style.GREEN, "linewidth": 0.9}),
+    )  # fmt: skip
+    for name, time, curve, look in drawn:
+        axes.plot(second * time, newton * curve, label=name, **look)
+    axes.set(xlabel=f"time, {seconds}", ylabel=f"force, {unit}", xlim=(0.0, None), ylim=(0.0, None))
+    axes.legend(loc="upper right", fontsize=5.6, labelspacing=0.2)
+
+
+def _pressed(curves: Sequence[RingCurve], where: Path) -> tuple[Path, Path]:
     title = "Rings pressed slowly against the paper's row"
     with style.sheet(where, "ring", title, LINES, PANEL, width=TITLE_WIDTH) as sheet:
         left, right = sheet.panels(1, 2, 0.075, 0.985, wspace=0.22)

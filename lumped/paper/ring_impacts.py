@@ -47,18 +47,29 @@ def stiffness(ring: RingLining, nu: float) -> Relaxation:
 
 def impact(spring: Relaxation, mass: float) -> RingImpact:
     """The impact of a mass, kg, on K(t) with one relaxation time. Raises NotReached when the bodies do not part."""
-    (branch,), (tau,) = spring.moduli, spring.times
-    row = np.array([spring.equilibrium, 0.0, branch])
-    matrix = np.array([[0.0, 1.0, 0.0], -row / mass, [0.0, 1.0, -1.0 / tau]])
-    values, vectors = np.linalg.eig(matrix)
-    weights = np.linalg.solve(vectors, np.array([0.0, 1.0, 0.0], dtype=complex))
-
-    def state(time: float) -> Array:
-        return np.asarray((vectors @ (weights * np.exp(values * time))).real)
-
+    state, row = _motion(spring, mass), _row(spring)
     end = _first_fall(lambda time: float(row @ state(time)), 2.0 * math.pi * math.sqrt(mass / spring.equilibrium))
     turn = _first_fall(lambda time: float(state(time)[1]), end)
     return RingImpact(end, -float(state(end)[1]), float(state(turn)[0]))
+
+
+def force(spring: Relaxation, mass: float, times: Array) -> Array:
+    """Of this impact at times (n,), s, in contact: over the velocity at touch, N s/m."""
+    state = _motion(spring, mass)
+    return np.array([_row(spring) @ state(time) for time in times.tolist()])
+
+
+def _row(spring: Relaxation) -> Array:
+    """The force of a state, N/m."""
+    return np.array([spring.equilibrium, 0.0, spring.moduli[0]])
+
+
+def _motion(spring: Relaxation, mass: float) -> Callable[[float], Array]:
+    """The state a time, s, after a touch at 1 m/s."""
+    matrix = np.array([[0.0, 1.0, 0.0], -_row(spring) / mass, [0.0, 1.0, -1.0 / spring.times[0]]])
+    values, vectors = np.linalg.eig(matrix)
+    weights = np.linalg.solve(vectors, np.array([0.0, 1.0, 0.0], dtype=complex))
+    return lambda time: np.asarray((vectors @ (weights * np.exp(values * time))).real)
 
 
 def _first_fall(function: Callable[[float], float], last: float) -> float:

@@ -262,9 +262,14 @@ class DentedSurface:
         """The impact of an equal ball that meets the surface a pause, s, after the parting. Raises TooManySteps."""
         return outcome_of(*self._track(self._strike(self._left(pause))))
 
+    @property
+    def scene(self) -> Scene:
+        """Of the first impact."""
+        return scene(self.steel, sls.of_ratios(E0=self.steel.contact_modulus, R1=self.R1, R2=self.R2))
+
     @cached_property
     def _law(self) -> HereditaryForce:
-        return law_of(scene(self.steel, sls.of_ratios(E0=self.steel.contact_modulus, R1=self.R1, R2=self.R2)))
+        return law_of(self.scene)
 
     @cached_property
     def _contact(self) -> Contact:

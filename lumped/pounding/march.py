@@ -21,7 +21,7 @@ from lumped.pounding.trial import NODES, FramesAt, FrameTrial, Rules
 from lumped.solvers.point.bodies import Bodies
 from lumped.solvers.radau import STAGES
 
-MOST_ROWS = 300_000  # work: some minutes
+MOST_ROWS = 100_000  # work: a minute and half a gigabyte
 MOST_STEPS = 3000  # work: of one row, more is no motion but chatter
 MOST_AHEAD = 16  # work: rows of one flight
 

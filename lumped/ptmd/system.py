@@ -16,6 +16,7 @@ from lumped.shapes.base import SIZE
 LENGTH = Key(SIZE, "length")
 DISPLACEMENT, VELOCITY = Key(Number(-1e4, 1e4, "m"), "displacement"), Key(Number(-1e4, 1e4, "m/s"), "velocity")
 MASS, STIFFNESS, DAMPING = Number(1e-9, 1e12, "kg"), Number(1e-9, 1e18, "N/m"), Number(0.0, 1e15, "N s/m")
+LEAST = 1e-100  # rounding: m or m/s whose energy is still a number
 SIDES = (1, -1)  # signs of the ring's two sides
 
 
@@ -83,7 +84,7 @@ class PoundingDamper:
 
 @dataclass(frozen=True)
 class Start(Record):
-    """Displacements, m, and velocities, m/s, at t = 0. Raises BadInput when all are zero.
+    """Displacements, m, and velocities, m/s, at t = 0. Raises BadInput when all are zero, or as good as that.
 
     Where the damper starts inside the ring it has been held there until the ring relaxed.
     """
@@ -96,7 +97,7 @@ class Start(Record):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not any((self.x1, self.x2, self.v1, self.v2)):
+        if max(map(abs, (self.x1, self.x2, self.v1, self.v2))) < LEAST:
             raise BadInput(Fault("start", "x1", "nothing moves; accepted: one value that is not zero"))
 
     @classmethod

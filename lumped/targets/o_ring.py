@@ -55,8 +55,11 @@ class ORing(Target):
         return 2.0 * self.section_radius
 
     def pressed(self, shape: Shape, nu: float, depth: float, contact_radius: float) -> Pressed:
-        """Half of the section, in plane strain: a layer that slides on the plane of symmetry, under a flat end."""
-        known, half = super().pressed(shape, nu, depth, contact_radius), self.lead * depth
+        """Half of the section, in plane strain: a layer that slides on the plane of symmetry, under a flat end.
+
+        A contact that small strains make wider than the section is as wide as that.
+        """
+        known, half = super().pressed(shape, nu, depth, min(contact_radius, self.section_radius)), self.lead * depth
         return replace(known, depth=half, plane=True, thickness=self.section_radius, base="sliding", moving=False)
 
     def inertia_left_out(self, shape: Shape, material: Material, pulse: Pulse) -> tuple[float | None, str]:

@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import beta
 
-from fe_contact import relaxing_impact, run
+from fe_contact import reference, relaxing_impact, run
 from fe_contact.assembly.forms import Array
 from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.relaxing_impact import Instant, Marcher, plan
@@ -262,3 +262,9 @@ def test_what_does_not_relax_so_is_refused_by_its_key(key: str) -> None:
     scene = Scene.load("polymer-sphere", {**REFUSED[key], "model.kinematics": "finite"})
     with pytest.raises(BadInput, match=key):
         run(scene)
+
+
+def test_a_setting_of_waves_is_refused_by_its_key() -> None:
+    scene = Scene.load("polymer-sphere", {"model.kinematics": "finite"})
+    with pytest.raises(BadInput, match=r"numerics\.mass: no such setting"):
+        reference.plan(scene, {"mass": "lumped"})

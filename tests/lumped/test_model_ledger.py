@@ -124,6 +124,14 @@ def test_strains_of_what_is_pressed_through_are_not_told() -> None:
     assert "the ring's thickness 0.005 m" in found.note
 
 
+def test_a_contact_wider_than_a_round_section_is_as_wide_as_that() -> None:
+    geometry = Scene.load("polymer-o-ring").geometry  # its section's radius is 2.5 mm
+    at, beyond = (finite_strain(geometry, Peak(1.0, 1e-3, width, 1.0), True).spread for width in (2.5e-3, 5e-3))
+    assert at == beyond
+    assert beyond is not None
+    assert np.isfinite(beyond).all()
+
+
 def test_yielding_starts_at_its_threshold() -> None:
     # audit 2.2: p0 = 3.30 GPa at 66.2 N, elastic only if Y > 2.06 GPa
     for strength, yields in ((2.1e9, False), (2.0e9, True), (5e8, True)):

@@ -22,7 +22,7 @@ from lumped.paper import Claim, Examples, Value, claims, recompute, rules
 from lumped.paper.claims import FAILS, HOLDS, OPEN, Assumption
 from lumped.paper.concrete_impacts import plateau_cut, proposed
 from lumped.paper.given import Steel
-from lumped.paper.ring_impacts import impact
+from lumped.paper.ring_impacts import force, impact, stiffness
 from lumped.paper.rules import AGREES, DIFFERS, UNDECIDED, UNJUDGED, UNKNOWN, UNPRINTED, Rule, half_unit
 from lumped.paper.steel_impacts import DentedSurface, R1_of_peak, damped_of_peak, elastic_of_peak, solid
 from lumped.result.history import History
@@ -416,6 +416,24 @@ def test_the_ring_without_damping_is_a_linear_spring(examples: Examples) -> None
     assert found.duration == pytest.approx(math.pi * math.sqrt(mass / k), rel=1e-8)
     assert found.restitution == pytest.approx(1.0, abs=1e-8)
     assert found.depth_per_velocity == pytest.approx(math.sqrt(mass / k), rel=1e-8)
+
+
+def test_the_force_on_the_ring_takes_from_the_mass_what_it_loses(examples: Examples) -> None:
+    spring, mass = stiffness(examples.ring, 0.45), 1.5
+    found = impact(spring, mass)
+    times = np.linspace(0.0, found.duration, 1001)
+    impulse = np.trapezoid(force(spring, mass, times), times)
+    assert impulse == pytest.approx(mass * (1.0 + found.restitution), rel=1e-5)
+
+
+@pytest.mark.parametrize("law", ["kelvin", "jankowski"])
+def test_a_damped_law_has_one_shape_whatever_the_momentum(law: str, examples: Examples) -> None:
+    """At twice the velocity and twice the peak the ball's impact takes as long and its force is doubled throughout."""
+    steel = examples.steel
+    faster = replace(steel, drop=4.0 * steel.drop, measured_peak=2.0 * steel.measured_peak)
+    one, other = (damped_of_peak(ball, law, 0.7).history for ball in (steel, faster))
+    times = np.linspace(0.0, one.time[-1], 50)
+    assert other.force_at(times) == pytest.approx(2.0 * one.force_at(times), abs=1e-5 * steel.measured_peak)
 
 
 @pytest.mark.parametrize("name", ["refit", "hertz", "linear", "kelvin", "jankowski"])

@@ -601,6 +601,7 @@ def test_a_start_inside_the_ring_finds_it_relaxed() -> None:
         (lambda: PtmdRing(0.01, SOLID, 1.0, 0.5), "exponent"),
         (lambda: PoundingDamper(POLE, None, lining()), "ring"),
         (lambda: Start(0.0), "x1"),
+        (lambda: Start(5e-324), "x1"),
         (lambda: Start(float("inf")), "x1"),
         (lambda: simulate(ALONE, BOTH, -1.0), "end_time"),
         (lambda: simulate(ALONE, Start(0.0, 0.05)), "x1"),
@@ -618,5 +619,5 @@ def test_bad_input_is_named(bad: Any, named: str) -> None:
 
 def test_a_motion_of_too_many_rows_is_refused_before_it_begins(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(FrameMarch, "run", lambda *_: pytest.fail("marched"))
-    with pytest.raises(BadInput, match=r"more than 300000 rows of .* s; accepted: at most "):
+    with pytest.raises(BadInput, match=r"more than 100000 rows of .* s; accepted: at most "):
         simulate(PLAIN, Start(0.05), 1e6)

@@ -215,6 +215,14 @@ def test_force_grows_with_nu_and_as_the_clearance_closes() -> None:
     assert np.all(np.diff(by_radius) > 0.0)
 
 
+def test_a_rod_pulled_away_at_once_turns_where_a_free_body_would() -> None:
+    """Its load is lost in the rounding of the clearance where it begins."""
+    scene = Scene.load("rod-in-ring", {"model.gravity": -1e5})
+    found = laws.correspondence.estimate(scene)
+    assert found.peak_depth == pytest.approx(scene.velocity**2 / 2e5, rel=1e-3)
+    assert found.duration == pytest.approx(2.0 * scene.velocity / 1e5, rel=1e-3)
+
+
 def test_impossible_rings_are_named() -> None:
     for sizes, key in (
         ((10.0, 10.0, 3.0), "inner_radius"),

@@ -25,7 +25,7 @@ from fe_contact.studies.sweep.cases import BaseScene, Sweep
 from fe_contact.studies.sweep.table import SweepTable
 from fe_contact.studies.workers import answers, checked_jobs, workers
 from fe_contact.threads import one_thread
-from lumped.errors import BadInput, FeContactError
+from lumped.errors import BadInput, CannotWrite, FeContactError
 from lumped.result.result import UNITS
 from lumped.schema import Table
 
@@ -122,12 +122,15 @@ class Rows:
         return self._read(self._files[digest])[digest]
 
     def keep(self, batch: Mapping[str, Table]) -> None:
-        """Rows more, in a file that appears all at once."""
+        """Rows more, in a file that appears all at once. Raises CannotWrite."""
         name = f"{_digest([*batch])}.jsonl"
         lines = (f"{json.dumps({'digest': digest, 'row': row})}\n" for digest, row in batch.items())
         part = self._folder / f"{name}.{os.getpid()}{PART}"
-        part.write_text("".join(lines), encoding="utf-8")
-        part.replace(self._folder / name)
+        try:
+            part.write_text("".join(lines), encoding="utf-8")
+            part.replace(self._folder / name)
+        except OSError as failure:
+            raise CannotWrite(self._folder, failure.strerror or str(failure)) from failure
         self._files |= dict.fromkeys(batch, name)
 
     def tidy(self) -> None:

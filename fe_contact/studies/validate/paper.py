@@ -29,7 +29,8 @@ FIGURES = (
     Figure("fig6", "Figure 6 again: force of the steel ball by every model", ("paper.csv",)),
     Figure("fig7", "Figure 7 again: R1 varied, the exact law beside the clipped one", ("grid.csv",)),
     Figure("fig8", "Figure 8 again: R2 varied, the exact law beside the clipped one", ("grid.csv",)),
-    Figure("fig10", "Figure 10 again: concrete, cut at the measured peak", ("paper.csv",)),
+    Figure("fig9", "Figure 9 again: concrete, by every model", ("paper.csv",)),
+    Figure("fig10", "Figure 10 again: concrete, by two models, and cut at the measured peak", ("paper.csv",)),
     Figure("fig15", "Figure 15 as numbers: what the surface remembers between contacts", ("paper.csv",)),
 )
 LISTINGS = (

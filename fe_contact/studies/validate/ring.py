@@ -20,7 +20,10 @@ from fe_contact.studies.validate.base import (
     Section,
 )
 
-FIGURE = Figure("ring", "Force over the paper's row, and the local exponent, over depth", ("ring.csv",))
+FIGURES = (
+    Figure("ring", "Force over the paper's row, and the local exponent, over depth", ("ring.csv",)),
+    Figure("fig12", "Figure 12 again: the paper's ring struck", ("ring_impacts.csv",)),
+)
 LISTINGS = (
     Listing(
         "ring_impacts.csv",
@@ -62,12 +65,12 @@ def make(asked: Request) -> Made:
         from fe_contact.studies.rings_chart import plot_rings
 
         write_rings(curves, where, impacts)
-        plot_rings(curves, where)
+        plot_rings(curves, where, impacts)
 
     judged = [(curve.case.name, verdict(curve)) for curve in curves]
     said = [f"{name}: (27)-(29) {one.word}: {one.sentence}" for name, one in judged]
     said += [f"{one.ring} at {1e3 * one.velocity:.3g} mm/s: (30)-(32) {one.verdict}" for one in impacts]
-    section = Section((headline(curves, impacts),), tuple(said), (FIGURE,), LISTINGS, missed=missed(curves, impacts))
+    section = Section((headline(curves, impacts),), tuple(said), FIGURES, LISTINGS, missed=missed(curves, impacts))
     return Made(section, write)
 
 

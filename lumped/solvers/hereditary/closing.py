@@ -166,8 +166,10 @@ def shut(
 
     That ends where the force of a first, longer one falls to zero; from there on, or where it does not, by secants.
     One that will err by more than `allowed` is not sought any closer, and is None where its end is not near yet, as it
-    is where Newton's steps fail.
+    is where Newton's steps fail, and from a depth whose load is lost in rounding.
     """
+    if not problem.loads(state[:1])[0].all():
+        return None
     (duration, a, steep), steps, missed = start, 0, math.inf
     power, unit = _power(problem, state)
     steep, before = steep or unit * _mean_modulus(problem, duration), None
