@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from fe_contact.cli import main
 from fe_contact.studies.larger_models import MeasuredEffect
 from fe_contact.studies.references import Move
-from fe_contact.studies.validate import _scenes_chart, _study, larger, scenes
+from fe_contact.studies.validate import _chart, _study, larger, scenes
 from fe_contact.studies.validate._page import inlined, written
 from fe_contact.studies.validate._scenes import SceneAnswer, SceneCurve, answered, thinned
 from fe_contact.studies.validate.base import (
@@ -94,7 +94,7 @@ def make(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
 
     def made(name: str = "report", answers: list[SceneAnswer] = ANSWERS, *options: str) -> Report:
         asked = list[str]()
-        monkeypatch.setattr(_scenes_chart, "plot_scenes", plot)
+        monkeypatch.setattr(_chart, "plot_scenes", plot)
         monkeypatch.setattr(_study, "parts", lambda: two_parts(answers, asked))
         return tmp_path / name, main(["validate", "--out", str(tmp_path / name), "--quiet", *options]), asked
 
