@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from threadpoolctl import threadpool_limits
 
 from fe_contact.assembly.disk_cache import without_disk
+from fe_contact.cli import main
 from fe_contact.studies import style
 from lumped import Result
 
@@ -130,6 +131,20 @@ def empty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     folder.mkdir()
     monkeypatch.chdir(folder)
     return folder
+
+
+@pytest.fixture
+def refused(empty: Path, capsys: pytest.CaptureFixture[str]) -> Callable[..., list[str]]:
+    """The faults of a command line that is bad input, a line each: nothing else is said, and nothing is written."""
+
+    def faults(*words: str) -> list[str]:
+        assert main(list(words)) == 2
+        said = capsys.readouterr()
+        assert not said.out
+        assert not list(empty.iterdir())
+        return said.err.splitlines()
+
+    return faults
 
 
 @pytest.fixture(scope="session")

@@ -44,8 +44,7 @@ COMMANDS = {
 }
 CHARTS = {
     "table1.chart": "plot_table1",
-    "exponents.layers_chart": "plot_layers",
-    "exponents.impacts_chart": "plot_impacts",
+    "exponents.chart": "plot_exponents",
     "rings_chart": "plot_rings",
     "tradeoff.chart": "plot_tradeoff",
     "stability._chart": "plot_stability",

@@ -18,8 +18,8 @@ from limits import compressible, incompressible
 from fe_contact.cli import main
 from fe_contact.studies.exponents import impacts as reading
 from fe_contact.studies.exponents import readers
+from fe_contact.studies.exponents.chart import plot_impacts, plot_layers
 from fe_contact.studies.exponents.impacts import Impact, ImpactExponents, impact_exponents, impacts
-from fe_contact.studies.exponents.impacts_chart import plot_impacts
 from fe_contact.studies.exponents.layers import (
     PROFILES,
     TOLERANCE,
@@ -30,7 +30,6 @@ from fe_contact.studies.exponents.layers import (
     curve,
     curves,
 )
-from fe_contact.studies.exponents.layers_chart import plot_layers
 from fe_contact.studies.exponents.readers import Reader, Samples
 from fe_contact.studies.exponents.study import SHARES, Exponents, Pair, pairs
 from lumped import Scene, simulate

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -107,11 +108,9 @@ def test_at_once_is_stiffer_by_the_glassy_modulus(write: Any, empty: Path) -> No
 
 @pytest.mark.parametrize(("material", "more"), [(FLUID, ()), (DASHPOT, ("--instant",))])
 def test_what_has_no_modulus_is_refused(
-    material: str, more: tuple[str, ...], write: Any, empty: Path, capsys: pytest.CaptureFixture[str]
+    material: str, more: tuple[str, ...], write: Any, refused: Callable[..., list[str]]
 ) -> None:
-    assert exit_code(write(material), "--depths", "1e-5", *more) == 2
-    assert "target.material" in capsys.readouterr().err
-    assert not list(empty.iterdir())
+    assert "target.material" in refused("indent", write(material), "--depths", "1e-5", *more)[0]
 
 
 @pytest.mark.parametrize(("material", "more"), [(FLUID, ("--instant",)), (DASHPOT, ())])
@@ -121,10 +120,8 @@ def test_what_has_one_is_pressed(material: str, more: tuple[str, ...], write: An
 
 
 @pytest.mark.parametrize("depths", ["", "1e-5,", "0", "-1e-5", "nan", "inf", "1e-5;2e-5", "0.01", "1e-5,2e-3"])
-def test_bad_depths_write_nothing(depths: str, write: Any, empty: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert exit_code(write(target=LAYER), f"--depths={depths}") == 2
-    assert "--depths" in capsys.readouterr().err
-    assert not list(empty.iterdir())
+def test_bad_depths_write_nothing(depths: str, write: Any, refused: Callable[..., list[str]]) -> None:
+    assert "--depths" in refused("indent", write(target=LAYER), f"--depths={depths}")[0]
 
 
 @pytest.mark.parametrize(
@@ -132,11 +129,9 @@ def test_bad_depths_write_nothing(depths: str, write: Any, empty: Path, capsys: 
     [("hertzz", "half_space", "hertz"), ("hertz", LAYER, "half-space alone"), ("mdr", LAYER, "half-space alone")],
 )
 def test_a_method_that_does_not_know_the_body_is_refused(
-    method: str, target: str, reason: str, write: Any, empty: Path, capsys: pytest.CaptureFixture[str]
+    method: str, target: str, reason: str, write: Any, refused: Callable[..., list[str]]
 ) -> None:
-    assert exit_code(write(target=target), "--depths", "1e-5", "--method", method) == 2
-    assert reason in capsys.readouterr().err
-    assert not list(empty.iterdir())
+    assert reason in refused("indent", write(target=target), "--depths", "1e-5", "--method", method)[0]
 
 
 def test_hertz_is_the_parabola(write: Any, empty: Path) -> None:

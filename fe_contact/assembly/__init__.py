@@ -1,1 +1,1 @@
-"""Mesh and material to matrices: forms, surfaces and their quadrature, condensation, what stands for the infinite."""
+"""Mesh and material to matrices: forms, surfaces and their quadrature, condensation, the far field."""

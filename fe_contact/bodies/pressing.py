@@ -218,6 +218,12 @@ class BodyStill:
     degrees_of_freedom: int
     ends: ClassVar[bool] = True
 
+    @classmethod
+    def alone(cls, surface: Meshed, places: Array, scale: float, indenter: Indenter, numerics: Numerics) -> BodyStill:
+        """Of one body, ``surface`` of it all that yields."""
+        operator = surface.operator
+        return cls(surface.pressed, operator, places, scale, indenter, numerics, operator.degrees_of_freedom)
+
     @property
     def mesh_order(self) -> float:
         """Less where the edge may lie anywhere in an element; a rim is a node."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from functools import partial
-from pathlib import Path
 
 from fe_contact.commands import base
 
@@ -15,17 +14,12 @@ def execute(args: argparse.Namespace) -> int:
         from fe_contact.studies.exponents.layers import finite_rows
 
         return base.finite_exponents(args, "exponents", partial(finite_rows, args.quick))
-    from fe_contact.studies.exponents.impacts_chart import plot_impacts
-    from fe_contact.studies.exponents.layers_chart import plot_layers
+    from fe_contact.studies.exponents.chart import plot_exponents
     from fe_contact.studies.exponents.study import study
 
     run = base.StudyRun.of(args, "exponents", "layers")
     found = study(args.quick, run.where, run.progress)
-
-    def plot(where: Path) -> None:
-        plot_layers(found.curves, found.checks, where)
-        plot_impacts(found.impacts, where)
-
+    plot = partial(plot_exponents, found)
     return run.finish("exponents.json", found.told, found.write, plot, missed=found.missed)
 
 

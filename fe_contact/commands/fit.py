@@ -93,7 +93,7 @@ def _fit(asked: FitQuestion) -> int:
 
 def _rank(asked: FitQuestion) -> int:
     """Fit every law, write, say the ranking; 0."""
-    from fe_contact.studies.ranking_chart import plot_ranking
+    from fe_contact.studies.fit_chart import plot_ranking
     from lumped.fit.ranking import RECORD, rank, write_ranking
 
     with asked.addressed():

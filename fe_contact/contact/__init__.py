@@ -1,1 +1,3 @@
-"""The contact problem, its Newton and its line search; enforcement, one law a file."""
+"""``problem``: the contact problem, its Newton and its line search, and where the contact's edge lies; ``enforcement``,
+one law a file.
+"""

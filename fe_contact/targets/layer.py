@@ -45,25 +45,18 @@ SIDES = 0.4  # distance of the sides in thicknesses, per far radius of the setti
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The layer at rest; ``radii``, m: between which the contacts will end."""
-    target = indenter.target
-    assert isinstance(target, Layer)
     reference, smallest = _pressed(indenter.shape.fixed_radius, radii)
-    thickness = thickness_over(reference, target.thickness)
     refinement = LINE_REFINEMENT if indenter.shape.plane else REFINEMENT
-    elements, width = refinement * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
-    sizes, bonded = (elements, smallest, thickness, width), target.base == "bonded"
-    surface = on_mesh(_body.recipe(sizes, numerics.order, bonded, indenter.shape.plane), indenter.material.nu)
+    thickness, body = _meshed(indenter.geometry, reference, smallest, refinement, numerics)
+    surface = on_mesh(body, indenter.material.nu)
     return FixedStill(surface, indenter, numerics, reference, reference, thickness)
 
 
 def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     """The layer for large strains; ``radii``, m: those of the contacts expected."""
-    target, zone = indenter.target, Zone.finite(radii)
-    assert isinstance(target, Layer)
-    thickness = thickness_over(zone.reference, target.thickness)
-    elements, width = FINITE_REFINEMENT * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
-    sizes = (elements, zone.smallest, thickness, width)
-    return SolidMesh(_body(sizes, numerics.order, target.base == "bonded", indenter.shape.plane), zone.reference)
+    zone = Zone.finite(radii)
+    _, body = _meshed(indenter.geometry, zone.reference, zone.smallest, FINITE_REFINEMENT, numerics)
+    return SolidMesh(body.follow(), zone.reference)
 
 
 def _pressed(rim: float | None, radii: Array) -> tuple[float, float | None]:
@@ -76,13 +69,23 @@ def _pressed(rim: float | None, radii: Array) -> tuple[float, float | None]:
 
 def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:
     """The layer in an impact whose contact grows from nothing to the radius that the settings expect."""
+    smallest = None if geometry.shape.fixed_radius is not None else smallest_struck(geometry.shape)
+    return _meshed(geometry, numerics.contact_radius, smallest, STRUCK_REFINEMENT, numerics)[1]
+
+
+def _meshed(
+    geometry: Geometry, reference: float, smallest: float | None, refinement: float, numerics: Numerics
+) -> tuple[float, Recipe[ElasticBody]]:
+    """Thickness over the ``reference`` radius, m, and the layer in its units; ``refinement``: elements over the usual.
+
+    ``smallest`` contact over the reference, None under a rim.
+    """
     target = geometry.target
     assert isinstance(target, Layer)
-    thickness = thickness_over(numerics.contact_radius, target.thickness)
-    smallest = None if geometry.shape.fixed_radius is not None else smallest_struck(geometry.shape)
-    elements, width = STRUCK_REFINEMENT * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
+    thickness = thickness_over(reference, target.thickness)
+    elements, width = refinement * numerics.elements_per_contact, SIDES * numerics.far_radius * thickness
     sizes = (elements, smallest, thickness, width)
-    return _body.recipe(sizes, numerics.order, target.base == "bonded", geometry.shape.plane)
+    return thickness, _body.recipe(sizes, numerics.order, target.base == "bonded", geometry.shape.plane)
 
 
 @cached

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 import meshes
-from fe_contact.assembly.cache import Recipe, cached
+from fe_contact.assembly.cache import cached
 from fe_contact.assembly.forms import Array
 from fe_contact.assembly.operators import ElasticBody, SolidMesh, axisymmetric, basis_on, made, operator_of
 from fe_contact.assembly.surface import crown
@@ -31,6 +31,7 @@ from fe_contact.targets.base import MeshedTarget
 from lumped.materials import Relaxation
 from lumped.scene.geometry import Geometry
 from lumped.scene.indenter import Indenter
+from lumped.targets import Target
 from lumped.targets.o_ring import ORing
 
 Sizes = tuple[float, int, float, float, float]  # elements, order, smallest contact, contact, mean radius: see _body
@@ -38,60 +39,42 @@ Sizes = tuple[float, int, float, float, float]  # elements, order, smallest cont
 
 def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     """The O-ring at rest; ``radii``, m: distance from the top where the undeformed surfaces overlap."""
-    target = indenter.target
-    assert isinstance(target, ORing)
-    zone = Zone.round(radii, target.section_radius)
-    mean_radius = target.mean_radius / target.section_radius
-    elements = LINE_REFINEMENT * numerics.elements_per_contact
-    body = _body.recipe(elements, numerics.order, zone.smallest, zone.reference, mean_radius)
-    surface = on_mesh(body, indenter.material.nu)
-    return BodyStill(
-        surface=surface.pressed,
-        operator=surface.operator,
-        places=target.section_radius * np.sin(surface.operator.points),
-        scale=target.section_radius,
-        indenter=indenter,
-        numerics=numerics,
-        degrees_of_freedom=surface.degrees_of_freedom,
-    )
+    target, sizes = _sizes(indenter.target, radii, LINE_REFINEMENT, numerics)
+    surface = on_mesh(_body.recipe(*sizes), indenter.material.nu)
+    places = target.section_radius * np.sin(surface.operator.points)
+    return BodyStill.alone(surface, places, target.section_radius, indenter, numerics)
 
 
 def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:
     """The same for large strains."""
-    target = indenter.target
-    assert isinstance(target, ORing)
-    zone, mean_radius = Zone.round(radii, target.section_radius), target.mean_radius / target.section_radius
-    elements = FINITE_REFINEMENT * numerics.elements_per_contact
-    body = _body(elements, numerics.order, zone.smallest, zone.reference, mean_radius)
-    return SolidMesh(body, target.section_radius, mean_radius=mean_radius, ends=True, lead=target.lead)
+    target, sizes = _sizes(indenter.target, radii, FINITE_REFINEMENT, numerics)
+    return SolidMesh(_body(*sizes), target.section_radius, mean_radius=sizes[-1], ends=True, lead=target.lead)
 
 
 def struck(geometry: Geometry, numerics: Numerics) -> Stacked:
     """The O-ring in an impact; its other half moves alike, so that both together are half as stiff as one."""
-    target, sizes = _sizes(geometry, numerics)
+    target, sizes = _struck_sizes(geometry, numerics)
     return _struck(geometry.material.nu, geometry.shape.modulus(geometry.material), target, sizes)
 
 
 def relaxing(geometry: Geometry, numerics: Numerics) -> Stacked:
     """The same of constant bulk modulus."""
-    target, sizes = _sizes(geometry, numerics)
+    target, sizes = _struck_sizes(geometry, numerics)
     relaxation, moduli = geometry.shape.modulus(geometry.material), Moduli.of(geometry.material, geometry.shape.total)
     return _relaxing(relaxation, moduli, target, sizes, Pace.of(numerics))
 
 
-def meshed(geometry: Geometry, numerics: Numerics) -> Recipe[ElasticBody]:
-    """Half of it for every Poisson's ratio."""
-    return _body.recipe(*_sizes(geometry, numerics)[1])
+def _struck_sizes(geometry: Geometry, numerics: Numerics) -> tuple[ORing, Sizes]:
+    """For contacts that grow from nothing to the half-width that the settings expect."""
+    radii = numerics.contact_radius / MARGIN * np.array([smallest_struck(geometry.shape), 1.0])
+    return _sizes(geometry.target, radii, STRUCK_REFINEMENT, numerics)
 
 
-def _sizes(geometry: Geometry, numerics: Numerics) -> tuple[ORing, Sizes]:
-    """The ring, and its mesh for contacts that grow from nothing to the half-width that the settings expect."""
-    target = geometry.target
+def _sizes(target: Target, radii: Array, refinement: float, numerics: Numerics) -> tuple[ORing, Sizes]:
+    """The ring, and its mesh for contacts that end so far from the top, m; ``refinement``: elements over the usual."""
     assert isinstance(target, ORing)
-    largest = numerics.contact_radius / MARGIN
-    zone = Zone.round(largest * np.array([smallest_struck(geometry.shape), 1.0]), target.section_radius)
-    elements = STRUCK_REFINEMENT * numerics.elements_per_contact
-    mean_radius = target.mean_radius / target.section_radius
+    zone, mean_radius = Zone.round(radii, target.section_radius), target.mean_radius / target.section_radius
+    elements = refinement * numerics.elements_per_contact
     return target, (elements, numerics.order, zone.smallest, zone.reference, mean_radius)
 
 

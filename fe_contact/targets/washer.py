@@ -30,15 +30,7 @@ def still(indenter: Indenter, radii: Array, numerics: Numerics) -> Still:
     target = indenter.target
     assert isinstance(target, Washer)
     surface = on_mesh(_body.recipe(*_sizes(target, float(radii.max()), numerics)), indenter.material.nu)
-    return BodyStill(
-        surface=surface.pressed,
-        operator=surface.operator,
-        places=target.height * surface.operator.points,
-        scale=target.height,
-        indenter=indenter,
-        numerics=numerics,
-        degrees_of_freedom=surface.degrees_of_freedom,
-    )
+    return BodyStill.alone(surface, target.height * surface.operator.points, target.height, indenter, numerics)
 
 
 def solid(indenter: Indenter, radii: Array, numerics: Numerics) -> SolidMesh:

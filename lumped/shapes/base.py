@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from lumped.errors import BadInput, Fault
 from lumped.load_curves.base import LoadCurve
+from lumped.load_curves.bent import BentCurve
 from lumped.load_curves.hertz import HertzImpact, curve_impact, power_impact
 from lumped.load_curves.plane_contact import LineProfile
 from lumped.materials import Material, Relaxation
@@ -110,6 +111,34 @@ class Mixed(Shape):
     def hertz_impact(self, modulus: float, mass: float, velocity: float) -> HertzImpact:
         """Scales of the elastic impact, from the work of indentation."""
         return curve_impact(self.load_curve, modulus, mass, velocity)
+
+
+class Bent(Mixed):
+    """A profile whose slope is linear piece by piece: h'(r) = s + sum c_k (r - t_k)_+, as its load curve has them."""
+
+    @property
+    @abstractmethod
+    def load_curve(self) -> BentCurve:
+        """The closed form of its bends."""
+
+    @property
+    def flat_radius(self) -> float:
+        """That of its load curve, m."""
+        return self.load_curve.least_radius
+
+    def height(self, r: ArrayLike) -> Array:
+        """s r + sum c_k (r - t_k)_+^2/2, m."""
+        curve = self.load_curve
+        return np.asarray(curve.slope * np.abs(r) + 0.5 * np.square(self._beyond(r)) @ np.array(curve.bends))
+
+    def slope(self, r: ArrayLike) -> Array:
+        """s + sum c_k (r - t_k)_+."""
+        return np.asarray(self.load_curve.slope + self._beyond(r) @ np.array(self.load_curve.bends))
+
+    def _beyond(self, r: ArrayLike) -> Array:
+        """(r - t_k)_+, m, the bends last."""
+        radius = np.abs(np.asarray(r, dtype=float))
+        return np.asarray(np.maximum(radius[..., None] - np.array(self.load_curve.radii), 0.0))
 
 
 class FlatEnded(Shape):

@@ -18,8 +18,7 @@ from lumped.load_curves.bent import BentCurve
 from lumped.numbers import Array
 from lumped.schema.csv_file import read_columns
 from lumped.schema.keys import File, Key, Number, Numbers, Part, Sets, keys_of, made, optional
-from lumped.shapes._bent import Bent
-from lumped.shapes.base import SIZE
+from lumped.shapes.base import SIZE, Bent
 
 MOST_ROWS = 200  # each bend is summed over at every step of every method
 COLUMNS = ("r_m", "height_m")

@@ -7,8 +7,7 @@ from typing import Annotated, ClassVar
 
 from lumped.load_curves.bent import BentCurve
 from lumped.schema.keys import Key, Part
-from lumped.shapes._bent import Bent
-from lumped.shapes.base import SIZE
+from lumped.shapes.base import SIZE, Bent
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.integrate import quad
 from scipy.special import gamma
-from transfer_function import TransferFunction
+from transfer_function import TransferFunction, polynomials
 
 from lumped import BadInput, Relaxation, Scene, laws, simulate
 from lumped.materials.networks import fractional_zener, kelvin_voigt, operators, sls
@@ -39,7 +39,7 @@ def routes(scene: Scene, count: int) -> tuple[float, float]:
     """Largest distance of the second and of the third route from the law, relative to the peak force."""
     step, load, rate, force = history(scene, count)
     modulus = scene.contact_modulus
-    second = TransferFunction(*operators.polynomials(modulus)).force(step, load, rate)
+    second = TransferFunction(*polynomials(modulus)).force(step, load, rate)
     springs = replace(modulus, viscosity=0.0)
     third = convolution.force(springs.operational, step, load) + modulus.viscosity * rate
     return tuple(float(np.abs(route - force).max() / force.max()) for route in (second, third))  # type: ignore[return-value]
@@ -68,7 +68,7 @@ def test_two_routes_are_one_whatever_the_step(impact: Build) -> None:
     scene = random_scene(impact, 2)
     step, load, _, _ = history(scene, 41)
     modulus = scene.contact_modulus
-    second = TransferFunction(*operators.polynomials(modulus)).force(step, load)
+    second = TransferFunction(*polynomials(modulus)).force(step, load)
     np.testing.assert_allclose(second, convolution.force(modulus.operational, step, load), atol=1e-10 * second.max())
 
 
@@ -76,7 +76,7 @@ def test_ramp_on_the_three_parameter_solid() -> None:
     """int_0^t E: E0 t + E0 R1 tau (1 - exp(-t/tau)), whatever the step."""
     solid = sls.of_ratios(E0=2.0, R1=3.0, R2=0.4)
     exact = 2.0 * TIMES - 6.0 * 0.1 * np.expm1(-TIMES / 0.1)
-    network = TransferFunction(*operators.polynomials(solid)).force(STEP, TIMES)
+    network = TransferFunction(*polynomials(solid)).force(STEP, TIMES)
     np.testing.assert_allclose(network, exact, rtol=1e-11, atol=1e-13)
     np.testing.assert_allclose(convolution.force(solid.operational, STEP, TIMES), exact, rtol=1e-11, atol=1e-13)
 
@@ -85,7 +85,7 @@ def test_rate_is_answered_exactly() -> None:
     """Kelvin-Voigt has no memory: F = E y + eta y' at every sample, from operators of unequal degree."""
     load, rate = np.sin(TIMES) ** 2, np.sin(2.0 * TIMES)
     solid = kelvin_voigt.of(3.0, 0.2)
-    found = TransferFunction(*operators.polynomials(solid)).force(STEP, load, rate)
+    found = TransferFunction(*polynomials(solid)).force(STEP, load, rate)
     np.testing.assert_allclose(found, 3.0 * load + 0.2 * rate, rtol=1e-14, atol=1e-15)
 
 
@@ -130,11 +130,11 @@ def test_hereditary_sum_agrees_with_quadrature() -> None:
 
 def test_polynomials_are_those_of_the_network() -> None:
     first, second, dashpot = 1.8e6, 0.9e6, 1.8e4
-    p, q = operators.polynomials(sls.of_springs(E1=first, E2=second, C1=dashpot))
+    p, q = polynomials(sls.of_springs(E1=first, E2=second, C1=dashpot))
     scale = first + second
     assert p == pytest.approx((1.0, dashpot / scale), rel=1e-14)  # "(12)", divided by E1 + E2
     assert q == pytest.approx((first * second / scale, second * dashpot / scale), rel=1e-14)
-    assert operators.polynomials(Relaxation(3.0)) == ((1.0,), (3.0,))
+    assert polynomials(Relaxation(3.0)) == ((1.0,), (3.0,))
 
 
 def test_polynomials_give_the_series_back() -> None:
@@ -142,7 +142,7 @@ def test_polynomials_give_the_series_back() -> None:
     for count in range(1, 6):
         times = np.sort(10.0 ** (np.arange(count) - 2.0 + rng.uniform(-0.2, 0.2, count)))
         series = Relaxation(rng.uniform(), tuple(rng.uniform(0.1, 2.0, count)), tuple(times), rng.uniform())
-        again = operators.of(*operators.polynomials(series))
+        again = operators.of(*polynomials(series))
         assert sorted(again.times) == pytest.approx(series.times, rel=1e-9)
         assert again(TIMES) == pytest.approx(series(TIMES), rel=1e-9)
         assert again.viscosity == pytest.approx(series.viscosity, rel=1e-12)

@@ -13,6 +13,7 @@ from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
 from lumped.errors import BadInput, Fault
+from lumped.materials.relaxation import Relaxation
 
 Array = NDArray[np.float64]
 
@@ -80,3 +81,24 @@ def _checked(step: float, load: ArrayLike, rate: ArrayLike | None, viscosity: fl
         message = "accepted: two or more finite values, load and rate of one length"
         raise BadInput(Fault("transfer function", "load", message))
     return y, speed
+
+
+def polynomials(relaxation: Relaxation) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """P and Q of a relaxation modulus, as `operators.of` takes them: P = prod (1 + tau_k d/dt).
+
+    Q/P is its operational modulus. Times that span many decades lose digits here, not in the series itself.
+    """
+    factors = [np.array([1.0, tau]) for tau in relaxation.times]
+    p = _product(factors)
+    q = polynomial.polymul(p, [relaxation.equilibrium, relaxation.viscosity])
+    for k, (modulus, tau) in enumerate(zip(relaxation.moduli, relaxation.times, strict=True)):
+        others = _product(factors[:k] + factors[k + 1 :])
+        q = polynomial.polyadd(q, polynomial.polymul([0.0, modulus * tau], others))
+    return tuple(p.tolist()), tuple(np.trim_zeros(q, "b").tolist())
+
+
+def _product(factors: list[Array]) -> Array:
+    whole = np.ones(1)
+    for factor in factors:
+        whole = np.convolve(whole, factor)
+    return whole

@@ -7,7 +7,6 @@ that central difference allows with a penalty.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
 
@@ -23,6 +22,7 @@ from fe_contact.dynamics.schemes.base import WAVE_SCHEMES
 from fe_contact.dynamics.stepping import Enforced
 from fe_contact.settings import Given
 from fe_contact.studies.stability.base import Case, Chart, Measure, MethodStudy
+from fe_contact.waves.line_reading import clustered
 from lumped.materials import Relaxation
 from lumped.schema import Table
 from lumped.solvers.bar import Bounces, StraightBar, bounces
@@ -82,8 +82,9 @@ def measured(case: Case) -> Table:
     """What went wrong by how much; see :data:`MEASURES`; raises the named failures of a march."""
     motion, wanted = bounced(case), exact(case["periods"])
     time, force, step = motion.time, motion.force, choices(case).step
-    contact = BarContact(motion, 2 * TRANSIT)
-    begun, due = [start for start, _ in contact.lasting], [start for start, _ in wanted.contacts]
+    begun = [start for start, _ in clustered(motion.contacts, 2 * TRANSIT)]
+    due = [start for start, _ in wanted.contacts]
+    touched, opened = motion.contacts[0]  # until it opens for the first time: chatter makes it short
     known = min(len(begun), len(due), TENTH) - 1
     pressed = wanted.force(np.minimum(time, 2 * TRANSIT * (1 - 1e-9)))
     inside = (time > MIDDLE[0] * 2 * TRANSIT) & (time < MIDDLE[1] * 2 * TRANSIT)
@@ -95,7 +96,7 @@ def measured(case: Case) -> Table:
         "ripple": float(np.sqrt(np.mean((force[inside] - pressed[inside]) ** 2)) / pressed[inside].mean()),
         "overshoot": float(force[time < 4 * TRANSIT].max() / pressed.max() - 1.0),
         "penetration": max(float(sample.overlap.max()) for sample in motion.samples) / (VELOCITY * TRANSIT),
-        "duration_steps": (contact.first - 2 * TRANSIT) / step,
+        "duration_steps": (opened - touched - 2 * TRANSIT) / step,
         "start": (begun[known] - due[known]) / PERIOD if known > 0 else math.nan,  # the first is where all begin
         "restitution": (impulse - 800.0 / 3.0) / (BAR.length * VELOCITY),
         "contacts": len(motion.contacts) / len(due),
@@ -104,31 +105,6 @@ def measured(case: Case) -> Table:
         "iterations": sum(sample.iterations for sample in motion.samples),
         "residual": max(abs(sample.energies.residual) for sample in motion.samples) / ENERGY,
     }
-
-
-@dataclass(frozen=True)
-class BarContact:
-    """Contacts of a motion, those apart that follow each other within a ``duration``, s."""
-
-    motion: Motion
-    duration: float
-
-    @property
-    def lasting(self) -> list[tuple[float, float]]:
-        """The first of every cluster with the end of its last."""
-        found = list[tuple[float, float]]()
-        for start, end in self.motion.contacts:
-            if found and start - found[-1][1] < self.duration:
-                found[-1] = (found[-1][0], end)
-            else:
-                found.append((start, end))
-        return found
-
-    @property
-    def first(self) -> float:
-        """How long the first contact lasts until it opens for the first time, s; chatter makes it short."""
-        start, end = self.motion.contacts[0]
-        return end - start
 
 
 def _energies(motion: Motion) -> tuple[float, float]:

@@ -155,7 +155,7 @@ def _checks(found: CorrespondenceMap) -> list[Line]:
 
 def write(found: CorrespondenceMap, where: Path) -> None:
     """Write ``correspondence.csv``, ``elements.csv``, ``correspondence.json`` and the chart."""
-    from fe_contact.studies.validate._correspondence_chart import plot_correspondence
+    from fe_contact.studies.validate._chart import plot_correspondence
 
     tables: dict[str, Sequence[Line]] = {"correspondence": _lines(found), "elements": _checks(found)}
     write_study(where, "correspondence", {"schema": SCHEMA, "scene": SCENE, **tables}, tables)

@@ -53,12 +53,10 @@ def make(asked: Request) -> Made:
     found = study(asked.quick, asked.where, asked.progress, asked.jobs)
 
     def write(where: Path) -> None:
-        from fe_contact.studies.exponents.impacts_chart import plot_impacts
-        from fe_contact.studies.exponents.layers_chart import plot_layers
+        from fe_contact.studies.exponents.chart import plot_exponents
 
         found.write(where)
-        plot_layers(found.curves, found.checks, where)
-        plot_impacts(found.impacts, where)
+        plot_exponents(found, where)
 
     said = (*(one.told for one in found.pairs), *sentences(found.impacts))
     section = Section((headline(found),), said, FIGURES, (LISTING,), worst(found.checks), missed=found.missed)

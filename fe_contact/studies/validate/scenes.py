@@ -188,7 +188,7 @@ def _checks(one: SceneAnswer) -> list[Line]:
 
 def write(found: Sequence[SceneAnswer], where: Path) -> None:
     """Write ``scenes.csv``, ``checks.csv``, ``scenes.json``, a CSV a curve, ``histories.json`` and the chart."""
-    from fe_contact.studies.validate._scenes_chart import plot_scenes
+    from fe_contact.studies.validate._chart import plot_scenes
 
     lines = {"scenes": [_line(one) for one in found], "checks": [line for one in found for line in _checks(one)]}
     headers = {"checks": ("scene", "exact", "quantity", "exact_value", "found", "bars", "error_over_bar")}

@@ -3,7 +3,6 @@
 from typing import Annotated
 
 import numpy as np
-from numpy.polynomial import polynomial
 
 from lumped.materials.networks.base import Network
 from lumped.materials.relaxation import Relaxation
@@ -35,27 +34,6 @@ def of(
         raise ValueError("no network of springs and dashpots: a modulus or the viscosity is negative")
     kept = weights > NEGLIGIBLE * scale
     return Relaxation(equilibrium, tuple(weights[kept].tolist()), tuple((-1.0 / poles[kept]).tolist()), viscosity)
-
-
-def polynomials(relaxation: Relaxation) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """P and Q of a relaxation modulus, the inverse of `of`: P = prod (1 + tau_k d/dt), Q/P its operational modulus.
-
-    Times that span many decades lose digits here, not in the series itself.
-    """
-    factors = [np.array([1.0, tau]) for tau in relaxation.times]
-    p = _product(factors)
-    q = polynomial.polymul(p, [relaxation.equilibrium, relaxation.viscosity])
-    for k, (modulus, tau) in enumerate(zip(relaxation.moduli, relaxation.times, strict=True)):
-        others = _product(factors[:k] + factors[k + 1 :])
-        q = polynomial.polyadd(q, polynomial.polymul([0.0, modulus * tau], others))
-    return tuple(p.tolist()), tuple(np.trim_zeros(q, "b").tolist())
-
-
-def _product(factors: list[Array]) -> Array:
-    whole = np.ones(1)
-    for factor in factors:
-        whole = np.convolve(whole, factor)
-    return whole
 
 
 def _trimmed(p: tuple[float, ...], q: tuple[float, ...]) -> tuple[Array, Array]:
