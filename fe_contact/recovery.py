@@ -44,10 +44,11 @@ def recovery_of(curve: Curve) -> Recovery:
 def indentation_left(certified: Budget) -> IndentationLeft:
     """Rows from separation to the time when a hundredth of what goes is left, with bars."""
     curve, axes = certified.curve, dict[int, _Axis]()
-    recovery = recovery_of(curve)
+    axis = _Axis(curve)
+    recovery = axis.after(axis.path)
     time = _rows(recovery)
     errors = [_error(change, time, axes) for changes in certified.changes.values() for change in changes]
-    reading = _Axis(curve).left_at_most(_everywhere(curve.end_spread * curve.leaving_speed), time)
+    reading = axis.left_at_most(_everywhere(curve.end_spread * curve.leaving_speed), time)
     total = np.sum([reading, *errors], axis=0)
     return IndentationLeft(time, recovery(time), total, recovery.permanent, recovery.times)
 
