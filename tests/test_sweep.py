@@ -320,6 +320,10 @@ def test_ranks_say_which_key_moves_what() -> None:
     assert ranks[SPEED] == pytest.approx(
         spearmanr(table.numbers[SPEED], table.values[:, 0, force]).statistic, rel=1e-12
     )
+    often = fe_contact.sweep(tables(axes={SPEED: [0.1, 0.2, 0.4], "striker.mass": [0.01, 0.05, 0.1]}))  # equal values
+    assert often.ranks(0, force)[SPEED] == pytest.approx(
+        spearmanr(often.numbers[SPEED], often.values[:, 0, force]).statistic, rel=1e-12
+    )
 
 
 # processes

@@ -118,9 +118,11 @@ class SurfaceMemory(NamedTuple):
         A scheme's stress is not its average over the step, and a mesh knows reciprocity only at its nodes.
         """
         change = later.strain - self.strain
-        law, exact = step_law(relaxation, scheme, step), step_law(relaxation, galerkin.MEMBER, step)
-        taken = law.now * later.strain + self.carried(law)
-        mean = taken if scheme is galerkin.MEMBER else exact.now * later.strain + self.carried(exact)
+        law = step_law(relaxation, scheme, step)
+        taken = mean = law.now * later.strain + self.carried(law)
+        if scheme is not galerkin.MEMBER:
+            exact = step_law(relaxation, galerkin.MEMBER, step)
+            mean = exact.now * later.strain + self.carried(exact)
         return float(self.areas @ (taken[-1] * change[0])) - product(self.areas, change, mean)
 
 

@@ -82,8 +82,11 @@ def _angle(ratio: Real, tanh: Callable[[Real], Real], deepest: float) -> Real:
 
 def _minus_tanh(u: Array, t: Array) -> Array:
     """u - tanh u to full relative precision."""
+    shallow = u < SERIES_BELOW
+    if not shallow.any():
+        return u - t
     square = u * u
     series = SERIES[-1] * square + SERIES[-2]
     for coefficient in SERIES[-3::-1]:
         series = series * square + coefficient
-    return np.where(u < SERIES_BELOW, u * square * series, u - t)
+    return np.where(shallow, u * square * series, u - t)

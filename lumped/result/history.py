@@ -33,6 +33,7 @@ MOST_ROWS = 100_001  # work: rows at which it is made no denser
 SHORTEST, FIRST = 2.0**-50, 1e-150
 # In so many parts at most an interval is divided at once; a peak force that divides without harm.
 MOST_PARTS, TINY = 16.0, 1e-300
+FLATTENED = 3  # work: divisions after which a smooth arc is straight enough
 # In a fluid without gravity the approach may die away without a turn: below this share of the velocity at
 # touch the striker counts as at rest.
 AT_REST = 1e-7
@@ -138,8 +139,9 @@ def densified(times: ArrayLike, force: Callable[[Array], Array], tolerance: floa
     t = np.unique(np.asarray(times, dtype=float))
     t = divided(t, np.ceil(np.diff(t) * ((LEAST_ROWS - 1) / (t[-1] - t[0]))))[0]
     f, rough = force(t), np.ones(t.size - 1, dtype=bool)
-    start, first = t[0], FIRST * (t[-1] - t[0])
+    start, first, rounds = t[0], FIRST * (t[-1] - t[0]), 0
     while rough.any() and t.size < MOST_ROWS:
+        rounds += 1
         lengths = np.diff(t)
         middle = 0.5 * (t[:-1] + t[1:])[rough]
         off = np.abs(force(middle) - 0.5 * (f[:-1] + f[1:])[rough])
@@ -148,7 +150,10 @@ def densified(times: ArrayLike, force: Callable[[Array], Array], tolerance: floa
         long = lengths[rough] > np.maximum(SHORTEST * np.maximum(t[1:][rough] - start, abs(start)), first)
         parts = np.ones(lengths.size)
         # The deviation falls with the square of the length.
-        parts[rough] += long * np.minimum(np.ceil(np.sqrt(off / max(allowed, TINY)) - 1.0), MOST_PARTS - 1.0)
+        more = np.minimum(np.ceil(np.sqrt(off / max(allowed, TINY)) - 1.0), MOST_PARTS - 1.0)
+        if rounds > FLATTENED:  # after the first row, where a power may rise, no arc is left but a step
+            more = np.where((more > 0.0) & (t[:-1][rough] > start), MOST_PARTS - 1.0, more)
+        parts[rough] += long * more
         if parts.max() <= 1.0:
             break
         t, f, rough = _refined(t, f, parts, force)

@@ -129,9 +129,19 @@ def test_even_a_straight_line_has_the_fewest_rows_there_are() -> None:
     assert densified([0.0, 1.0], lambda t: t, 1e-2).size >= 201, "what the contract promises of a history"
 
 
-def test_densified_ends_at_a_step() -> None:
-    rows = densified([0.0, 1.0], lambda t: (t > 0.3) * 1.0, 1e-9)
+@pytest.mark.parametrize("height", [1.0, 3e-9])  # of a step, and of one barely above what may be missed
+def test_densified_ends_at_a_step_soon(height: float) -> None:
+    asked = list[int]()
+
+    def force(t: np.ndarray) -> np.ndarray:
+        asked.append(t.size)
+        return 1.0 + height * (t > 0.3)
+
+    rows = densified([0.0, 1.0], force, 1e-9)
+    step = np.searchsorted(rows, 0.3, side="right")
+    assert rows[step] - rows[step - 1] < 1e-15
     assert rows.size < 400
+    assert len(asked) < 40
 
 
 def test_result_files_hold_the_whole_schema_and_no_nan(tmp_path: Path) -> None:

@@ -11,9 +11,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from statistics import NormalDist
 
 import numpy as np
-from scipy.special import ndtr
 
 from fe_contact import methods, settings
 from fe_contact.settings import Given
@@ -31,10 +31,11 @@ DIGITS = 15  # rounding: between 0.01 and 0.03 lies 0.02, not 0.0199999999999999
 SAMPLE = 24  # of cases that are read before any runs: a fault that all of them have is the sweep file's
 RANGES: Mapping[str, Callable[..., Array]] = {"linear": np.linspace, "log": np.geomspace}
 VALUES = "a list of values, or { linear = [low, high], count = n }, or { log = [low, high], count = n }"
+_share = np.vectorize(NormalDist().cdf, otypes=[float])  # below z; scipy's would load what no law needs
 # by kind of draw: its value where a standard normal variable is z
 DRAWS: Mapping[str, Callable[[float, float, Array], Array]] = {
-    "uniform": lambda low, high, z: low + (high - low) * ndtr(z),
-    "log_uniform": lambda low, high, z: low * (high / low) ** ndtr(z),
+    "uniform": lambda low, high, z: low + (high - low) * _share(z),
+    "log_uniform": lambda low, high, z: low * (high / low) ** _share(z),
     "normal": lambda mean, deviation, z: mean + deviation * z,
 }
 DRAWN = "{ uniform = [low, high] }, { log_uniform = [low, high] } or { normal = [mean, deviation] }"

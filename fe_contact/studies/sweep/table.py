@@ -77,8 +77,6 @@ class SweepTable:
 
         Empty where the quantity varies by less than its bars, or takes too few values.
         """
-        from scipy.stats import spearmanr
-
         known = self.converged[:, method] & np.isfinite(self.values[:, method, quantity])
         values = self.values[known, method, quantity]
         keys = {key: column[known] for key, column in self.numbers.items()}
@@ -86,7 +84,7 @@ class SweepTable:
         if np.unique(values).size < LEAST_RANKED or np.ptp(values) <= 2.0 * bars.max():
             return {}
         varied = {key: column for key, column in keys.items() if np.unique(column).size >= LEAST_RANKED}
-        return {key: float(spearmanr(column, values).statistic) for key, column in varied.items()}
+        return {key: float(np.corrcoef(_places(column), _places(values))[0, 1]) for key, column in varied.items()}
 
     @property
     def header(self) -> list[str]:
@@ -186,6 +184,12 @@ class SweepTable:
         for quantity in range(len(UNITS)):
             yield self.values[..., quantity].ravel()
             yield self.errors[..., quantity].ravel()
+
+
+def _places(values: Array) -> Array:
+    """Where each value stands among all of them, ascending; equal ones share the mean of their places."""
+    _, which, counts = np.unique(values, return_inverse=True, return_counts=True)
+    return np.asarray((np.cumsum(counts) - 0.5 * counts)[which])
 
 
 def _cell(value: object) -> object:

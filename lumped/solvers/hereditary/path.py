@@ -138,7 +138,7 @@ class Path:
 
     def _piece(self, places: Array | float) -> Array:
         """The index of the piece of each place."""
-        return np.minimum(np.searchsorted(self.breaks[1:-1], places, side="right"), len(self.coefficients) - 1)
+        return np.asarray(self.breaks[1:-1].searchsorted(places, side="right"))
 
     def _basis(self, places: Array) -> tuple[Array, Array]:
         """Chebyshev polynomials at places of any shape, (N+1, ...), and the piece of each."""
