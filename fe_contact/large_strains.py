@@ -19,7 +19,7 @@ from fe_contact.budget.refine import AIM
 from fe_contact.indentation import COARSEST, indent, settings
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, check_kind
-from fe_contact.solids.pressing import CORRECTED, Solid, advanced, check_large
+from fe_contact.solids.pressing import CORRECTED, Solid, check_large
 from fe_contact.threads import one_thread
 from lumped.errors import NotReached
 from lumped.indentation import Indentation
@@ -96,7 +96,7 @@ def depth_reached(scene: Scene) -> float:
     depth, reached = BEGUN * small.peak_depth, None
     for _ in range(ROUNDS):
         stiffness = numerics.penalty * solid.unit / radius
-        reached = advanced(solid.encounter, reached, solid.lead * depth / solid.unit, stiffness)
+        reached = solid.advanced(reached, depth, stiffness)
         balance = reached.balance
         brought = 0.5 * scene.reduced_mass * scene.velocity**2 + scene.reduced_mass * scene.gravity * depth
         more = brought / (joule * balance.energy)
