@@ -25,6 +25,7 @@ from lumped.errors import NotReached
 from lumped.indentation import Indentation
 from lumped.laws import ting
 from lumped.load_curves.sampled import SampledCurve
+from lumped.materials.energies.base import energy_of
 from lumped.numbers import Clock
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import UNITS, Result, largest_bar, provenance, unmet
@@ -104,6 +105,13 @@ def depth_reached(scene: Scene) -> float:
             break
         depth *= more ** (balance.energy / (balance.force * balance.depth))
     return depth
+
+
+def check_range(scene: Scene) -> None:
+    """Raise EquilibriumLost where an elastic material that softens does not take up what the striker brings."""
+    material = scene.geometry.material
+    if scene.model.finite and material.young.is_elastic and energy_of(material.hyperelastic).softens:
+        depth_reached(scene)
 
 
 def _slowly(scene: Scene) -> Indenter:

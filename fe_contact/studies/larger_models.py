@@ -16,6 +16,7 @@ from fe_contact.progress import Progress, silent
 from fe_contact.reference import check, expected, fe, plan
 from fe_contact.settings import DEFAULT_TOLERANCE, Given
 from lumped.errors import FeContactError
+from lumped.materials.energies.base import DEFAULT
 from lumped.result.result import NO_KEY, LedgerEntry, Quantity, Result
 from lumped.scene.scene import Scene
 from lumped.schema import Table
@@ -45,7 +46,9 @@ class MeasuredEffect:
             estimate = "none" if self.estimate is None else f"{self.estimate:.2g}"
         if self.change is None or self.error is None:
             return f"{self.effect}: estimate {estimate} | not measured: {self.reason}"
-        return f"{self.effect} ({self.setting}): estimate {estimate} | measured {self.change:+.2g} +- {self.error:.1g}"
+        by = "" if self.spread is None else f", by {DEFAULT} where the scene names no energy"
+        found = f"measured {self.change:+.2g} +- {self.error:.1g}{by}"
+        return f"{self.effect} ({self.setting}): estimate {estimate} | {found}"
 
     def to_json(self) -> Table:
         """Its fields."""
