@@ -165,7 +165,7 @@ def test_a_material_that_softens_ends_where_its_waves_do() -> None:
     with pytest.raises(BeyondRange, match="softens"):
         indent(block, (1.01 * last,), {})
     with pytest.raises(BeyondRange) as ended:
-        indent(layer, (0.05,), {"tolerance": 1e-2})
+        Solid.of(layer, np.array([0.3]), settings(COARSE, layer.shape)).advanced(None, 0.05, 500.0)
     assert 0.08 * last < ended.value.depth < 0.1 * last
 
 
