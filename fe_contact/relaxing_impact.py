@@ -251,6 +251,18 @@ def _body_forces(found: Equilibrium) -> Array:
     return forces
 
 
+def _throughout(change: Variation) -> Variation:
+    """Of the duration at least the share that it changes of the peak force: a body that errs alike everywhere, whose
+    force goes as a power of the depth, changes both by one share. Two coarse meshes may agree in one by chance.
+    """
+    first, errors = change.first.quantities, change.errors
+    peak, duration = first["peak_force"], first["duration"]
+    if not peak or not duration or not errors["duration"]:
+        return change
+    share = errors["peak_force"] / peak / (errors["duration"] / duration)
+    return replace(change, weights={"duration": max(1.0, share)})
+
+
 def plan(scene: Scene, given: Given) -> Plan:
     """Settings and ledger; scales are those of small strains. Raises NotReached."""
     known = statics.plan(scene, {})
@@ -281,7 +293,7 @@ class RelaxingStrikes:
         value, before = extrapolated(fine, middle, ORDER), extrapolated(middle, coarse, ORDER)
         value = value.with_peak_spread()
         changes = {
-            "mesh": (Variation(middle, meshed, by_mesh),),
+            "mesh": (_throughout(Variation(middle, meshed, by_mesh)),),
             "penalty": (Variation(middle, soft, factor(LEAST_ORDER["penalty"], stiff)),),
             "time_step": (Variation(value, before, SAFETY / (2**ORDER - 1)),),
             "far_field": (Variation(meshed, near, factor(LEAST_ORDER["far_field"], far)),),
