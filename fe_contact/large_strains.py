@@ -19,12 +19,13 @@ from fe_contact.budget.refine import AIM
 from fe_contact.indentation import COARSEST, indent, settings
 from fe_contact.progress import Progress, silent
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, check_kind
-from fe_contact.solids.pressing import CORRECTED, Solid, advanced, check_large
+from fe_contact.solids.pressing import CORRECTED, Solid, check_large
 from fe_contact.threads import one_thread
 from lumped.errors import NotReached
 from lumped.indentation import Indentation
 from lumped.laws import ting
 from lumped.load_curves.sampled import SampledCurve
+from lumped.materials.energies.base import energy_of
 from lumped.numbers import Clock
 from lumped.result.model_ledger import Peak, model_ledger
 from lumped.result.result import UNITS, Result, largest_bar, provenance, unmet
@@ -96,7 +97,7 @@ def depth_reached(scene: Scene) -> float:
     depth, reached = BEGUN * small.peak_depth, None
     for _ in range(ROUNDS):
         stiffness = numerics.penalty * solid.unit / radius
-        reached = advanced(solid.encounter, reached, solid.lead * depth / solid.unit, stiffness)
+        reached = solid.advanced(reached, depth, stiffness)
         balance = reached.balance
         brought = 0.5 * scene.reduced_mass * scene.velocity**2 + scene.reduced_mass * scene.gravity * depth
         more = brought / (joule * balance.energy)
@@ -104,6 +105,13 @@ def depth_reached(scene: Scene) -> float:
             break
         depth *= more ** (balance.energy / (balance.force * balance.depth))
     return depth
+
+
+def check_range(scene: Scene) -> None:
+    """Raise EquilibriumLost where an elastic material that softens does not take up what the striker brings."""
+    material = scene.geometry.material
+    if scene.model.finite and material.young.is_elastic and energy_of(material.hyperelastic).softens:
+        depth_reached(scene)
 
 
 def _slowly(scene: Scene) -> Indenter:

@@ -30,7 +30,7 @@ from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
 from fe_contact.solids.base import State
 from fe_contact.solids.finite import Hyperelastic
 from fe_contact.solids.newton import Encounter, Equilibrium, EquilibriumLost
-from fe_contact.solids.pressing import MESH_ORDER, WIDENING, Solid, advanced, contact_radius, pressed_first
+from fe_contact.solids.pressing import MESH_ORDER, WIDENING, Solid, contact_radius, pressed_first
 from fe_contact.solids.relaxing import Fading, FadingLaw, doubled
 from fe_contact.steppers.steps import March, Strike, Work
 from lumped.result.model_ledger import Peak, model_ledger
@@ -144,7 +144,7 @@ class Marcher:
         pull = strike.gravity / self.solid.unit
         depth = here.depth + length * (here.velocity + 0.5 * length * (pull - slowed * here.force))
         fading = Fading.over(self.law.network, length)
-        found = self._equilibrium(here, self.solid.lead * depth, fading)
+        found = self._equilibrium(here, depth, fading)
         balance, force = found.balance, found.rigid_force
         given = 0.5 * length * (here.force + force)
         rim = balance.displacement[self.body.body.rim]
@@ -171,14 +171,18 @@ class Marcher:
             rest=fading.at_once * body.rest,
             pull=body.rest @ fading.held(here.rim),
         )
-        encounter = replace(self.body, body=relaxing)
-        if here.found is not None:
-            try:
-                return advanced(encounter, here.found, depth, penalty, self.widening, here.memory)
+        solid = replace(self.solid, encounter=replace(self.body, body=relaxing))
+        lead = solid.lead * depth
+        if here.found is None:
+            return pressed_first(solid.encounter, lead, penalty, np.zeros(body.core.size), here.memory)
+        try:
+            return solid.advanced(here.found, solid.unit * depth, penalty, self.widening, here.memory)
+        except EquilibriumLost as lost:
+            try:  # pressed in softly instead
+                start = here.found.balance.displacement
+                return pressed_first(solid.encounter, lead, penalty, start, here.memory)
             except EquilibriumLost:
-                pass  # pressed in softly instead
-        start = np.zeros(body.core.size) if here.found is None else here.found.balance.displacement
-        return pressed_first(encounter, depth, penalty, start, here.memory)
+                raise lost from None
 
     def _worked(self, here: Instant, found: Equilibrium) -> float:
         """On the body in a step, by the mean of the stresses at its ends."""
@@ -247,6 +251,18 @@ def _body_forces(found: Equilibrium) -> Array:
     return forces
 
 
+def _throughout(change: Variation) -> Variation:
+    """Of the duration at least the share that it changes of the peak force: a body that errs alike everywhere, whose
+    force goes as a power of the depth, changes both by one share. Two coarse meshes may agree in one by chance.
+    """
+    first, errors = change.first.quantities, change.errors
+    peak, duration = first["peak_force"], first["duration"]
+    if not peak or not duration or not errors["duration"]:
+        return change
+    share = errors["peak_force"] / peak / (errors["duration"] / duration)
+    return replace(change, weights={"duration": max(1.0, share)})
+
+
 def plan(scene: Scene, given: Given) -> Plan:
     """Settings and ledger; scales are those of small strains. Raises NotReached."""
     known = statics.plan(scene, {})
@@ -277,7 +293,7 @@ class RelaxingStrikes:
         value, before = extrapolated(fine, middle, ORDER), extrapolated(middle, coarse, ORDER)
         value = value.with_peak_spread()
         changes = {
-            "mesh": (Variation(middle, meshed, by_mesh),),
+            "mesh": (_throughout(Variation(middle, meshed, by_mesh)),),
             "penalty": (Variation(middle, soft, factor(LEAST_ORDER["penalty"], stiff)),),
             "time_step": (Variation(value, before, SAFETY / (2**ORDER - 1)),),
             "far_field": (Variation(meshed, near, factor(LEAST_ORDER["far_field"], far)),),

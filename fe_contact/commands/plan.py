@@ -21,7 +21,7 @@ if TYPE_CHECKING:  # finite elements are loaded when they are needed
 def execute(args: argparse.Namespace) -> int:
     """Print the methods, settings, ledger, what waves take, why finite elements refuse the scene; 3 where too much.
 
-    An exact law is asked, in milliseconds; finite elements only with --measure.
+    An exact law is asked, in milliseconds; finite elements only with --measure, or where a material softens.
     """
     from fe_contact.methods import lines_of, settings, weigh
     from fe_contact.reference import plan
@@ -88,12 +88,15 @@ def _measured_lines(measured: tuple[MeasuredEffect, ...] | None) -> list[str]:
 def _takes(scene: Scene, chosen: Plan, given: Table) -> tuple[Cost | None, FeContactError | None]:
     """What waves take, None without them, and why finite elements refuse the scene, None where they do not."""
     from fe_contact.errors import faults_of
+    from fe_contact.large_strains import check_range
     from fe_contact.reference import check, with_waves
     from fe_contact.settings import WaveNumerics
 
     try:
         if not scene.model.inertia:
             check(scene, given)
+            with faults_of(scene):
+                check_range(scene)
             return None, None
         assert isinstance(chosen.numerics, WaveNumerics)
         with faults_of(scene):

@@ -6,7 +6,8 @@ import numpy as np
 
 from fe_contact.assembly.forms import Array
 from fe_contact.bodies.pressing import PressedDepths
-from fe_contact.solids.newton import EquilibriumLost
+from fe_contact.solids.base import elliptic
+from fe_contact.solids.newton import BeyondRange, EquilibriumLost
 from lumped.materials.energies.base import Strained, energy_of, strained
 from lumped.scene.indenter import Indenter
 from lumped.shapes._block import Block
@@ -29,6 +30,9 @@ def press(indenter: Indenter, block: Block, depth: Array) -> PressedDepths:
     else:
         if block.sides == "free":
             raise EquilibriumLost(f"a block pressed by {depth.max():.3g} m has no stress across it that is zero")
+    bearing = [elliptic(answer.tangent[..., i]) for i in range(depth.size)]
+    if not all(bearing):
+        raise BeyondRange(float(depth[np.logical_not(bearing)].min()))
     force = -block.area * answer.stress[3] / block.modulus(material).relaxed
     if not np.all(force > 0.0):
         raise EquilibriumLost(f"a block pressed by {depth.max():.3g} m does not press back")

@@ -30,6 +30,14 @@ class EquilibriumLost(NotReached):
         super().__init__(f"{reason}; cure: smaller depths, or another target.material.hyperelastic")
 
 
+class BeyondRange(EquilibriumLost):
+    """In equilibrium at this ``depth`` waves of some direction have no speed in the material: here it ends."""
+
+    def __init__(self, depth: float) -> None:
+        super().__init__(f"from a depth of {depth:.3g} m on the material softens so that strains gather in bands")
+        self.depth = depth
+
+
 @dataclass(frozen=True, eq=False)
 class Encounter:
     """A body whose ``skin`` a striker meets; its matrix has one ``pattern``; ``covered``: all of the skin at once."""
@@ -136,6 +144,13 @@ class Equilibrium:
         """The body's pulls there, (2, elements, points)."""
         return self.balance.loaded.foreseen(self.predicted(depth) - self.balance.displacement)
 
+    def elliptic(self, depth: float) -> bool:
+        """Whether the material bears waves of every direction everywhere, here and as it goes on to a ``depth``."""
+        here, body = self.balance, self.balance.encounter.body
+        onwards = body.core.answered(self.predicted(depth), body.response, here.state)
+        known = [here.loaded] if np.isinf(onwards.energy) else [here.loaded, onwards]
+        return all(elliptic(loaded.answer.tangent) for loaded in known)
+
     @property
     def rigid_force(self) -> float:
         """On the striker if the penalty were rigid, to first order in its softness."""
@@ -223,7 +238,7 @@ def _descending(here: Balance, at: Callable[[Array], Balance], settled: float) -
         if -slope <= settled * abs(here.energy):
             return _equilibrium(at(here.displacement + _whole(here, step)), solve, iteration)
         here = _descended(here, step, slope, at)
-    raise _lost(here, f"no equilibrium in {MOST_ITERATIONS} iterations")
+    raise EquilibriumLost(f"no equilibrium in {MOST_ITERATIONS} iterations")
 
 
 def _equilibrium(there: Balance, solve: Callable[[Array], Array], iterations: int) -> Equilibrium:
@@ -239,7 +254,7 @@ def _step(here: Balance) -> tuple[Callable[[Array], Array], Array]:
         step = solve(-here.residual)
         if here.residual @ step <= 0.0:
             return solve, step
-    raise _lost(here, "the body is not stable")
+    raise EquilibriumLost("the body is not stable")
 
 
 def _whole(here: Balance, free: Array) -> Array:
@@ -257,10 +272,4 @@ def _descended(here: Balance, step: Array, slope: float, at: Callable[[Array], B
         if there.energy <= here.energy + ENOUGH * share * slope + ROUNDING * abs(here.energy):
             return there
         share *= 0.5
-    raise _lost(here, "the energy has no descent")
-
-
-def _lost(here: Balance, reason: str) -> EquilibriumLost:
-    """For this reason, or for the one that lies in the material."""
-    bands = "the material softens under these strains, which gather in bands"
-    return EquilibriumLost(reason if elliptic(here.loaded.answer.tangent) else bands)
+    raise EquilibriumLost("the energy has no descent")

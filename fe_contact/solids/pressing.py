@@ -24,7 +24,7 @@ from fe_contact.solids.block import press as pressed_alike
 from fe_contact.solids.bulk import Bulk, CoredBody
 from fe_contact.solids.contact import Obstacle, OnDeformed, OnRound, OnTop, Points, Skin, flat_places
 from fe_contact.solids.finite import Hyperelastic
-from fe_contact.solids.newton import Balance, Encounter, Equilibrium, EquilibriumLost, balanced
+from fe_contact.solids.newton import Balance, BeyondRange, Encounter, Equilibrium, EquilibriumLost, balanced
 from fe_contact.solids.rolled import Rolled
 from fe_contact.targets.base import TARGETS
 from lumped.errors import BadInput, Fault
@@ -80,6 +80,20 @@ class Solid:
         skin = Skin.of(body.surface, numerics.order, core.size, placed)
         encounter = replace(Encounter.of(whole, skin, striker), covered=mesh.covered)
         return cls(encounter, unit, body.surface.dimension - 1, core.size, mesh.ends, mesh.lead)
+
+    def advanced(
+        self,
+        before: Equilibrium | None,
+        depth: float,
+        stiffness: float,
+        widening: float = WIDENING,
+        state: State = (),
+    ) -> Equilibrium:
+        """To a depth, m, as :func:`advanced`. Raises EquilibriumLost, which is BeyondRange where the material ends."""
+        try:
+            return advanced(self.encounter, before, self.lead * depth / self.unit, stiffness, widening, state)
+        except BeyondRange as ended:
+            raise BeyondRange(self.unit * ended.depth / self.lead) from None
 
     def pressed(self, reached: Equilibrium) -> Reached:
         """In m. Raises ContactTooWide."""
@@ -155,7 +169,7 @@ def press(
         solid, reached = Solid.of(indenter, radii[together], numerics), None
         for i in together:
             stiffness = numerics.penalty * solid.unit / float(radii[i])
-            reached = advanced(solid.encounter, reached, solid.lead * float(depth[i]) / solid.unit, stiffness, widening)
+            reached = solid.advanced(reached, float(depth[i]), stiffness, widening)
             found[i] = solid.pressed(reached)
             if softer is not None and i in softer.chosen:
                 again[i] = solid.pressed(_pressed_by(softer.penalty / numerics.penalty * stiffness, reached))
@@ -240,7 +254,9 @@ def advanced(
             )
         except EquilibriumLost:
             if not hasty:
-                raise
+                if before.elliptic(left[-1]):
+                    raise
+                raise BeyondRange(before.balance.depth) from None
             left.append(math.sqrt(left[-1] * before.balance.depth))
             continue
         before, iterations = found, iterations + found.iterations

@@ -16,6 +16,7 @@ from fe_contact.progress import Progress, silent
 from fe_contact.reference import check, expected, fe, plan
 from fe_contact.settings import DEFAULT_TOLERANCE, Given
 from lumped.errors import FeContactError
+from lumped.materials.energies.base import DEFAULT
 from lumped.result.result import NO_KEY, LedgerEntry, Quantity, Result
 from lumped.scene.scene import Scene
 from lumped.schema import Table
@@ -45,7 +46,9 @@ class MeasuredEffect:
             estimate = "none" if self.estimate is None else f"{self.estimate:.2g}"
         if self.change is None or self.error is None:
             return f"{self.effect}: estimate {estimate} | not measured: {self.reason}"
-        return f"{self.effect} ({self.setting}): estimate {estimate} | measured {self.change:+.2g} +- {self.error:.1g}"
+        by = "" if self.spread is None else f", by {DEFAULT} where the scene names no energy"
+        found = f"measured {self.change:+.2g} +- {self.error:.1g}{by}"
+        return f"{self.effect} ({self.setting}): estimate {estimate} | {found}"
 
     def to_json(self) -> Table:
         """Its fields."""
@@ -56,17 +59,21 @@ class MeasuredEffect:
 class SufficientModel:
     """A scene with every effect that certainly exceeds the tolerance, as far as there is a model of it.
 
-    ``taken``: those entries; ``left``: the ones above the tolerance all the same, each with the reason.
+    ``taken``: those entries; ``left``: the ones above the tolerance all the same, each with the reason; ``open``: what
+    may exceed it, and the scene does not decide.
     """
 
     scene: Scene
     taken: tuple[LedgerEntry, ...] = ()
     left: Mapping[str, str] = field(default_factory=dict)
+    open: tuple[LedgerEntry, ...] = ()
 
     def __str__(self) -> str:
         took = [f"{entry.effect} ({entry.setting}), estimated {entry.size:.2g}" for entry in self.taken]
         said = f"the model takes in {', '.join(took)}" if took else "the model is the scene's own"
-        return "; ".join([said, *(f"{effect} is left out: {reason}" for effect, reason in self.left.items())])
+        left = [f"{effect} is left out: {reason}" for effect, reason in self.left.items()]
+        undecided = [f"{entry.effect} is open: {entry.note}; {entry.cure}" for entry in self.open]
+        return "; ".join([said, *left, *undecided])
 
 
 def above(ledger: Sequence[LedgerEntry], tolerance: float) -> list[LedgerEntry]:
@@ -125,7 +132,8 @@ def sufficient(scene: Scene, given: Given) -> SufficientModel:
         ledger = plan(scene, given).ledger
         needed = [entry for entry in ledger if entry.exceeds(tolerance) and entry.effect not in left]
         if not needed:
-            return SufficientModel(scene, tuple(taken), left)
+            undecided = [one for one in above(ledger, tolerance) if not one.exceeds(tolerance)]
+            return SufficientModel(scene, tuple(taken), left, tuple(undecided))
         entry = max(needed, key=lambda one: one.size)
         if not entry.key:
             left[entry.effect] = f"about {entry.size:.2g}, {NO_KEY}: {entry.note}"

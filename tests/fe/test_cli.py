@@ -375,6 +375,15 @@ def test_plan_names_the_key_of_a_mesh_that_waves_cannot_have(capsys: pytest.Capt
     assert "numerics.tolerance, numerics.elements_per_contact: " in err
 
 
+def test_plan_says_from_which_depth_a_material_softens(capsys: pytest.CaptureFixture[str]) -> None:
+    """As a run would: there is a plan by laws all the same."""
+    sets = ("--set", "target.material.hyperelastic=st_venant_kirchhoff", "--set", "striker.velocity=0.5")
+    assert exit_code("plan", "rubber-layer-finite", *sets) == 3
+    out, err = capsys.readouterr()
+    assert "left out" in out
+    assert "m on the material softens" in err
+
+
 def test_plan_speaks_first_of_the_cheapest_method(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Of an exact law where one meets the tolerance, by its own bar; of finite elements where none knows the model."""
     for name, method in ((str(scene), "ting"), ("polymer-layer", "ting"), ("paper-steel-hertz", "hertz")):

@@ -19,7 +19,7 @@ from fe_contact.solids.block import press as press_block
 from fe_contact.solids.bulk import Bulk, Pattern
 from fe_contact.solids.contact import OnDeformed, OnRound, OnUndeformed
 from fe_contact.solids.finite import Hyperelastic
-from fe_contact.solids.newton import Equilibrium, EquilibriumLost, balanced
+from fe_contact.solids.newton import BeyondRange, Equilibrium, EquilibriumLost, balanced
 from fe_contact.solids.pressing import Solid, advanced, press
 from fe_contact.solids.rolled import Rolled
 from lumped import BadInput, Scene, laws
@@ -30,8 +30,10 @@ from lumped.scene.indenter import Indenter
 from lumped.scene.tables import LawChoice, Model
 from lumped.shapes import Sphere
 from lumped.shapes.cone import Cone
+from lumped.shapes.cylinder import Cylinder
 from lumped.shapes.prism import Prism
 from lumped.shapes.punch import Punch
+from lumped.targets.layer import Layer
 from lumped.targets.o_ring import ORing
 from lumped.targets.plane import Plane
 from lumped.targets.washer import Washer
@@ -148,6 +150,23 @@ def test_a_contact_guessed_wider_than_the_striker_is_named() -> None:
     everywhere = np.ones(small.skin.weights.shape, bool)
     with pytest.raises(EquilibriumLost, match="as wide as the striker"):
         balanced(small, np.zeros(small.body.core.size), 0.01, 500.0, touching=everywhere)
+
+
+def test_a_material_that_softens_ends_where_its_waves_do() -> None:
+    """St Venant and Kirchhoff's energy, confined, has no slope of the stress at the stretch 1/sqrt(3).
+
+    Just before, it shears away. Nearly so confined are the columns of a thin layer that does not swell sideways.
+    """
+    material = Material(Relaxation(1.0), 0.0, hyperelastic="st_venant_kirchhoff")
+    model, last = Model(kinematics="finite"), 1.0 - 1.0 / np.sqrt(3.0)
+    block = Indenter(Prism(1.0, 1.0, "confined", "sliding"), material, Plane(), model=model)
+    layer = Indenter(Cylinder(1.0, 1.0), material, Layer(0.1, "bonded"), model=model)
+    assert indent(block, (0.94 * last,), {}).converged
+    with pytest.raises(BeyondRange, match="softens"):
+        indent(block, (1.01 * last,), {})
+    with pytest.raises(BeyondRange) as ended:
+        Solid.of(layer, np.array([0.3]), settings(COARSE, layer.shape)).advanced(None, 0.05, 500.0)
+    assert 0.08 * last < ended.value.depth < 0.1 * last
 
 
 def o_ring(kinematics: str) -> Indenter:

@@ -127,12 +127,14 @@ def compression(invariants: Invariants, shear: float, lame: float) -> Jet:
 class StrainEnergy:
     """A member of this folder: its ``formula``, as a record spells it; ``density`` W(invariants, mu, lambda), Pa.
 
-    ``splits``: whether it is one of the volume and one of what changes none.
+    ``splits``: whether it is one of the volume and one of what changes none; ``softens``: in compression, until waves
+    of some direction have no speed.
     """
 
     formula: str
     density: Callable[[Invariants, float, float], Jet]
     splits: bool = True
+    softens: bool = False
 
 
 @dataclass(frozen=True, eq=False)

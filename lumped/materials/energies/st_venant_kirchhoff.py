@@ -18,4 +18,4 @@ def density(invariants: Invariants, shear: float, lame: float) -> Jet:
     return squares * (0.25 * shear) + trace * trace * (0.125 * lame)
 
 
-MEMBER = StrainEnergy("lambda/2 (tr E)^2 + mu E:E", density, splits=False)
+MEMBER = StrainEnergy("lambda/2 (tr E)^2 + mu E:E", density, splits=False, softens=True)
