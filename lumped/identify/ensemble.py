@@ -118,9 +118,10 @@ def draws_of(
     for step in range(-burned, steps):
         for moving, others in (halves, halves[::-1]):
             there, favour = _stretched(here, moving, others, rng)
-            for i in np.flatnonzero(rng.random(moving.size) < SHARE) if linearized is not None else ():
-                there[i] = linearized.place(rng)
-                favour[i] = linearized.logarithm(here[moving[i]]) - linearized.logarithm(there[i])
+            if linearized is not None:
+                for i in np.flatnonzero(rng.random(moving.size) < SHARE):
+                    there[i] = linearized.place(rng)
+                    favour[i] = linearized.logarithm(here[moving[i]]) - linearized.logarithm(there[i])
             found = np.array([density(place) for place in there])
             accepted = np.log(rng.random(moving.size)) < favour + found - logs[moving]
             here[moving[accepted]], logs[moving[accepted]] = there[accepted], found[accepted]
