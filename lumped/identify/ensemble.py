@@ -1,7 +1,9 @@
 """Draws from a density by an ensemble of walkers: the stretch move of Goodman and Weare, 10.2140/camcos.2010.5.65.
 
 A walker moves along the line through another one, so that scaling or shearing all places changes nothing. The halves
-of the ensemble move in turn, each along lines through the other, doi 10.1086/670067.
+of the ensemble move in turn, each along lines through the other, doi 10.1086/670067. Half of the moves, by chance, go
+to a place drawn from the linearized likelihood of the valleys instead (Metropolis, Hastings, 10.1093/biomet/57.1.97):
+where that is nearly the likelihood itself, a draw forgets the one before at once.
 """
 
 from __future__ import annotations
@@ -21,8 +23,10 @@ from lumped.numbers import Array
 
 STRETCH = 2.0  # the authors' choice: a move lands between 1/2 and 2 of the distance
 FADED = 0.05  # a correlation below which a walker has forgotten where it was
-WALKERS, LEAST_BURNED = 4, 40  # work: walkers over what is sought, and four more; steps to forget the start
+WALKERS, LEAST_BURNED = 4, 10  # work: walkers over what is sought, and four more; steps to forget the start
 FARTHEST, DEEPEST = 1.0, -10.0  # of a start: from its valley, and the logarithm of its density there at least
+TAIL = 6.0  # degrees of freedom: a proposal has to reach farther than what it stands for
+SHARE = 0.8  # of the moves that go there: the others find what lies elsewhere
 SEED = 1  # of the draws: the same sample every day
 BANDS = 200  # work: draws of which the bands of the force are made
 
@@ -62,11 +66,50 @@ class Draws:
         return 1.0 + 2.0 * float(kept.sum())
 
 
-def draws_of(density: Density, start: Array, steps: int, burned: int, rng: np.random.Generator) -> Draws:
+@dataclass(frozen=True, eq=False)
+class Linearized:
+    """Student's t around every valley, (valleys, size), as wide as its slopes say: axes and widths, see `of`."""
+
+    valleys: Array
+    axes: Array
+    widths: Array
+
+    @classmethod
+    def of(cls, profiles: Sequence[LikelihoodProfile], growth: float) -> Linearized:
+        """`growth`: see :func:`posterior_of`. No width is above what is told from afar."""
+        parts = [np.linalg.svd(one.slopes, full_matrices=False)[1:] for one in profiles]
+        widths = [np.minimum(math.sqrt(growth) / np.maximum(sizes, 1e-300), FARTHEST) for sizes, _ in parts]
+        return cls(np.array([one.valley.sought for one in profiles]), np.array([a for _, a in parts]), np.array(widths))
+
+    def step(self, valley: int, rng: np.random.Generator) -> Array:
+        """From a valley to a place drawn around it, (size,)."""
+        far = math.sqrt(TAIL / rng.chisquare(TAIL))
+        return np.asarray(self.axes[valley].T @ (far * self.widths[valley] * rng.normal(size=self.widths.shape[1])))
+
+    def place(self, rng: np.random.Generator) -> Array:
+        """A place around any valley, (size,)."""
+        valley = int(rng.integers(len(self.valleys)))
+        return np.asarray(self.valleys[valley] + self.step(valley, rng))
+
+    def logarithm(self, place: Array) -> float:
+        """Of the density there, but for a constant."""
+        away = np.einsum("vij,vj->vi", self.axes, place - self.valleys) / self.widths
+        power = -0.5 * (TAIL + place.size) * np.log1p(np.sum(away**2, axis=1) / TAIL)
+        return float(np.logaddexp.reduce(power - np.log(self.widths).sum(axis=1)))
+
+
+def draws_of(
+    density: Density,
+    start: Array,
+    steps: int,
+    burned: int,
+    rng: np.random.Generator,
+    linearized: Linearized | None = None,
+) -> Draws:
     """So many steps of walkers from their start, (walkers, size), after those that are `burned` to forget it.
 
     `density`: its logarithm at a place, -inf where there is none. There are as many walkers as twice the coordinates
-    and two, or more, an even number.
+    and two, or more, an even number. `linearized`: where half of the moves go; without it all are stretches.
     """
     walkers, size = start.shape
     here, logs = start.copy(), np.array([density(place) for place in start])
@@ -74,23 +117,25 @@ def draws_of(density: Density, start: Array, steps: int, burned: int, rng: np.ra
     halves = np.arange(walkers // 2), np.arange(walkers // 2, walkers)
     for step in range(-burned, steps):
         for moving, others in (halves, halves[::-1]):
-            moved = _moved(density, here, logs, moving, others, rng)
-            taken += moved if step >= 0 else 0
+            there, favour = _stretched(here, moving, others, rng)
+            if linearized is not None:
+                for i in np.flatnonzero(rng.random(moving.size) < SHARE):
+                    there[i] = linearized.place(rng)
+                    favour[i] = linearized.logarithm(here[moving[i]]) - linearized.logarithm(there[i])
+            found = np.array([density(place) for place in there])
+            accepted = np.log(rng.random(moving.size)) < favour + found - logs[moving]
+            here[moving[accepted]], logs[moving[accepted]] = there[accepted], found[accepted]
+            taken += int(accepted.sum()) if step >= 0 else 0
         if step >= 0:
             places[step], kept[step] = here, logs
     return Draws(places, kept, taken / (steps * walkers))
 
 
-def _moved(density: Density, here: Array, logs: Array, moving: Places, others: Places, rng: np.random.Generator) -> int:
-    """Move one half where chance takes it: z with the density 1/sqrt(z), taken by z^(size - 1) p'/p; how many."""
-    size, count = here.shape[1], moving.size
-    z = (1.0 + (STRETCH - 1.0) * rng.random(count)) ** 2 / STRETCH
-    through, chance = here[rng.choice(others, count)], np.log(rng.random(count))
-    there = through + z[:, None] * (here[moving] - through)
-    found = np.array([density(place) for place in there])
-    taken = chance < (size - 1) * np.log(z) + found - logs[moving]
-    here[moving[taken]], logs[moving[taken]] = there[taken], found[taken]
-    return int(taken.sum())
+def _stretched(here: Array, moving: Places, others: Places, rng: np.random.Generator) -> tuple[Array, Array]:
+    """Where one half would go, z with the density 1/sqrt(z), (n, size); a move is taken by z^(size - 1) p'/p: (n,)."""
+    z = (1.0 + (STRETCH - 1.0) * rng.random(moving.size)) ** 2 / STRETCH
+    through = here[rng.choice(others, moving.size)]
+    return through + z[:, None] * (here[moving] - through), (here.shape[1] - 1) * np.log(z)
 
 
 def posterior_of(
@@ -113,18 +158,19 @@ def posterior_of(
         return -0.5 * histories.freedom / growth * math.log(max(alone.squares(place), least) / least)
 
     rng, walkers = np.random.default_rng(SEED), WALKERS * histories.size + 4
-    start = np.array([_begun(density, profiles[i % len(profiles)], low, high, rng) for i in range(walkers)])
+    linearized = Linearized.of(profiles, growth)
+    start = np.array([_begun(density, linearized, i % len(profiles), low, high, rng) for i in range(walkers)])
     steps = -(-count // walkers)
     burned = max(LEAST_BURNED, steps // 2)
-    draws = draws_of(density, start, steps, burned, rng)
+    draws = draws_of(density, start, steps, burned, rng, linearized)
     return _in_units(histories, draws, walkers, burned), _bands(histories, draws)
 
 
-def _begun(density: Density, profile: LikelihoodProfile, low: Array, high: Array, rng: np.random.Generator) -> Array:
+def _begun(
+    density: Density, linearized: Linearized, valley: int, low: Array, high: Array, rng: np.random.Generator
+) -> Array:
     """A place drawn from the linearized likelihood of a valley, nearer where that is no place of the real one."""
-    _, singular, axes = np.linalg.svd(profile.slopes, full_matrices=False)
-    step = axes.T @ (rng.normal(size=singular.size) * np.minimum(1.0 / np.maximum(singular, 1e-300), FARTHEST))
-    best = profile.valley.sought
+    best, step = linearized.valleys[valley], linearized.step(valley, rng)
     while True:
         place = np.clip(best + step, low, high)
         if density(place) > DEEPEST or float(np.abs(step).max()) < 1e-9:  # rounding: the valley itself

@@ -1,7 +1,7 @@
 """The gate before any fit: whether a measured curve can be an impact of a scene's bodies, and if not, what was done.
 
 The impulse of one contact is J = m v (1 + e), 0 <= e <= 1, whatever the force law: units, calibration and lost rows
-show there. The rest is seen in the curve alone. One fault is said, the first in the order of causes.
+show there. The rest is seen in the curve alone. One fault is said, the first in the order of causes, after what is odd.
 """
 
 from __future__ import annotations
@@ -32,7 +32,8 @@ LEVEL_OFF, TAIL = 0.02, 0.5  # of the peak: a silence may stand as far from zero
 DECAYED = 0.8  # second half of a silence over its first: a force that creeps to its end falls faster
 EARLY, LATE = 0.2, 0.45  # of the pulse: before zero and after it, where a force of a steep law seems to begin
 SPARE, NEARLY = 0.05, 0.01  # of m v: mass, velocity and force are measured to some per cent; not worth a word
-THOUSANDS = (1e3, 1e-3, 1e6, 1e-6)  # units mistaken for others: N for kN, s for ms, s for us
+PREFIXES = {1e3: "m", 1e-3: "k", 1e6: "u", 1e-6: "M"}  # of units mistaken for those without one, by what they make
+THOUSANDS = tuple(PREFIXES)
 ODD = 200.0  # a duration over that of the scene's material: steel's modulus over rubber's is 1e5, times 0.01 apart
 
 
@@ -50,15 +51,15 @@ def check_curve(curve: Curve, scene: Scene, source: str, touch_at_zero: bool = T
     `touch_at_zero`: whether what follows takes the curve's time zero, s, for the first touch. `source`: its file.
     """
     pulse = MeasuredPulse(curve.time, curve.force)
-    warnings = [f"{source}: {'; '.join(curve.remarks)}"] if curve.remarks else []
-    checks = (*OF_THE_CURVE, *((_touch,) if touch_at_zero else ()), _impulse, _duration)
+    odd = list[str]()
+    checks = (*OF_THE_CURVE, _impulse, _duration, *((_touch,) if touch_at_zero else ()))
     for check in checks:
         for finding in check(pulse, scene):
             if finding.fatal:
                 read = f" ({'; '.join(curve.remarks)})" if curve.remarks else ""
-                raise BadInput(Fault(source, "", finding.message + read))
-            warnings.append(f"{source}: {finding.message}")
-    return tuple(warnings)
+                raise BadInput(Fault(source, "", said) for said in (*odd, finding.message + read))
+            odd.append(finding.message)
+    return tuple(f"{source}: {said}" for said in (*(["; ".join(curve.remarks)] if curve.remarks else []), *odd))
 
 
 @dataclass(frozen=True, eq=False)
@@ -285,20 +286,35 @@ def _too_small(pulse: MeasuredPulse, scene: Scene, ratio: float) -> str:
 
 
 def _unit_of(pulse: MeasuredPulse, scene: Scene, ratio: float) -> str:
-    """A unit mistaken for another, of the force or of the time: the contact's duration tells which."""
-    for factor in THOUSANDS:
-        if not 1.0 - SPARE <= ratio / factor <= 2.0 * (1.0 + SPARE):
+    """Units mistaken for others, of the force, of the time, or of both: the contact's duration tells which."""
+    span = _contact_times(scene)
+    factors, most = (1.0, *THOUSANDS), 2.0 * (1.0 + SPARE)
+    pairs = [(t, f) for t in factors for f in factors if t * f != 1.0 and 1.0 - SPARE <= ratio / (t * f) <= most]
+
+    def odd(pair: tuple[float, float]) -> float:
+        of_time = _beyond(pulse.width / pair[0], span) if span else 0.0
+        return of_time + (math.log(ODD) if 1.0 not in pair else 0.0)  # one unit is mistaken more often than both
+
+    if not pairs:
+        return ""
+    likely = min(map(odd, pairs))
+    return f"{_restitution(ratio)}: {'; or '.join(_units(*pair) for pair in pairs if odd(pair) == likely)}"
+
+
+def _units(of_time: float, of_force: float) -> str:
+    """By what factors time and force are wrong, and the headers that say so; no file has a time in ks."""
+    said, cures = list[str](), list[str]()
+    for quantity, much, little, unit, factor in (
+        ("time", "long", "short", "s", of_time), ("force", "large", "small", "N", of_force)
+    ):  # fmt: skip
+        if factor == 1.0:
             continue
-        unit = {1e3: "m", 1e-3: "k", 1e6: "u", 1e-6: "M"}[factor]
-        force = f"the force is {factor:g} times too large: in {unit}N and read as N? cure: a header force_{unit}N"
-        cure = f"a header time_{unit}s" if factor > 1.0 else "divide it by the factor"
-        time = f"the time is {factor:g} times too long: in {unit}s and read as s? cure: {cure}"
-        span = _contact_times(scene)
-        if span is None:
-            return f"{_restitution(ratio)}: {force}; or {time}"
-        own, scaled = (_beyond(pulse.width / by, span) for by in (1.0, factor))
-        return f"{_restitution(ratio)}: {force if own <= scaled else time}"
-    return ""
+        name, times = f"{PREFIXES[factor]}{unit}", f"{max(factor, 1.0 / factor):g}"
+        readable = factor > 1.0 or quantity == "force"
+        read = f": in {name} and read as {unit}" if readable else ""
+        said.append(f"the {quantity} is {times} times too {much if factor > 1.0 else little}{read}")
+        cures.append(f"a header {quantity}_{name}" if readable else f"times multiplied by {times}")
+    return f"{' and '.join(said)}? cure: {' and '.join(cures)}"
 
 
 def _contact_times(scene: Scene) -> tuple[float, float] | None:
@@ -319,7 +335,8 @@ def _duration(pulse: MeasuredPulse, scene: Scene) -> Iterator[Finding]:
     span = _contact_times(scene)
     if span is not None and _beyond(pulse.width, span) > math.log(ODD):
         said = f"the contact lasts {pulse.width:.3g} s, and {span[1]:.3g} s with the scene's material"
-        yield Finding(f"{said}; are time and force both in other units? else the material is far off", False)
+        factor = min(THOUSANDS, key=lambda factor: _beyond(pulse.width / factor, span))
+        yield Finding(f"{said}; {_units(factor, 1.0 / factor)}; else the material is far off", False)
 
 
 OF_THE_CURVE: tuple[Check, ...] = (_contact, _sign, _missing, _rate, _clipped, _other_contact, _zero)

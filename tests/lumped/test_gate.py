@@ -65,10 +65,17 @@ def drift(time: Array, force: Array) -> Made:
 
 SPOILED: tuple[tuple[str, Spoil, float, str], ...] = (
     ("force in mN", scaled(1.0, 1e3), 0.0, "force is 1000 times too large"),
-    ("force in kN", scaled(1.0, 1e-3), 0.0, "force is 0.001 times too large"),
+    ("force in kN", scaled(1.0, 1e-3), 0.0, "force is 1000 times too small"),
     ("time in ms", scaled(1e3, 1.0), 0.0, "time is 1000 times too long"),
     ("time in us", scaled(1e6, 1.0), 0.0, "time is 1e\\+06 times too long"),
-    ("time in ks", scaled(1e-3, 1.0), 0.0, "time is 0.001 times too long"),
+    ("time in ks", scaled(1e-3, 1.0), 0.0, "time is 1000 times too short"),
+    (
+        "ms and kN, touch long past",
+        lambda time, force: (1e3 * time + 9e9 * time[-1], 1e-3 * force),
+        0.0,
+        "time is 1000 times too long.* and the force is 1000 times too small(.|\\n)*pre-trigger",
+    ),
+    ("ms and mN", scaled(1e3, 1e3), 0.0, "time_ms and a header force_mN"),
     ("sign", scaled(1.0, -1.0), 0.0, "sign|never above zero"),
     ("touch late", lambda time, force: (time - time[0], force), 1.0, "pre-trigger"),
     ("touch long past", lambda time, force: (time - 5.0 * time[-1], force), 0.0, "pre-trigger"),
@@ -95,7 +102,7 @@ def test_a_spoiled_curve_is_named(name: str, says: str, spoil: Spoil, lead: floa
     assert check_curve(Curve(time, force), scene, "curve") == ()
     with pytest.raises(BadInput, match=message) as refused:
         check_curve(Curve(*spoil(time, force)), scene, "curve")
-    assert len(refused.value.faults) == 1
+    assert len(refused.value.faults) == 1 + ("kN, touch" in says)
     assert "cure: " in str(refused.value)
 
 

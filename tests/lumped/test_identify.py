@@ -19,7 +19,7 @@ from scipy.special import stdtrit
 
 from lumped import BadInput, Scene, identify, laws, simulate
 from lumped.fit.noise import colour_of, memory, whitened, whiteness
-from lumped.identify.ensemble import draws_of
+from lumped.identify.ensemble import Linearized, draws_of
 from lumped.identify.histories import Impact
 from lumped.identify.keys import SceneFile
 from lumped.numbers import Array
@@ -323,6 +323,19 @@ def test_walkers_draw_from_a_gaussian_of_any_scale() -> None:
         assert np.quantile(unit, share, axis=0) == pytest.approx(place, abs=8.0 * error)
     same = draws_of(plain, start, 200, 60, np.random.default_rng(1))
     assert np.abs(same.rows - unit)[: 40 * 20].max() < 1e-6, "rounding grows from step to step"
+
+
+def test_draws_are_of_the_density_wherever_the_linearized_one_lies() -> None:
+    """Of Gumbel's skew density beside one too narrow or too wide: mean, deviation, and how many are independent."""
+    for width, least in ((0.7, 0.1), (1.0, 0.2), (3.0, 0.1)):
+        near = Linearized(np.full((1, 1), 0.3), np.eye(1)[np.newaxis], np.full((1, 1), width))
+        found = draws_of(
+            lambda x: -float(x[0] + np.exp(-x[0])), np.zeros((20, 1)), 100, 10, np.random.default_rng(3), near
+        )
+        assert found.effective > least * found.rows.size
+        error = 1.0 / np.sqrt(found.effective)
+        assert found.rows.mean() == pytest.approx(np.euler_gamma, abs=4.0 * 1.28 * error)
+        assert found.rows.std() == pytest.approx(np.pi / np.sqrt(6.0), rel=4.0 * error)
 
 
 @pytest.mark.tenth

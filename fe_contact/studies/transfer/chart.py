@@ -6,6 +6,7 @@ Curves that are one, to what a reader sees, share a name.
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -27,7 +28,7 @@ TICKS = (-100.0, -10.0, -1.0, 0.0, 1.0, 10.0, 100.0)  # look: %
 ALIKE = 0.012  # look: of the axis, by which curves may differ that share a name
 LINE = 0.072  # look: of the axis, between two names
 APART = 0.13  # look: of the axis, between two ticks
-NAMES, WIDE = 5.3, 25  # look: size of a name; characters beside a panel
+NAMES, WIDE, LEADING = 5.3, 28, 1.25  # look: size of a name; characters beside a panel; between its lines
 BROAD = {0.1: 0.22, 0.05: 0.5, 0.01: 1.0}  # look: how strong the bar of each level is
 
 
@@ -127,20 +128,14 @@ def _name(axes: Axes, curves: dict[str, tuple[Array, Array]]) -> None:
         else:
             known[0].append(law)
     groups.sort(key=lambda group: float(group[1][-1]))
+    said = [textwrap.fill(", ".join(names), WIDE, break_on_hyphens=False) for names, _ in groups]
+    sizes = LINE * np.array([1.0 + text.count("\n") for text in said])
     wanted = np.array([heights[-1] for _, heights in groups])
-    for (names, heights), place in zip(groups, spread(wanted, LINE), strict=True):
+    for (names, heights), text, place in zip(groups, said, spread(wanted, sizes), strict=True):
         look: Look = {"color": style.law_colour(names[0]), "linewidth": 0.4, "clip_on": False}
         axes.plot([1.0, 1.05], [heights[-1], place], transform=axes.transAxes, **look)
-        axes.text(1.06, place, _said(names), transform=axes.transAxes, color=style.law_colour(names[0]),
-                  fontsize=NAMES, va="center", linespacing=0.9)  # fmt: skip
-
-
-def _said(names: Sequence[str]) -> str:
-    """As many names as stand in one line, and how many more."""
-    count = len(names)
-    while count > 1 and len(", ".join(names[:count])) + 4 * (count < len(names)) > WIDE:
-        count -= 1
-    return ", ".join(names[:count]) + (f" + {len(names) - count}" if count < len(names) else "")
+        axes.text(1.06, place, text, transform=axes.transAxes, color=style.law_colour(names[0]),
+                  fontsize=NAMES, va="center", linespacing=LEADING)  # fmt: skip
 
 
 def _height(axes: Axes, deviation: Array) -> Array:
@@ -154,15 +149,15 @@ def _alike(one: Array, other: Array) -> bool:
     return one.size == other.size and bool(np.abs(one - other).max() < ALIKE)
 
 
-def spread(wanted: Array, least: float) -> Array:
-    """Places at least so far apart, ascending as the wanted ones do, near them and within 0 and 1 where they fit."""
-    places = wanted.copy()
+def spread(wanted: Array, sizes: Array) -> Array:
+    """Middles of things of these sizes, one above the other in their order, near those wanted and below 1."""
+    places, apart = wanted.copy(), 0.5 * (sizes[1:] + sizes[:-1])
     for i in range(1, places.size):
-        places[i] = max(places[i], places[i - 1] + least)
-    if places.size and places[-1] > 1.0:
-        places[-1] = 1.0
-        for i in range(places.size - 2, -1, -1):
-            places[i] = min(places[i], places[i + 1] - least)
+        places[i] = max(places[i], places[i - 1] + apart[i - 1])
+    top = 1.0 + 0.5 * LINE
+    for i in range(places.size - 1, -1, -1):
+        places[i] = min(places[i], top - 0.5 * sizes[i])
+        top = places[i] - 0.5 * sizes[i]
     return places
 
 
