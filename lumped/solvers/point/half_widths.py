@@ -99,7 +99,7 @@ def _deepest(found: list[Deviation]) -> float:
 def _peak(found: list[Deviation], time: float) -> tuple[float, float]:
     """What the highest force lacks around `time`, N, and by how much its time errs there, s."""
     part = next((part for part in found if time <= part.times[-1, -1]), found[-1])
-    i = min(int(np.searchsorted(part.times[:, -1], time)), part.times.shape[0] - 1)
+    i = int(np.searchsorted(part.times[:-1, -1], time))
     lacking, pace = part.lacking_force[i], part.weights[i] / NODES.weights
     begun = part.times[i, -1] - part.weights[i].sum()
     place = float(np.interp(time, np.append(begun, part.times[i]), np.append(0.0, NODES.places)))
