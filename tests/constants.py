@@ -92,7 +92,6 @@ TABLE = (
     Constant(CURVE, "PEAK_SHARE", MEASURED, "a peak is judged by all forces above this share", 1.0),
     Constant(CURVE, "HALF_AS_HIGH", DERIVED, "a quartic places a peak to the fourth order of the width that it fits"),
     Constant(VARIATION, "LATE", MEASURED, "path and speed from here on count for those at the end", 1.0),
-    Constant(CURVE, "BEGUN", WORK, "keeps touch itself, where time is zero, out of a division"),
     Constant(CURVE, "EARLIEST", WORK, "rows that tell where a curve is read"),
     Constant(IMPACT, "PREDICTIONS", MEASURED, "their spread is that of the end", 1),
     Constant(IMPACT, "NOISE", MEASURED, "share of the peak below which contact may be lost in the mesh"),
@@ -112,8 +111,6 @@ TABLE = (
     Constant("lumped.laws._assembly", "ROUNDING", DERIVED, "of sums of some thousand terms"),
     Constant("lumped.laws._assembly", "LEAST_SHARE", MEASURED, "two integrations may agree in a number by chance"),
     Constant("lumped.laws.mdr", "SAFETY", MEASURED, "of a limit of three marches beside that of two"),
-    Constant("lumped.laws.ting", "ROWS", WORK, "that tell how overlaps bend the rebound; what they tell has SAFETY"),
-    Constant("lumped.laws.ting", "LOOKS", WORK, "depths that tell it; the same"),
     Constant("lumped.solvers.point.half_widths", "SAFETY", MEASURED, "of first-order estimates told at some points"),
 )
 

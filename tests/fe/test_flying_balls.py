@@ -14,6 +14,7 @@ import scipy.sparse.linalg as linalg
 
 from fe_contact.budget.curve import Curve
 from fe_contact.cli import main
+from fe_contact.dynamics.body import undeformed
 from fe_contact.dynamics.march import Motion, march
 from fe_contact.methods import simulate
 from fe_contact.settings import RANGES, WaveNumerics
@@ -85,6 +86,14 @@ def test_a_ball_that_touches_nothing_flies_without_strain() -> None:
     assert last.displacement[0] == pytest.approx(-last.time - 0.5 * 9.81e4 * last.time**2, rel=1e-9)
     assert last.energies.strain < 1e-10 * last.energies.work  # the rounding of every processor's sums: 1e-13 to 1e-12
     assert last.energies.deformable == pytest.approx(0.5 * MASS * (1.0 + 9.81e4 * last.time) ** 2, rel=1e-9)
+
+
+def test_at_touch_all_energy_is_the_strikers() -> None:
+    """Of a ball on an endless body: what moves in that counts as radiated, what moves in the ball does not."""
+    moving, _ = begun(ball(5.0, HALF_SPACE))
+    swift, strained = moving.in_striker(undeformed(moving.body, moving.velocity))
+    assert swift == pytest.approx(0.5 * MASS * 5.0**2, rel=1e-9)
+    assert strained == 0.0
 
 
 @pytest.mark.tenth

@@ -136,6 +136,14 @@ def test_too_few_steps_tell_no_end() -> None:
     assert parting(time, np.array([0.0, 1.0, 2.0, 3.0, 2.0, 1.0, 0.5, 0.0]), 1.5) is None
 
 
+@pytest.mark.parametrize("late", [[1.0, 1.2, 1.1, 1.0, 1.0], [3.0, 2.0, 1.2, 1.0, 1.2], [1.4, 1.3, 1.2, 1.1, 1.0]])
+def test_a_tail_that_tells_no_end_is_read_a_step_wide(late: list[float]) -> None:
+    """One that stands still, one that grows again, one that falls to zero in ten steps where the next has none."""
+    end, apart = parting(np.arange(8.0), np.array([0.0, 5.0, *late, 0.0]), 1.0) or (0.0, 0.0)
+    assert 6.0 < end <= 7.0
+    assert apart == 1.0
+
+
 @pytest.fixture(scope="module")
 def steel() -> Result:
     """The ball of the facts on finite elements, 3: 206 GPa, nu = .3, 0.2553 g at 1 m/s."""

@@ -84,6 +84,7 @@ def test_an_elastic_impact_is_hertzs(case: int, scene_of: Scenes) -> None:
         found = result.quantities[name]
         assert abs(found.value - value) <= found.error + 5e-7 * value, f"{name} is not covered"
         assert found.value == pytest.approx(value, rel=1e-4 if name != "peak_time" else 1e-3)
+    assert abs(result.history.force[0]) < 1e-9 * exact["peak_force"], "nothing presses at touch"
 
 
 @pytest.mark.parametrize("name", SCHEMES.names)

@@ -244,6 +244,8 @@ def test_steps_on_a_spring_err_as_their_square_whatever_time_was_expected(
         found = Curve.of(march, strike).quantities
         errors.append([found[name] / value - 1.0 for name, value in true.items()])
         assert abs(march.energy["residual"]) < 1e-3 * energy
+        slower, last = velocity - march.impulse[-2:] / mass, march.time[-1] - march.time[-2]
+        assert slower[1] < (march.depth[-1] - march.depth[-2]) / last < slower[0], "what is left goes by its speeds"
     few, many = np.abs(errors)
     assert few.max() < 1e-3
     assert np.all(many < np.maximum(0.3 * few, 1e-7))

@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 
 from fe_contact.cli import main
+from fe_contact.contact.problem import ContactProblem, PressedSurface
 from fe_contact.methods import simulate
 from fe_contact.studies.compare.study import WITHIN
 from fe_contact.waves.targets import rod
 from lumped import BadInput, Result, Scene, laws
+from lumped.load_curves.hertz import Hertz
 from lumped.result.result import RULED_ABSOLUTE, RULED_RELATIVE
 from lumped.scene.indenter import Indenter
 from lumped.solvers.rod import Waves
@@ -164,6 +166,17 @@ def test_a_heavy_ball_meets_the_first_front_long_before_it_turns() -> None:
     for name in ("peak_force", "peak_depth", "duration", "restitution", "impulse"):
         value, known = found.quantities[name], truth.quantities[name]
         assert abs(value.value - known.value) <= value.error + known.error
+
+
+@pytest.mark.parametrize("overlap", [1e-3, 1e-9, 1e-15])
+def test_a_dent_and_what_yields_share_the_overlap_however_small_it_is(overlap: float) -> None:
+    """Dent + force / stiffness = overlap, in closed form where the two are alike."""
+    stiffness, curve = 2e7, Hertz(0.1)
+    modulus = stiffness * 0.5 * overlap / float(curve.force(0.5 * overlap))
+    surface = PressedSurface(np.array([[stiffness]]), np.ones((1, 1)), np.ones(1))
+    found = rod.Dent(modulus, curve).enforce(ContactProblem(surface, np.array([overlap]), 0.0))
+    assert found.converged
+    assert found.pressure[0] == pytest.approx(0.5 * overlap * stiffness, rel=1e-12)
 
 
 def test_the_energy_account_closes_and_says_what_the_waves_took() -> None:
