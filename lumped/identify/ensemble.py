@@ -1,8 +1,8 @@
 """Draws from a density by an ensemble of walkers: the stretch move of Goodman and Weare, 10.2140/camcos.2010.5.65.
 
 A walker moves along the line through another one, so that scaling or shearing all places changes nothing. The halves
-of the ensemble move in turn, each along lines through the other, doi 10.1086/670067. Half of the moves, by chance, go
-to a place drawn from the linearized likelihood of the valleys instead (Metropolis, Hastings, 10.1093/biomet/57.1.97):
+of the ensemble move in turn, each along lines through the other, doi 10.1086/670067. Most moves, by chance, go to a
+place drawn from the linearized likelihood of the valleys instead (Metropolis, Hastings, 10.1093/biomet/57.1.97):
 where that is nearly the likelihood itself, a draw forgets the one before at once.
 """
 
@@ -109,7 +109,7 @@ def draws_of(
     """So many steps of walkers from their start, (walkers, size), after those that are `burned` to forget it.
 
     `density`: its logarithm at a place, -inf where there is none. There are as many walkers as twice the coordinates
-    and two, or more, an even number. `linearized`: where half of the moves go; without it all are stretches.
+    and two, or more, an even number. `linearized`: where most moves go; without it all are stretches.
     """
     walkers, size = start.shape
     here, logs = start.copy(), np.array([density(place) for place in start])
