@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 EDGE_REFINEMENT = 24.0  # element size inside the contact over element size at its edge
 GROWTH = 2.0  # growth of the element size per unit distance, for one element per contact radius
 ZONE = 1.1  # where contacts may end anywhere the surface is fine up to this radius
-WAVE_GROWTH, LARGEST_WAVE_GROWTH = 3.0, 0.45  # of the element size per unit distance, for one element along the radius
+WAVE_GROWTH = 3.0  # of the element size per unit distance, for one element along the radius
+OF_WAVE_GROWTH = 0.15  # of it at most, where elements along the radius are few: waves would not be seen on their way
 INWARD_GROWTH = 0.6  # the same without waves: plastic forces differ by less than 1e-3 from those at 0.3
 LARGEST_GROWTH = 1.5  # steeper gradings leave gmsh too little room for well-shaped triangles
 
@@ -55,7 +56,9 @@ def half_space(elements_per_contact: float, far_radius: float) -> MeshTri:
     return _quarter(smaller(near_edge, elsewhere), 1.0, far_radius)
 
 
-def half_space_for_waves(elements_per_radius: float, smallest: float, far_radius: float, finer: float = 1.0) -> MeshTri:
+def half_space_for_waves(
+    elements_per_radius: float, smallest: float, far_radius: float, finer: float = 1.0, growth: float = WAVE_GROWTH
+) -> MeshTri:
     """Triangles under contacts that end anywhere up to ``r = 1``, see :func:`half_space_under_contacts`.
 
     From the contact zone, 1.1, outwards elements grow so slowly that the waves of a contact are still resolved where
@@ -67,6 +70,7 @@ def half_space_for_waves(elements_per_radius: float, smallest: float, far_radius
     smallest : the smallest contact radius to resolve so, 1e-3 to 1.
     far_radius : radius of the quarter disc, 2 to 1e6.
     finer : times as many elements at the surface as their growth into the body is for, 1 to 16.
+    growth : of the element size per unit distance, for one element along the radius, 0.1 to 3.
 
     Raises
     ------
@@ -74,8 +78,8 @@ def half_space_for_waves(elements_per_radius: float, smallest: float, far_radius
     """
     elements = elements_checked("the contact radius", elements_per_radius, 1.0, 200.0)
     at_surface = elements * checked("refinement of the surface", finer, 1.0, 16.0)
-    growth = min(WAVE_GROWTH / elements, LARGEST_WAVE_GROWTH)
-    return _under_contacts(at_surface, smallest, far_radius, growth)
+    most = checked("growth of elements", growth, 0.1, WAVE_GROWTH)
+    return _under_contacts(at_surface, smallest, far_radius, most * min(1.0 / elements, OF_WAVE_GROWTH))
 
 
 def half_space_under_contacts(elements_per_radius: float, smallest: float, far_radius: float) -> MeshTri:

@@ -35,6 +35,9 @@ from lumped.result.result import Result
 from lumped.scene.scene import Scene
 
 NEAREST = 20.0  # contact radii: the far springs' own need
+# Growth of elements into the body, of one along the radius a unit distance: where several contacts follow each other,
+# the later ones begin on what the earlier ones left on its way.
+ONE, SEVERAL = 3.0, 1.5
 LEAST_RESTITUTION = 0.1  # a striker that comes back slower hardly comes back again
 
 
@@ -118,18 +121,19 @@ def side(scene: Scene, numerics: WaveNumerics) -> tuple[WaveSide, Array, Array]:
 def unit_of(scene: Scene, numerics: WaveNumerics) -> UnitBody:
     """The body of unit size that a scene's is scaled from."""
     nu = scene.geometry.material.nu
-    size = (numerics.elements_per_contact, numerics.finer, numerics.far_radius)
+    growth = ONE if scene.motion.impacts == 1 else SEVERAL
+    size = (numerics.elements_per_contact, numerics.finer, numerics.far_radius, growth)
     return unit_body(nu, size, numerics.order, numerics.mass)
 
 
 @cached_by_unknowns
-def unit_body(poisson: float, size: tuple[float, float, float], order: int, masses: str) -> UnitBody:
+def unit_body(poisson: float, size: tuple[float, float, float, float], order: int, masses: str) -> UnitBody:
     """The mesh, to be assembled for contact radius and E* one; made once for all steps and penalties.
 
-    ``size``: elements, how much finer they are at the surface, far radius.
+    ``size``: elements, how much finer they are at the surface, far radius, how elements grow into the body.
     """
-    elements, finer, far_radius = size
-    basis = basis_on(made(meshes.half_space_for_waves, elements, SMALLEST, far_radius, finer), order)
+    elements, finer, far_radius, growth = size
+    basis = basis_on(made(meshes.half_space_for_waves, elements, SMALLEST, far_radius, finer, growth), order)
     return UnitBody(
         basis,
         flat(basis),
