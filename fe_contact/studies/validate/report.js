@@ -124,7 +124,12 @@
       const inside = shown.flatMap(one => [...one.force.filter((_, i) => one.time[i] >= span[0] && one.time[i] <= span[1]),
         at(one, "force", span[0]), at(one, "force", span[1])]);
       const high = Math.max(...inside, 1e-300), low = Math.min(...inside, 0);
-      const top = high + 0.06 * (high - low), bottom = low < 0 ? low - 0.06 * (high - low) : 0;
+      // The band is drawn magnified by a power of ten, and the axis reaches as far as it does.
+      const widest = Math.max(...shown.map(one => Math.max(...one.error)));
+      const bottom = low < 0 ? low - 0.06 * (high - low) : 0, bare = high + 0.06 * (high - low);
+      const times = widest > 0 ? Math.max(1, 10 ** Math.ceil(Math.log10(BAND * (bare - bottom) / widest))) : 1;
+      const within = one => one.force.map((force, i) => force + times * one.error[i]).filter((_, i) => one.time[i] >= span[0] && one.time[i] <= span[1]);
+      const top = Math.max(bare, ...shown.flatMap(within));
       const x = time => margin.left + (time - span[0]) / (span[1] - span[0]) * (width - margin.left - margin.right);
       const y = force => height - margin.bottom - (force - bottom) / (top - bottom) * (height - margin.top - margin.bottom);
       const back = place => span[0] + (place - margin.left) / (width - margin.left - margin.right) * (span[1] - span[0]);
@@ -145,8 +150,6 @@
       const clip = element("clipPath", { id: "inside" }, svg);
       element("rect", { x: margin.left, y: margin.top, width: width - margin.left - margin.right, height: height - margin.top - margin.bottom }, clip);
       const inner = element("g", { "clip-path": "url(#inside)" }, svg);
-      const widest = Math.max(...shown.map(one => Math.max(...one.error)));
-      const times = widest > 0 ? Math.max(1, 10 ** Math.ceil(Math.log10(BAND * (top - bottom) / widest))) : 1;
       magnified.textContent = times > 1 ? `Shaded: the error band, drawn ${times} times as wide.` : "Shaded: the error band.";
       for (const curve of shown) {
         const path = (times, forces) => times.map((time, i) => `${x(time).toFixed(1)} ${y(forces[i]).toFixed(1)}`);
