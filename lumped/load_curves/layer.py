@@ -195,7 +195,10 @@ def abel(equation: DualEquation, phi: Array, r: Array) -> Array:
     psi' by a polynomial on (0, ratio), of as many points as resolve phi itself.
     """
     points, half = equation.nodes.size, 0.5 * equation.ratio or 1.0  # nothing touches yet
-    slopes = chebyshev.chebinterpolate(lambda x: equation.correction_slope(phi, half * (x + 1.0)), points - 1)
+    slopes = chebyshev.chebinterpolate(
+        lambda x: equation.correction_slope(phi, half * (x + 1.0)),  # type: ignore[type-var]  # numpy's stub: one number
+        points - 1,
+    )
     reach = np.sqrt(np.maximum(equation.ratio**2 - r**2, 0.0))
     nodes, weights = gauss(points)
     t = np.hypot(reach[..., None] * nodes, np.abs(r)[..., None])

@@ -28,7 +28,7 @@ GRAVITY = 9.80665  # physics: m/s2, what an acceleration_g counts in
 COLUMNS = {"acceleration_m_per_s2": 1.0, "acceleration_g": GRAVITY}  # by the header of a record: in m/s2
 MOST_GAPS = 50  # work: of one file; and so many slabs
 GAP_NAME = re.compile(r"[\w -]{1,40}")  # it heads a column and a panel of the chart
-TIME, ACCELERATION = Number(1e-9, 1e9, "s"), Key(Number(0.0, 1e6, "m/s2"), "the largest")
+TIME, ACCELERATION = Number(1e-9, 1e9, "s"), Key(Number(-1e6, 1e6, "m/s2"), "of the first half sine")
 GROUNDS: Mapping[str, Mapping[str, Key]] = {
     "record": {
         "file": Key(File(), "CSV with time_s and acceleration_m_per_s2 or acceleration_g"),

@@ -19,6 +19,7 @@ from lumped import simulate as simulate_impact
 from lumped.errors import BadInput, NotReached
 from lumped.laws._force_law import ForceLaw, between_masses
 from lumped.pounding import STILL, Gap, GroundRecord, PoundingFrames, ShearFrame, Sine, march, simulate
+from lumped.pounding.case_file import load
 from lumped.pounding.gap_laws import force_of
 from lumped.pounding.ground import GroundMotion
 from lumped.scene.tables import LawChoice
@@ -190,6 +191,35 @@ def test_ten_contacts_are_those_of_an_independent_integration(
     for contact, (_, start, end, peak) in zip(ours, theirs, strict=True):
         assert contact.start == pytest.approx(start, abs=1e-6)
         assert contact.end == pytest.approx(end, abs=1e-6)
+        assert contact.peak_force == pytest.approx(peak, rel=1e-4)
+
+
+# published: a mass and a stop, of code_aster's verification manual
+
+
+def test_the_published_release_is_half_a_wave_against_the_stop_and_half_a_wave_on_the_spring() -> None:
+    """SDND101, in closed form: the mass leaves as fast as it came, again and again."""
+    case = load("published-release")
+    (mass,), (column,), (law,) = case.frames.left.mass, case.frames.left.stiffness, case.laws()
+    pressed, free = np.sqrt((column + law.k) / mass), np.sqrt(column / mass)  # type: ignore[attr-defined] # a spring
+    contacts = simulate(case.frames, [law], case.ground, case.end_time).contacts
+    assert len(contacts) == 1 + int(case.end_time / (np.pi / pressed + np.pi / free))
+    for turn, contact in enumerate(contacts):
+        start = turn * (np.pi / pressed + np.pi / free)
+        assert contact.start == pytest.approx(start, abs=1e-12)
+        assert contact.end == pytest.approx(start + np.pi / pressed, abs=1e-12)
+        assert contact.peak_force == pytest.approx(law.k / pressed, rel=1e-12)  # type: ignore[attr-defined]
+
+
+def test_the_published_stop_is_struck_as_an_independent_integration_says() -> None:
+    """SDND121: contacts of 0.4 ms, between which the sine drives the mass for much longer."""
+    case = load("published-stop")
+    ours = simulate(case.frames, case.laws(), case.ground, 0.5).contacts
+    theirs = Independent(case.frames, case.laws(), case.ground).contacts(0.5)
+    assert len(ours) == len(theirs) > 7
+    for contact, (_, start, end, peak) in zip(ours, theirs, strict=True):
+        assert contact.start == pytest.approx(start, abs=1e-8)
+        assert contact.end == pytest.approx(end, abs=1e-8)
         assert contact.peak_force == pytest.approx(peak, rel=1e-4)
 
 
