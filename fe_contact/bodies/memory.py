@@ -91,26 +91,23 @@ class SurfaceMemory(NamedTuple):
 
     def stored(self, relaxation: Relaxation) -> float:
         """Elastic energy in equilibrium spring and branches, J."""
-        area = self.areas
-        energies = [product(area, b, b) for b in self.branches]
-        equilibrium = relaxation.equilibrium * product(area, self.strain, self.strain)
+        energies = product(self.areas, self.branches, self.branches)
+        equilibrium = relaxation.equilibrium * product(self.areas, self.strain, self.strain)
         return 0.5 * float(equilibrium + np.dot(relaxation.moduli, energies))
 
     def dissipated(self, later: SurfaceMemory, relaxation: Relaxation, step: float) -> float:
-        """Heat of the dashpots over a step in which the displacement changes linearly, J."""
-        area = self.areas
-        change = later.strain - self.strain
-        heat = relaxation.viscosity * product(area, change, change) / step
-        for modulus, tau, branch in zip(relaxation.moduli, relaxation.times, self.branches, strict=True):
-            steady = change * (tau / step)  # the branch tends to this; the rest fades away
-            fading = branch - steady
-            x = step / tau
-            heat += (modulus / tau) * (
-                product(area, fading, fading) * tau * -np.expm1(-2 * x) / 2
-                + 2 * product(area, fading, steady) * tau * -np.expm1(-x)
-                + product(area, steady, steady) * step
-            )
-        return float(heat)
+        """Heat of the dashpots over a step in which the displacement changes linearly, J.
+
+        A branch tends to ``share`` of the change; the rest of it fades away.
+        """
+        area, change = self.areas, later.strain - self.strain
+        times = np.asarray(relaxation.times)
+        share, x = times / step, step / times
+        of_change = product(area, change, change)
+        steady, mixed = share**2 * of_change, share * product(area, self.branches, change)
+        fading = product(area, self.branches, self.branches) - 2 * mixed + steady
+        rates = fading * -np.expm1(-2 * x) / 2 + 2 * (mixed - steady) * -np.expm1(-x) + steady * x
+        return float(relaxation.viscosity * of_change / step + np.dot(relaxation.moduli, rates))
 
     def lost(self, later: SurfaceMemory, relaxation: Relaxation, scheme: MemoryScheme, step: float) -> float:
         """Work of a step's pressure less what is stored and dissipated, J.
@@ -123,7 +120,7 @@ class SurfaceMemory(NamedTuple):
         if scheme is not galerkin.MEMBER:
             exact = step_law(relaxation, galerkin.MEMBER, step)
             mean = exact.now * later.strain + self.carried(exact)
-        return float(self.areas @ (taken[-1] * change[0])) - product(self.areas, change, mean)
+        return float(self.areas @ (taken[-1] * change[0]) - product(self.areas, change, mean))
 
 
 def graded(reach: float, points: int) -> Array:
@@ -153,12 +150,14 @@ def area_weights(radii: Array) -> Array:
     return np.asarray(np.pi * radii * (spacing[1:] + spacing[:-1]))
 
 
-def product(weights: Array, first: Array, second: Array) -> float:
+def product(weights: Array, first: Array, second: Array) -> Array:
     """Work of one field's pressure on the other's displacement over the surface (symmetric), m^3 x Pa/Pa.
 
-    Where pressure is displacement times the weight, one field is both.
+    Fields (..., f, r), works (...). Where pressure is displacement times the weight, one field is both.
     """
-    return 0.5 * float(weights @ (first[0] * second[-1] + first[-1] * second[0]))
+    if first is second or first.shape[-2] == 1:
+        return np.asarray((first[..., 0, :] * second[..., -1, :]) @ weights)
+    return np.asarray(0.5 * (first[..., 0, :] * second[..., -1, :] + first[..., -1, :] * second[..., 0, :]) @ weights)
 
 
 @dataclass(frozen=True, eq=False)
