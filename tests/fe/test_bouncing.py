@@ -307,3 +307,10 @@ def test_a_flight_ends_where_the_gap_closes_after_its_top(height: float, close: 
     """Also long after twice the time of the top, where the surface goes on to recover."""
     assert _fallen(lambda time: height * time * (close - time), 1.0) == pytest.approx(close, rel=1e-12)
     assert _fallen(lambda time: -height, 1.0) is None
+
+
+@pytest.mark.parametrize("name", ["two-finite-spheres", "polymer-o-ring"])
+def test_what_remembers_by_two_surfaces_is_struck_once(name: str) -> None:
+    values = {"motion.impacts": 2, "motion.end_time": 1.0, "model.gravity": 9.81}
+    with pytest.raises(lumped.errors.BadInput, match=r"motion\.impacts: 2: fe, .* follows one impact; accepted: 1"):
+        fe_contact.run(lumped.Scene.load(name, values), tolerance=1e-2)
