@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -12,6 +13,10 @@ from fe_contact.methods import simulate
 from fe_contact.progress import OFTEN, Count, Log, ProgressLine, clear
 from fe_contact.reference import solve
 from lumped import Scene
+from lumped.pounding import study as pounding
+from lumped.pounding.case_file import load as load_pounding
+from lumped.ptmd import study as ptmd
+from lumped.ptmd.case_file import load as load_ptmd
 
 
 class Clock:
@@ -143,3 +148,23 @@ def test_a_log_on_a_full_disk_says_so_once_and_costs_no_result(empty: Path, caps
     assert len(said) == 1
     assert said[0].startswith("--log: /dev/full: No space left on device; ")
     assert Path("results/result.json").exists()
+
+
+@pytest.mark.parametrize(
+    ("study", "case", "marches"),
+    [
+        (pounding.study, load_pounding("published-release"), ("linear_spring", "no contact")),
+        (ptmd.study, load_ptmd("paper"), (ptmd.FULL, ptmd.PLAIN, ptmd.BARE, "finer steps")),
+    ],
+)
+def test_a_motion_tells_how_far_it_is(study: Any, case: Any, marches: tuple[str, ...]) -> None:
+    """Every march from its start towards its end, never back."""
+    told = dict[str, list[tuple[float, float]]]()
+    study(case, progress=lambda message, done, total: told.setdefault(message, []).append((done, total)))
+    assert tuple(told) == marches
+    for words in told.values():
+        done, totals = zip(*words, strict=True)
+        assert len(set(totals)) == 1
+        assert done[0] == 0.0
+        assert list(done) == sorted(done)
+        assert 0.5 * totals[0] < done[-1] < totals[0]
