@@ -105,7 +105,7 @@ def _profile(axes: Axes, study: PoundStudy, side: str, what: str, letter: str) -
         values = factor * np.array(_peaks(result, side, what))
         axes.plot(values, np.arange(1, size + 1), marker="o", markersize=2.2, label=name, **looks(study)[name])
     axes.set(xlabel=f"{what}, {unit}", xlim=(0.0, None), ylim=(0.5, size + 0.5))
-    axes.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=6))
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=6, min_n_ticks=1))
     if letter in "bc" and what == "drift":
         axes.set_ylabel("storey")
     style.label(axes, letter, f"{side} structure")
