@@ -20,12 +20,18 @@ from lumped.schema.keys import Choice, Key, Number
 
 Keys = Mapping[str, Key]
 T = TypeVar("T")
-STIFFNESS: Keys = {"k": Key(Number(1e-30, 1e30, "N/m^alpha"), "stiffness", required=False)}
-LINEAR_STIFFNESS: Keys = {"k": replace(STIFFNESS["k"], kind=Number(1e-30, 1e30, "N/m"))}  # of an exponent of one
+
+
+def stiffness_key(unit: str) -> Keys:
+    """The optional key of a spring, in the unit that its exponent gives it."""
+    return {"k": Key(Number(1e-30, 1e30, unit), "stiffness", required=False)}
+
+
+STIFFNESS, LINEAR_STIFFNESS = stiffness_key("N/m^alpha"), stiffness_key("N/m")
 EXPONENT: Keys = {"alpha": Key(Number(0.5, 5.0), "exponent of the depth", required=False)}
 # A damper with the power (alpha - 1)/2 of the depth is infinite at touch for alpha below 1.
 EXPONENT_FROM_ONE: Keys = {"alpha": replace(EXPONENT["alpha"], kind=Number(1.0, 5.0))}
-NO_KEYS: Keys = {}  # of a law whose exponent is one
+NO_KEYS: Keys = {}  # of a law whose exponent is no choice
 EXIT_KEY = Key(EXIT, "what ends the contact by its return to zero", required=False)
 COMMON: Keys = {"gap": Key(Number(0.0, 1e6, "m"), "distance before touch", required=False), "exit": EXIT_KEY}
 RESTITUTION: Keys = {"e": Key(Number(1e-4, 1.0), "restitution which the damping is to meet", required=False)}
@@ -46,10 +52,10 @@ def formula_key(family: Family) -> Keys:
     return {"damping": Key(kind, "formula by which e becomes the damping", required=False)}
 
 
-def damped(family: Family, *dampings: Keys, exponent: Keys = EXPONENT) -> tuple[Keys, ...]:
+def damped(family: Family, *dampings: Keys, stiffness: Keys = STIFFNESS, exponent: Keys = EXPONENT) -> tuple[Keys, ...]:
     """The keys of a spring with a damper, given by one of its own `dampings` or by e and a formula of the family."""
     formula = [formula_key(family)] if family.published else []
-    return (STIFFNESS if exponent else LINEAR_STIFFNESS, exponent, RESTITUTION, *dampings, *formula, COMMON)
+    return (stiffness, exponent, RESTITUTION, *dampings, *formula, COMMON)
 
 
 @dataclass

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from lumped.laws._damping import oscillator
-from lumped.laws._parameters import NO_KEYS, Parameters, damped, damping_key
+from lumped.laws._parameters import LINEAR_STIFFNESS, NO_KEYS, Parameters, damped, damping_key
 from lumped.laws._power_law import OscillatorDamped
 from lumped.laws.base import LawKind
 from lumped.scene.scene import Scene
@@ -40,5 +40,5 @@ def anagnostopoulos(e: float) -> float:
 
 
 FAMILY = oscillator(1.0, rebounds=True, anagnostopoulos=anagnostopoulos)
-KEYS = damped(FAMILY, damping_key("xi"), damping_key("c", "N s/m"), exponent=NO_KEYS)
+KEYS = damped(FAMILY, damping_key("xi"), damping_key("c", "N s/m"), stiffness=LINEAR_STIFFNESS, exponent=NO_KEYS)
 MEMBER = LawKind(of, __doc__, KEYS, FAMILY)

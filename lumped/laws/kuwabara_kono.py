@@ -24,7 +24,7 @@ import numpy as np
 
 from lumped.errors import NotReached, TooManySteps
 from lumped.laws._damping import Family, Limit, check, check_damping, decay_of, formulas
-from lumped.laws._parameters import NO_KEYS, Parameters, damped, damping_key
+from lumped.laws._parameters import NO_KEYS, Parameters, damped, damping_key, stiffness_key
 from lumped.laws._power_law import PowerLaw
 from lumped.laws.base import LawKind
 from lumped.numbers import Real, bisected
@@ -192,4 +192,5 @@ def _log_of_rebound(here: Expansion, end: float) -> float:
 
 
 FAMILY = Family(restitution, damping, formulas(series=series))
-MEMBER = LawKind(of, __doc__, damped(FAMILY, damping_key("A", "s"), exponent=NO_KEYS), FAMILY)
+KEYS = damped(FAMILY, damping_key("A", "s"), stiffness=stiffness_key("N/m^1.5"), exponent=NO_KEYS)
+MEMBER = LawKind(of, __doc__, KEYS, FAMILY)

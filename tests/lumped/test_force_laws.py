@@ -68,6 +68,17 @@ def test_every_law_has_its_case() -> None:
     assert set(laws.available()) >= OF_GEOMETRY
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_a_stiffness_is_told_in_the_unit_that_the_force_gives_it(name: str) -> None:
+    keys, stage = laws.get(name).keys, Stage(True, 0.0, 0.0)
+    if name in FREE:
+        assert keys["k"].kind.unit == "N/m^alpha"
+        return
+    law = laws.get(name).of(scene(name, **undamped(name)))
+    power = math.log2(float(law.force(2e-3, 0.0, stage)) / float(law.force(1e-3, 0.0, stage)))
+    assert keys["k"].kind.unit == ("N/m" if power == pytest.approx(1.0) else f"N/m^{power:.3g}")
+
+
 @pytest.mark.parametrize("approaching", [True, False])
 @pytest.mark.parametrize("name", NAMES)
 def test_tangents_are_the_slopes_of_the_force(name: str, approaching: bool) -> None:
