@@ -87,10 +87,11 @@ def score(reference: History | Curve, candidate: History | Curve) -> Score:
 def normalized_error(reference: History | Curve, candidate: History | Curve) -> float:
     """The error "(20)", "(21)": sqrt(sum (F - F_ref)^2)/sqrt(sum F_ref^2).
 
-    Over 201 equally spaced times from zero to the later end; a curve that has ended counts as zero. Infinite where
-    the candidate lasts so long that none of them meets the reference.
+    Over 201 equally spaced times from zero, or from the first of both where that is later, to the later end; a curve
+    that has ended counts as zero. Infinite where the candidate lasts so long that none of them meets the reference.
     """
-    times = np.linspace(0.0, max(float(reference.time[-1]), float(candidate.time[-1])), POINTS)
+    first = max(0.0, min(float(reference.time[0]), float(candidate.time[0])))
+    times = np.linspace(first, max(float(reference.time[-1]), float(candidate.time[-1])), POINTS)
     measured = reference.force_at(times)
     size = float(np.linalg.norm(measured))
     return float(np.linalg.norm(candidate.force_at(times) - measured)) / size if size else np.inf

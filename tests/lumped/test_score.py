@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -76,6 +77,13 @@ def test_normalized_error_pads_the_shorter_curve_with_zero() -> None:
     assert error == pytest.approx(np.sqrt((0.5 + 1.0 - 2.0 * cross) / 0.5), rel=1e-4)
     scaled = normalized_error(half_sine(1.0, 1.0), half_sine(1.3, 1.0))
     assert scaled == pytest.approx(0.3, rel=1e-9)
+
+
+def test_an_error_is_the_same_by_a_clock_that_began_long_before() -> None:
+    """A recorder's zero is not the touch."""
+    own, other = half_sine(2.0, 1.0), half_sine(1.9, 1.1)
+    late = (replace(curve, time=curve.time + 50.0) for curve in (own, other))
+    assert normalized_error(*late) == pytest.approx(normalized_error(own, other), rel=1e-9)
 
 
 def test_contact_that_does_not_end_has_no_duration() -> None:
