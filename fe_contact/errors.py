@@ -67,8 +67,11 @@ class MemoryTooSmall(NotReached):
 class TooManySteps(NotReached):
     """The march used up its steps before the contact ended."""
 
-    def __init__(self, steps: int, time: float) -> None:
-        super().__init__(f"{steps} steps reached only t = {time:.6g} s; cure: lower motion.end_time or raise steps")
+    def __init__(self, steps: int, time: float, cure: str = "an earlier motion.end_time") -> None:
+        super().__init__(f"{steps} steps reached only t = {time:.6g} s; cure: {cure}")
+
+
+FINER_STEPS = "an earlier motion.end_time, or more numerics.steps"  # cure where a contact has so many of a number
 
 
 class IndentationNotSettled(NotReached):

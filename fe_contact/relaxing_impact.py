@@ -22,7 +22,7 @@ from fe_contact.budget.curve import Curve, extrapolated
 from fe_contact.budget.plan import Plan
 from fe_contact.budget.refine import Finer, dominant
 from fe_contact.budget.variation import SAFETY, Variation, factor
-from fe_contact.errors import MemoryTooSmall, TooManySteps
+from fe_contact.errors import FINER_STEPS, MemoryTooSmall, TooManySteps
 from fe_contact.indentation import COARSEST
 from fe_contact.march.impact import STEPS_ALLOWED, balanced, share_of_rest, step_length, time_left
 from fe_contact.progress import Progress
@@ -108,7 +108,7 @@ class Marcher:
         while instants[-1].time < self.strike.end_time * (1.0 - 1e-12):
             here = instants[-1]
             if len(instants) > STEPS_ALLOWED * self.numerics.steps:
-                raise TooManySteps(len(instants), here.time)
+                raise TooManySteps(len(instants), here.time, FINER_STEPS)
             left = self._time_left(instants)
             if left is not None and left < LAST * self.numerics.contact_time:
                 separated = True

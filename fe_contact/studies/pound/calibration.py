@@ -46,7 +46,8 @@ class PoundCalibration:
             masses = case.frames.masses_at(case.frames.gaps[gap])
             if masses not in known:
                 progress(f"reference of the storeys at {gap}")
-                known[masses] = methods.simulate(scene, method, case.law.numerics if case.law else {})
+                given = case.law.numerics if case.law else {}
+                known[masses] = methods.simulate(scene, method, given, progress=progress)
             references[gap] = known[masses]
         every = dict.fromkeys([case.own_law or "", *names])
         numbers = {
