@@ -93,7 +93,7 @@ def _body(sizes: Sizes, order: int, bonded: bool, plane: bool) -> ElasticBody:
     """In units of the reference radius."""
     basis = basis_on(_mesh(*sizes), order)
     fixed = held(basis, along=("axis", "side", "base") if bonded else ("axis",), across=("base",))
-    return ElasticBody(basis, partial(matrix, basis, bonded, plane), fixed, flat(basis, 2 if plane else 3))
+    return ElasticBody(basis, partial(matrix, basis, plane), fixed, flat(basis, 2 if plane else 3))
 
 
 def _mesh(elements: float, smallest: float | None, thickness: float, width: float) -> MeshTri:
@@ -103,13 +103,14 @@ def _mesh(elements: float, smallest: float | None, thickness: float, width: floa
     return made(meshes.layer, elements, smallest, thickness, width)
 
 
-def matrix(basis: Basis, bonded: bool, plane: bool, bulk: float, shear: float) -> Matrix:
-    """Stiffness of the layer, and of what lies beyond its sides: a sliding one gives way to the end of the world."""
+def matrix(basis: Basis, plane: bool, bulk: float, shear: float) -> Matrix:
+    """Stiffness of the layer, and of what lies beyond its side: one that slides gives way to the end of the world.
+
+    At the side of a bonded one nothing is left to feel it.
+    """
     law = elastic(bulk, shear)
     if plane:
         return plane_stiffness(basis, law)
-    if bonded:
-        return stiffness(basis, law)
     return stiffness(basis, law) + robin(boundary(basis, ("side",)), shear)
 
 

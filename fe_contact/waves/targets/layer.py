@@ -128,7 +128,7 @@ def unit_layer(
         fixed,
         masses,
         local=lambda: plane_mass(basis) if plane else mass(basis),
-        springs=lambda: [matrix(basis, bonded, plane, *one) for one in ((1.0, 0.0), (0.0, 1.0))],
+        springs=lambda: [matrix(basis, plane, *one) for one in ((1.0, 0.0), (0.0, 1.0))],
         absorbing=lambda: [_side(basis, plane, component) for component in (0, 1)],
     )
 
