@@ -78,6 +78,8 @@ def refine(way: Way[Found], numerics: Numerics) -> tuple[Found, str]:
         if finer is None or refused:
             break
         numerics = finer
+    else:
+        refused = f"refined {way.rounds} times, which was not enough"
     if found is None:
         raise outgrown or MemoryTooSmall(numerics.contact_radius)
     return found, refused

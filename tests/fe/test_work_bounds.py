@@ -226,3 +226,14 @@ def test_the_coming_contact_is_guessed_so_well_that_few_sets_are_tried(name: str
     """Growing and receding, on one side of the axis and on both of a crown."""
     work = simulate(Scene.load(name), "fe", {"tolerance": 1e-2}).work
     assert work["iterations"] <= most * work["contact_problems"]
+
+
+def test_how_often_was_refined_is_said_where_it_was_not_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(line.Doubling, "rounds", 1)
+    material = {"law": "sls", "E1": 2.7e5, "E2": 1.2e5, "C1": 124.0, "nu": 0.3, "density": 110.0}
+    rod = {"shape": "rod", "area": 4.7e-6, "length": 0.1, "end": "free", "material": material}
+    striker = {"shape": "punch", "radius": 2.2e-3, "mass": 1.1e-3, "velocity": 0.1}
+    scene = Scene.from_dict({"striker": striker, "target": rod, "model": {"inertia": True}})
+    found = simulate(scene, "fe", {"tolerance": 1e-4})
+    assert not found.converged
+    assert "; refined 1 times, which was not enough; a tolerance of " in found.message
