@@ -292,9 +292,9 @@ class PlasticLoading:
 
     @property
     def pressed(self) -> Forces:
-        """The forces so far."""
+        """The forces so far, from the first step on that reaches a point of the mesh."""
         course = self.course
-        depth, force, radius = columns(self.ends)
+        depth, force, radius = columns([place for place in self.ends if place.force > 0.0])
         return Forces(
             depth=course.unit * depth,
             force=course.modulus * course.unit**2 * force,

@@ -14,7 +14,7 @@ from scipy.special import beta
 import fe_contact
 from fe_contact.assembly.forms import Array
 from fe_contact.indentation import indent
-from fe_contact.plastic.course import Course, Varied, settings
+from fe_contact.plastic.course import Course, PlasticLoading, Varied, settings
 from fe_contact.plastic.fields import PressedAgain
 from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, _at_most, _release
 from fe_contact.plastic.path import Presser, Station
@@ -265,6 +265,19 @@ def test_two_meshes_that_agree_by_chance_do_not_close_the_bar() -> None:
 
     assert bar(1.0, 1.0, 1.1) > 0.1
     assert bar(1.01, 1.01 + 0.01 * (math.sqrt(2.0) - 1.0), 1.02) == pytest.approx(1.25 * 0.01)
+
+
+def test_a_first_step_that_reaches_no_point_of_the_mesh_is_no_force() -> None:
+    """A stiff body that yields at once: forces begin where one is."""
+    indenter, _ = SceneReader("scene", tables()).indenter(Indenter)
+    course, none = Course.of(indenter, 1e-5, 4e-5), np.zeros(1)
+    depths, forces = np.geomspace(1e-3, 1.0, 9), np.geomspace(1e-6, 1e-2, 9)
+    forces[0] = 0.0
+    places = [Station(float(d), none, (), float(f), none, float(d**0.5)) for d, f in zip(depths, forces, strict=True)]
+    rest = Presser(course.ground(settings(COARSE, course)), 1.0, course.unit)
+    found = PlasticLoading(course, settings(COARSE, course), rest, places).pressed
+    assert found.depth == pytest.approx(course.unit * depths[1:])
+    assert np.all(np.isfinite(found.logarithm(np.array([0.0, course.unit * depths[0], found.depth[3]]))))
 
 
 def test_a_punch_yields_with_the_coarsest_settings_and_fewer_elements_are_refused() -> None:
