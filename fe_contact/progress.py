@@ -162,12 +162,22 @@ class Log:
 
 
 def log_to(path: Path) -> Log:
-    """A log in a file made anew; raises OSError where it cannot be. A disk that fills up later costs the log alone."""
+    """A log in a file made anew; raises OSError where it cannot be.
+
+    A disk that fills up later costs the log alone, and a line on stderr.
+    """
     path.write_text("", encoding="utf-8")
+    failures = list[OSError]()
 
     def write(line: str) -> None:
-        with suppress(OSError), path.open("a", encoding="utf-8") as file:
-            file.write(line)
+        try:
+            with path.open("a", encoding="utf-8") as file:
+                file.write(line)
+        except OSError as failure:
+            if not failures:
+                clear()
+                sys.stderr.write(f"--log: {path}: {failure.strerror}; lines are missing there\n")
+            failures.append(failure)
 
     return Log(write)
 

@@ -135,3 +135,11 @@ def test_a_log_is_written_where_nobody_watches(empty: Path, capsys: pytest.Captu
     assert "what to expect" in lines[0]
     assert " steps, " in lines[1]
     assert not [line for line in capsys.readouterr().err.splitlines() if "..." in line]
+
+
+def test_a_log_on_a_full_disk_says_so_once_and_costs_no_result(empty: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["run", "steel-ball", "--log", "/dev/full", "--out", "results"]) == 0
+    said = [line for line in capsys.readouterr().err.splitlines() if line.startswith("--log")]
+    assert len(said) == 1
+    assert said[0].startswith("--log: /dev/full: No space left on device; ")
+    assert Path("results/result.json").exists()
