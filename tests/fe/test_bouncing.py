@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +16,7 @@ from scipy.integrate import solve_ivp
 
 import fe_contact
 import lumped
+from fe_contact import reference
 from fe_contact.bodies.memory import SurfaceMemory, area_weights
 from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs
@@ -84,6 +86,20 @@ def test_every_bounce_of_an_elastic_body_is_the_same(scene_of: Scenes) -> None:
         assert contact["start_error"] < 1e-3 * period * (number + 1)
         for name, value in values.items():
             assert contact[name] == pytest.approx(value, abs=contact[f"{name}_error"] + 1e-6 * value), (number, name)
+
+
+def test_bars_that_miss_the_tolerance_are_said_of_each_contact_and_what_all_meet(
+    scene_of: Scenes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reference, "MOST_STEPS", 100)
+    given = {"tolerance": 1e-6, "elements_per_contact": 2.0, "steps": 40, "order": 2}
+    found = fe_contact.run(thrown(scene_of, SLS), numerics=given)
+    missed = r"tolerance 1e-06 not reached: ([^;]+); "
+    said = re.match(rf"contact 1: {missed}contact 2: {missed}.*a tolerance of (\S+) is met; ", found.message)
+    assert said is not None
+    bars = [float(word.rpartition(" to ")[2]) for part in said.groups()[:2] for word in part.split(", ")]
+    assert len(bars) > 8
+    assert 0.95 * max(bars) <= float(said[3]) < 1.3 * max(bars)
 
 
 def test_a_later_contact_ends_where_the_motion_does(scene_of: Scenes) -> None:

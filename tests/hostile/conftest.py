@@ -16,6 +16,7 @@ import pytest
 
 WORKER = Path(__file__).with_name("worker.py")
 MOST_WAIT = 300.0  # s of the clock, for what waits instead of working, or does not hear the worker's own alarm
+MOST_SILENCE = 10.0  # s of the clock without a line in the log of a command that is at work
 MOST_MEMORY = 10**9
 DONE, BAD_INPUT, NOT_REACHED, CUT = 0, 2, 3, "cut"
 MOST_LINES, MOST_CHARACTERS = 20, 1500
@@ -23,7 +24,10 @@ MOST_LINES, MOST_CHARACTERS = 20, 1500
 
 @dataclass(frozen=True)
 class Ended:
-    """How a command line ended; `code` is a traceback where it was a failure that escaped."""
+    """How a command line ended; `code` is a traceback where it was a failure that escaped.
+
+    `cpu`: s of work; `silent`: s since the last line of its log; `memory`: bytes.
+    """
 
     arguments: Sequence[str]
     code: object
@@ -31,6 +35,7 @@ class Ended:
     written: Sequence[str] = ()
     crash: str = ""
     cpu: float = 0.0
+    silent: float = 0.0
     memory: int = 0
 
 
@@ -83,14 +88,16 @@ def hundredth(campaign_size: Callable[..., int]) -> Callable[[int], int]:
 def faults_of() -> Callable[..., list[str]]:
     """What is wrong with how a command line ended; empty where nothing is.
 
-    `named`: what a line of bad input has to begin with, a pattern. `solves`: a command whose work is bounded by what it
-    solves, and looked after elsewhere: it may be cut.
+    `named`: what a line of bad input has to begin with, a pattern. `solves`: a command with a log whose work is bounded
+    by what it solves, and looked after elsewhere: it may be cut while it tells how far it is.
     """
 
     def found(ended: Ended, named: str, solves: bool = False) -> list[str]:
         wrong = []
         if ended.code not in (DONE, BAD_INPUT, NOT_REACHED) and not (solves and ended.code == CUT):
             wrong.append(f"exit {ended.code}: {' '.join(ended.said[-1:])} {ended.crash[-600:]}")
+        if ended.code == CUT and ended.silent > MOST_SILENCE:
+            wrong.append(f"no sign of life for {ended.silent:.0f} s")
         if ended.memory > MOST_MEMORY and not solves:
             wrong.append(f"took {ended.memory / 1e9:.2g} GB")
         wrong += [f"no line for a terminal: {line!r}" for line in ended.said if not fit_for_a_terminal(line)]

@@ -52,6 +52,7 @@ SWITCHES: dict[str, tuple[Table, ...]] = {
     ),
 }
 DEPTHS = ("1e-6,2e-6,5e-6", "1e-4", "1e-9,1e-3", "1e3", "nan", "0", "-1", "1e-5,x", "")
+LOGGED = ("--log", "progress.log")  # where every command says how far it is
 TOLERANCES = ("1e-6", "0.1", "x", "nan", "1e400", "-1", "0")
 
 
@@ -210,7 +211,7 @@ def test_a_changed_scene_runs_or_every_line_names_its_file_and_key(
     for _ in range(hundredth(SCENES)):
         scene.write_text("".join(f"{json.dumps(k)} = {written(v)}\n" for k, v in mutations.changed().items()))
         command = mutations.command(scene, curve)
-        ended = run(command)
+        ended = run([*command, *LOGGED])
         named = rf"scene\.toml: (({keys})[.\w]*|[^:]+: unknown key|name: )|--\w+: |.*curve\.csv: "
         named += "|.*: (not a TOML file|larger than)"
         found = faults_of(ended, named, solves=command[0] == "fit" or "cheapest" in command)
@@ -258,7 +259,7 @@ def test_a_changed_study_runs_or_every_line_names_its_file_and_key(
     count = campaign_size(campaign_size(CHANGED_STUDIES))
     for table in (known[0], *(mutations.changed() for _ in range(count))):
         file.write_text("".join(f"{json.dumps(k)} = {written(v)}\n" for k, v in table.items()))
-        ended = run([study, str(file), *(["--jobs", "1"] if study == "sweep" else [])])
+        ended = run([study, str(file), *(["--jobs", "1"] if study == "sweep" else []), *LOGGED])
         named = rf"study\.toml: (({keys})[^:]*|[^:]+: unknown key|name: )|.*\.csv: "
         named += "|.*: (not a TOML file|larger than|cannot be read)"
         wrong += [f"{fault}\n{file.read_text()}" for fault in faults_of(ended, named, solves=True)]

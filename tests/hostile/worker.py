@@ -25,6 +25,7 @@ from fe_contact.cli import main
 MOST_MEMORY = 4 * 2**30
 MOST_CPU = 10  # s of this process's work, which others on the machine slow down but little
 CUT = "cut"
+LOG = "progress.log"  # of a command that may have one
 
 
 class Cut(BaseException):
@@ -56,12 +57,14 @@ def ended(arguments: list[str]) -> dict[str, Any]:
     spent = time.process_time() - begun
     files = sorted(path for path in folder.rglob("*") if path.is_file())
     crash = "".join(path.read_text() for path in files if path.name == "crash.txt")
-    written = [str(path.relative_to(folder)) for path in files]
+    written = [str(path.relative_to(folder)) for path in files if path.name != LOG]
+    silent = time.time() - max((path.stat().st_mtime for path in files if path.name == LOG), default=0.0)
     os.chdir("/")
     shutil.rmtree(folder)
     err.seek(0)
     said = err.read().splitlines()
-    return {"code": code, "said": said, "written": written, "crash": crash, "cpu": spent, "memory": peak_memory()}
+    told = {"code": code, "said": said, "written": written, "crash": crash}
+    return {**told, "cpu": spent, "silent": silent, "memory": peak_memory()}
 
 
 def peak_memory() -> int:
