@@ -6,7 +6,7 @@ Rows in which every gap stays far from touch are followed many at once: nothing 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -24,6 +24,12 @@ from lumped.solvers.radau import STAGES
 MOST_ROWS = 100_000  # work: a minute and half a gigabyte
 MOST_STEPS = 3000  # work: of one row, more is no motion but chatter
 MOST_AHEAD = 16  # work: rows of one flight
+
+Heard = Callable[[float], None]  # told the time, s, that a motion has come to
+
+
+def unheard(time: float) -> None:
+    """Nobody waits for it."""
 
 
 class Listener(Protocol):
@@ -78,7 +84,7 @@ class FrameMarch:
     rules: Rules
     ground: GroundMotion
 
-    def run(self, times: Array, listener: Listener, gaps: Sequence[GapState] = ()) -> None:
+    def run(self, times: Array, listener: Listener, gaps: Sequence[GapState] = (), heard: Heard = unheard) -> None:
         """From the start through all rows; `gaps`: what they do there, apart by default. Raises NotReached."""
         frames = self.rules.flow.frames
         depths = frames.rows @ frames.start[: self.rules.flow.size] - frames.distances
@@ -88,6 +94,7 @@ class FrameMarch:
         i, ahead = 1, 1
         with np.errstate(all="ignore"):
             while i < times.size:
+                heard(at.time)
                 flight = self._flight(at, times[i - 1 : i + ahead])
                 if flight is None:
                     at, length = self._row(at, float(times[i]), length, listener)

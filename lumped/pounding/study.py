@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 from lumped.errors import addressed
 from lumped.laws._force_law import ForceLaw
@@ -74,12 +75,13 @@ class PoundStudy:
 def study(
     case: PoundingCase,
     names: Sequence[str] = (),
-    progress: Callable[[str], None] = lambda message: None,
+    progress: Callable[[str, float, float], None] = lambda message, done, total: None,
     calibrated: Mapping[str, tuple[ForceLaw, ...]] | None = None,
 ) -> PoundStudy:
     """The case under its own law and these others. Raises BadInput, before any work, and NotReached.
 
-    `calibrated`: laws by their names, one for each gap, in the place of those that the file gives by its keys.
+    `progress` is told what is marched, how far that is, and how far it will go, s. `calibrated`: laws by their names,
+    one for each gap, in the place of those that the file gives by its keys.
     """
     own = case.own_law
     every = dict.fromkeys([own, *names]) if own else {}
@@ -87,23 +89,32 @@ def study(
     motions = {}
     with addressed(case.source, {"motion": "motion"}):
         for name, one in laws.items():
-            progress(name)
-            motions[name] = pounding(case, one)
-        progress(NO_CONTACT)
+            motions[name] = pounding(case, one, partial(progress, name))
         free = PoundingFrames(case.frames.left, case.frames.right)
-        return PoundStudy(case, motions, simulate(free, (), case.ground, case.end_time))
+        apart = simulate(
+            free, (), case.ground, case.end_time, heard=lambda time: progress(NO_CONTACT, time, case.end_time)
+        )
+        return PoundStudy(case, motions, apart)
 
 
-def pounding(case: PoundingCase, laws: tuple[ForceLaw, ...]) -> Pounding:
-    """One motion with its error bars. Raises NotReached.
+def pounding(
+    case: PoundingCase, laws: tuple[ForceLaw, ...], told: Callable[[float, float], None] = lambda done, total: None
+) -> Pounding:
+    """One motion with its error bars; `told` how far its marches are together, and will go, s. Raises NotReached.
 
     Modes meet a motion by chance at times: half of what the next halving changes is the least that waves are told by.
     """
-    fine = simulate(case.frames, laws, case.ground, case.end_time, FINE)
     halved = (1, 2) if case.frames.slabs else (0,)
-    others = [
-        simulate(replace(case.frames, halvings=n), laws, case.ground, case.end_time, COARSE).measures() for n in halved
-    ]
+    ways = [(case.frames, FINE), *((replace(case.frames, halvings=n), COARSE) for n in halved)]
+
+    def marched(number: int) -> FramesResult:
+        (frames, tolerance), end = ways[number], case.end_time
+        return simulate(
+            frames, laws, case.ground, end, tolerance, lambda time: told(number * end + time, len(ways) * end)
+        )
+
+    fine = marched(0)
+    others = [marched(number).measures() for number in range(1, len(ways))]
     errors = {
         name: SAFETY * max(abs(value - others[0][name]), 0.5 * abs(others[0][name] - others[-1][name]))
         + ROUNDING * abs(value)

@@ -62,16 +62,23 @@ class PtmdStudy:
         return sufficient(self.ledger, SMALL)
 
 
-def study(case: Case, progress: Callable[[str], None] = lambda message: None) -> PtmdStudy:
-    """Simulate the case twice and its simpler variants once. Raises BadInput and NotReached."""
+def study(case: Case, progress: Callable[[str, float, float], None] = lambda message, done, total: None) -> PtmdStudy:
+    """Simulate the case twice and its simpler variants once. Raises BadInput and NotReached.
+
+    `progress` is told what is simulated, how far that is, and how far it will go, s.
+    """
+
+    def marched(name: str, system: PoundingDamper, tolerance: float) -> PtmdResult:
+        return simulate(
+            system, case.start, case.end_time, case.window, tolerance, lambda time: progress(name, time, case.end_time)
+        )
+
     results: dict[str, PtmdResult] = {}
     with addressed(case.source, {"motion": "motion", "ring": "ring", "start": "motion"}):
         for name, system in variants(case.system).items():
-            progress(name)
             if system.damper is not None or case.start.x1 or case.start.v1:
-                results[name] = simulate(system, case.start, case.end_time, case.window)
-        progress("finer steps")
-        again = simulate(case.system, case.start, case.end_time, case.window, FINER)
+                results[name] = marched(name, system, STEP_TOLERANCE)
+        again = marched("finer steps", case.system, FINER)
     main = next(iter(results.values()))
     return PtmdStudy(case, results, convergence(main, again), ledger(case, main))
 
