@@ -49,6 +49,8 @@ SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting
 DEGREE = 5  # of the polynomial through the forces of a release, to the power that makes them a line
 RELEASES, RELEASING = 6, 0.25  # steps of a release at least, and over those of a loading
 PILOT: Given = {"elements_per_contact": 5.0, "steps": 16}  # of the run that tells how deep an impact will go
+PILOT_FIRST = 1e-3  # of its depth, its first step: the work up to there is a millionth of the whole
+MOST_PILOT = 800  # work: its iterations; 200 where a body begins to yield, 550 where it flows from the touch on
 SOFTEST = 0.75  # of the yield strength, on what overlaps: hardly a lower force while a body yields
 
 
@@ -261,8 +263,8 @@ def pilot(scene: Scene) -> Pilot:
     """By a coarse mesh and few steps. Raises NotReached."""
     energy = 0.5 * scene.reduced_mass * scene.velocity**2
     deepest = _at_most(scene, energy)
-    course = Course.of(scene, deepest, deepest)
-    loading = PlasticLoading.of(course, settings(PILOT, course))
+    course = Course.of(scene, deepest, deepest).begun_at(PILOT_FIRST * deepest)
+    loading = PlasticLoading.of(course, settings(PILOT, course), most=MOST_PILOT)
     loading.to(BEYOND * deepest)
     power = released_power(course)
     found = Rebound(Answered.of(loading), scene.reduced_mass, energy, power, course.power)
@@ -390,8 +392,7 @@ class Runner:
 
     def pressed(self, numerics: Numerics, cut: bool) -> tuple[PlasticLoading, Answered, list[Station]]:
         """The same: loading, what is known by it, and places of the release."""
-        self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")
-        loading = PlasticLoading.of(self.course, numerics, cut)
+        loading = PlasticLoading.told(self.course, numerics, cut, self.progress)
         loading.to(BEYOND * self.course.deepest)
         known = Answered.of(loading)
         deepest = self.motion(known).deepest
