@@ -112,7 +112,7 @@ class ProgressLine:
         if self._pace.due(message, done, total):
             _line = self
             left = self._pace.left(done, total)
-            parts = [_share(done, total)] if total else []
+            parts = [_share(done, total)] if done or total else []
             parts += [f"about {_spoken(left)} left"] if left else []
             self._write(f"fe-contact: {', '.join([*parts, message])} ...")  # a narrow terminal cuts the message
 
@@ -156,7 +156,7 @@ class Log:
         if self._pace.due(message, done, total):
             left = self._pace.left(done, total)
             parts = [f"{self._today():%Y-%m-%dT%H:%M:%SZ}", f"{self._pace.elapsed():.1f} s", message]
-            parts += [_share(done, total)] if total else []
+            parts += [_share(done, total)] if done or total else []
             parts += [] if left is None else [f"about {_spoken(left)} left"]
             self._write(", ".join(parts) + "\n")
 
@@ -188,7 +188,7 @@ def terminal() -> ProgressLine:
 
 
 def _share(done: float, total: float) -> str:
-    return f"{done:.0f} of {total:.0f}"
+    return f"{done:.0f} of {total:.0f}" if total else f"{done:.0f}"
 
 
 def _spoken(seconds: float) -> str:

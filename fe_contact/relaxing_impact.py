@@ -25,7 +25,7 @@ from fe_contact.budget.variation import SAFETY, Variation, factor
 from fe_contact.errors import FINER_STEPS, MemoryTooSmall, TooManySteps
 from fe_contact.indentation import COARSEST
 from fe_contact.march.impact import STEPS_ALLOWED, balanced, share_of_rest, step_length, time_left
-from fe_contact.progress import Progress
+from fe_contact.progress import Count, Counted, Progress, uncounted
 from fe_contact.settings import DEFAULT_TOLERANCE, Given, Numerics
 from fe_contact.solids.base import State
 from fe_contact.solids.finite import Hyperelastic
@@ -102,8 +102,11 @@ class Marcher:
         """Power of the depth that a contact is wide by, about: F ~ depth a."""
         return self.power - 1.0 if self.power > 1.0 else WIDENING
 
-    def march(self) -> March:
-        """From the first touch to separation, or to the end of the motion. Raises NotReached."""
+    def march(self, counted: Counted = uncounted) -> March:
+        """From the first touch to separation, or to the end of the motion; ``counted`` is told of every step.
+
+        Raises NotReached.
+        """
         instants, separated = [self._touch()], False
         while instants[-1].time < self.strike.end_time * (1.0 - 1e-12):
             here = instants[-1]
@@ -118,6 +121,7 @@ class Marcher:
                 separated = True
                 break
             instants.append(there)
+            counted(1.0)
         return self._record(instants, separated)
 
     def _touch(self) -> Instant:
@@ -304,8 +308,9 @@ class RelaxingStrikes:
         return Budget(value, runs[0], changes, TotalWork.of(works, unknowns, iterations, iterations), numerics)
 
     def _run(self, numerics: Numerics) -> March:
-        self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")
-        march = Marcher.of(self.scene, numerics).march()
+        message = f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps"
+        self.progress(message)
+        march = Marcher.of(self.scene, numerics).march(Count(self.progress, message, numerics.steps))
         if not np.all(np.isfinite(march.radius)):
             raise MemoryTooSmall(numerics.contact_radius)
         return march

@@ -29,6 +29,8 @@ from lumped.errors import BadInput
 from lumped.result.result import UNITS
 
 SPEED, DASHPOT = "striker.velocity", "target.material.C1"
+TEN_TO_SIX = {"linear": [0.1, 1.0], "count": 10**6}
+UNIT = {"uniform": [0.1, 1.0]}
 ORPHAN = 30.0  # s: a process that outlives its sweep by so much stays
 SIGNALS = (signal.SIGKILL, signal.SIGINT, signal.SIGTERM)
 MANY = """
@@ -109,7 +111,13 @@ correlation = [["striker.mass", "striker.mass", 2.0]]
         ({"axes": {SPEED: [-1.0], DASHPOT: [1e3, 1e4]}}, "-1.0"),
         ({"axes": {SPEED: [0.1]}, "zipped": {SPEED: [0.1]}}, "varies twice"),
         ({}, "missing; accepted: [axes]"),
-        ({"axes": {SPEED: {"linear": [0.1, 1.0], "count": 10**6}, DASHPOT: [1e3] * 11}}, "more than 10000000 cases"),
+        ({"axes": {SPEED: TEN_TO_SIX, DASHPOT: [1e3] * 11}}, "more than 10000000 cases"),
+        ({"axes": {SPEED: TEN_TO_SIX, DASHPOT: TEN_TO_SIX}}, "more than 1000000 values in all"),
+        ({"axes": {SPEED: TEN_TO_SIX | {"count": 10**7}}}, "from 1 to 1000000"),
+        (
+            {"draws": {"count": 600_000, "seed": 1, SPEED: UNIT, DASHPOT: UNIT}},
+            "draws: more than 1000000 values in all",
+        ),
         ({"axes": {"numerics.tolerance": [7.0]}}, "7.0"),
     ],
 )

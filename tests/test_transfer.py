@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 import fe_contact
 from fe_contact.cli import main
 from fe_contact.studies import style
-from fe_contact.studies.transfer.chart import LINE, plot_transfer, spread
+from fe_contact.studies.transfer.chart import LINE, plot_transfer, spread, with_unit
 from fe_contact.studies.transfer.study import TransferStudy
 from fe_contact.studies.transfer.verdict import QUANTITIES, TransferRow, TransferVerdict, holds, row_of
 from lumped import BadInput, Scene, laws
@@ -308,6 +308,21 @@ def test_names_beside_a_panel_do_not_cover_each_other() -> None:
         assert np.all(np.diff(places) > 0.5 * (sizes[1:] + sizes[:-1]) - 1e-12)
         assert places[0] >= 0.0
         assert places[-1] <= 1.0
+
+
+@pytest.mark.parametrize(
+    ("key", "said"),
+    [
+        ("striker.velocity", "striker.velocity, m/s"),
+        ("striker.radius", "striker.radius, m"),
+        ("target.thickness", "target.thickness, m"),
+        ("target.material.E1", "target.material.E1, Pa"),
+        ("target.material.nu", "target.material.nu"),
+        ("model.gravity", "model.gravity, m/s2"),
+    ],
+)
+def test_the_axis_of_the_states_has_its_unit(key: str, said: str) -> None:
+    assert with_unit(key) == said
 
 
 @pytest.mark.tenth

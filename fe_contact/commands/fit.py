@@ -78,7 +78,9 @@ def _fit(asked: FitQuestion) -> int:
     bounds = dict(_bounds(args.bounds))
     try:
         with asked.addressed():
-            found = fit(asked.curve, args.law, asked.scene, asked.free, asked.fixed, bounds, args.peak)
+            found = fit(
+                asked.curve, args.law, asked.scene, asked.free, asked.fixed, bounds, args.peak, asked.run.progress
+            )
     except NotReached as failure:
         write_failure(where, args.law, str(failure))
         raise
@@ -97,7 +99,8 @@ def _rank(asked: FitQuestion) -> int:
     from lumped.fit.ranking import RECORD, rank, write_ranking
 
     with asked.addressed():
-        ranked = rank(asked.curve, asked.scene, asked.fixed, asked.free is not None)
+        free_touch = asked.free is not None
+        ranked = rank(asked.curve, asked.scene, asked.fixed, free_touch, asked.run.progress)
     lines = [_ranking_line(i, one) for i, one in enumerate(ranked, start=1)]
     write, plot = partial(write_ranking, ranked, asked.curve), partial(plot_ranking, ranked, asked.curve)
     return asked.run.finish(RECORD, lines, write, plot, "law by law")

@@ -119,7 +119,7 @@ def scene() -> Table:
 def sweep() -> Table:
     """A sweep file: keys of its scene by dotted names, or in tables in tables."""
     pair = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
-    count = {"type": "integer", "minimum": 1, "maximum": cases.MOST_CASES}
+    count = {"type": "integer", "minimum": 1, "maximum": cases.MOST_VALUES}
     ranges = [_whole({kind: pair, "count": count}) for kind in cases.RANGES]
     draws = [_whole({kind: pair}) for kind in cases.DRAWS]
     drawn: Table = of_keys(cases.DRAW_KEYS, {"correlation": {"type": "array", "items": {"type": "array"}}})

@@ -20,6 +20,7 @@ from fe_contact.budget.refine import Growth, missing
 from fe_contact.budget.variation import SAFETY
 from fe_contact.plastic.ground import Ground, Sizes, ground_of, yielding_of
 from fe_contact.plastic.path import ELASTIC_RATIO, Presser, Station
+from fe_contact.progress import Count, Counted, Progress, uncounted
 from fe_contact.settings import DEFAULT_TOLERANCE, RANGES, Given, Numerics
 from lumped.errors import BadInput, Fault
 from lumped.scene.indenter import Indenter
@@ -171,6 +172,10 @@ class Course:
             deepest=deepest,
         )
 
+    def begun_at(self, depth: float) -> Course:
+        """With no step before a depth, m: what flows there forgets how it began."""
+        return replace(self, first=max(self.first, depth), firm=max(self.firm, depth))
+
     def outgrown(self, wider: float) -> Course:
         """For contacts so many times as wide, where they outgrew what was expected."""
         return replace(self, deepest=self.deepest * wider**2)
@@ -269,13 +274,29 @@ class PlasticLoading:
     ends: list[Station]
 
     @classmethod
-    def of(cls, course: Course, numerics: Numerics, cut: bool = False) -> PlasticLoading:
-        """Nothing is pressed yet."""
+    def of(
+        cls,
+        course: Course,
+        numerics: Numerics,
+        cut: bool = False,
+        most: int | None = None,
+        counted: Counted = uncounted,
+    ) -> PlasticLoading:
+        """Nothing is pressed yet; ``most`` iterations are for it, ``counted`` is told of every contact problem."""
         ground = course.ground(numerics, cut)
-        return cls(course, numerics, Presser(ground, numerics.penalty, course.unit, course.power - 1.0), [])
+        presser = Presser(ground, numerics.penalty, course.unit, course.power - 1.0, most, counted)
+        return cls(course, numerics, presser, [])
+
+    @classmethod
+    def told(cls, course: Course, numerics: Numerics, cut: bool, progress: Progress) -> PlasticLoading:
+        """The same; ``progress`` hears of every contact problem, two or more a step."""
+        message = f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps"
+        progress(message)
+        problems = 2 * course.depths(numerics.steps, BEYOND * course.deepest).size
+        return cls.of(course, numerics, cut, counted=Count(progress, message, problems))
 
     def to(self, end: float) -> None:
-        """On to a depth, m, whatever was reached. Raises PlasticFlowLost, MemoryTooSmall."""
+        """On to a depth, m, whatever was reached. Raises PlasticFlowLost, PlasticFlowSlow, MemoryTooSmall."""
         course = self.course
         depths = course.depths(self.numerics.steps, end) / course.unit
         if not self.ends:

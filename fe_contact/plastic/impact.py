@@ -48,7 +48,10 @@ GRID = 500  # depths at which a loading is told
 SPRUNG = np.linspace(0.0, 1.0, 101)  # shares of what springs back, from parting on
 DEGREE = 5  # of the polynomial through the forces of a release, to the power that makes them a line
 RELEASES, RELEASING = 6, 0.25  # steps of a release at least, and over those of a loading
-PILOT: Given = {"elements_per_contact": 5.0, "steps": 16}  # of the run that tells how deep an impact will go
+# Of the run that tells how deep an impact will go: where a body flows from the touch on, a soft penalty settles soon.
+PILOT: Given = {"elements_per_contact": 5.0, "steps": 16, "penalty": 500.0}
+PILOT_FIRST = 0.01  # of its depth, its first step: one element is as wide; the work up to there is 1e-4 of the whole
+MOST_PILOT = 600  # work: its iterations; 170 where a body begins to yield, 450 at a yield strength of E/27000
 SOFTEST = 0.75  # of the yield strength, on what overlaps: hardly a lower force while a body yields
 
 
@@ -261,8 +264,8 @@ def pilot(scene: Scene) -> Pilot:
     """By a coarse mesh and few steps. Raises NotReached."""
     energy = 0.5 * scene.reduced_mass * scene.velocity**2
     deepest = _at_most(scene, energy)
-    course = Course.of(scene, deepest, deepest)
-    loading = PlasticLoading.of(course, settings(PILOT, course))
+    course = Course.of(scene, deepest, deepest).begun_at(PILOT_FIRST * deepest)
+    loading = PlasticLoading.of(course, settings(PILOT, course), most=MOST_PILOT)
     loading.to(BEYOND * deepest)
     power = released_power(course)
     found = Rebound(Answered.of(loading), scene.reduced_mass, energy, power, course.power)
@@ -390,8 +393,7 @@ class Runner:
 
     def pressed(self, numerics: Numerics, cut: bool) -> tuple[PlasticLoading, Answered, list[Station]]:
         """The same: loading, what is known by it, and places of the release."""
-        self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")
-        loading = PlasticLoading.of(self.course, numerics, cut)
+        loading = PlasticLoading.told(self.course, numerics, cut, self.progress)
         loading.to(BEYOND * self.course.deepest)
         known = Answered.of(loading)
         deepest = self.motion(known).deepest

@@ -106,8 +106,7 @@ class YieldingWay:
         return Finer(finer(shares, found.numerics, self.pinned))
 
     def _run(self, course: Course, numerics: Numerics, cut: bool) -> PlasticLoading:
-        self.progress(f"{numerics.elements_per_contact:.3g} elements along the contact radius, {numerics.steps} steps")
-        loading = PlasticLoading.of(course, numerics, cut)
+        loading = PlasticLoading.told(course, numerics, cut, self.progress)
         loading.to(BEYOND * self.course.deepest)
         return loading
 

@@ -20,6 +20,7 @@ import numpy as np
 from fe_contact.assembly.forms import Array
 from fe_contact.errors import MemoryTooSmall
 from fe_contact.plastic.ground import Ground
+from fe_contact.progress import Counted, uncounted
 from fe_contact.solids.base import State
 from fe_contact.solids.contact import Obstacle, Overlap, Points
 from fe_contact.solids.newton import Equilibrium, EquilibriumLost, balanced
@@ -42,6 +43,14 @@ class PlasticFlowLost(NotReached):
     def __init__(self, depth: float) -> None:
         cure = "cure: raise numerics.steps, lower numerics.penalty, or a larger target.material.hardening_modulus"
         super().__init__(f"plastic flow at depth {depth:.3g} m did not settle; {cure}")
+
+
+class PlasticFlowSlow(NotReached):
+    """More iterations were taken than there is work for."""
+
+    def __init__(self, depth: float, most: int) -> None:
+        cure = "cure: a lower striker.velocity or mass, or a larger target.material.hardening_modulus"
+        super().__init__(f"plastic flow takes more than {most} iterations up to depth {depth:.3g} m; {cure}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,13 +94,16 @@ class Counts(NamedTuple):
 @dataclass(eq=False)
 class Presser:
     """Takes a ground from place to place; ``penalty`` in units of E* over contact radius; ``unit`` m, for words;
-    ``spread``: the power of the depth that a contact radius is expected to grow with.
+    ``spread``: the power of the depth that a contact radius is expected to grow with; ``most`` iterations in all;
+    ``counted`` is told of every contact problem.
     """
 
     ground: Ground
     penalty: float
     unit: float
     spread: float = 0.5
+    most: int | None = None
+    counted: Counted = uncounted
     counts: Counts = field(default_factory=Counts)
 
     def at_rest(self) -> Station:
@@ -127,6 +139,9 @@ class Presser:
         encounter = replace(self.ground.encounter, obstacle=obstacle)
         found = balanced(encounter, start, depth, stiffness, state, touching, SETTLED)
         self.counts += (1, found.iterations)
+        self.counted(1.0)
+        if self.most is not None and self.counts.iterations > self.most:
+            raise PlasticFlowSlow(self.unit * depth, self.most)
         return found
 
     def _edge(self, found: Equilibrium) -> float:

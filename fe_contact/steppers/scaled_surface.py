@@ -89,7 +89,10 @@ class Stepper(OfSurface):
         self.strike, self.surface, self.numerics = strike, surface, numerics
         self.scheme = SCHEMES.get(numerics.scheme)
         self.enforcement = ENFORCEMENTS.get(numerics.enforcement)
-        self.radii = graded(MEMORY_REACH * numerics.contact_radius, max(MEMORY_POINTS, POINTS_A_STEP * numerics.steps))
+        points = max(MEMORY_POINTS, POINTS_A_STEP * numerics.steps)
+        if isinstance(strike.memory, SurfaceMemory):  # of a contact before, in other steps perhaps
+            points = strike.memory.areas.size
+        self.radii = graded(MEMORY_REACH * numerics.contact_radius, points)
         self.heights = strike.height(self.radii)
         self.areas = area_weights(self.radii)
         self.expected = expected

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,11 +42,15 @@ SOLID = ("E0", "R1", "R2")
 
 @dataclass(frozen=True, eq=False)
 class FitProblem:
-    """`dependent` is the free parameter that holds the peak, "(26)"; None: least squares in all of them."""
+    """`dependent` is the free parameter that holds the peak, "(26)"; None: least squares in all of them.
+
+    `heard` is called before every impact.
+    """
 
     space: Space
     measured: Measured
     dependent: str | None
+    heard: Callable[[], None] = lambda: None
 
     @property
     def searched(self) -> tuple[str, ...]:
@@ -54,11 +59,17 @@ class FitProblem:
 
     def candidate(self, values: Values) -> Candidate:
         """The impact at these values of all free parameters. Raises BadInput, NotReached."""
+        self.heard()
         return candidate(self.space.law, self.space.scene_at(values))
 
     def error(self, values: Values) -> Array:
         """Residuals at all points, relative to the peak. Raises BadInput, NotReached."""
         return self.error_of(values, self.candidate(values))
+
+    @cached_property
+    def of_nothing(self) -> Array:
+        """The residuals of no force at all."""
+        return self.measured.error_of(np.zeros_like(self.measured.force))
 
     def error_of(self, values: Values, found: Candidate) -> Array:
         """Residuals of an impact that has been computed."""

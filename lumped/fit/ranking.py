@@ -14,7 +14,7 @@ from lumped.errors import BadInput, NotReached
 from lumped.fit.measured import Measured
 from lumped.fit.noise import Whiteness, whiteness
 from lumped.fit.record import Fit
-from lumped.fit.search import search
+from lumped.fit.search import Progress, search
 from lumped.fit.space import TOUCH, default_free
 from lumped.numbers import Array
 from lumped.result.score import Curve
@@ -59,11 +59,16 @@ class RankedFit:
 
 
 def rank(
-    curve: Curve, scene: Scene, fixed: Mapping[str, float] | None = None, touch: bool = False
+    curve: Curve,
+    scene: Scene,
+    fixed: Mapping[str, float] | None = None,
+    touch: bool = False,
+    progress: Progress = lambda message, done, total: None,
 ) -> tuple[RankedFit, ...]:
     """Every law's fit by its own default parameters, the best criterion first, those without a fit last.
 
-    `fixed`: values held; `touch`: whether the first touch is sought too. Raises BadInput or NotReached, that of the
+    `fixed`: values held; `touch`: whether the first touch is sought too; `progress`: see
+    :func:`lumped.fit`. Raises BadInput or NotReached, that of the
     first law, where none can be fitted.
     """
     held = dict(fixed or {})
@@ -74,7 +79,7 @@ def rank(
                 refused.append(RankedFit(law, reason=f"the same as {ALIKE[law]}, by a slower way"))
             else:
                 free = (*default_free(law, scene, held), *((TOUCH,) if touch else ()))
-                fitted.append(_ranked(curve, search(curve, law, scene, free, held)))
+                fitted.append(_ranked(curve, search(curve, law, scene, free, held, progress=progress)))
         except (BadInput, NotReached) as failure:
             failures.append(failure)
             refused.append(RankedFit(law, reason=str(failure).splitlines()[0]))

@@ -6,10 +6,10 @@ start, in the logarithms of the parameters.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import product
+from itertools import count, product
 from typing import Any
 
 import numpy as np
@@ -43,7 +43,8 @@ from lumped.scene.scene import Scene
 from lumped.scene.tables import LawChoice
 from lumped.solvers.point.bodies import Stage
 
-# How many of the starts, the nearest to the curve first, are followed; one is enough where noise is all that is left.
+# How many searches from the starts, the nearest to the curve first, are to end near the curve, or farther from it than
+# no force at all; one is enough where noise is all that is left.
 FOLLOWED = 2
 HAIR = 1e-4  # safety: of the range or of the guess, by which a start stays inside its bounds
 RESULT_TOLERANCE = 1e-6  # of the fitted law's own impact, at the end
@@ -59,6 +60,7 @@ RATIOS, TIMES = (0.3, 2.0), (0.1, 1.0, 10.0)
 # Of an elastic modulus: where an echo lets the force jump, a search finds its time from one side only.
 ASIDE = (1.0, 0.99, 1.01)
 Values = dict[str, float]
+Progress = Callable[[str, float, float], None]  # told what is computed, how much of it is done, and will be
 Array = NDArray[np.float64]
 # Of the differences: far above what an impact's integration errs by, and the search needs no better slopes.
 DIFFERENCE = 1e-4
@@ -76,6 +78,7 @@ def search(
     fixed: Mapping[str, float] | None = None,
     bounds: Bounds | None = None,
     peak: bool = False,
+    progress: Progress = lambda message, done, total: None,
 ) -> Fit:
     """See :func:`lumped.fit`."""
     check_mass(scene)
@@ -87,7 +90,9 @@ def search(
         reason = f"{measured.points} points for {len(space.free)} parameters; accepted: more points than parameters"
         raise BadInput(Fault("curve", "", reason))
     stiff = [name for name in STIFFNESSES if name in space.free] or list(space.free)
-    problem = FitProblem(space, measured, stiff[0] if peak else None)
+    number = count(1)
+    heard = lambda: progress(f"impacts of {law}", next(number), 0)  # noqa: E731 - read in the next line
+    problem = FitProblem(space, measured, stiff[0] if peak else None, heard)
     found = best(problem)
     certainty = certainty_of(problem, found.values, found.guess)
     fitted = space.scene_at(found.values)
@@ -125,16 +130,27 @@ def delayed(history: History, touch: float) -> History:
 def best(problem: FitProblem) -> Found:
     """The nearest of the searches from the best starts. Raises NotReached, BadInput."""
     begun = sorted(_begun(problem), key=lambda found: found.norm)
-    ended: list[Found] = []
+    nothing = float(np.linalg.norm(problem.of_nothing))
+    near, far = list[Found](), list[Found]()
     for start in begun:
         found = Descent(problem, start).end()
-        ended += [] if found is None else [found]
-        if len(ended) == FOLLOWED or (found and not problem.measured.systematic(found.error)):
+        if found is None:
+            continue
+        (near if found.norm < nothing else far).append(found)
+        noise = found in near and not problem.measured.systematic(found.error)
+        if noise or FOLLOWED in (len(near), len(far)):
             break
-    if not ended:
-        reason = f"no search of {', '.join(problem.space.free)} converged from {len(begun)} starts"
-        raise NotReached(f"{reason}; cure: fewer free parameters, or bounds for them")
-    return min(ended, key=lambda found: found.norm)
+    if not near:
+        raise NotReached(_no_end(", ".join(problem.space.free), len(begun), bool(far)))
+    return min(near, key=lambda found: found.norm)
+
+
+def _no_end(names: str, begun: int, far: bool) -> str:
+    """Why no search is an answer, and what to do."""
+    if far:
+        reason = f"searches of {names} end farther from the curve than no force at all"
+        return f"{reason}; cure: other free parameters, as E0 of a material, or a curve of these bodies"
+    return f"no search of {names} converged from {begun} starts; cure: fewer free parameters, or bounds for them"
 
 
 def _begun(problem: FitProblem) -> list[Found]:
@@ -167,7 +183,8 @@ def starts(space: Space, measured: Measured) -> list[Values]:
     of_network = [name for name in (*space.free, *space.held) if name not in own]
     ours = list(pulse.law_guesses(names))
     theirs = list(pulse.network_guesses()) if of_network else [{}]
-    return [{name: (law | solid)[name] for name in space.free} for law, solid in product(ours, theirs)]
+    every = [{name: (law | solid)[name] for name in space.free} for law, solid in product(ours, theirs)]
+    return [one for i, one in enumerate(every) if one not in every[:i]]
 
 
 @dataclass(frozen=True)
@@ -256,7 +273,7 @@ class Descent:
     known: dict[bytes, Array] = field(default_factory=dict)
 
     def end(self) -> Found | None:
-        """Where the search ends; None where it does not converge."""
+        """Where the search ends, be it far from the curve; None where it does not converge."""
         if not self.problem.searched:
             return self.start
         from scipy.optimize import least_squares
@@ -274,7 +291,7 @@ class Descent:
             return None
         found = Found(values, self.start.guess, solution.fun)
         ended = solution.status > 0 or self._nearly(solution.fun, solution.jac)
-        return found if ended and found.norm < np.linalg.norm(self._nothing) else None
+        return found if ended else None
 
     def _nearly(self, error: Array, slopes: Array) -> bool:
         """Whether what the slopes promise is nothing beside what noise does to the sum of squares.
@@ -293,17 +310,12 @@ class Descent:
             try:
                 self.known[key] = self.problem.error(self._coordinates.whole(place))
             except (BadInput, NotReached):
-                self.known[key] = FAR * self._nothing
+                self.known[key] = FAR * self.problem.of_nothing
         return self.known[key]
 
     def slopes(self, place: Array) -> Array:
         """Forward differences, backward at an upper bound; shape (n, q)."""
         return forward_slopes(self.error, place, self._coordinates.limits()[1], DIFFERENCE)
-
-    @property
-    def _nothing(self) -> Array:
-        """The residuals of no force at all."""
-        return self.problem.measured.error_of(np.zeros_like(self.problem.measured.force))
 
     @cached_property
     def _coordinates(self) -> Coordinates:

@@ -22,6 +22,7 @@ from fe_contact.budget.plan import plan
 from fe_contact.budget.runs import Runs
 from fe_contact.cli import main
 from fe_contact.march.impacts import FAINTEST, Grounded, Released, _fallen, follow
+from fe_contact.steppers.scaled_surface import MEMORY_POINTS, POINTS_A_STEP
 from fe_contact.steppers.steps import Strike
 from lumped.laws import mdr
 from lumped.materials import Relaxation
@@ -195,6 +196,21 @@ def test_the_history_of_several_contacts_is_no_distance_from_itself(
         assert found.quantities[name].error == found.contacts[0][f"{name}_error"], "of the first and hardest contact"
     assert found.contacts[0]["velocity_error"] == 0.0, "it is what the scene says"
     assert all(contact["velocity_error"] for contact in found.contacts[1:])
+
+
+def test_a_later_contact_is_placed_by_few_steps_whatever_many_the_one_before_took(
+    polymer: tuple[lumped.Scene, lumped.Result],
+) -> None:
+    """More steps remember at more radii: the march that only places steps has to read them all."""
+    scene, _ = polymer
+    numerics = plan(scene, {"tolerance": 1e-3}).numerics
+    steps = 2 * MEMORY_POINTS // POINTS_A_STEP
+    found = [
+        Runs(Strike.of(scene), scene.geometry, 2).follow(numerics.varied(steps=n)).contacts[1].march
+        for n in (steps, steps // 2)
+    ]
+    assert found[0].time[-1] == pytest.approx(found[1].time[-1], rel=1e-3)
+    assert found[0].depth.max() == pytest.approx(found[1].depth.max(), rel=1e-3)
 
 
 def test_later_contacts_keep_the_schemes_order(polymer: tuple[lumped.Scene, lumped.Result]) -> None:

@@ -16,8 +16,9 @@ from fe_contact.assembly.forms import Array
 from fe_contact.indentation import indent
 from fe_contact.plastic.course import Course, PlasticLoading, Varied, settings
 from fe_contact.plastic.fields import PressedAgain
-from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, _at_most, _release
-from fe_contact.plastic.path import Presser, Station
+from fe_contact.plastic.impact import SPRUNG, Answered, Rebound, _at_most, _release, plan
+from fe_contact.plastic.path import PlasticFlowSlow, Presser, Station
+from fe_contact.solids.newton import MOST_ITERATIONS
 from fe_contact.steppers.steps import Work
 from fe_contact.studies.compare.study import compare
 from lumped import Result, Scene
@@ -278,6 +279,26 @@ def test_a_first_step_that_reaches_no_point_of_the_mesh_is_no_force() -> None:
     found = PlasticLoading(course, settings(COARSE, course), rest, places).pressed
     assert found.depth == pytest.approx(course.unit * depths[1:])
     assert np.all(np.isfinite(found.logarithm(np.array([0.0, course.unit * depths[0], found.depth[3]]))))
+
+
+def test_a_ball_on_what_flows_from_the_touch_on_is_planned_as_by_a_constant_pressure() -> None:
+    """Rigid but for plastic flow: energy = p pi a^4/(4 R c^2), p 2.6 to 3 yield strengths, c^2 1 to 1.5 by what piles
+    up (Johnson, Contact Mechanics, 6.3).
+    """
+    scene = Scene.load("paper-concrete-plastic", {"target.material.E": 8.87e11})
+    material, radius = scene.geometry.material, scene.profile.radius
+    share = 4.0 * radius * (0.5 * scene.reduced_mass * scene.velocity**2) / (math.pi * material.yield_strength)
+    assert (share / 3.0) ** 0.25 < plan(scene, {}).numerics.contact_radius < (1.5 * share / 2.6) ** 0.25
+
+
+def test_a_loading_ends_by_name_where_its_iterations_are_spent_and_tells_its_problems() -> None:
+    indenter, _ = SceneReader("scene", tables()).indenter(Indenter)
+    course, told = Course.of(indenter, 1e-5, 4e-5), list[float]()
+    loading = PlasticLoading.of(course, settings(COARSE, course), most=20, counted=told.append)
+    with pytest.raises(PlasticFlowSlow, match=r"more than 20 iterations up to depth .* m; cure: a lower striker"):
+        loading.to(4e-5)
+    assert told == [1.0] * loading.presser.counts.problems
+    assert 20 < loading.presser.counts.iterations <= 20 + MOST_ITERATIONS
 
 
 def test_a_punch_yields_with_the_coarsest_settings_and_fewer_elements_are_refused() -> None:

@@ -97,10 +97,12 @@ def test_a_log_has_a_line_a_word_with_times_and_shares() -> None:
     clock.now += 3.0
     log("rows", 2, 4)
     log("rows", 3, 4)
-    first, second, third = stream.getvalue().splitlines()
+    log("impacts", 12)
+    first, second, third, fourth = stream.getvalue().splitlines()
     assert first.endswith("Z, 0.0 s, begun")
     assert second.endswith("Z, 2.0 s, rows, 1 of 4")
     assert third.endswith("Z, 5.0 s, rows, 2 of 4, about 3 s left")
+    assert fourth.endswith("Z, 5.0 s, impacts, 12"), "nobody knows of how many"
 
 
 @pytest.mark.parametrize("name", ["polymer-sphere", "ball-bouncing"])

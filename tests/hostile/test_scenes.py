@@ -132,7 +132,7 @@ class Mutations:
         return self.rng.choice((*kinds, *drawn, *drawn))
 
     def scale(self, table: Table) -> None:
-        """A number moved within what might be accepted: most of these scenes run."""
+        """A number moved within what might be accepted, a whole one to a whole one: most of these scenes run."""
         numbers = [
             (place, key)
             for place in tables_of(table)
@@ -141,9 +141,12 @@ class Mutations:
         ]
         if numbers:
             place, key = self.rng.choice(numbers)
-            place[key] *= self.rng.choice((1.0, 1.0, 1.0, -1.0)) * 10.0 ** (
-                self.rng.uniform(-1, 1) + self.rng.choice((0, 0, 1, -1, 2, -2, 4, -4, 8, -8))
+            found = (
+                place[key]
+                * self.rng.choice((1.0, 1.0, 1.0, -1.0))
+                * 10.0 ** (self.rng.uniform(-1, 1) + self.rng.choice((0, 0, 1, -1, 2, -2, 4, -4, 8, -8)))
             )
+            place[key] = round(found) if isinstance(place[key], int) else found
 
 
 class Scenes(Mutations):

@@ -11,6 +11,9 @@ import pytest
 
 from lumped import BadInput, Fit, History, NotReached, Scene, fit, laws, simulate
 from lumped.fit.certainty import inverse
+from lumped.fit.measured import Measured
+from lumped.fit.search import starts
+from lumped.fit.space import space_of
 from lumped.result.score import Curve
 from lumped.scene.tables import LawChoice
 
@@ -265,6 +268,32 @@ def test_a_force_beyond_every_material_is_searched_within_its_range() -> None:
     curve = Curve(np.array([0.0, 10.0, 20.0]), np.array([0.0, 1e14, 0.0]))
     with pytest.raises(NotReached, match=r"no search of .* converged"):
         fit(curve, "mdr", Scene.load("steel-ball"))
+
+
+def test_searches_that_lead_away_from_the_curve_end_soon_and_say_what_to_free() -> None:
+    """A half sine of a soft body, and a steel ball's E0 held: no relaxation softens a solid below it.
+
+    Two searches of forty places or so, each with a slope in two directions, and not one from every start.
+    """
+    time, told = np.linspace(0.0, 6e-5, 60), list[tuple[str, float]]()
+    force = 15.0 * np.maximum(np.sin(np.pi * time / 5.5e-5), 0.0) ** 1.5
+    with pytest.raises(NotReached, match=r"R1, R2 end farther from the curve than no force .* free parameters, as E0"):
+        fit(
+            Curve(time, force),
+            "correspondence",
+            Scene.load("steel-ball"),
+            progress=lambda message, done, total: told.append((message, done)),
+        )
+    assert told == [("impacts of correspondence", number) for number in range(1, len(told) + 1)], "every impact"
+    assert len(told) < 2 * 40 * 2
+
+
+@pytest.mark.parametrize(("law", "count"), [("ting", 6), ("jankowski", 6), ("linear_spring", 2)])
+def test_no_search_starts_twice_from_one_place(law: str, count: int) -> None:
+    scene = Scene.load("polymer-sphere")
+    measured = Measured.of(simulate(laws.get("ting").of(scene), scene).history)
+    found = starts(space_of(law, scene, None, {}, {}), measured)
+    assert len({tuple(one.items()) for one in found}) == len(found) == count
 
 
 def test_bounds_hold_and_are_told() -> None:

@@ -26,7 +26,7 @@ from lumped.schema.files import SCENES, exists, overridden, parsed
 from lumped.schema.keys import Count, File, Key, Number, Text, read_table
 
 MOST_CASES = 10_000_000  # work: days on a hundred processes
-MOST_DRAWS = 1_000_000  # work: their values are held
+MOST_VALUES = 1_000_000  # work: of all keys together, for they are held
 DIGITS = 15  # rounding: between 0.01 and 0.03 lies 0.02, not 0.019999999999999997
 SAMPLE = 24  # of cases that are read before any runs: a fault that all of them have is the sweep file's
 RANGES: Mapping[str, Callable[..., Array]] = {"linear": np.linspace, "log": np.geomspace}
@@ -94,7 +94,7 @@ KEYS: Mapping[str, Key] = {
     "draws": Key(Subtable(), "keys that are drawn at random", required=False),
 }
 DRAW_KEYS: Mapping[str, Key] = {
-    "count": Key(Count(1, MOST_DRAWS), "how many are drawn"),
+    "count": Key(Count(1, MOST_VALUES), "how many are drawn"),
     "seed": Key(Count(0, 2**63 - 1), "of the random numbers"),
 }
 
@@ -187,6 +187,7 @@ class _Reader:
     def __init__(self, source: str, raw: Table, folder: Path) -> None:
         self.source, self.raw, self.folder = source, raw, folder
         self.faults: list[Fault] = []
+        self.held = 0  # values of ranges and draws
 
     def sweep(self) -> Sweep:
         values, self.faults = read_table(self.source, "", self.raw, KEYS)
@@ -243,12 +244,19 @@ class _Reader:
     def range(self, where: str, kind: str, spec: Given) -> Values:
         """So many values between two ends."""
         ends = self.pair(f"{where}.{kind}", spec[kind], above_zero=kind == "log")
-        count, known = Count(1, MOST_CASES), len(self.faults)
+        count, known = Count(1, MOST_VALUES), len(self.faults)
         values, faults = read_table(self.source, where, {"count": spec["count"]}, {"count": Key(count)})
         self.faults += faults
-        if ends is None or len(self.faults) > known:
+        if ends is None or len(self.faults) > known or not self.holds(where, values["count"]):
             return ()
         return tuple(float(f"{value:.{DIGITS}g}") for value in RANGES[kind](*ends, values["count"]).tolist())
+
+    def holds(self, where: str, count: int) -> bool:
+        """Whether so many values more are not too many; else a fault is noted."""
+        self.held += count
+        if self.held > MOST_VALUES:
+            self.fault(where, f"more than {MOST_VALUES} values in all; accepted: a smaller count")
+        return self.held <= MOST_VALUES
 
     def pair(self, where: str, value: object, above_zero: bool = False) -> tuple[float, float] | None:
         """Two finite numbers; None with a fault noted."""
@@ -272,6 +280,8 @@ class _Reader:
         if len(values) < len(DRAW_KEYS) or not kinds or None in kinds.values():
             if not kinds:
                 self.fault("draws", f"draws no key; accepted: a key with {DRAWN}")
+            return []
+        if not self.holds("draws", values["count"] * len(kinds)):
             return []
         normal = np.random.default_rng(values["seed"]).standard_normal((values["count"], len(kinds))) @ roots.T
         columns = [made(z).tolist() for made, z in zip(kinds.values(), normal.T, strict=True) if made is not None]

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,7 +19,14 @@ from fe_contact.studies import style
 from fe_contact.studies.style import Look
 from fe_contact.studies.transfer.study import TransferStudy
 from fe_contact.studies.transfer.verdict import LEVELS, QUANTITIES, TransferRow, TransferVerdict, holds, percent
+from lumped.materials import Material
+from lumped.materials.networks import NETWORKS
 from lumped.numbers import Array
+from lumped.scene.tables import LAWS, STRIKER_KEYS, TARGET_KEYS, Model, Motion
+from lumped.schema.keys import Key, Number, keys_of
+from lumped.schema.members import Folder
+from lumped.shapes import SHAPES
+from lumped.targets import TARGETS
 
 COLUMNS, PANEL, BETWEEN = 2, 1.75, 0.62  # panels in a row; height of one and of what is between two, in
 TITLE_WIDTH = 128  # characters
@@ -61,10 +69,31 @@ def _plot(study: TransferStudy, key: str, where: Path, name: str) -> tuple[Path,
     return sheet.paths
 
 
+def with_unit(key: str) -> str:
+    """A dotted key of a scene with its unit, where it has one: that of all shapes, networks or laws alike."""
+    part, _, name = key.rpartition(".")
+    every = {
+        "striker": [STRIKER_KEYS, *_sets(SHAPES)],
+        "target": [TARGET_KEYS, *_sets(TARGETS)],
+        "striker.material": [keys_of(Material), *_sets(NETWORKS)],
+        "target.material": [keys_of(Material), *_sets(NETWORKS)],
+        "model": [keys_of(Model)],
+        "motion": [keys_of(Motion)],
+        "law": _sets(LAWS),
+    }
+    kinds = [keys[name].kind for keys in every.get(part, []) if name in keys]
+    units = {kind.unit for kind in kinds if isinstance(kind, Number)} - {"", "1"}
+    return f"{key}, {units.pop()}" if len(units) == 1 else key
+
+
+def _sets(members: Folder[Any]) -> list[Mapping[str, Key]]:
+    return [keys for one in members.members.values() for keys in one.sets]
+
+
 def _states(axes: Axes, study: TransferStudy, key: str, rows: Sequence[TransferRow]) -> None:
     """The axis of the states, logarithmic, with a tick at that of calibration and at others as far as there is room."""
     values = sorted({state.value for state in study.states if state.key == key})
-    axes.set(xscale="log", xlabel=key)
+    axes.set(xscale="log", xlabel=with_unit(key))
     ticks = list[float]()
     for value in (study.start[key], *values):
         if all(abs(math.log(value / tick)) >= APART * math.log(values[-1] / values[0]) for tick in ticks):
