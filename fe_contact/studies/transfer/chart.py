@@ -52,7 +52,7 @@ def _plot(study: TransferStudy, key: str, where: Path, name: str) -> tuple[Path,
     rows = [row for row in study.rows if row.key == key and row.verdict is not TransferVerdict.REFUSED]
     lines = [
         f"Every law calibrated by {study.asked.calibrate.replace('_', ' ')} at {study.at} (dotted): its prediction "
-        f"less the reference ({study.reference.method}), whose error bar is shaded. Lines at 1, 5 and 10 %. SI units."
+        f"less the reference ({study.reference.method}), whose error bar is shaded. Lines at 1, 5 and 10 %."
     ]
     count = -(-(len(QUANTITIES) + 1) // COLUMNS)
     height = count * PANEL + (count - 1) * BETWEEN
