@@ -36,7 +36,7 @@ UNSHOWN = 3.0
 LATE = 0.75  # of the contact, from where on motion counts for that at the end
 BEHIND = 0.002  # of the contact, that a front has to arrive before its end
 AWAY = 0.02  # share of the contact within which a change counts as the error of its neighbours
-ROUNDS = 3  # refinements before giving up
+ROUNDS = 5  # refinements before giving up, each of half the steps: the work has a bound of its own
 STEP = 2_000  # unknowns whose share of a step takes as long as all the rest of it
 # Settings that tell nothing of line elements, or what a step's own length says already.
 LINE: Given = {"elements_per_contact": 1.0, "order": 1, "penalty": 1.0, "peak_share": 0.5, "rho": 1.0}
