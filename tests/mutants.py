@@ -552,11 +552,20 @@ def _seen() -> Iterator[set[tuple[CodeType, int]]]:
     seen = set[tuple[CodeType, int]]()
     if sys.version_info < (3, 12):
 
-        def traced(frame: FrameType, event: str, arg: object) -> Callable[..., Any]:
+        left = dict[CodeType, set[int]]()  # lines not reached yet: without any a function is as fast as unwatched
+
+        def traced(frame: FrameType, event: str, arg: object) -> Callable[..., Any] | None:
             seen.add((frame.f_code, frame.f_lineno))
+            left[frame.f_code].discard(frame.f_lineno)
             return traced
 
-        sys.settrace(lambda frame, event, arg: traced if _ours(frame.f_code) else None)
+        def entered(frame: FrameType, event: str, arg: object) -> Callable[..., Any] | None:
+            code = frame.f_code
+            if code not in left:
+                left[code] = {line for _, _, line in code.co_lines() if line} if _ours(code) else set()
+            return traced if left[code] else None
+
+        sys.settrace(entered)
         yield seen
         sys.settrace(None)
         return
