@@ -551,7 +551,6 @@ def _seen() -> Iterator[set[tuple[CodeType, int]]]:
     """All lines of the packages reached meanwhile; from Python 3.12 on each tells so once, which is cheap."""
     seen = set[tuple[CodeType, int]]()
     if sys.version_info < (3, 12):
-
         left = dict[CodeType, set[int]]()  # lines not reached yet: without any a function is as fast as unwatched
 
         def traced(frame: FrameType, event: str, arg: object) -> Callable[..., Any] | None:
