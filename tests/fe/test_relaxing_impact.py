@@ -248,7 +248,7 @@ def test_steps_on_a_spring_under_gravity_err_as_their_square(
         numerics = settings_of(strike, steps=steps).varied(contact_time=duration, peak_share=0.5)
         found = Curve.of(on_spring(strike, numerics, unit, scale).march(), strike).quantities
         cut = on_spring(replace(strike, end_time=0.6 * duration), numerics, unit, scale).march()
-        depth, speed, passed = solve_ivp(
+        depth, _, passed = solve_ivp(
             moves, (0.0, 0.6 * duration), [0.0, velocity, 0.0], "DOP853", rtol=1e-11, atol=1e-13
         ).y[:, -1]
         assert cut.time[-1] == pytest.approx(0.6 * duration, rel=1e-12)
