@@ -257,7 +257,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/steppers/steps.py", "Strike.total", ""): "a default that strikes of scenes do not use",
     ("fe_contact/budget/variation.py", "Softening.errors", "0.0 -> 0.1"): "of quantities that there are not",
     ("fe_contact/budget/variation.py", "Softening.errors", "1.0 -> 0.1"): "of elastic contacts, which give back all",
-    ("fe_contact/steppers/flat_end.py", "FlatStepper.step", "length * self.scheme"): "when a radius was",
     ("fe_contact/waves/certify.py", "DEGREE, REACH", ""): "another smoothing, about as wide",
     ("lumped/solvers/hereditary/march.py", "_landed", ""): "a break of the plan, or the same place but for rounding",
     ("fe_contact/waves/targets/layer.py", "ROUGH", ""): BEGINS,
@@ -268,6 +267,7 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("lumped/solvers/mdr/nest.py", "Prescribed.propose", "if len"): "a guard for a march of one step",
     ("fe_contact/budget/curve.py", "BEGUN", ""): "a guard against dividing by zero itself",
     ("fe_contact/budget/plan.py", "_settings", "1.0 ->"): BEGINS,
+    ("fe_contact/budget/plan.py", "_settings", "0.5 ->"): "the place of what is told once the impact is known",
     ("fe_contact/steppers/struck.py", "FixedContact._by_secants", "0 ->"): WORK,
     ("fe_contact/steppers/struck.py", "FixedContact._by_secants", "iterations + solution.iterations"): WORK,
     ("fe_contact/indentation.py", "_overlapping", "SMALL * depth /"): GUESS,
@@ -279,7 +279,6 @@ HARMLESS: dict[tuple[str, str, str], str] = {
     ("fe_contact/reference.py", "Statics.of", "scene.motion.impacts > 1 and"): "asked again where it is refused",
     ("lumped/solvers/mdr/nest.py", "ALIGNING_TRIES, LEAST_SLOPE", "12 ->"): WORK,
     ("lumped/solvers/hereditary/approach.py", "_to_velocity", "3.0 ->"): GUESS,
-    ("fe_contact/contact/problem.py", "_descended", "0.5 ->"): GUESS,
 }
 
 
