@@ -137,11 +137,11 @@ def test_a_force_below_the_rounding_of_gravity_is_its_springs_at_the_turn(name: 
     assert history.force[turn] == pytest.approx(1e5 * history.depth[turn] ** 1.5, rel=1e-6)
 
 
-@pytest.mark.parametrize("gravity", [0.05, 3.0, 30.0])
-@pytest.mark.parametrize("speed", [0.06, 0.1, 1.0])
+@pytest.mark.parametrize("gravity", [0.5, 3.0, 30.0])
+@pytest.mark.parametrize("speed", [0.02, 0.1, 1.0])
 def test_bodies_meet_again_at_the_surface_or_where_a_dashpot_no_longer_holds(gravity: float, speed: float) -> None:
     """k d + c d' from a dent 1 mm deep: on a parabola of time, turned before the surface or after."""
-    dent, stiffness, damping = 1e-3, 2e3, 40.0
+    dent, stiffness, damping = 1e-3, 2e3, 200.0
     stages = list[Stage]()
 
     def force(depth: float, rate: float, stage: Stage) -> float:
